@@ -1,7 +1,8 @@
 //! The command line.
 
 use crate::commands::{
-    analyze, bag, calibrate, campaign, completions, invert, launch, man, probe, report, reproduce, run, scene, view,
+    analyze, bag, calibrate, campaign, completions, invert, launch, man, probe, report, reproduce, run,
+    scene, view,
 };
 use clap::{CommandFactory, Parser, Subcommand};
 use grainlab_bench as bench;

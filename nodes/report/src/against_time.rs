@@ -49,11 +49,22 @@ impl Run {
         if self.timeline.pressure.count() == 0 {
             return paragraph("The recording has no stress against time.");
         }
-        let plots: String = self.plots().iter().filter(|p| p.curves.iter().any(|c| !c.points.is_empty())).map(|p| self.drawn(p)).collect();
+        let plots: String = self
+            .plots()
+            .iter()
+            .filter(|p| p.curves.iter().any(|c| !c.points.is_empty()))
+            .map(|p| self.drawn(p))
+            .collect();
         let phases: String = self
             .bands()
             .iter()
-            .map(|b| format!("<li><b>{}</b> {}</li>", escaped(&b.label), escaped(b.tooltip.split_once(": ").map_or("", |t| t.1))))
+            .map(|b| {
+                format!(
+                    "<li><b>{}</b> {}</li>",
+                    escaped(&b.label),
+                    escaped(b.tooltip.split_once(": ").map_or("", |t| t.1))
+                )
+            })
             .collect();
         format!(
             "<p>The bands are the phases of the scene, drawn with equal widths, or in simulated time. Of {}, each line has the \
@@ -69,9 +80,12 @@ impl Run {
 
     fn plots(&self) -> Vec<Plot> {
         let t = &self.timeline;
-        let components = |series: &[Phased; 6], symbol: &str, unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
-            which.map(|n| Curve::line(&format!("{symbol} {}", COMPONENTS[n]), n, &series[n], unit)).collect()
-        };
+        let components =
+            |series: &[Phased; 6], symbol: &str, unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
+                which
+                    .map(|n| Curve::line(&format!("{symbol} {}", COMPONENTS[n]), n, &series[n], unit))
+                    .collect()
+            };
         let mut coordination = vec![Curve::line("k", 0, &t.coordination, 1.0)];
         if !t.fabrics.is_empty() {
             coordination.push(Curve::points("z", 1, &t.fabrics, |s| s.z));
@@ -126,7 +140,10 @@ impl Run {
                 caption: "ε of the contacts, and weighted by their stiffness, at the measured packings.",
                 curves: match t.fabrics.as_slice() {
                     [] | [_] => Vec::new(),
-                    all => vec![Curve::points("ε", 0, all, |s| s.eps), Curve::points("ε by stiffness", 1, all, |s| s.eps_stiffness)],
+                    all => vec![
+                        Curve::points("ε", 0, all, |s| s.eps),
+                        Curve::points("ε by stiffness", 1, all, |s| s.eps_stiffness),
+                    ],
                 },
             },
         ]
@@ -161,7 +178,11 @@ impl Run {
                 let _ = writeln!(csv, "{name},{},{}", number(*time), number(*value));
             }
         }
-        let svg = format!("<div data-axis=\"phase\">{}</div><div data-axis=\"time\">{}</div>", by_phase.svg(), by_time.svg());
+        let svg = format!(
+            "<div data-axis=\"phase\">{}</div><div data-axis=\"time\">{}</div>",
+            by_phase.svg(),
+            by_time.svg()
+        );
         PageFigure { id: plot.id, svg, caption: plot.caption, csv }.html()
     }
 
@@ -172,12 +193,18 @@ impl Run {
             colour: Some(c.colour),
             marker: c.marked.then_some(Marker::Circle),
             line: Some(if c.marked { Line::Faint } else { Line::Straight }),
-            points: c.points.iter().filter(|p| drawable(p.1)).map(|(t, v)| Point::at(across(*t), *v)).collect(),
+            points: c
+                .points
+                .iter()
+                .filter(|p| drawable(p.1))
+                .map(|(t, v)| Point::at(across(*t), *v))
+                .collect(),
             ..Series::default()
         };
         // The axis is that of the run, whatever the values of this plot.
         let ends = [self.timeline.begin(), self.timeline.end];
-        let middle = plot.curves.iter().flat_map(|c| &c.points).map(|p| p.1).find(|v| drawable(*v)).unwrap_or(1.0);
+        let middle =
+            plot.curves.iter().flat_map(|c| &c.points).map(|p| p.1).find(|v| drawable(*v)).unwrap_or(1.0);
         let span = Series { points: ends.map(|t| Point::at(across(t), middle)).into(), ..Series::default() };
         let named = plot.curves.iter().filter(|c| !c.name.is_empty());
         Figure {

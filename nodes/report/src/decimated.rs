@@ -95,7 +95,11 @@ impl Decimated {
     pub fn points(&self) -> Vec<At> {
         let mut points = Vec::with_capacity(4 * self.bins.len());
         for bin in self.bins.iter().flatten() {
-            let (early, late) = if bin.least.0 <= bin.greatest.0 { (bin.least, bin.greatest) } else { (bin.greatest, bin.least) };
+            let (early, late) = if bin.least.0 <= bin.greatest.0 {
+                (bin.least, bin.greatest)
+            } else {
+                (bin.greatest, bin.least)
+            };
             for at in [bin.first, early, late, bin.last] {
                 if points.last() != Some(&at) {
                     points.push(at);
@@ -138,7 +142,9 @@ mod tests {
 
     #[test]
     fn numbers_that_are_not_finite_and_times_that_go_back_are_left_out() {
-        let series = of([(0.0, 1.0), (f64::NAN, 2.0), (1.0, f64::INFINITY), (2.0, 3.0), (1.5, 4.0), (2.0, 5.0)].into_iter());
+        let series =
+            of([(0.0, 1.0), (f64::NAN, 2.0), (1.0, f64::INFINITY), (2.0, 3.0), (1.5, 4.0), (2.0, 5.0)]
+                .into_iter());
         assert_eq!(series.points(), [(0.0, 1.0), (2.0, 3.0), (2.0, 5.0)]);
         assert_eq!(series.count(), 3);
     }

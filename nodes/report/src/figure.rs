@@ -17,9 +17,12 @@ impl PageFigure<'_> {
     /// The elements.
     pub(crate) fn html(&self) -> String {
         let Self { id, svg, caption, csv } = self;
-        let caption = if caption.is_empty() { String::new() } else { format!("<span>{}</span>", escaped(caption)) };
+        let caption =
+            if caption.is_empty() { String::new() } else { format!("<span>{}</span>", escaped(caption)) };
         let button = |kind: &str, text: &str| {
-            format!("<button type=\"button\" data-save=\"{kind}\" aria-label=\"Save {id} as {text}\">{text}</button>")
+            format!(
+                "<button type=\"button\" data-save=\"{kind}\" aria-label=\"Save {id} as {text}\">{text}</button>"
+            )
         };
         format!(
             "<figure class=\"drawing\" id=\"plot-{id}\">\n{svg}<script type=\"text/csv\">{}</script>\n\
@@ -52,7 +55,13 @@ mod tests {
 
     #[test]
     fn numbers_keep_six_digits_and_no_zeros_that_say_nothing() {
-        let all = [(0.0, "0"), (50_000.0, "50000"), (1.0 / 3.0, "0.333333"), (-2.5e-3, "-0.0025"), (1.25e-7, "1.25000e-7")];
+        let all = [
+            (0.0, "0"),
+            (50_000.0, "50000"),
+            (1.0 / 3.0, "0.333333"),
+            (-2.5e-3, "-0.0025"),
+            (1.25e-7, "1.25000e-7"),
+        ];
         all.iter().for_each(|(value, text)| assert_eq!(number(*value), *text));
     }
 }

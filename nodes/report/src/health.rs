@@ -10,7 +10,9 @@ impl Run {
         let s = &self.summary;
         let mut facts: Vec<String> = Vec::new();
         let mut fact = |name: &str, value: Option<String>| {
-            facts.extend(value.map(|v| format!("<div><dt>{}</dt><dd>{}</dd></div>", escaped(name), escaped(&v))));
+            facts.extend(
+                value.map(|v| format!("<div><dt>{}</dt><dd>{}</dd></div>", escaped(name), escaped(&v))),
+            );
         };
         fact("messages recorded", (!s.topics.is_empty()).then(|| s.total(|t| t.recorded).to_string()));
         fact("lost", (!s.topics.is_empty()).then(|| s.total(|t| t.lost).to_string()));
@@ -18,10 +20,20 @@ impl Run {
         fact("exchanges", s.exchanges.map(|n| n.to_string()));
         fact("exchanges per second", s.exchanges_per_second.map(|n| format!("{n:.0}")));
         fact("waiting for answers", s.waiting_fraction.map(|w| format!("{:.1} % of the time", 100.0 * w)));
-        fact("particle-steps per second", s.particle_steps_per_second.map(|n| format!("{:.1} million", n / 1e6)));
+        fact(
+            "particle-steps per second",
+            s.particle_steps_per_second.map(|n| format!("{:.1} million", n / 1e6)),
+        );
         fact("wall time", s.wall_seconds.map(|t| format!("{t:.1} s")));
-        fact("restarts", (!s.nodes.is_empty()).then(|| s.nodes.iter().map(|n| n.restarts).sum::<usize>().to_string()));
-        let facts = if facts.is_empty() { String::new() } else { format!("<dl class=\"facts\">{}</dl>\n", facts.concat()) };
+        fact(
+            "restarts",
+            (!s.nodes.is_empty()).then(|| s.nodes.iter().map(|n| n.restarts).sum::<usize>().to_string()),
+        );
+        let facts = if facts.is_empty() {
+            String::new()
+        } else {
+            format!("<dl class=\"facts\">{}</dl>\n", facts.concat())
+        };
         let topic = |t: &crate::summary_file::TopicCount| {
             let counts = [t.published, t.recorded, t.lost, t.repeated].map(|n| Cell::number(n.to_string()));
             std::iter::once(Cell::text(&t.name)).chain(counts).collect()
@@ -34,7 +46,11 @@ impl Run {
         let nodes: Vec<Vec<Cell>> = s.nodes.iter().map(node).collect();
         let mut tables = String::new();
         if !topics.is_empty() {
-            tables += &table("Messages of each topic", &["topic", "published", "recorded", "lost", "repeated"], &topics);
+            tables += &table(
+                "Messages of each topic",
+                &["topic", "published", "recorded", "lost", "repeated"],
+                &topics,
+            );
         }
         if !nodes.is_empty() {
             tables += &table("Processes", &["node", "exit code", "restarts"], &nodes);
@@ -47,9 +63,13 @@ impl Run {
         let of_packings = self.states.iter().flat_map(|s| &s.packing.warnings);
         let strangers = match self.summary.strangers.len() {
             0 => None,
-            n => Some(format!("{} on the bus were not part of the run; their messages were left out", count(n, "process"))),
+            n => Some(format!(
+                "{} on the bus were not part of the run; their messages were left out",
+                count(n, "process")
+            )),
         };
-        let lines: Vec<String> = (self.summary.warnings.iter().chain(of_packings).cloned()).chain(strangers).collect();
+        let lines: Vec<String> =
+            (self.summary.warnings.iter().chain(of_packings).cloned()).chain(strangers).collect();
         if lines.is_empty() {
             return paragraph("No warnings.");
         }
@@ -74,7 +94,11 @@ impl Run {
         versions.extend((!self.summary.run.is_empty()).then(|| format!("run {}", self.summary.run)));
         versions.extend(self.summary.domain.map(|d| format!("DDS domain {d}")));
         versions.extend(self.seed().map(|s| format!("seed {s}")));
-        let mut text = format!("<pre>{}</pre>\n{}", escaped(&lines.join("\n")), paragraph(&format!("{}.", versions.join(", "))));
+        let mut text = format!(
+            "<pre>{}</pre>\n{}",
+            escaped(&lines.join("\n")),
+            paragraph(&format!("{}.", versions.join(", ")))
+        );
         if !self.scene_text.is_empty() {
             text += &format!(
                 "<details><summary>The scene, {}</summary><pre>{}</pre></details>\n",

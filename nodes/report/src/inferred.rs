@@ -58,7 +58,8 @@ pub(crate) const COUNTED: [Counted; 3] = [
 /// Name of a result: its model, and its data unless these are moduli.
 fn name(e: &Inference) -> String {
     let data = e.source.as_deref().filter(|s| *s != "moduli").map(|s| format!(", {}", s.replace('_', " ")));
-    let by = e.by.as_deref().filter(|b| *b != "/emt_inversion" && *b != "emt_inversion").map(|b| format!(", {b}"));
+    let by =
+        e.by.as_deref().filter(|b| *b != "/emt_inversion" && *b != "emt_inversion").map(|b| format!(", {b}"));
     format!("{}{}{}", e.model, data.unwrap_or_default(), by.unwrap_or_default())
 }
 
@@ -76,7 +77,14 @@ impl Counted {
             let by_sigma = || (self.sigma)(e).map(|s| [value - 1.96 * s, value + 1.96 * s]);
             let interval = (self.interval)(e).or_else(by_sigma);
             let [low, high] = interval.map_or([String::new(), String::new()], |i| i.map(number));
-            let _ = writeln!(csv, "{},{},{},{low},{high},{}", name(e).replace(',', ""), e.status, number(value), number(counted));
+            let _ = writeln!(
+                csv,
+                "{},{},{},{low},{high},{}",
+                name(e).replace(',', ""),
+                e.status,
+                number(value),
+                number(counted)
+            );
             let colour = if e.status == "ok" { 0 } else { 1 };
             let error = format!("{value:.digits$} ({:+.digits$})", value - counted);
             bars.push(Bar { name: name(e), colour, value, interval, text: error });
@@ -114,20 +122,44 @@ impl Run {
         let warnings: String = state
             .results
             .iter()
-            .flat_map(|e| e.warnings.iter().map(move |w| format!("<li>{}: {}</li>", name(e), grainlab_console::html::escaped(w))))
+            .flat_map(|e| {
+                e.warnings
+                    .iter()
+                    .map(move |w| format!("<li>{}: {}</li>", name(e), grainlab_console::html::escaped(w)))
+            })
             .collect();
-        let warnings = if warnings.is_empty() { warnings } else { format!("<details><summary>Notes of the models</summary><ul>{warnings}</ul></details>\n") };
+        let warnings = if warnings.is_empty() {
+            warnings
+        } else {
+            format!("<details><summary>Notes of the models</summary><ul>{warnings}</ul></details>\n")
+        };
         format!("{about}<div class=\"grid three\">\n{figures}</div>\n{warnings}")
     }
 
     /// The measured states, one a row.
     pub(crate) fn states_table(&self) -> String {
         let header = [
-            "phase", "p, kPa", "φ", "k", "z", "ε", "G12, MPa", "G13, MPa", "Θ, MPa", "inferred k", "z", "ε", "by",
+            "phase",
+            "p, kPa",
+            "φ",
+            "k",
+            "z",
+            "ε",
+            "G12, MPa",
+            "G13, MPa",
+            "Θ, MPa",
+            "inferred k",
+            "z",
+            "ε",
+            "by",
         ];
         let row = |s: &InvertedPacking| {
             let r = &s.packing.report;
-            let phase = s.packing.position.filter(|p| p.phase > 0).map_or_else(String::new, |p| self.phase_name(p.phase as u32 - 1));
+            let phase = s
+                .packing
+                .position
+                .filter(|p| p.phase > 0)
+                .map_or_else(String::new, |p| self.phase_name(p.phase as u32 - 1));
             let best = recommended(s);
             let mut cells = vec![
                 Cell::text(phase),
@@ -137,13 +169,19 @@ impl Run {
             cells.extend(COUNTED.map(|c| Cell::number(format!("{:.*}", c.digits, (c.counted)(r)))));
             cells.extend(moduli(r).map(|m| Cell::number(fixed(m, 2))));
             cells.extend(COUNTED.map(|c| {
-                let sigma = best.and_then(|b| (c.sigma)(b)).map_or_else(String::new, |s| format!(" ± {s:.*}", c.digits));
+                let sigma = best
+                    .and_then(|b| (c.sigma)(b))
+                    .map_or_else(String::new, |s| format!(" ± {s:.*}", c.digits));
                 Cell::number(fixed(best.and_then(|b| (c.inferred)(b)), c.digits) + &sigma)
             }));
             cells.push(Cell::text(best.map_or_else(String::new, |b| format!("{} ({})", b.model, b.status))));
             cells
         };
         let rows: Vec<Vec<Cell>> = self.states.iter().map(row).collect();
-        table("Packings at the ends of phases: counted, measured, and inferred with standard deviations.", &header, &rows)
+        table(
+            "Packings at the ends of phases: counted, measured, and inferred with standard deviations.",
+            &header,
+            &rows,
+        )
     }
 }

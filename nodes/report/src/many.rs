@@ -1,10 +1,10 @@
 //! The page of many runs: one row a run, sortable, with outliers marked.
 
+use crate::figure::number;
 use crate::inferred::COUNTED;
 use crate::outliers::Outliers;
 use crate::page::whole;
 use crate::run::{Run, recommended};
-use crate::figure::number;
 use grainlab_console::html::{escaped, paragraph};
 use grainlab_console::{CsvText, count};
 use grainlab_results::brief::moduli;
@@ -33,7 +33,11 @@ const COLUMNS: [Column; 14] = [
     Column { name: "p, kPa", digits: 2, value: |r| Some(r.last()?.packing.report.pressure() / 1e3) },
     Column { name: "φ", digits: 4, value: |r| Some(r.last()?.packing.report.solid_fraction) },
     Column { name: "k", digits: 3, value: |r| Some(r.last()?.packing.report.contacts.coordination) },
-    Column { name: "z", digits: 3, value: |r| Some(r.last()?.packing.report.contacts.mechanical_coordination) },
+    Column {
+        name: "z",
+        digits: 3,
+        value: |r| Some(r.last()?.packing.report.contacts.mechanical_coordination),
+    },
     Column { name: "ε", digits: 4, value: |r| Some(r.last()?.packing.report.fabric.contact_anisotropy) },
     Column { name: "G12, MPa", digits: 2, value: |r| modulus(r, 0) },
     Column { name: "G13, MPa", digits: 2, value: |r| modulus(r, 1) },
@@ -43,7 +47,11 @@ const COLUMNS: [Column; 14] = [
     Column { name: "of ε", digits: 4, value: |r| error(r, 2) },
     Column { name: "unbalanced", digits: 9, value: |r| r.last()?.packing.report.unbalanced_force_ratio },
     Column { name: "wall, s", digits: 1, value: |r| r.summary.wall_seconds },
-    Column { name: "lost", digits: 0, value: |r| (!r.summary.topics.is_empty()).then(|| r.summary.total(|t| t.lost) as f64) },
+    Column {
+        name: "lost",
+        digits: 0,
+        value: |r| (!r.summary.topics.is_empty()).then(|| r.summary.total(|t| t.lost) as f64),
+    },
 ];
 
 /// Column of times and counts of a computer: far values say nothing about a packing.
@@ -103,8 +111,14 @@ pub fn overview(runs: &[(Run, String)]) -> String {
                 None => format!("<td class=\"n\"{sorted}>{text}</td>"),
                 Some(score) => {
                     marked += 1;
-                    let said = if score.is_finite() { format!("outlier: robust z-score {score:.1}") } else { "outlier: all others are alike".to_owned() };
-                    format!("<td class=\"n outlier\"{sorted} title=\"{said}\">{text}<span class=\"hidden\"> ({said})</span></td>")
+                    let said = if score.is_finite() {
+                        format!("outlier: robust z-score {score:.1}")
+                    } else {
+                        "outlier: all others are alike".to_owned()
+                    };
+                    format!(
+                        "<td class=\"n outlier\"{sorted} title=\"{said}\">{text}<span class=\"hidden\"> ({said})</span></td>"
+                    )
                 }
             };
             cells.push(value.map(number).unwrap_or_default());
@@ -112,7 +126,9 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         rows += "</tr>\n";
         csv.row(cells);
     }
-    let head: String = header.map(|h| format!("<th scope=\"col\"><button type=\"button\" data-sort>{}</button></th>", escaped(h))).collect();
+    let head: String = header
+        .map(|h| format!("<th scope=\"col\"><button type=\"button\" data-sort>{}</button></th>", escaped(h)))
+        .collect();
     let about = paragraph(&format!(
         "The last packing of each run; errors are inferred less counted. Marked: {}, more than 3.5 robust standard deviations from the \
          median of the runs of a scene, of which there must be five. Click a header to sort.",

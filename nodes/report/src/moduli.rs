@@ -45,7 +45,9 @@ impl Run {
                 text: format!("{:.1} {kind}", values[n]),
             })
         });
-        let svg = Bars { title: "Moduli, MPa".into(), from_zero: true, bars: bars.collect(), reference: None }.svg();
+        let svg =
+            Bars { title: "Moduli, MPa".into(), from_zero: true, bars: bars.collect(), reference: None }
+                .svg();
         let mut csv = String::from("modulus,relaxed_mpa,mean_rotation_mpa,affine_mpa\n");
         let row = |n: usize| {
             let [relaxed, rotation, affine] = kinds.map(|k| k.2[n]);

@@ -11,13 +11,18 @@ use grainlab_viewer::PictureError;
 pub(crate) const STYLE: &str = include_str!("../assets/report.css");
 pub(crate) const SCRIPT: &str = include_str!("../assets/report.js");
 
-
 /// A page with a heading, a navigation and sections (id, title, content). `scripts` are added to that of the page.
-pub(crate) fn whole(title: &str, heading: &str, sections: &[(&str, &str, String)], scripts: &[&str]) -> String {
+pub(crate) fn whole(
+    title: &str,
+    heading: &str,
+    sections: &[(&str, &str, String)],
+    scripts: &[&str],
+) -> String {
     let links: String =
         sections.iter().map(|(id, title, _)| format!("<a href=\"#{id}\">{}</a>", escaped(title))).collect();
     let content: String = sections.iter().map(|(id, title, content)| section(id, title, content)).collect();
-    let scripts: String = scripts.iter().chain(&[SCRIPT]).map(|s| format!("<script>{s}</script>\n")).collect();
+    let scripts: String =
+        scripts.iter().chain(&[SCRIPT]).map(|s| format!("<script>{s}</script>\n")).collect();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n\
@@ -43,7 +48,10 @@ impl Run {
             let left_out = self.timeline.film.count() - views.len();
             let note = match left_out {
                 0 => String::new(),
-                n => format!("<p>{n} of {} recorded states are left out, for the size of the page.</p>\n", self.timeline.film.count()),
+                n => format!(
+                    "<p>{n} of {} recorded states are left out, for the size of the page.</p>\n",
+                    self.timeline.film.count()
+                ),
             };
             sections.push(("packing", "The packing", grainlab_viewer::figure(&self.name(), &views)? + &note));
         }
@@ -61,7 +69,11 @@ impl Run {
 
     /// What was run, how it ended, and the key results.
     fn heading(&self) -> String {
-        let mut text = format!("<p class=\"eyebrow\">grainlab · {}</p>\n<h1>{}</h1>\n", escaped(&self.name()), escaped(&self.headline()));
+        let mut text = format!(
+            "<p class=\"eyebrow\">grainlab · {}</p>\n<h1>{}</h1>\n",
+            escaped(&self.name()),
+            escaped(&self.headline())
+        );
         let description = self.scene.as_ref().map(|s| s.description.as_str()).filter(|d| !d.is_empty());
         text += &description.map_or_else(String::new, |d| format!("<p class=\"lead\">{}</p>\n", escaped(d)));
         text += &self.verdict();
@@ -94,7 +106,9 @@ impl Run {
         let (class, mut words) = match s.exit {
             None => ("bad", "The end of the run is not known".to_owned()),
             Some(0) if s.warnings.is_empty() => ("good", "Complete".to_owned()),
-            Some(0) => ("warn", format!("Complete, with {}", grainlab_console::count(s.warnings.len(), "warning"))),
+            Some(0) => {
+                ("warn", format!("Complete, with {}", grainlab_console::count(s.warnings.len(), "warning")))
+            }
             Some(code) => {
                 let why = ended(code, s.warnings.first().map(String::as_str));
                 ("bad", format!("Ended {}", why.unwrap_or_else(|| format!("with exit code {code}"))))
@@ -124,7 +138,8 @@ fn cards(state: &InvertedPacking) -> String {
         let inferred = best.and_then(|b| (c.inferred)(b)).map_or_else(
             || "not inferred".to_owned(),
             |v| {
-                let sigma = best.and_then(|b| (c.sigma)(b)).map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
+                let sigma =
+                    best.and_then(|b| (c.sigma)(b)).map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
                 format!("inferred {v:.digits$}{sigma} <span class=\"error\">{:+.digits$}</span>", v - counted)
             },
         );
@@ -138,7 +153,12 @@ fn cards(state: &InvertedPacking) -> String {
     let unbalanced = r.unbalanced_force_ratio.map_or_else(|| "–".to_owned(), |u| format!("{u:.1e}"));
     let ratio = r.stress_ratio().map_or_else(String::new, |q| format!("q/p {q:.1e}"));
     text += &card("p", &format!("{:.2} <small>kPa</small>", r.pressure() / 1e3), "pressure", &ratio);
-    text += &card("φ", &format!("{:.4}", r.solid_fraction), "solid fraction", &format!("unbalanced force {unbalanced}"));
+    text += &card(
+        "φ",
+        &format!("{:.4}", r.solid_fraction),
+        "solid fraction",
+        &format!("unbalanced force {unbalanced}"),
+    );
     text + "</div>\n"
 }
 

@@ -3,8 +3,8 @@
 use crate::summary_file::SummaryFile;
 use crate::timeline::Timeline;
 use grainlab_recordings::{Recording, input};
-use grainlab_results::read_back::{self, InvertedPacking};
 use grainlab_results::Inference;
+use grainlab_results::read_back::{self, InvertedPacking};
 use grainlab_scene::Scene;
 use std::path::{Path, PathBuf};
 
@@ -86,7 +86,10 @@ impl Run {
             Err(error) => self.missing.push(format!("Nothing against time: {error}")),
         }
         if self.timeline.unreadable > 0 {
-            self.missing.push(format!("{} could not be read", grainlab_console::count(self.timeline.unreadable, "message")));
+            self.missing.push(format!(
+                "{} could not be read",
+                grainlab_console::count(self.timeline.unreadable, "message")
+            ));
         }
     }
 
@@ -131,5 +134,7 @@ impl Run {
 
 /// The recommended result of a state, of the data that were inverted first.
 pub(crate) fn recommended(state: &InvertedPacking) -> Option<&Inference> {
-    grainlab_results::by_origin(&state.results).iter().find_map(|(_, results)| Inference::recommended(results))
+    grainlab_results::by_origin(&state.results)
+        .iter()
+        .find_map(|(_, results)| Inference::recommended(results))
 }

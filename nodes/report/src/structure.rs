@@ -15,7 +15,11 @@ struct Oriented {
 }
 
 /// Mean of a force of the contacts in each bin of x = |n·h|, and its fit to single contacts by least squares.
-fn oriented(packing: &Packing, axis: &Vec3, force: impl Fn(&grainlab_core::Contact) -> f64) -> Option<Oriented> {
+fn oriented(
+    packing: &Packing,
+    axis: &Vec3,
+    force: impl Fn(&grainlab_core::Contact) -> f64,
+) -> Option<Oriented> {
     let (mut sums, mut counts) = ([0.0; ORIENTATION_BINS], [0.0; ORIENTATION_BINS]);
     // Sums of the basis 1, y = 3 x² − 1: the normal equations.
     let [mut n, mut y, mut yy, mut f, mut fy] = [0.0; 5];
@@ -51,7 +55,14 @@ fn contacts(report: &PackingReport) -> Option<Oriented> {
     (total > 0).then(|| Oriented { bins, a: histogram.contact_fit.as_ref().map(|fit| fit.eps) })
 }
 
-fn rose(id: &'static str, title: &str, caption: &str, colour: usize, found: &Oriented, axis: &Vec3) -> String {
+fn rose(
+    id: &'static str,
+    title: &str,
+    caption: &str,
+    colour: usize,
+    found: &Oriented,
+    axis: &Vec3,
+) -> String {
     let [x, y, z] = [axis.x, axis.y, axis.z];
     let name = if *axis == Vec3::z() { "z".to_owned() } else { format!("({x:.2}, {y:.2}, {z:.2})") };
     let fitted = found.a.map_or_else(String::new, |a| format!(" Curve: 1 + a (3 cos² θ − 1), a = {a:+.4}."));
@@ -60,7 +71,8 @@ fn rose(id: &'static str, title: &str, caption: &str, colour: usize, found: &Ori
         let end = |n: usize| n as f64 / ORIENTATION_BINS as f64;
         let _ = writeln!(csv, "{},{},{}", end(n), end(n + 1), number(*value));
     }
-    let svg = Rose { title: title.to_owned(), bins: found.bins.clone(), curve: found.a, colour, axis: name }.svg();
+    let svg =
+        Rose { title: title.to_owned(), bins: found.bins.clone(), curve: found.a, colour, axis: name }.svg();
     PageFigure { id, svg, caption: &format!("{caption}{fitted}"), csv }.html()
 }
 
@@ -74,13 +86,34 @@ impl Run {
         let packing = self.timeline.last.as_ref().filter(|p| p.step == state.packing.step);
         let mut text = String::from("<div class=\"grid roses\">\n");
         if let Some(found) = contacts(report) {
-            text += &rose("contacts-by-direction", "Contacts", "Contacts per solid angle, 1 if isotropic.", 0, &found, &axis);
+            text += &rose(
+                "contacts-by-direction",
+                "Contacts",
+                "Contacts per solid angle, 1 if isotropic.",
+                0,
+                &found,
+                &axis,
+            );
         }
         if let Some(found) = packing.and_then(|p| oriented(p, &axis, |c| c.normal_force)) {
-            text += &rose("normal-force-by-direction", "Normal force", "Mean over contacts of a direction, over that of all.", 2, &found, &axis);
+            text += &rose(
+                "normal-force-by-direction",
+                "Normal force",
+                "Mean over contacts of a direction, over that of all.",
+                2,
+                &found,
+                &axis,
+            );
         }
         if let Some(found) = packing.and_then(|p| oriented(p, &axis, |c| c.tangential_force.norm())) {
-            text += &rose("tangential-force-by-direction", "Tangential force", "Mean magnitude, over that of all contacts.", 3, &found, &axis);
+            text += &rose(
+                "tangential-force-by-direction",
+                "Tangential force",
+                "Mean magnitude, over that of all contacts.",
+                3,
+                &found,
+                &axis,
+            );
         }
         text += "</div>\n";
         if let Some(forces) = forces(report) {
@@ -95,16 +128,26 @@ fn forces(report: &PackingReport) -> Option<String> {
     let forces = report.contacts.forces.as_ref()?;
     let total: u32 = forces.histogram.iter().sum();
     let density = |n: u32| f64::from(n) / f64::from(total) / FORCE_BIN_WIDTH;
-    let bins: Vec<(f64, f64)> =
-        forces.histogram.iter().enumerate().map(|(b, n)| ((b as f64 + 0.5) * FORCE_BIN_WIDTH, density(*n))).collect();
+    let bins: Vec<(f64, f64)> = forces
+        .histogram
+        .iter()
+        .enumerate()
+        .map(|(b, n)| ((b as f64 + 0.5) * FORCE_BIN_WIDTH, density(*n)))
+        .collect();
     let end = bins.len() as f64 * FORCE_BIN_WIDTH;
     let least = bins.iter().map(|b| b.1).filter(|d| *d > 0.0).fold(1.0, f64::min);
     let exponential = (0..=100).map(|n| end * f64::from(n) / 100.0).map(|f| Point::at(f, (-f).exp()));
     let series = |colour, line, points| Series { colour, line, points, ..Series::default() };
-    let left = |(f, d): &(f64, f64)| [Point::at(f - 0.5 * FORCE_BIN_WIDTH, *d), Point::at(f + 0.5 * FORCE_BIN_WIDTH, *d)];
+    let left = |(f, d): &(f64, f64)| {
+        [Point::at(f - 0.5 * FORCE_BIN_WIDTH, *d), Point::at(f + 0.5 * FORCE_BIN_WIDTH, *d)]
+    };
     let figure = Figure {
         title: "Normal forces".into(),
-        subtitle: format!("Participation ratio {:.3}, largest force {:.2} times the mean", forces.participation_ratio(), forces.largest),
+        subtitle: format!(
+            "Participation ratio {:.3}, largest force {:.2} times the mean",
+            forces.participation_ratio(),
+            forces.largest
+        ),
         x: Axis::linear("f = F / mean F"),
         y: Axis::log(""),
         series: vec![
@@ -122,5 +165,8 @@ fn forces(report: &PackingReport) -> Option<String> {
         forces.largest
     );
     let svg = Strip { figure, ..Strip::default() }.svg();
-    Some(format!("<div class=\"grid\">{}</div>\n", PageFigure { id: "force-distribution", svg, caption: &caption, csv }.html()))
+    Some(format!(
+        "<div class=\"grid\">{}</div>\n",
+        PageFigure { id: "force-distribution", svg, caption: &caption, csv }.html()
+    ))
 }

@@ -49,7 +49,11 @@ impl Run {
                 optional(s.wave.stddev)
             );
         }
-        let plot = |id: &'static str, title: &str, x: &str, caption: &str, at: &dyn Fn(&MeasuredWave) -> Option<f64>| {
+        let plot = |id: &'static str,
+                    title: &str,
+                    x: &str,
+                    caption: &str,
+                    at: &dyn Fn(&MeasuredWave) -> Option<f64>| {
             let series = |m: usize| Series {
                 colour: Some(m),
                 marker: Some(Marker::of(m)),
@@ -64,20 +68,34 @@ impl Run {
                 x: Axis::linear(x),
                 y: Axis::linear(""),
                 series: (0..MODES.len()).map(series).collect(),
-                legend: MODES.iter().enumerate().map(|(m, name)| Entry::Colour(m, (*name).to_owned())).collect(),
+                legend: MODES
+                    .iter()
+                    .enumerate()
+                    .map(|(m, name)| Entry::Colour(m, (*name).to_owned()))
+                    .collect(),
             };
-            PageFigure { id, svg: Strip { figure, ..Strip::default() }.svg(), caption, csv: csv.clone() }.html()
+            PageFigure { id, svg: Strip { figure, ..Strip::default() }.svg(), caption, csv: csv.clone() }
+                .html()
         };
         let by_angle = "By the angle between ray and axis; the bars are standard deviations.";
-        let mut figures = plot("wave-speeds", "Wave speeds, m/s", "angle, degrees", by_angle, &|s| Some(angle(s, &axis)));
+        let mut figures =
+            plot("wave-speeds", "Wave speeds, m/s", "angle, degrees", by_angle, &|s| Some(angle(s, &axis)));
         // Equal frequencies show no dispersion.
-        let frequencies: BTreeSet<u64> = speeds.iter().filter_map(|s| s.frequency).map(f64::to_bits).collect();
+        let frequencies: BTreeSet<u64> =
+            speeds.iter().filter_map(|s| s.frequency).map(f64::to_bits).collect();
         if frequencies.len() > 1 {
-            figures += &plot("dispersion", "Dispersion: speeds, m/s", "frequency, kHz", "By the dominant frequency.", &|s| {
-                s.frequency.map(|f| f / 1e3)
-            });
+            figures += &plot(
+                "dispersion",
+                "Dispersion: speeds, m/s",
+                "frequency, kHz",
+                "By the dominant frequency.",
+                &|s| s.frequency.map(|f| f / 1e3),
+            );
         }
-        Some(format!("<div class=\"grid\">\n{figures}{}</div>\n", medium(acoustic, state.packing.report.stiffness().map(|s| &s.tensor))))
+        Some(format!(
+            "<div class=\"grid\">\n{figures}{}</div>\n",
+            medium(acoustic, state.packing.report.stiffness().map(|s| &s.tensor))
+        ))
     }
 }
 
@@ -96,7 +114,13 @@ fn medium(acoustic: &AcousticReport, stiffness: Option<&grainlab_core::Stiffness
         let (value, sigma) = (acoustic.medium.modulus(*modulus), acoustic.medium.stddev(*modulus));
         let mega = |v: Option<f64>| Cell::number(fixed(v.map(|v| v / 1e6), 2));
         let off = value.zip(*network).map(|(v, n)| 100.0 * (v / n - 1.0));
-        vec![Cell::text(name), mega(*network), mega(value), mega(sigma), Cell::number(off.map_or_else(|| "-".into(), |o| format!("{o:+.2} %")))]
+        vec![
+            Cell::text(name),
+            mega(*network),
+            mega(value),
+            mega(sigma),
+            Cell::number(off.map_or_else(|| "-".into(), |o| format!("{o:+.2} %"))),
+        ]
     };
     let rows: Vec<Vec<Cell>> = all.iter().map(row).collect();
     let caption = escaped("Moduli, MPa: of the contact network, and of the medium with these speeds.");

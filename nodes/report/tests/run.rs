@@ -63,7 +63,13 @@ fn record(folder: &Path) {
     let mut run = RunWriter::create(folder, "r", &specs, WriterOptions::default()).unwrap();
     let mut write = |topic: &str, number: u64, payload: &[u8]| {
         let receive_time = 1 + number;
-        let sample = Incoming { guid: Guid([1; 16]), sequence: number as i64, source_time: None, receive_time, payload };
+        let sample = Incoming {
+            guid: Guid([1; 16]),
+            sequence: number as i64,
+            source_time: None,
+            receive_time,
+            payload,
+        };
         run.write(topic, &sample).unwrap();
     };
     (0..2 * EXCHANGES).for_each(|n| write("/stress", n + 1, &to_cdr(&request(n))));
@@ -123,8 +129,14 @@ fn a_page_loads_nothing_and_is_of_bounded_size() {
         assert!(!page.contains(loads), "{loads}");
     }
     assert_eq!(page.matches("<script").count(), page.matches("</script>").count());
-    let addresses = |text: &str| text.match_indices("http").filter(|(n, _)| text[*n..].starts_with("http://www.w3.org/")).count();
-    assert_eq!(page.matches("http://").count() + page.matches("https://").count(), addresses(&page), "only namespaces");
+    let addresses = |text: &str| {
+        text.match_indices("http").filter(|(n, _)| text[*n..].starts_with("http://www.w3.org/")).count()
+    };
+    assert_eq!(
+        page.matches("http://").count() + page.matches("https://").count(),
+        addresses(&page),
+        "only namespaces"
+    );
 }
 
 #[test]
@@ -139,7 +151,13 @@ fn the_same_run_gives_the_same_page() {
 fn what_is_not_there_is_named_and_the_rest_is_shown() {
     let empty = tempfile::tempdir().unwrap();
     let page = Run::read(empty.path()).html().unwrap();
-    for text in ["No summary", "No recording", "No scene", "The end of the run is not known", "No packing was measured"] {
+    for text in [
+        "No summary",
+        "No recording",
+        "No scene",
+        "The end of the run is not known",
+        "No packing was measured",
+    ] {
         assert!(page.contains(text), "{text} is missing");
     }
     let broken = tempfile::tempdir().unwrap();
@@ -147,7 +165,11 @@ fn what_is_not_there_is_named_and_the_rest_is_shown() {
     std::fs::write(broken.path().join("r_0.mcap"), b"not a recording").unwrap();
     std::fs::write(broken.path().join("scene.toml"), "grains = \"<none>\"").unwrap();
     let page = Run::read(broken.path()).html().unwrap();
-    assert!(page.contains("No summary") && page.contains("No recording") && page.contains("grains = &quot;&lt;none&gt;&quot;"));
+    assert!(
+        page.contains("No summary")
+            && page.contains("No recording")
+            && page.contains("grains = &quot;&lt;none&gt;&quot;")
+    );
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! The inversion: every model judged, and the rows of Table III.
 
 use crate::Reproduction;
-use grainlab_console::html::{Cell, code, escaped, table};
 use crate::tables::{mean, places};
+use grainlab_console::html::{Cell, code, escaped, table};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::Calibration;
 use grainlab_paper::inversion::{Errors, Judged, of_the_paper};

@@ -87,7 +87,9 @@ fn largest_radius(views: &[&View]) -> f64 {
 
 /// The bytes of one of several states, as base64.
 pub(crate) fn state(view: &View, all: &[&View]) -> String {
-    let share = |value: f64, of: f64| if of > 0.0 { (value / of * 65535.0).round().clamp(0.0, 65535.0) as u16 } else { 0 };
+    let share = |value: f64, of: f64| {
+        if of > 0.0 { (value / of * 65535.0).round().clamp(0.0, 65535.0) as u16 } else { 0 }
+    };
     let (radius, force, n) = (largest_radius(all), view.largest_force(), view.grains());
     let mut bytes = Vec::with_capacity(size(view));
     for place in &view.places {
@@ -160,7 +162,11 @@ mod tests {
         let short = |n: usize| u16::from_le_bytes([bytes[2 * n], bytes[2 * n + 1]]);
         let places: Vec<u16> = (0..6).map(short).collect();
         assert_eq!(places, [2048, 32768, 16384, 55296, 32768, 16384], "14.75 is 6.75 of 8");
-        assert_eq!([short(6), short(7), short(8), short(9)], [65535, 32768, 65535, 1], "radii, force, second grain");
+        assert_eq!(
+            [short(6), short(7), short(8), short(9)],
+            [65535, 32768, 65535, 1],
+            "radii, force, second grain"
+        );
         assert_eq!(&bytes[20..28], &[7, 0, 0, 0, 3, 0, 0, 0], "ids");
         // Frictionless or not, a grain with one contact is a rattler.
         assert_eq!(&bytes[28..], &[128, 128, 1, 0, 37], "flags, counts, image (-1, 0, 0)");

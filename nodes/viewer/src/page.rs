@@ -1,8 +1,8 @@
 //! The parts of a page with a packing in three dimensions, which needs no other file.
 
 use crate::encode;
-use crate::picture::{Picture, PictureError, Size};
 use crate::palette::Quantity;
+use crate::picture::{Picture, PictureError, Size};
 use crate::view::View;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -43,9 +43,13 @@ pub fn figure(name: &str, views: &[&View]) -> Result<String, PictureError> {
     let mut text = FIGURE
         .replace("{alt}", &escaped(&alt))
         .replace("{poster}", &format!("data:image/png;base64,{poster}"));
-    text += &format!("<script type=\"application/json\" id=\"viewer-about\">{}</script>\n", script_text(&about));
+    text +=
+        &format!("<script type=\"application/json\" id=\"viewer-about\">{}</script>\n", script_text(&about));
     for (n, view) in views.iter().enumerate() {
-        text += &format!("<script type=\"text/plain\" id=\"viewer-state-{n}\">{}</script>\n", encode::state(view, views));
+        text += &format!(
+            "<script type=\"text/plain\" id=\"viewer-state-{n}\">{}</script>\n",
+            encode::state(view, views)
+        );
     }
     Ok(text)
 }

@@ -32,8 +32,15 @@ impl Quantity {
 }
 
 /// From little to much: the lighter part of the map `batlow` (Crameri), equal steps of which look equal.
-pub(crate) const RAMP: [Colour; 7] =
-    [[26, 62, 94], [40, 96, 101], [84, 120, 79], [143, 136, 56], [214, 148, 84], [247, 173, 146], [252, 205, 222]];
+pub(crate) const RAMP: [Colour; 7] = [
+    [26, 62, 94],
+    [40, 96, 101],
+    [84, 120, 79],
+    [143, 136, 56],
+    [214, 148, 84],
+    [247, 173, 146],
+    [252, 205, 222],
+];
 
 /// Contacts of a grain with a colour of their own; grains with more have that of the last.
 pub(crate) const MOST_CONTACTS: usize = 9;

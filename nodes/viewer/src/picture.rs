@@ -106,7 +106,10 @@ impl Picture {
         let bottom = self.size.height.saturating_sub(MARGIN + LINE);
         match quantity {
             Quantity::Force => {
-                self.write("mean normal force of the contacts of a grain", [MARGIN, bottom.saturating_sub(2 * LINE + 4)]);
+                self.write(
+                    "mean normal force of the contacts of a grain",
+                    [MARGIN, bottom.saturating_sub(2 * LINE + 4)],
+                );
                 for x in 0..BAR {
                     self.fill([MARGIN + x, bottom - LINE + 2], [1, 10], ramp(x as f64 / (BAR - 1) as f64));
                 }
@@ -114,12 +117,16 @@ impl Picture {
                 self.write("0", [MARGIN, bottom]);
                 self.write(&full, [(MARGIN + BAR).saturating_sub(width_of(&full)), bottom]);
             }
-            Quantity::Rattlers => self.swatches(bottom, "", &[(CARRIER, "carries force".into()), (RATTLER, "rattler".into())]),
+            Quantity::Rattlers => {
+                self.swatches(bottom, "", &[(CARRIER, "carries force".into()), (RATTLER, "rattler".into())])
+            }
             Quantity::Coordination => {
                 let most = view.coordination.iter().copied().max().unwrap_or(0) as usize;
                 let table = by_coordination();
-                let name = |n: usize| if n == MOST_CONTACTS && most > n { format!(">={n}") } else { n.to_string() };
-                let mut entries: Vec<_> = (2..=most.min(MOST_CONTACTS)).map(|n| (table[n], name(n))).collect();
+                let name =
+                    |n: usize| if n == MOST_CONTACTS && most > n { format!(">={n}") } else { n.to_string() };
+                let mut entries: Vec<_> =
+                    (2..=most.min(MOST_CONTACTS)).map(|n| (table[n], name(n))).collect();
                 entries.push((RATTLER, "rattler".into()));
                 self.swatches(bottom, "contacts of a grain, without rattlers", &entries);
             }
@@ -167,10 +174,12 @@ fn newtons(force: f64) -> String {
 fn packing(view: &View, quantity: Quantity, size: Size, fill: f64) -> Vec<u8> {
     let cell = view.matrix();
     let colours = colours(view, quantity);
-    let sphere = |n: usize| Sphere { centre: cell * view.places[n], radius: view.radii[n], colour: colours[n] };
+    let sphere =
+        |n: usize| Sphere { centre: cell * view.places[n], radius: view.radii[n], colour: colours[n] };
     let spheres: Vec<Sphere> = (0..view.grains()).map(sphere).collect();
     let corner = |n: usize| cell * Vec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2 & 1) as f64);
-    let edges = (0..8).flat_map(|n| [1, 2, 4].into_iter().filter(move |k| n & k == 0).map(move |k| [n, n | k]));
+    let edges =
+        (0..8).flat_map(|n| [1, 2, 4].into_iter().filter(move |k| n & k == 0).map(move |k| [n, n | k]));
     let edges: Vec<[Vec3; 2]> = edges.map(|ends| ends.map(corner)).collect();
     draw(&spheres, &edges, [size.width, size.height], fill)
 }

@@ -60,7 +60,12 @@ struct Scene {
 
 /// Draws spheres and lines into a picture of this width and height, as red, green, blue and opacity. `fill` is the largest
 /// part of the picture that they cover along a side.
-pub(crate) fn draw(spheres: &[Sphere], lines: &[[Vec3; 2]], [width, height]: [usize; 2], fill: f64) -> Vec<u8> {
+pub(crate) fn draw(
+    spheres: &[Sphere],
+    lines: &[[Vec3; 2]],
+    [width, height]: [usize; 2],
+    fill: f64,
+) -> Vec<u8> {
     let scene = placed(spheres, lines, [width * SAMPLES, height * SAMPLES], fill);
     let (depth, owner) = visible(&scene);
     let mut pixels = vec![0u8; 4 * width * height];

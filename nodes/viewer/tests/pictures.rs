@@ -77,7 +77,8 @@ fn grains_cover_some_of_the_picture_and_leave_the_corners_free() {
 fn a_rattler_is_grey_and_a_grain_that_carries_force_is_not() {
     let greys = |packing: &Packing| {
         let picture = Picture::plain(&View::new(packing, ""), Quantity::Rattlers, SIZE).unwrap();
-        let grey = |c: &[u8; 4]| c[3] == 255 && c[0] > 90 && c[0].abs_diff(c[1]) < 12 && c[2].abs_diff(c[1]) < 16;
+        let grey =
+            |c: &[u8; 4]| c[3] == 255 && c[0] > 90 && c[0].abs_diff(c[1]) < 12 && c[2].abs_diff(c[1]) < 16;
         colours(&picture).iter().filter(|(c, _)| grey(c)).map(|(_, n)| *n).sum::<usize>()
     };
     let mut loose = chain();
@@ -107,8 +108,15 @@ fn a_size_is_two_numbers_of_pixels() {
 fn a_page_loads_nothing_and_has_every_state() {
     let views = [View::new(&chain(), "first <state>"), View::new(&chain(), "second")];
     let text = page("A chain", "five grains", "chain", &views.iter().collect::<Vec<_>>()).unwrap();
-    assert!(text.contains("viewer-state-0") && text.contains("viewer-state-1") && !text.contains("viewer-state-2"));
-    assert!(text.contains("first <state>") && text.contains("{\"label\":\"first <state>\""), "labels are JSON, not markup");
+    assert!(
+        text.contains("viewer-state-0")
+            && text.contains("viewer-state-1")
+            && !text.contains("viewer-state-2")
+    );
+    assert!(
+        text.contains("first <state>") && text.contains("{\"label\":\"first <state>\""),
+        "labels are JSON, not markup"
+    );
     for loads in ["src=\"http", "href=\"http", "@import", "fetch(", "XMLHttpRequest", "import("] {
         let ours = text.replace(grainlab_viewer::SCRIPTS[0], "");
         assert!(!ours.contains(loads), "{loads}");
@@ -125,7 +133,10 @@ fn a_film_that_is_too_long_keeps_its_first_and_last_states_in_order() {
         let mut film = Film::within(4000);
         (0..count).for_each(|n| film.push(View::new(&chain(), name(n))));
         let labels: Vec<&str> = film.states().iter().map(|v| v.label.as_str()).collect();
-        assert_eq!((film.count(), labels[0], labels[labels.len() - 1]), (count, "state 0", name(count - 1).as_str()));
+        assert_eq!(
+            (film.count(), labels[0], labels[labels.len() - 1]),
+            (count, "state 0", name(count - 1).as_str())
+        );
         let numbers: Vec<usize> = labels.iter().map(|l| l[6..].parse().unwrap()).collect();
         assert!(numbers.is_sorted_by(|a, b| a < b), "{numbers:?}");
         assert!(labels.len() <= 32, "{count}: {}", labels.len());

@@ -74,11 +74,13 @@ impl Bars {
         );
         let frame = [left, TOP, RIGHT, bottom];
         let mut drawing = Drawing::blank([WIDTH, bottom + 26.0], frame, &attributes, "");
-        let ends = self.bars.iter().flat_map(|b| b.interval.unwrap_or([b.value; 2]).into_iter().chain([b.value]));
+        let ends =
+            self.bars.iter().flat_map(|b| b.interval.unwrap_or([b.value; 2]).into_iter().chain([b.value]));
         let zero = self.from_zero.then_some(0.0);
         // Room for the texts beyond the largest value.
         let sides = [left, RIGHT - 92.0];
-        let range = Range::of(ends.chain(zero).chain(self.reference.as_ref().map(|r| r.0)), Scale::Linear, sides);
+        let range =
+            Range::of(ends.chain(zero).chain(self.reference.as_ref().map(|r| r.0)), Scale::Linear, sides);
         for (value, text) in range.marks() {
             let at = range.at(value);
             drawing.segment([at, TOP, at, bottom], "grid");
@@ -123,7 +125,12 @@ impl Bars {
                     "",
                 );
             }
-            drawing.text([end.max(range.at(0.0)) + 9.0, y + 9.0], "start", "class=\"ink\" font-size=\"11\"", &bar.text);
+            drawing.text(
+                [end.max(range.at(0.0)) + 9.0, y + 9.0],
+                "start",
+                "class=\"ink\" font-size=\"11\"",
+                &bar.text,
+            );
         }
         drawing.end()
     }

@@ -39,19 +39,31 @@ impl Rose {
         let finite = self.bins.iter().copied().chain([fitted(0.0), fitted(1.0)]).filter(|v| v.is_finite());
         let largest = finite.fold(1.0, f64::max);
         let scale = RADIUS / (0.25 * (largest / 0.25).ceil()).max(1.25);
-        let said = self.curve.map_or_else(String::new, |a| format!("; fitted: 1 + a (3 cos² θ − 1) with a = {a:.4}"));
+        let said = self
+            .curve
+            .map_or_else(String::new, |a| format!("; fitted: 1 + a (3 cos² θ − 1) with a = {a:.4}"));
         let values: Vec<String> = self.bins.iter().map(|v| format!("{v:.2}")).collect();
         let about = format!("{}, by |cos θ| from 0 to 1: {}{said}", self.title, values.join(", "));
         let attributes = format!(" class=\"plot\" role=\"img\" aria-label=\"{}\"", escaped(&about));
         let mut drawing = Drawing::blank(PICTURE, [0.0; 4], &attributes, "");
-        drawing.text([12.0, 20.0], "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", &self.title);
+        drawing.text(
+            [12.0, 20.0],
+            "start",
+            "class=\"ink\" font-size=\"13\" font-weight=\"600\"",
+            &self.title,
+        );
         let [x, y] = CENTRE;
         for ring in (1..).map(|n| 0.5 * f64::from(n)).take_while(|r| r * scale <= RADIUS + 0.5) {
             let (radius, dash) = (ring * scale, if ring == 1.0 { "" } else { " stroke-dasharray=\"2 3\"" });
             drawing.add(format_args!(
                 "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius:.1}\" fill=\"none\" class=\"grid\"{dash}/>"
             ));
-            drawing.text([x + radius + 3.0, y - 3.0], "start", "class=\"faint\" font-size=\"9\"", &format!("{ring}"));
+            drawing.text(
+                [x + radius + 3.0, y - 3.0],
+                "start",
+                "class=\"faint\" font-size=\"9\"",
+                &format!("{ring}"),
+            );
         }
         drawing.segment([x, y - RADIUS - 8.0, x, y + RADIUS + 8.0], "grid");
         drawing.segment([x - RADIUS - 8.0, y, x + RADIUS + 8.0, y], "grid");
@@ -76,7 +88,8 @@ impl Rose {
                 let angle = FRAC_PI_2 * n as f64 / CORNERS as f64;
                 let radius = fitted(angle.cos()).max(0.0) * scale;
                 let first = if n == 0 { 'M' } else { 'L' };
-                let _ = write!(path, "{first} {:.1} {:.1} ", x + radius * angle.sin(), y - radius * angle.cos());
+                let _ =
+                    write!(path, "{first} {:.1} {:.1} ", x + radius * angle.sin(), y - radius * angle.cos());
             }
             drawing.add(format_args!(
                 "<path d=\"{path}Z\" class=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"2\"/>",

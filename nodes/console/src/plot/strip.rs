@@ -107,9 +107,15 @@ mod tests {
     fn a_band_beyond_the_values_ends_at_the_frame_and_a_narrow_one_has_no_label() {
         let points = (0..5).map(|n| Point::at(f64::from(n), f64::from(n * n))).collect();
         let series = vec![Series { line: Some(Line::Straight), points, ..Series::default() }];
-        let figure = Figure { title: "a & b".into(), x: Axis::linear("time, ms"), series, ..Figure::default() };
+        let figure =
+            Figure { title: "a & b".into(), x: Axis::linear("time, ms"), series, ..Figure::default() };
         let band = |range, label: &str| Band { range, label: label.into(), tooltip: String::new() };
-        let svg = Strip { figure, bands: vec![band([-9.0, 3.98], "first"), band([3.98, 4.0], "second")], by_band: false }.svg();
+        let svg = Strip {
+            figure,
+            bands: vec![band([-9.0, 3.98], "first"), band([3.98, 4.0], "second")],
+            by_band: false,
+        }
+        .svg();
         assert!(svg.contains("aria-label=\"a &amp; b. \"") && svg.contains(">first<"), "{svg}");
         assert!(!svg.contains(">second<") && !svg.contains("NaN"), "{svg}");
         let left = svg.split("<rect x=\"").nth(1).unwrap();

@@ -96,7 +96,15 @@ fn packings(args: &Args, mut take: impl FnMut(Imported) -> ControlFlow<()>) -> R
 
 fn view(imported: &Imported) -> View {
     let packing = &imported.packing;
-    View::new(packing, format!("{}, {}, phi {:.4}", imported.source, count(packing.grains(), "grain"), packing.solid_fraction()))
+    View::new(
+        packing,
+        format!(
+            "{}, {}, phi {:.4}",
+            imported.source,
+            count(packing.grains(), "grain"),
+            packing.solid_fraction()
+        ),
+    )
 }
 
 fn html(args: &Args) -> Result<Exit, Failure> {
@@ -106,21 +114,29 @@ fn html(args: &Args) -> Result<Exit, Failure> {
         ControlFlow::Continue(())
     })?;
     let states = film.states();
-    let last = states.last().ok_or_else(|| Failure::failed(format!("{}: no packing", args.file.display())))?;
+    let last =
+        states.last().ok_or_else(|| Failure::failed(format!("{}: no packing", args.file.display())))?;
     let name = name(&args.file);
     let shown = match film.count() - states.len() {
         0 => count(states.len(), "state"),
-        left_out => format!("{} of {}; {left_out} left out for the size of the page", states.len(), count(film.count(), "state")),
+        left_out => format!(
+            "{} of {}; {left_out} left out for the size of the page",
+            states.len(),
+            count(film.count(), "state")
+        ),
     };
-    let about = format!("{}, {shown}. Positions are exact to 1/65536 of the cell.", count(last.grains(), "grain"));
+    let about =
+        format!("{}, {shown}. Positions are exact to 1/65536 of the cell.", count(last.grains(), "grain"));
     let text = page(&name, &about, &name, &states).map_err(Failure::failed)?;
     let path = args.output.clone().unwrap_or_else(|| beside(&args.file));
     write_page(&path, &text).map_err(Failure::failed)?;
     print(&format!("{}\n", path.display()))?;
     if args.open {
         let quiet = Stdio::null;
-        let opened = Command::new("xdg-open").arg(&path).stdin(quiet()).stdout(quiet()).stderr(quiet()).spawn();
-        opened.map_err(|e| Failure::failed(format!("xdg-open: {e}; open {} in a browser", path.display())))?;
+        let opened =
+            Command::new("xdg-open").arg(&path).stdin(quiet()).stdout(quiet()).stderr(quiet()).spawn();
+        opened
+            .map_err(|e| Failure::failed(format!("xdg-open: {e}; open {} in a browser", path.display())))?;
     }
     Ok(exit)
 }
@@ -167,5 +183,9 @@ fn name(file: &Path) -> String {
 
 /// The page beside a file, or in the directory of a run.
 fn beside(file: &Path) -> PathBuf {
-    if file.is_dir() { file.join("view.html") } else { file.with_file_name(format!("{}.view.html", name(file))) }
+    if file.is_dir() {
+        file.join("view.html")
+    } else {
+        file.with_file_name(format!("{}.view.html", name(file)))
+    }
 }
