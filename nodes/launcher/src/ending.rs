@@ -12,6 +12,9 @@ use tokio::time::{sleep_until, timeout};
 /// Time limit for the end of a process after SIGKILL.
 const KILLED_WITHIN: Duration = Duration::from_secs(1);
 
+/// Time after which the launcher says that the recorder is not done.
+const SLOW: Duration = Duration::from_secs(3);
+
 /// Period of the check for stopped processes.
 const POLL_PERIOD: Duration = Duration::from_millis(200);
 
@@ -30,7 +33,8 @@ enum Ending {
 }
 
 impl Ending {
-    /// The signals, each with the time until the next one. Together less than 15 s.
+    /// The signals, each with the time until the next one. The recorder syncs its file to the device, which takes many
+    /// seconds on a busy disk; a second interrupt of the user ends it earlier.
     fn signals(self) -> [(i32, Duration); 3] {
         let seconds = |interrupt, terminate| {
             [
@@ -41,7 +45,7 @@ impl Ending {
         };
         match self {
             Ending::Farewell => seconds(5, 1),
-            Ending::Record => seconds(3, 1),
+            Ending::Record => seconds(60, 1),
             Ending::Exit => seconds(1, 1),
         }
     }
@@ -81,6 +85,7 @@ impl Supervisor {
     /// which kills all remaining processes.
     async fn end(&mut self, ending: Ending, waits: bool, events: &mut UnboundedReceiver<Event>) -> bool {
         let mut hurried = false;
+        let mut slow_at = Some(tokio::time::Instant::now() + SLOW).filter(|_| ending == Ending::Record);
         for (signal, time) in ending.signals() {
             let signal = if hurried { libc::SIGKILL } else { signal };
             // A process that sent its last report has received the signal, and a second one would end it at once.
@@ -104,6 +109,9 @@ impl Supervisor {
                     () = sleep_until((now + POLL_PERIOD).min(deadline)) => {
                         if waits && self.look_for_stopped() {
                             deadline = (tokio::time::Instant::now() + time).min(latest);
+                        }
+                        if slow_at.take_if(|at| tokio::time::Instant::now() >= *at).is_some() {
+                            self.progress.say("the recorder is writing the recording to the disk");
                         }
                     }
                 }

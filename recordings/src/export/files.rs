@@ -1,6 +1,5 @@
 //! The files of one packing, or of a run, by format.
 
-use super::lammps_dump::DumpError;
 use super::vtkhdf::HdfError;
 use super::{
     csv, extended_xyz, lammps_data, lammps_dump, lammps_local, pvd, sidecar, vtkhdf_contacts, vtkhdf_grains,
@@ -28,9 +27,6 @@ pub enum ExportFormat {
 /// A packing cannot be written in a format.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// LAMMPS does not know such a cell.
-    #[error(transparent)]
-    Cell(#[from] DumpError),
     /// HDF5 cannot hold it.
     #[error(transparent)]
     Hdf(#[from] HdfError),
@@ -73,10 +69,10 @@ impl Exporter {
                 text(format!("packing_{n}.json"), sidecar(packing)),
             ],
             ExportFormat::LammpsDump => vec![
-                text("packings.dump".into(), lammps_dump(packing)?),
+                text("packings.dump".into(), lammps_dump(packing)),
                 text("contacts.dump".into(), lammps_local(packing)),
             ],
-            ExportFormat::LammpsData => vec![text(format!("packing_{n}.data"), lammps_data(packing)?)],
+            ExportFormat::LammpsData => vec![text(format!("packing_{n}.data"), lammps_data(packing))],
             ExportFormat::Xyz => vec![text("packings.xyz".into(), extended_xyz(packing))],
             ExportFormat::Vtk => vec![
                 text(format!("grains_{n}.vtp"), vtp_grains(packing)),

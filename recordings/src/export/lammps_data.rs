@@ -1,16 +1,13 @@
 //! Writes LAMMPS data files of `atom_style sphere`.
 
-use super::lammps_dump::{DumpError, restricted};
+use super::lammps_dump::restricted;
 use grainlab_core::Packing;
 use std::fmt::Write as _;
 
 /// A data file: id, type, diameter, density, position folded into the cell with its image flags, velocity, angular velocity; SI
 /// units. Contact forces are not part of the format. Ids are one more than those of the packing, because LAMMPS counts from 1.
-///
-/// # Errors
-/// If the cell is not in LAMMPS's restricted triclinic form.
-pub fn lammps_data(packing: &Packing) -> Result<String, DumpError> {
-    let [xy, xz, yz] = restricted(packing)?;
+/// A cell that is not in the restricted triclinic form of LAMMPS is written as a general one (LAMMPS from April 2024 on).
+pub fn lammps_data(packing: &Packing) -> String {
     let m = packing.cell.matrix();
     let mut text = format!(
         "LAMMPS data file of grainlab, step {}, units = si\n\n{} atoms\n1 atom types\n\n",
@@ -18,11 +15,22 @@ pub fn lammps_data(packing: &Packing) -> Result<String, DumpError> {
         packing.grains()
     );
     // Writing to a String cannot fail.
-    for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
-        let _ = writeln!(text, "0 {:e} {axis}lo {axis}hi", m[(k, k)]);
-    }
-    if [xy, xz, yz] != [0.0; 3] {
-        let _ = writeln!(text, "{xy:e} {xz:e} {yz:e} xy xz yz");
+    match restricted(packing) {
+        Some(tilt) => {
+            for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
+                let _ = writeln!(text, "0 {:e} {axis}lo {axis}hi", m[(k, k)]);
+            }
+            if tilt != [0.0; 3] {
+                let [xy, xz, yz] = tilt;
+                let _ = writeln!(text, "{xy:e} {xz:e} {yz:e} xy xz yz");
+            }
+        }
+        None => {
+            for (edge, name) in m.column_iter().zip(["avec", "bvec", "cvec"]) {
+                let _ = writeln!(text, "{:e} {:e} {:e} {name}", edge[0], edge[1], edge[2]);
+            }
+            text.push_str("0 0 0 abc origin\n");
+        }
     }
     text.push_str("\nAtoms # sphere\n\n");
     for (k, x) in packing.positions.iter().enumerate() {
@@ -41,5 +49,5 @@ pub fn lammps_data(packing: &Packing) -> Result<String, DumpError> {
         let (id, v, w) = (u64::from(packing.ids[k]) + 1, &packing.velocities[k], &packing.spins[k]);
         let _ = writeln!(text, "{id} {:e} {:e} {:e} {:e} {:e} {:e}", v.x, v.y, v.z, w.x, w.y, w.z);
     }
-    Ok(text)
+    text
 }

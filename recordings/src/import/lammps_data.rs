@@ -71,6 +71,8 @@ struct DataFile {
     expected: Option<usize>,
     bounds: [Option<f64>; 3],
     tilt: [f64; 3],
+    /// Edge vectors of a general triclinic box.
+    edges: [Option<Vec3>; 3],
     grains: GrainTable,
     densities: Vec<f64>,
     motion: BTreeMap<u32, (usize, Vec3, Vec3)>,
@@ -102,11 +104,9 @@ impl DataFile {
             [lo, hi, "ylo", "yhi"] => self.bounds[1] = Some(edge(line, lo, hi)?),
             [lo, hi, "zlo", "zhi"] => self.bounds[2] = Some(edge(line, lo, hi)?),
             [xy, xz, yz, "xy", "xz", "yz"] => self.tilt = line.vector("tilt", [xy, xz, yz])?.into(),
-            [.., "avec" | "bvec" | "cvec"] | [.., "abc", "origin"] => {
-                let (line, what) = (line.number, "a general triclinic box".into());
-                let reason = "write it as a restricted triclinic one (write_data without triclinic/general)";
-                return Err(ImportError::Unsupported { line, what, reason });
-            }
+            [x, y, z, "avec"] => self.edges[0] = Some(line.vector("edge vector", [x, y, z])?),
+            [x, y, z, "bvec"] => self.edges[1] = Some(line.vector("edge vector", [x, y, z])?),
+            [x, y, z, "cvec"] => self.edges[2] = Some(line.vector("edge vector", [x, y, z])?),
             // Numbers of types, bonds and so on.
             _ => {}
         }
@@ -153,8 +153,9 @@ impl DataFile {
             let problem = format!("the file ends after {found} of {expected} atoms");
             return Err(ImportError::Syntax { line: 1, problem });
         }
-        let cell: Option<Mat3> = match self.bounds {
-            [Some(lx), Some(ly), Some(lz)] => Some(lammps_cell([lx, ly, lz], self.tilt)),
+        let cell: Option<Mat3> = match (self.edges, self.bounds) {
+            ([Some(a), Some(b), Some(c)], _) => Some(Mat3::from_columns(&[a, b, c])),
+            (_, [Some(lx), Some(ly), Some(lz)]) => Some(lammps_cell([lx, ly, lz], self.tilt)),
             _ => None,
         };
         let density = self.densities.first().copied();

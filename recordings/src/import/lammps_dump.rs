@@ -159,13 +159,15 @@ impl<'a, L: Iterator<Item = Line<'a>>> Frames<'a, L> {
 /// Origin and edge vectors. LAMMPS writes the bounding box of a tilted cell, not its edges.
 fn bounds(item: &Line<'_>, words: &str, rows: [Line<'_>; 3]) -> Result<(Vec3, Mat3), ImportError> {
     let words: Vec<&str> = words.split_whitespace().collect();
-    if words.contains(&"abc") {
-        let (line, what) = (item.number, "a general triclinic box".into());
-        let reason = "dump a restricted triclinic one (dump_modify triclinic/general no)";
-        return Err(ImportError::Unsupported { line, what, reason });
-    }
+    let general = words.starts_with(&["abc", "origin"]);
     let tilted = words.starts_with(&["xy", "xz", "yz"]);
-    let boundaries = &words[if tilted { 3 } else { 0 }..];
+    let boundaries = &words[if general {
+        2
+    } else if tilted {
+        3
+    } else {
+        0
+    }..];
     if let Some(other) = boundaries.iter().find(|b| **b != "pp") {
         let (line, what) = (item.number, format!("boundary {other}"));
         return Err(ImportError::Unsupported {
@@ -173,6 +175,9 @@ fn bounds(item: &Line<'_>, words: &str, rows: [Line<'_>; 3]) -> Result<(Vec3, Ma
             what,
             reason: "the cell must be periodic in all directions (pp)",
         });
+    }
+    if general {
+        return edges(rows);
     }
     let (mut low, mut high, mut tilt) = ([0.0; 3], [0.0; 3], [0.0; 3]);
     for (k, row) in rows.iter().enumerate() {
@@ -281,4 +286,19 @@ impl Frame<'_> {
         let grains = grains.sorted_by_id().folded_if_far(&settings.cell);
         assemble::packing(grains, &settings, contacts, State::at(self.step), source, Vec::new())
     }
+}
+
+/// Origin and edge vectors of a general triclinic box: one edge a line, followed by a component of the origin.
+fn edges(rows: [Line<'_>; 3]) -> Result<(Vec3, Mat3), ImportError> {
+    let (mut origin, mut cell) = (Vec3::zeros(), Mat3::zeros());
+    for (k, row) in rows.iter().enumerate() {
+        let [x, y, z, o] = *row.words().as_slice() else {
+            return Err(
+                row.error(format!("an edge has 4 numbers with its origin, not {}", row.words().len()))
+            );
+        };
+        cell.set_column(k, &row.vector("edge vector", [x, y, z])?);
+        origin[k] = row.number("origin", o)?;
+    }
+    Ok((origin, cell))
 }

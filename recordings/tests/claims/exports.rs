@@ -1,6 +1,6 @@
 //! What is exported is read back.
 
-use grainlab_core::{Cell, Mat3, Packing, Vec3};
+use grainlab_core::{Packing, Vec3};
 use grainlab_recordings::export::{ExportFormat, Exporter};
 use grainlab_recordings::import::{ImportOptions, load, vtkhdf};
 use std::path::{Path, PathBuf};
@@ -163,22 +163,5 @@ fn dumps_of_grains_and_contacts_give_the_forces_back() {
         let wrong = (a.normal_force - b.normal_force).abs() / mean;
         assert!(wrong < 1e-12, "{wrong:e} {:e} {:e}", a.normal_force, b.normal_force);
         assert!((a.tangential_force - b.tangential_force).norm() < 1e-12 * mean);
-    }
-}
-
-#[test]
-fn a_sheared_cell_is_refused_by_lammps_formats_only() {
-    let mut packing = golden();
-    let edge = packing.cell.matrix()[(0, 0)];
-    let sheared = Mat3::new(edge, 0.0, 0.0, 0.1 * edge, edge, 0.0, 0.0, 0.0, edge);
-    packing.cell = Cell::new(sheared).unwrap();
-    packing.contacts.clear();
-    packing.positions = packing.positions.iter().map(|x| x * 1e-3 + Vec3::repeat(1e-9)).collect();
-    for format in [ExportFormat::LammpsDump, ExportFormat::LammpsData] {
-        let error = Exporter::new(format).next(&packing).unwrap_err().to_string();
-        assert!(error.contains("vtkhdf"), "{error}");
-    }
-    for format in [ExportFormat::Csv, ExportFormat::Xyz, ExportFormat::Vtk, ExportFormat::VtkHdf] {
-        assert!(Exporter::new(format).next(&packing).is_ok());
     }
 }

@@ -4,7 +4,7 @@ use grainlab_core::contact::{ContactLaw, Linear, RollingResistance, SpringLaw};
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{Topic, to_cdr, topics};
-use grainlab_recordings::import::{ImportOptions, csv, lammps_dump, load};
+use grainlab_recordings::import::{ImportOptions, csv, lammps_data, lammps_dump, load};
 use grainlab_recordings::{RunWriter, TopicSpec, export};
 
 use crate::reference_packing::reference;
@@ -86,7 +86,7 @@ fn a_dump_brings_back_grains_and_network_in_straight_and_tilted_cells() {
             friction: Some(p.friction),
             ..ImportOptions::default()
         };
-        let text = export::lammps_dump(&p).unwrap();
+        let text = export::lammps_dump(&p);
         let back = lammps_dump::packings(&text, &options).unwrap().remove(0).packing;
         assert_eq!(
             (back.step, &back.ids, &back.positions, &back.spins),
@@ -102,9 +102,22 @@ fn a_dump_brings_back_grains_and_network_in_straight_and_tilted_cells() {
 }
 
 #[test]
-fn a_cell_that_a_dump_cannot_hold_is_refused() {
+fn a_cell_of_any_orientation_comes_back_from_dump_and_data_file_bit_for_bit() {
     let mut p = rich();
-    p.cell = Cell::new(Mat3::new(1.0, 0.0, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0, 1.0)).unwrap();
-    let error = export::lammps_dump(&p).unwrap_err();
-    assert_eq!((error.row, error.column, error.value), (1, 0, 0.1));
+    let shear = Mat3::new(1.0, 0.02, -0.01, 0.02, 1.0, 0.03, -0.01, 0.03, 1.0);
+    p.cell = Cell::new(shear * p.cell.matrix()).unwrap();
+    p.positions.iter_mut().for_each(|x| *x = shear * *x);
+    let options = ImportOptions {
+        shear_modulus: Some(p.material.shear_modulus),
+        poisson_ratio: Some(p.material.poisson_ratio),
+        friction: Some(p.friction),
+        ..ImportOptions::default()
+    };
+    let dumped = lammps_dump::packings(&export::lammps_dump(&p), &options).unwrap().remove(0).packing;
+    assert_eq!(
+        (dumped.cell, &dumped.positions, &dumped.spins, &dumped.radii),
+        (p.cell, &p.positions, &p.spins, &p.radii)
+    );
+    let data = lammps_data::packing(&export::lammps_data(&p), &options).unwrap().packing;
+    assert_eq!((data.cell, &data.velocities, &data.spins), (p.cell, &p.velocities, &p.spins));
 }

@@ -163,7 +163,7 @@ mod tests {
         assert_eq!(back.packings[0].packing, packing);
         assert_eq!(run(&args(path.clone(), out.clone(), Format::Lammps)).unwrap(), Exit::Done);
         let dump = std::fs::read_to_string(out.join("packings.dump")).unwrap();
-        assert_eq!(dump, lammps_dump(&packing).unwrap());
+        assert_eq!(dump, lammps_dump(&packing));
         assert!(run(&args(path, out, Format::Lammps)).unwrap_err().to_string().contains("packings.dump"));
     }
 }
