@@ -138,6 +138,16 @@ pub const RUN_STATE: Topic = Topic {
     summary: "phase, progress, finished, step of the last packing",
 };
 
+/// Where the energy of a phase went, one message per phase, if the scene asks for it.
+pub const ENERGY: Topic = Topic {
+    name: "energy",
+    info: TypeInfo::of::<msg::EnergyBalance>(),
+    qos: Qos::LATCHED_SET,
+    writer: "dem_simulator",
+    reproducible: false,
+    summary: "the energy balance of each phase, if the scene has energy_balance = true",
+};
+
 /// Simulated time, for tools; no node of grainlab waits for it.
 pub const CLOCK: Topic = Topic {
     name: "/clock",
@@ -191,6 +201,7 @@ pub const TOPICS: &[Topic] = &[
     WAVEFORM,
     MICROSTRUCTURE,
     RUN_STATE,
+    ENERGY,
     CLOCK,
     ROSOUT,
     DIAGNOSTICS,

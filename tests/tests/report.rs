@@ -1,7 +1,11 @@
 //! The page of a run, that of many runs, and pictures without a display.
 
+use grainlab_msgs::boundary::EnergyReading;
+use grainlab_msgs::{from_cdr, msg};
+use grainlab_recordings::{Recording, Selection};
 use serde_json::Value;
 use system_tests::lab::{Lab, golden};
+use system_tests::python;
 
 /// The texts of a page: without scripts and data.
 fn visible(page: &str) -> String {
@@ -61,6 +65,48 @@ fn the_table_of_many_runs_marks_the_one_that_differs() {
     assert_eq!(rows.len(), runs.len());
     let marked: Vec<usize> = rows.iter().map(|row| row.matches("class=\"n outlier\"").count()).collect();
     assert!(marked[6] >= 2, "moduli of stiffer grains are marked: {marked:?}");
+}
+
+#[test]
+fn every_page_is_valid_html_and_loads_nothing() {
+    let Some(python) = python::with("html5lib") else { return };
+    let lab = Lab::new();
+    let scene = golden("scenes/tiny.toml");
+    let first = lab.launch(&scene, &["--set", "numerics.energy_balance=true"]);
+    let second = lab.launch(&scene, &["--seed", "3"]);
+    let texts = [first.display().to_string(), second.display().to_string()];
+    let many = lab.run(&["report", "-o", "all.html", &texts[0], &texts[1]]);
+    assert_eq!(many.code, Some(0), "{}", many.stderr);
+    let view = lab.run(&["view", &texts[0], "-o", "view.html"]);
+    assert_eq!(view.code, Some(0), "{}", view.stderr);
+    let pages = [first.join("report.html"), lab.folder().join("all.html"), lab.folder().join("view.html")];
+    let pages: Vec<String> = pages.iter().map(|p| p.display().to_string()).collect();
+    let arguments: Vec<&str> = pages.iter().map(String::as_str).collect();
+    let checked = python::tool(&python, "check_html.py", &arguments);
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+}
+
+#[test]
+fn the_energy_balance_that_a_scene_asks_for_is_recorded_and_shown() {
+    let lab = Lab::new();
+    let run = lab.launch(&golden("scenes/tiny.toml"), &["--set", "numerics.energy_balance=true"]);
+    let recording = Recording::open(&run).unwrap();
+    let selection = Selection::topics(["/energy"]);
+    let balances: Vec<EnergyReading> = recording
+        .messages(&selection)
+        .unwrap()
+        .map(|m| EnergyReading::try_from(&from_cdr::<msg::EnergyBalance>(&m.payload).unwrap()).unwrap())
+        .collect();
+    let summary: Value = serde_json::from_str(&read(&run.join("summary.json"))).unwrap();
+    assert!(balances.len() >= 3, "{balances:?} {}", summary["topics"]);
+    let page = visible(&read(&run.join("report.html")));
+    for b in &balances {
+        let size = b.strain_work.abs().max(b.dissipated.iter().map(|(_, v)| v.abs()).sum::<f64>());
+        assert!(b.residual().abs() < 1e-9 * size.max(b.start), "{b:?}");
+        assert!(page.contains(&format!("{:.3e}", b.strain_work)), "{}", b.phase_name);
+    }
+    let without = lab.launch(&golden("scenes/tiny.toml"), &[]);
+    assert!(!visible(&read(&without.join("report.html"))).contains("Energy dissipated"));
 }
 
 #[test]

@@ -6,6 +6,7 @@
 mod check;
 mod contact_statistics;
 mod elastic_stiffness;
+mod energy;
 mod error;
 mod estimate;
 mod fabric;
@@ -19,6 +20,7 @@ mod stress_decomposition;
 mod wave_speeds;
 mod waveform;
 
+pub use energy::EnergyReading;
 pub use error::BoundaryError;
 pub use estimate::{DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, StrainRatio};
 pub use fabric::{FabricReading, fabric_message};

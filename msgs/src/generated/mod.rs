@@ -25,6 +25,7 @@ pub(crate) const TYPES: &[TypeInfo] = &[
     TypeInfo::of::<geometry_msgs::Vector3>(),
     TypeInfo::of::<grainlab_msgs::ContactStatistics>(),
     TypeInfo::of::<grainlab_msgs::ElasticStiffness>(),
+    TypeInfo::of::<grainlab_msgs::EnergyBalance>(),
     TypeInfo::of::<grainlab_msgs::Estimate>(),
     TypeInfo::of::<grainlab_msgs::Fabric>(),
     TypeInfo::of::<grainlab_msgs::ForceStatistics>(),

@@ -15,6 +15,7 @@ macro_rules! for_every_type {
         $check!(grainlab_msgs::geometry_msgs::Vector3);
         $check!(grainlab_msgs::msg::ContactStatistics);
         $check!(grainlab_msgs::msg::ElasticStiffness);
+        $check!(grainlab_msgs::msg::EnergyBalance);
         $check!(grainlab_msgs::msg::Estimate);
         $check!(grainlab_msgs::msg::Fabric);
         $check!(grainlab_msgs::msg::ForceStatistics);

@@ -181,8 +181,9 @@ impl DemSimulator {
         if let Some(phase) = &advanced.ended {
             log::info!("phase {phase} ended at step {}", self.run.engine().steps());
             if let Some(energy) = &advanced.energy {
-                let residual = energy.residual();
-                log::info!("energy balance of phase {phase}, J: {energy:?}, residual {residual:e}");
+                if let Some(publisher) = &self.energy {
+                    publisher.publish(bus, &messages::energy(&self.run, phase, energy))?;
+                }
             }
             if !advanced.finished {
                 self.next_beat = now + BEAT;

@@ -1,6 +1,7 @@
 //! The messages of a run. All their times are simulated time.
 
 use grainlab_core::PackingError;
+use grainlab_dem::EnergyBalance;
 use grainlab_experiment::{ServoRequest, Simulation};
 use grainlab_msgs::boundary::{BoundaryError, StressRequest, packing_message};
 use grainlab_msgs::geometry_msgs::{Quaternion, Transform, TransformStamped};
@@ -58,6 +59,31 @@ pub(crate) fn run_state(run: &Simulation, state: u8, packings: Packings, message
         last_packing_step: packings.last_step,
         packings: packings.count,
         message: message.to_owned(),
+    }
+}
+
+/// The balance of the phase that has just ended.
+pub(crate) fn energy(run: &Simulation, phase_name: &str, found: &EnergyBalance) -> msg::EnergyBalance {
+    msg::EnergyBalance {
+        header: Header { stamp: stamp(run.engine().time()), frame_id: FRAME.to_owned() },
+        step: run.engine().steps(),
+        phase: run.path().phase.saturating_sub(1) as u32,
+        phase_name: phase_name.to_owned(),
+        start: found.start,
+        strain_work: found.strain_work,
+        integration: found.integration,
+        kinetic: found.kinetic,
+        normal_springs: found.normal_springs,
+        tangential_springs: found.tangential_springs,
+        rolling_springs: found.rolling_springs,
+        normal_damping: found.normal_damping,
+        tangential_damping: found.tangential_damping,
+        rolling_damping: found.rolling_damping,
+        sliding: found.sliding,
+        rolling: found.rolling,
+        history: found.history,
+        drag: found.drag,
+        thermostat: found.thermostat,
     }
 }
 

@@ -67,6 +67,8 @@ pub struct DemSimulator {
     pub(crate) settings: Settings,
     pub(crate) stress: Publisher<Stress>,
     pub(crate) run_state: Publisher<RunState>,
+    /// With `energy_balance` of the scene.
+    pub(crate) energy: Option<Publisher<grainlab_msgs::msg::EnergyBalance>>,
     pub(crate) clock: Publisher<Clock>,
     pub(crate) strain_rate: Subscription<StrainRate>,
     pub(crate) run_states: Subscription<RunState>,
@@ -125,6 +127,8 @@ impl DemSimulator {
         let stress = Publisher::advertise(bus, &topics::STRESS)?;
         let packing = BulkPublisher::advertise(bus, &topics::PACKING)?;
         let run_state = Publisher::advertise(bus, &topics::RUN_STATE)?;
+        let energy = run.scene().numerics.energy_balance;
+        let energy = energy.then(|| Publisher::advertise(bus, &topics::ENERGY)).transpose()?;
         let clock = Publisher::advertise(bus, &topics::CLOCK)?;
         let frames: Publisher<TFMessage> = Publisher::advertise(bus, &topics::TF_STATIC)?;
         let strain_rate = Subscription::subscribe(bus, &topics::STRAIN_RATE, Demand::best_effort(64))?;
@@ -139,6 +143,7 @@ impl DemSimulator {
         Ok(Self {
             stress,
             run_state,
+            energy,
             clock,
             strain_rate,
             run_states,

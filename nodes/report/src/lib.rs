@@ -9,6 +9,7 @@
 
 mod against_time;
 mod decimated;
+mod energy;
 mod figure;
 mod health;
 mod inferred;

@@ -60,6 +60,7 @@ impl Run {
         sections.push(("moduli", "Moduli", self.moduli()));
         sections.push(("inference", "Inferred and counted", self.inferred()));
         sections.extend(self.waves().map(|waves| ("waves", "Waves", waves)));
+        sections.extend(self.energy().map(|energy| ("energy", "Energy", energy)));
         sections.push(("health", "Health of the run", self.health()));
         sections.push(("repeat", "Repeat it", self.repeat()));
         let title = format!("{}: run {}", self.scene_name(), self.name());

@@ -2,7 +2,7 @@
 
 use crate::phased::{PhaseAxis, Phased};
 use grainlab_core::Packing;
-use grainlab_msgs::boundary::{FabricReading, StressRequest};
+use grainlab_msgs::boundary::{EnergyReading, FabricReading, StressRequest};
 use grainlab_msgs::{Message, Topic, from_cdr, msg, simulated_seconds, topics};
 use grainlab_recordings::{ReadError, Recording, Selection};
 use grainlab_viewer::{Film, View};
@@ -35,6 +35,8 @@ pub(crate) struct Timeline {
     pub(crate) fabrics: Vec<Structure>,
     /// The packings, for pictures.
     pub(crate) film: Film,
+    /// Energy balances, by phase.
+    pub(crate) energy: Vec<EnergyReading>,
     /// The last packing.
     pub(crate) last: Option<Packing>,
     /// Messages that could not be read.
@@ -66,6 +68,7 @@ impl Timeline {
             names: BTreeMap::new(),
             end: 0.0,
             fabrics: Vec::new(),
+            energy: Vec::new(),
             film: Film::default(),
             last: None,
             unreadable: 0,
@@ -74,7 +77,7 @@ impl Timeline {
 
     /// Reads the recording of a run of this number of phases.
     pub(crate) fn read(recording: &Recording, phases: usize) -> Result<Self, ReadError> {
-        let wanted = [topics::STRESS, topics::FABRIC, topics::PACKING, topics::RUN_STATE];
+        let wanted = [topics::STRESS, topics::FABRIC, topics::PACKING, topics::RUN_STATE, topics::ENERGY];
         let of = |name: &str| Topic::by_name(name).filter(|t| wanted.iter().any(|w| w.name == t.name));
         let channels = recording.channels();
         let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
@@ -118,6 +121,11 @@ impl Timeline {
                 self.end = self.end.max(packing.time);
                 self.last = Some(packing);
             }
+        } else if topic == topics::ENERGY.name {
+            let balance = EnergyReading::try_from(&decoded::<msg::EnergyBalance>(payload)?).ok()?;
+            // A restarted simulator sends the balance of a phase again.
+            self.energy.retain(|b| b.phase != balance.phase);
+            self.energy.push(balance);
         } else {
             let state: msg::RunState = decoded(payload)?;
             self.names.insert(state.phase, state.phase_name);

@@ -2,6 +2,7 @@
 
 mod contact_statistics;
 mod elastic_stiffness;
+mod energy_balance;
 mod estimate;
 mod fabric;
 mod force_statistics;
@@ -29,6 +30,7 @@ mod waveform;
 
 pub use contact_statistics::ContactStatistics;
 pub use elastic_stiffness::ElasticStiffness;
+pub use energy_balance::EnergyBalance;
 pub use estimate::Estimate;
 pub use fabric::Fabric;
 pub use force_statistics::ForceStatistics;
