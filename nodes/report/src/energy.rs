@@ -28,13 +28,13 @@ impl Run {
             colour: 0,
             value: total(i) / all.abs().max(f64::MIN_POSITIVE) * 100.0,
             interval: None,
-            text: format!("{:.2} % of {:.3e} J", total(i) / all.abs().max(f64::MIN_POSITIVE) * 100.0, all),
+            text: format!("{:.2} %", total(i) / all.abs().max(f64::MIN_POSITIVE) * 100.0),
         });
-        let title = "Energy dissipated, %".to_owned();
+        let title = format!("Energy dissipated, % of {all:.3e} J");
         let svg = Bars { title, from_zero: true, bars: bars.collect(), reference: None }.svg();
         let caption = "Sums over the phases in the table.";
         let figure = PageFigure { id: "energy", svg, caption, csv: csv(phases) }.html();
-        Some(format!("<div class=\"grid\">\n{figure}{}</div>\n", balance(phases)))
+        Some(format!("<div class=\"grid\">\n{figure}</div>\n{}", balance(phases)))
     }
 }
 
