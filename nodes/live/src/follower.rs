@@ -49,35 +49,28 @@ impl Follower {
     pub(crate) fn join(network: Network, names: Names, clock: Instant) -> Result<Self, Failure> {
         // With a run of its own it is a stranger to every process, also to those started by hand: nobody waits for it.
         let identity = Identity { run: Some(RunId::fresh()), scope: Scope::Everyone, ..Identity::default() };
-        let mut bus = DdsBus::join(network, names, identity).map_err(Failure::failed)?;
-        Self::subscribed(&mut bus).map_err(Failure::failed).map(|make| make(bus, clock, network.domain))
+        let bus = DdsBus::join(network, names, identity).map_err(Failure::failed)?;
+        Self::subscribed(bus, network.domain, clock).map_err(Failure::failed)
     }
 
-    fn subscribed(bus: &mut DdsBus) -> Result<impl FnOnce(DdsBus, Instant, u16) -> Self + use<>, BusError> {
+    fn subscribed(mut bus: DdsBus, domain: u16, clock: Instant) -> Result<Self, BusError> {
         fn latched<T: Message>(bus: &mut DdsBus, topic: &Topic) -> Result<Subscription<T>, BusError> {
             Subscription::subscribe(bus, topic, Demand::reliable(16))
         }
-        let stress = Subscription::subscribe(bus, &topics::STRESS_SAMPLED, Demand::best_effort(DEPTH))?;
-        // Repeated once a second.
-        let run_state = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::best_effort(16))?;
-        let packings = BulkSubscription::subscribe(bus, &topics::PACKING, Demand::reliable(PACKINGS))?;
-        let fabric = latched(bus, &topics::FABRIC)?;
-        let moduli = latched(bus, &topics::MODULI)?;
-        let microstructure = latched(bus, &topics::MICROSTRUCTURE)?;
-        let watch = PeerWatch::subscribe(bus)?;
-        Ok(move |bus, clock, domain| Self {
-            bus,
+        Ok(Self {
             clock,
             domain,
-            stress,
-            run_state,
-            packings,
-            fabric,
-            moduli,
-            microstructure,
-            watch,
+            stress: Subscription::subscribe(&mut bus, &topics::STRESS_SAMPLED, Demand::best_effort(DEPTH))?,
+            // Repeated once a second.
+            run_state: Subscription::subscribe(&mut bus, &topics::RUN_STATE, Demand::best_effort(16))?,
+            packings: BulkSubscription::subscribe(&mut bus, &topics::PACKING, Demand::reliable(PACKINGS))?,
+            fabric: latched(&mut bus, &topics::FABRIC)?,
+            moduli: latched(&mut bus, &topics::MODULI)?,
+            microstructure: latched(&mut bus, &topics::MICROSTRUCTURE)?,
+            watch: PeerWatch::subscribe(&mut bus)?,
             simulator: None,
             others: BTreeMap::new(),
+            bus,
         })
     }
 
@@ -105,11 +98,6 @@ impl Follower {
     /// Number of runs on the bus that are not followed.
     pub(crate) fn others(&self) -> usize {
         self.others.len()
-    }
-
-    /// Whether the run is under way and its simulator on the bus.
-    pub(crate) fn is_busy(&self, laboratory: Option<&Laboratory>) -> bool {
-        laboratory.is_some_and(|l| l.end.is_none())
     }
 
     /// Takes all messages that have arrived.

@@ -43,6 +43,7 @@ pub fn run(options: &Options, opened: impl FnOnce(&str) -> Result<(), Failure>) 
         server,
         choice,
         clock: Instant::now(),
+        domain: 0,
         snapshot: Snapshot::default(),
         drawn: Drawn::default(),
     };
@@ -54,7 +55,7 @@ pub fn run(options: &Options, opened: impl FnOnce(&str) -> Result<(), Failure>) 
     while !signals.requested() {
         if Instant::now() >= next_look {
             next_look = Instant::now() + LOOK;
-            let is_busy = follower.as_ref().is_some_and(|f| f.is_busy(laboratory.as_ref()));
+            let is_busy = laboratory.as_ref().is_some_and(|l: &Laboratory| l.end.is_none());
             let joined = follower.as_ref().map(|f| f.domain);
             let wanted = choice.network(joined, is_busy);
             if wanted.map(|network| network.domain) != joined {
@@ -105,6 +106,8 @@ struct Show {
     server: Server,
     choice: Choice,
     clock: Instant,
+    /// The domain joined last.
+    domain: u16,
     snapshot: Snapshot,
     drawn: Drawn,
 }
@@ -125,7 +128,8 @@ impl Show {
 
     fn draw(&mut self, known: &Laboratory, follower: Option<&Follower>) {
         let now = self.clock.elapsed();
-        let (domain, others) = follower.map_or((0, 0), |f| (f.domain, f.others()));
+        let others = follower.map_or(0, Follower::others);
+        self.domain = follower.map_or(self.domain, |f| f.domain);
         if self.drawn.began != Some(known.began) {
             // Nothing of the run before stays.
             self.drawn = Drawn { began: Some(known.began), version: self.drawn.version, ..Drawn::default() };
@@ -135,7 +139,7 @@ impl Show {
         }
         let parts = &mut self.snapshot;
         parts.set("stage", "run".into());
-        parts.set("heading", known.heading(domain, others, now));
+        parts.set("heading", known.heading(self.domain, others, now));
         parts.set("cards", known.cards());
         parts.set("targets", known.targets());
         parts.set("structure", known.structure());

@@ -25,15 +25,15 @@ pub const DEFAULT_PORT: u16 = 8808;
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src 'self' data: blob:; \
                       connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// The latest snapshot, for any number of browsers.
-type Latest = watch::Receiver<Arc<Snapshot>>;
+/// The latest snapshot, for any number of browsers: each that follows has a receiver.
+type Board = Arc<watch::Sender<Arc<Snapshot>>>;
 
 /// A server in a thread of its own; dropping it ends it with all its connections.
 #[derive(Debug)]
 pub struct Server {
     /// Port on 127.0.0.1.
     pub port: u16,
-    latest: watch::Sender<Arc<Snapshot>>,
+    board: Board,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -53,14 +53,15 @@ impl Server {
         }?;
         listener.set_nonblocking(true).map_err(Failure::failed)?;
         let port = listener.local_addr().map_err(Failure::failed)?.port();
-        let (latest, receiver) = watch::channel(Arc::new(Snapshot::default()));
+        let board = Board::new(watch::Sender::new(Arc::default()));
+        let shared = Arc::clone(&board);
         let (stop, stopped) = oneshot::channel();
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failure::failed)?;
         let thread = std::thread::Builder::new().name("page server".into()).spawn(move || {
             runtime.block_on(async {
                 tokio::select! {
-                    served = serve(listener, receiver) => {
+                    served = serve(listener, shared) => {
                         if let Err(error) = served {
                             grainlab_console::say!("grainlab: the page is no longer served: {error}");
                         }
@@ -70,7 +71,7 @@ impl Server {
             });
         });
         let thread = thread.map_err(Failure::failed)?;
-        Ok(Self { port, latest, stop: Some(stop), thread: Some(thread) })
+        Ok(Self { port, board, stop: Some(stop), thread: Some(thread) })
     }
 
     /// Address of the page.
@@ -80,13 +81,12 @@ impl Server {
 
     /// Number of browsers that follow.
     pub fn browsers(&self) -> usize {
-        // One receiver is that of the server.
-        self.latest.receiver_count().saturating_sub(1)
+        self.board.receiver_count()
     }
 
     /// Shows this from now on. Never waits.
     pub fn show(&self, snapshot: Snapshot) {
-        self.latest.send_replace(Arc::new(snapshot));
+        self.board.send_replace(Arc::new(snapshot));
     }
 }
 
@@ -99,14 +99,14 @@ impl Drop for Server {
     }
 }
 
-async fn serve(listener: TcpListener, latest: Latest) -> std::io::Result<()> {
+async fn serve(listener: TcpListener, board: Board) -> std::io::Result<()> {
     let listener = tokio::net::TcpListener::from_std(listener)?;
     let router = Router::new()
         .route("/", get(async || Html(page())))
         .route("/events", get(events))
         .route("/packings", get(packings))
         .layer(from_fn(guard))
-        .with_state(latest);
+        .with_state(board);
     axum::serve(listener, router).await
 }
 
@@ -136,12 +136,12 @@ fn is_loopback(host: &str) -> bool {
     name == "127.0.0.1" || name.eq_ignore_ascii_case("localhost")
 }
 
-async fn events(State(latest): State<Latest>) -> impl IntoResponse {
-    Sse::new(changes(latest)).keep_alive(KeepAlive::default())
+async fn events(State(board): State<Board>) -> impl IntoResponse {
+    Sse::new(changes(board.subscribe())).keep_alive(KeepAlive::default())
 }
 
 /// Everything at first, then what has changed. The next snapshot is taken when the browser has received the one before.
-fn changes(latest: Latest) -> impl Stream<Item = Result<Event, Infallible>> {
+fn changes(latest: watch::Receiver<Arc<Snapshot>>) -> impl Stream<Item = Result<Event, Infallible>> {
     let begin = (latest, Arc::new(Snapshot::default()), VecDeque::new(), true);
     futures::stream::unfold(begin, async |(mut latest, mut before, mut waiting, mut is_first)| {
         loop {
@@ -159,8 +159,8 @@ fn changes(latest: Latest) -> impl Stream<Item = Result<Event, Infallible>> {
     })
 }
 
-async fn packings(State(latest): State<Latest>) -> Response {
-    let json = latest.borrow().pictures.as_ref().map(|p| p.json.to_string());
+async fn packings(State(board): State<Board>) -> Response {
+    let json = board.borrow().pictures.as_ref().map(|p| p.json.to_string());
     match json {
         Some(json) => ([(header::CONTENT_TYPE, "application/json")], json).into_response(),
         None => (StatusCode::NOT_FOUND, "The run has not published a packing yet.\n").into_response(),

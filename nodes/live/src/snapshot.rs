@@ -70,7 +70,7 @@ mod tests {
         assert_eq!(events, [("parts", parts.to_owned()), ("sample", "{}".to_owned())]);
         let mut second = first.clone();
         second.set("nodes", "n".into());
-        assert_eq!(second.since(&first), []);
+        assert!(second.since(&first).is_empty());
         second.set("cards", "2".into());
         second.pictures = Some(Pictures { version: 3, json: "{}".into() });
         let expected = [("parts", r#"{"cards":"2"}"#.to_owned()), ("packings", "3".to_owned())];
