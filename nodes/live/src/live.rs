@@ -59,7 +59,7 @@ pub fn run(options: &Options, opened: impl FnOnce(&str) -> Result<(), Failure>) 
             let joined = follower.as_ref().map(|f| f.domain);
             let wanted = choice.network(joined, is_busy);
             if wanted.map(|network| network.domain) != joined {
-                follower = None;
+                drop(follower.take());
                 follower =
                     wanted.map(|network| Follower::join(network, names.clone(), show.clock)).transpose()?;
             }
