@@ -191,3 +191,6 @@ impl Laboratory {
         self.state.as_ref().map(|s| s.step).max(self.latest.as_ref().map(|r| r.step))
     }
 }
+
+#[cfg(test)]
+mod tests;

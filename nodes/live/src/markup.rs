@@ -1,6 +1,7 @@
 //! Values of a run as parts of the page, with the names and units of a report.
 
 use crate::laboratory::Laboratory;
+use grainlab_console::count;
 use grainlab_console::html::{Cell, escaped, paragraph, table};
 use grainlab_core::ComponentControl;
 use grainlab_msgs::boundary::StressRequest;
@@ -19,6 +20,12 @@ fn large(value: f64) -> String {
         v if v >= 1e4 => format!("{:.1} <small>thousand</small>", v / 1e3),
         v => format!("{v:.0}"),
     }
+}
+
+/// A number with its sign, and none for zero.
+fn signed(value: f64, digits: usize) -> String {
+    let text = format!("{value:+.digits$}");
+    if text.contains(|c: char| c.is_ascii_digit() && c != '0') { text } else { text[1..].to_owned() }
 }
 
 /// The mean of the imposed stresses, Pa, where all normal components have one.
@@ -76,7 +83,7 @@ impl Laboratory {
                 &self
                     .state
                     .as_ref()
-                    .map_or_else(String::new, |s| format!("{} packings published", s.packings)),
+                    .map_or_else(String::new, |s| format!("{} published", count(s.packings, "packing"))),
             ),
             card(
                 "t",
@@ -98,16 +105,16 @@ impl Laboratory {
             let (imposed, off) = match r.controls[n] {
                 ComponentControl::Held => ("held".to_owned(), String::new()),
                 ComponentControl::Stress(t) => {
-                    (format!("{:.3} kPa", t * KPA), format!("{:+.3}", (stress[n] - t) * KPA))
+                    (format!("{:.3} kPa", t * KPA), signed((stress[n] - t) * KPA, 3))
                 }
                 ComponentControl::StrainRate(rate) => (format!("{rate} 1/s"), String::new()),
             };
             vec![
                 Cell::text(COMPONENTS[n]),
-                Cell::number(format!("{:.3}", stress[n] * KPA)),
+                Cell::number(signed(stress[n] * KPA, 3).trim_start_matches('+')),
                 Cell::number(imposed),
                 Cell::number(off),
-                Cell::number(format!("{:+.4}", strain[n] * 100.0)),
+                Cell::number(signed(strain[n] * 100.0, 4)),
                 Cell::number(format!("{:+.3e}", r.rate[n])),
             ]
         };
@@ -190,5 +197,16 @@ impl Laboratory {
             "solid_fraction": r.solid_fraction, "coordination": r.coordination, "unbalanced": r.unbalanced,
         })
         .to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::signed;
+
+    #[test]
+    fn zero_has_no_sign() {
+        let all = [(-1e-9, "0.000"), (1e-9, "0.000"), (-0.5, "-0.500"), (0.5, "+0.500")];
+        all.iter().for_each(|(value, text)| assert_eq!(signed(*value, 3), *text));
     }
 }

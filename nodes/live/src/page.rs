@@ -9,8 +9,8 @@ const OWN_SCRIPT: &str = include_str!("../assets/live.js");
 
 /// Id and title of each section.
 const SECTIONS: [(&str, &str); 4] = [
-    ("packing", "The packing"),
     ("time", "Against time"),
+    ("packing", "The packing"),
     ("measured", "Moduli and microstructure"),
     ("processes", "Processes"),
 ];
@@ -23,13 +23,13 @@ pub fn page() -> String {
                   <button type=\"button\" data-show=\"time\" aria-pressed=\"false\">Time</button></div>\n";
     let contents = [
         format!(
-            "<p id=\"no-packing\">No packing has been published yet.</p>\n{}",
-            grainlab_viewer::empty_figure()
-        ),
-        format!(
             "<div id=\"targets\"></div>\n<p>Samples of the exchanges, each line with the extremes in bins about a pixel wide. The \
              recording has every exchange.</p>\n{choice}<ol class=\"phases\" id=\"phases\"></ol>\n\
              <div class=\"grid\" id=\"curves\" data-phases=\"0 1\"></div>\n"
+        ),
+        format!(
+            "<p id=\"no-packing\">No packing has been published yet.</p>\n{}",
+            grainlab_viewer::empty_figure()
         ),
         "<div id=\"structure\"></div>\n".to_owned(),
         "<div id=\"nodes\"></div>\n".to_owned(),
