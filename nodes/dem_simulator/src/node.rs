@@ -298,6 +298,7 @@ impl Node for DemSimulator {
             .with(UNMET, if self.stage == Stage::Running { self.run.unmet() } else { String::new() })
             .with("step", self.run.engine().steps())
             .with("steps", steps)
+            .with("scene", &self.run.scene().name)
             .with("grains", self.run.scene().grains)
             .with("exchanges", counts.exchanges)
             .with("foreseen", self.foreseen)

@@ -159,8 +159,11 @@ impl Laboratory {
     /// Takes a report of the simulator.
     pub(crate) fn simulator(&mut self, report: &Report, now: Duration) {
         self.heard = now;
-        let grains = report.health.values.iter().find(|(key, _)| key == "grains");
-        self.grains = grains.and_then(|(_, n)| n.parse().ok()).or(self.grains);
+        let value = |name: &str| report.health.values.iter().find(|(key, _)| key == name).map(|(_, v)| v);
+        self.grains = value("grains").and_then(|n| n.parse().ok()).or(self.grains);
+        if let Some(scene) = value("scene") {
+            self.scene.clone_from(scene);
+        }
         match report.exit {
             Some(exit) if self.end.is_none() => {
                 self.end =

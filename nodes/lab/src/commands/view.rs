@@ -33,10 +33,10 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with_all = ["file", "output", "png"])]
     live: bool,
     /// Port of the page on 127.0.0.1, 0 for any free one [default: 8808, or any if that is taken]
-    #[arg(long, value_name = "PORT", requires = "live")]
+    #[arg(long, value_name = "PORT", requires = "live", conflicts_with = "file")]
     port: Option<u16>,
     /// ROS 2 arguments of --live: -r __ns:=/left, --log-level
-    #[arg(long, value_name = "ARGUMENTS", num_args = 0.., allow_hyphen_values = true, requires = "live")]
+    #[arg(long, value_name = "ARGUMENTS", num_args = 0.., allow_hyphen_values = true, requires = "live", conflicts_with = "file")]
     ros_args: Option<Vec<String>>,
     /// File of the page [default: NAME.view.html beside the file, or view.html in the directory of a run]
     #[arg(short, long, value_name = "FILE")]
