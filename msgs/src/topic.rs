@@ -45,6 +45,8 @@ impl Qos {
     /// missing parts, so that a crashed reader does not block the writer. The depth is the number of parts
     /// that may be in transit at once.
     pub const PARTS: Self = Self { reliable: false, depth: 32, transient_local: false };
+    /// Samples of a fast topic, for viewers: nothing is kept or repeated for them.
+    pub const SAMPLED: Self = Self { reliable: false, depth: 32, transient_local: false };
     /// ROS 2's for `/rosout`.
     pub const ROSOUT: Self = Self { reliable: true, depth: 1000, transient_local: true };
 

@@ -21,6 +21,11 @@ impl Topic {
         })
     }
 
+    /// Whether recorders write it: parts of messages and copies of messages are left out.
+    pub fn is_recorded(&self) -> bool {
+        !self.is_transport() && self.name != STRESS_SAMPLED.name
+    }
+
     /// Whether it carries only parts of another topic's messages: it is never recorded, but the whole
     /// messages are.
     pub fn is_transport(&self) -> bool {
@@ -36,6 +41,16 @@ pub const STRESS: Topic = Topic {
     writer: "dem_simulator",
     reproducible: true,
     summary: "one request of the lockstep: stress, setpoints, clamps, tangent stiffness",
+};
+
+/// Some of the requests on [`STRESS`], for viewers: reading all of them costs a run time.
+pub const STRESS_SAMPLED: Topic = Topic {
+    name: "stress_sampled",
+    info: TypeInfo::of::<msg::Stress>(),
+    qos: Qos::SAMPLED,
+    writer: "dem_simulator",
+    reproducible: false,
+    summary: "some of the requests, for viewers; never recorded, all requests are",
 };
 
 /// Answers of the servo.
@@ -191,6 +206,7 @@ pub const TF_STATIC: Topic = Topic {
 /// Every topic of the contract.
 pub const TOPICS: &[Topic] = &[
     STRESS,
+    STRESS_SAMPLED,
     STRAIN_RATE,
     PACKING,
     PACKING_CHUNK,

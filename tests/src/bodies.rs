@@ -3,7 +3,7 @@
 use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
-/// The first six rows of the contract table, written by this version: they must not depend on timing.
+/// The reproducible topics of a run without an acoustic probe: they must not depend on timing.
 pub const REPRODUCIBLE: [&str; 6] =
     ["/stress", "/strain_rate", "/packing", "/fabric", "/moduli", "/microstructure"];
 

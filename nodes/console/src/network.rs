@@ -41,6 +41,9 @@ pub struct FreeDomain {
 /// Domains above 101 overlap with the ephemeral ports.
 const DOMAINS: std::ops::RangeInclusive<u16> = 0..=101;
 
+/// The last port of the domain's range, which only its 120th participant would use, is the lock between launchers.
+const LOCK: u16 = 249;
+
 /// Participants of a domain whose ports precede that of the lock.
 const PARTICIPANTS: u16 = 119;
 
@@ -55,14 +58,25 @@ impl FreeDomain {
     }
 
     fn try_take(id: u16) -> Option<Self> {
-        let bind = |offset: u16| UdpSocket::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * id + offset)).ok();
-        // The last port of the domain's range, which only its 120th participant would use, is the lock
-        // between launchers.
-        let lock = bind(249)?;
-        // A domain is in use if a port for unicast discovery of any possible participant (RTPS 9.6.2.3) is in
-        // use.
-        (0..PARTICIPANTS).all(|n| bind(10 + 2 * n).is_some()).then_some(Self { id, _lock: lock })
+        let lock = bind(id, LOCK)?;
+        (!is_in_use(id)).then_some(Self { id, _lock: lock })
     }
+}
+
+/// A port of a domain, unless it is in use.
+fn bind(id: u16, offset: u16) -> Option<UdpSocket> {
+    UdpSocket::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * id + offset)).ok()
+}
+
+/// Whether a participant of this domain, at most 101, is on this host: a port for unicast discovery of any possible one
+/// (RTPS 9.6.2.3) is in use.
+pub fn is_in_use(id: u16) -> bool {
+    !(0..PARTICIPANTS).all(|n| bind(id, 10 + 2 * n).is_some())
+}
+
+/// Whether a launcher on this host has taken this domain, at most 101.
+pub fn is_launched(id: u16) -> bool {
+    bind(id, LOCK).is_none()
 }
 
 #[cfg(test)]
@@ -73,6 +87,7 @@ mod tests {
     fn a_domain_that_is_taken_is_not_given_twice() {
         let (a, b) = (FreeDomain::take().unwrap(), FreeDomain::take().unwrap());
         assert_ne!(a.id, b.id);
+        assert!(is_launched(a.id) && is_launched(b.id));
     }
 
     #[test]

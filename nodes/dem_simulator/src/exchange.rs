@@ -101,6 +101,7 @@ impl DemSimulator {
         self.stage = Stage::Running;
         let body = to_cdr(&message);
         self.send_queue.push_request(self.stress.id(), body.clone());
+        self.samples.offer(bus, &request, self.run.scene().grains, &body)?;
         self.lockstep.ask(Question::of(&request), body, now);
         let delivered = self.send_queue.deliver(bus)?;
         // A free run does not wait for the answer.

@@ -5,6 +5,7 @@
 //! - `lockstep`: one request, its repetitions and its answer; `question`: which answers a request allows
 //! - `speculative_step`: computing while the answer is in transit
 //! - `send_queue`: messages in order, none lost if a reader is behind
+//! - `samples`: some of the requests, for viewers
 //! - `duplicate_simulators`: other simulators on the same topics; `partner`: the servo of the run
 //! - `inversions`: those of the last packing, awaited before the end; `messages`: messages of the run
 
@@ -16,6 +17,7 @@ mod messages;
 mod node;
 mod partner;
 mod question;
+mod samples;
 mod send_queue;
 mod settings;
 mod speculative_step;

@@ -5,6 +5,7 @@ use crate::inversions::Inversions;
 use crate::lockstep::Lockstep;
 use crate::messages::{self, Packings};
 use crate::partner::Partner;
+use crate::samples::Samples;
 use crate::send_queue::SendQueue;
 use crate::settings::{Mode, Settings};
 use crate::speculative_step::{self, SpeculativeStep};
@@ -66,6 +67,7 @@ pub struct DemSimulator {
     pub(crate) run: Simulation,
     pub(crate) settings: Settings,
     pub(crate) stress: Publisher<Stress>,
+    pub(crate) samples: Samples,
     pub(crate) run_state: Publisher<RunState>,
     /// With `energy_balance` of the scene.
     pub(crate) energy: Option<Publisher<grainlab_msgs::msg::EnergyBalance>>,
@@ -125,6 +127,7 @@ impl DemSimulator {
         };
         run.set_compute(settings.compute(run.scene().grains as usize)?);
         let stress = Publisher::advertise(bus, &topics::STRESS)?;
+        let samples = Samples::advertise(bus)?;
         let packing = BulkPublisher::advertise(bus, &topics::PACKING)?;
         let run_state = Publisher::advertise(bus, &topics::RUN_STATE)?;
         let energy = run.scene().numerics.energy_balance;
@@ -142,6 +145,7 @@ impl DemSimulator {
         let now = bus.now();
         Ok(Self {
             stress,
+            samples,
             run_state,
             energy,
             clock,
@@ -299,6 +303,8 @@ impl Node for DemSimulator {
             .with(UNMET, if self.stage == Stage::Running { self.run.unmet() } else { String::new() })
             .with("step", self.run.engine().steps())
             .with("steps", steps)
+            .with("scene", &self.run.scene().name)
+            .with("grains", self.run.scene().grains)
             .with("exchanges", counts.exchanges)
             .with("foreseen", self.foreseen)
             .with("resends", counts.resends)

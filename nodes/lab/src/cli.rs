@@ -34,7 +34,7 @@ enum Command {
     Campaign(campaign::Args),
     /// Report runs: a page with results, plots and packings; for many runs one row a run.
     Report(report::Args),
-    /// Show packings in three dimensions: a page for a browser, or a PNG.
+    /// Show packings in three dimensions, as a page or PNG, or with --live a running laboratory.
     View(view::Args),
     /// Reproduce the tables and figures of the paper: sixteen states, one page.
     Reproduce(reproduce::Args),

@@ -92,7 +92,7 @@ impl Finder {
                 continue;
             }
             if !self.settings.wanted.takes(&name)
-                || is_transport(&offers[0])
+                || !is_recorded(&offers[0])
                 || !self.has_one_type(&name, &offers)
             {
                 continue;
@@ -169,9 +169,11 @@ impl Finder {
     }
 }
 
-/// Whether a topic has only parts of another topic's messages, which is recorded whole.
-fn is_transport(offer: &Offer) -> bool {
-    [topics::PACKING_CHUNK, topics::PACKING_CREDIT].iter().any(|t| t.info.type_name == offer.type_name)
+/// Whether a topic has messages of its own: not parts or copies of another topic's messages, which are recorded there.
+fn is_recorded(offer: &Offer) -> bool {
+    let is_part = |t: &Topic| t.info.type_name == offer.type_name;
+    let copies = Topic::by_name(&offer.topic).is_some_and(|t| !t.is_recorded() && is_part(t));
+    ![topics::PACKING_CHUNK, topics::PACKING_CREDIT].iter().any(is_part) && !copies
 }
 
 #[cfg(test)]

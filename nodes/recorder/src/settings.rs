@@ -87,9 +87,9 @@ impl Settings {
     }
 }
 
-/// Rows of the topic table by name; without names all, except those for parts of another topic's messages.
+/// Rows of the topic table by name; without names all that are recorded.
 pub fn contract_topics(names: &[String]) -> Result<Vec<Topic>, Failure> {
-    let recorded = || TOPICS.iter().filter(|t| !t.is_transport());
+    let recorded = || TOPICS.iter().filter(|t| t.is_recorded());
     if names.is_empty() {
         return Ok(recorded().copied().collect());
     }
@@ -97,6 +97,9 @@ pub fn contract_topics(names: &[String]) -> Result<Vec<Topic>, Failure> {
     let row = |name: &String| match Topic::by_name(name) {
         Some(row) if row.is_transport() => Err(Failure::usage(format!(
             "topic {name:?} has only parts of large packings: record packing, which has them whole"
+        ))),
+        Some(row) if !row.is_recorded() => Err(Failure::usage(format!(
+            "topic {name:?} has only copies of some requests: record stress, which has all"
         ))),
         Some(row) => Ok(*row),
         None => Err(Failure::usage(format!("no topic {name:?} in the laboratory; there are: {}", known()))),

@@ -2,8 +2,7 @@
 
 use crate::figure::{PageFigure, number};
 use crate::phased::Phased;
-use crate::run::Run;
-use crate::timeline::{COMPONENTS, Structure};
+use crate::timeline::{COMPONENTS, Structure, Timeline};
 use grainlab_console::count;
 use grainlab_console::html::{escaped, paragraph};
 use grainlab_console::plot::{Axis, Band, Entry, Figure, Line, Marker, Point, Scale, Series, Strip};
@@ -20,17 +19,19 @@ struct Curve {
     points: Vec<(f64, f64)>,
     /// Points instead of a line.
     marked: bool,
+    /// A thin line.
+    faint: bool,
 }
 
 impl Curve {
     fn line(name: &str, colour: usize, series: &Phased, unit: f64) -> Self {
         let points = series.points().into_iter().map(|(t, v)| (t, v * unit)).collect();
-        Self { name: name.to_owned(), colour, points, marked: false }
+        Self { name: name.to_owned(), colour, points, marked: false, faint: false }
     }
 
     fn points(name: &str, colour: usize, all: &[Structure], value: fn(&Structure) -> f64) -> Self {
         let points = all.iter().map(|s| (s.time, value(s))).collect();
-        Self { name: name.to_owned(), colour, points, marked: true }
+        Self { name: name.to_owned(), colour, points, marked: true, faint: false }
     }
 }
 
@@ -43,29 +44,14 @@ struct Plot {
     curves: Vec<Curve>,
 }
 
-impl Run {
+impl Timeline {
     /// All plots against time.
     pub(crate) fn against_time(&self) -> String {
-        if self.timeline.pressure.count() == 0 {
+        if self.pressure.count() == 0 {
             return paragraph("The recording has no stress against time.");
         }
-        let plots: String = self
-            .plots()
-            .iter()
-            .filter(|p| p.curves.iter().any(|c| !c.points.is_empty()))
-            .map(|p| self.drawn(p))
-            .collect();
-        let phases: String = self
-            .bands()
-            .iter()
-            .map(|b| {
-                format!(
-                    "<li><b>{}</b> {}</li>",
-                    escaped(&b.label),
-                    escaped(b.tooltip.split_once(": ").map_or("", |t| t.1))
-                )
-            })
-            .collect();
+        let plots: String = self.drawable().iter().map(|p| self.drawn(p, true)).collect();
+        let phases = self.phase_list();
         format!(
             "<p>The bands are the phases of the scene, drawn with equal widths, or in simulated time. Of {}, each line has the \
              extremes in bins about a pixel wide.</p>\n\
@@ -73,13 +59,33 @@ impl Run {
              <button type=\"button\" data-show=\"phase\" aria-pressed=\"true\">Phases of equal width</button>\
              <button type=\"button\" data-show=\"time\" aria-pressed=\"false\">Time</button></div>\n\
              <ol class=\"phases\">{phases}</ol>\n<div class=\"grid\" data-phases=\"{}\">\n{plots}</div>\n",
-            count(self.timeline.pressure.count(), "exchange"),
-            self.timeline.axis().0.iter().map(|t| number(t * MS)).collect::<Vec<_>>().join(" ")
+            count(self.pressure.count(), "exchange"),
+            self.axis().0.iter().map(|t| number(t * MS)).collect::<Vec<_>>().join(" ")
         )
     }
 
+    /// The plots without their data, each with its id, for a page that draws them again and again.
+    pub fn drawings(&self) -> Vec<(&'static str, String)> {
+        self.drawable().iter().map(|p| (p.id, self.drawn(p, false))).collect()
+    }
+
+    /// The phases as items of a list.
+    pub fn phase_list(&self) -> String {
+        let item = |b: &Band| {
+            let name = b.tooltip.split_once(": ").map_or("", |t| t.1);
+            format!("<li><b>{}</b> {}</li>", escaped(&b.label), escaped(name))
+        };
+        self.bands().iter().map(item).collect()
+    }
+
+    /// The plots that have points.
+    fn drawable(&self) -> Vec<Plot> {
+        let has_points = |p: &Plot| p.curves.iter().any(|c| !c.points.is_empty());
+        self.plots().into_iter().filter(has_points).collect()
+    }
+
     fn plots(&self) -> Vec<Plot> {
-        let t = &self.timeline;
+        let t = self;
         let components =
             |series: &[Phased; 6], symbol: &str, unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
                 which
@@ -95,8 +101,15 @@ impl Run {
                 id: "stress",
                 title: "Stress, kPa",
                 scale: Scale::Linear,
-                caption: "Components, positive in compression.",
-                curves: components(&t.stress, "σ", 1e-3, 0..6),
+                caption: "Components, positive in compression; thin: their targets.",
+                curves: {
+                    let target = |(n, series): (usize, &Phased)| Curve {
+                        faint: true,
+                        ..Curve::line("", n, series, 1e-3)
+                    };
+                    let targets = t.targets.iter().enumerate().map(target);
+                    targets.chain(components(&t.stress, "σ", 1e-3, 0..6)).collect()
+                },
             },
             Plot {
                 id: "pressure",
@@ -151,8 +164,8 @@ impl Run {
 
     /// The phases as bands, ms.
     fn bands(&self) -> Vec<Band> {
-        let phases = &self.timeline.phases;
-        let ends = phases.iter().skip(1).map(|(_, t)| *t).chain([self.timeline.end]);
+        let phases = &self.phases;
+        let ends = phases.iter().skip(1).map(|(_, t)| *t).chain([self.end]);
         let band = |((phase, from), to): (&(u32, f64), f64)| Band {
             range: [from * MS, to * MS],
             label: format!("{}", phase + 1),
@@ -161,8 +174,8 @@ impl Run {
         phases.iter().zip(ends).map(band).collect()
     }
 
-    fn drawn(&self, plot: &Plot) -> String {
-        let axis = self.timeline.axis();
+    fn drawn(&self, plot: &Plot, with_data: bool) -> String {
+        let axis = self.axis();
         let bands = self.bands();
         let numbered = |(n, band): (usize, &Band)| Band { range: [n as f64, n as f64 + 1.0], ..band.clone() };
         let by_phase = Strip {
@@ -171,8 +184,11 @@ impl Run {
             by_band: true,
         };
         let by_time = Strip { figure: self.figure(plot, "time, ms", |t| t * MS), bands, by_band: false };
-        let mut csv = String::from("series,time_s,value\n");
-        for curve in &plot.curves {
+        let mut csv = String::new();
+        if with_data {
+            csv += "series,time_s,value\n";
+        }
+        for curve in plot.curves.iter().filter(|c| with_data && !c.faint) {
             let name = if curve.name.is_empty() { plot.id } else { &curve.name };
             for (time, value) in &curve.points {
                 let _ = writeln!(csv, "{name},{},{}", number(*time), number(*value));
@@ -192,7 +208,7 @@ impl Run {
         let series = |c: &Curve| Series {
             colour: Some(c.colour),
             marker: c.marked.then_some(Marker::Circle),
-            line: Some(if c.marked { Line::Faint } else { Line::Straight }),
+            line: Some(if c.marked || c.faint { Line::Faint } else { Line::Straight }),
             points: c
                 .points
                 .iter()
@@ -202,7 +218,7 @@ impl Run {
             ..Series::default()
         };
         // The axis is that of the run, whatever the values of this plot.
-        let ends = [self.timeline.begin(), self.timeline.end];
+        let ends = [self.begin(), self.end];
         let middle =
             plot.curves.iter().flat_map(|c| &c.points).map(|p| p.1).find(|v| drawable(*v)).unwrap_or(1.0);
         let span = Series { points: ends.map(|t| Point::at(across(t), middle)).into(), ..Series::default() };
@@ -221,5 +237,8 @@ impl Run {
 /// The last values, for readers who do not see the plot.
 fn said(curves: &[Curve]) -> String {
     let last = |c: &Curve| Some(format!("{} {}", c.name, number(c.points.last()?.1)).trim().to_owned());
-    format!("Last values: {}", curves.iter().filter_map(last).collect::<Vec<_>>().join(", "))
+    format!(
+        "Last values: {}",
+        curves.iter().filter(|c| !c.faint).filter_map(last).collect::<Vec<_>>().join(", ")
+    )
 }

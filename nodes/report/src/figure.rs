@@ -9,7 +9,7 @@ pub(crate) struct PageFigure<'a> {
     pub(crate) svg: String,
     /// What is drawn; may be empty.
     pub(crate) caption: &'a str,
-    /// The data, with a header.
+    /// The data, with a header; without data there are no buttons either.
     pub(crate) csv: String,
 }
 
@@ -19,6 +19,11 @@ impl PageFigure<'_> {
         let Self { id, svg, caption, csv } = self;
         let caption =
             if caption.is_empty() { String::new() } else { format!("<span>{}</span>", escaped(caption)) };
+        if csv.is_empty() {
+            return format!(
+                "<figure class=\"drawing\" id=\"plot-{id}\">\n{svg}<figcaption>{caption}</figcaption>\n</figure>\n"
+            );
+        }
         let button = |kind: &str, text: &str| {
             format!(
                 "<button type=\"button\" data-save=\"{kind}\" aria-label=\"Save {id} as {text}\">{text}</button>"

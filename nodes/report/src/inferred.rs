@@ -159,7 +159,7 @@ impl Run {
                 .packing
                 .position
                 .filter(|p| p.phase > 0)
-                .map_or_else(String::new, |p| self.phase_name(p.phase as u32 - 1));
+                .map_or_else(String::new, |p| self.timeline.phase_name(p.phase as u32 - 1));
             let best = recommended(s);
             let mut cells = vec![
                 Cell::text(phase),

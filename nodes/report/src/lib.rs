@@ -5,6 +5,7 @@
 //! - `page`: the page of a run; `against_time`, `structure`, `moduli`, `inferred`, `waves`, `health`: its sections; `figure`: a plot
 //!   that can be saved
 //! - [`overview`]: the page of many runs; [`Outliers`]: values far from those of runs alike
+//! - [`Timeline`], [`STYLE`], [`SCRIPT`], [`card`]: what the page of a running laboratory has in common with a report
 //! - [`write_report`]: the file
 
 mod against_time;
@@ -28,5 +29,7 @@ mod write;
 pub use decimated::Decimated;
 pub use many::overview;
 pub use outliers::Outliers;
+pub use page::{SCRIPT, STYLE, card};
 pub use run::Run;
+pub use timeline::{COMPONENTS, Timeline};
 pub use write::{FILE, ReportError, write_page, write_report};

@@ -8,8 +8,10 @@ use grainlab_results::brief::{ended, moduli};
 use grainlab_results::read_back::InvertedPacking;
 use grainlab_viewer::PictureError;
 
-pub(crate) const STYLE: &str = include_str!("../assets/report.css");
-pub(crate) const SCRIPT: &str = include_str!("../assets/report.js");
+/// Style of a page, beside [`page_style`].
+pub const STYLE: &str = include_str!("../assets/report.css");
+/// Script of a page: theme, saved plots, values under the pointer.
+pub const SCRIPT: &str = include_str!("../assets/report.js");
 
 /// A page with a heading, a navigation and sections (id, title, content). `scripts` are added to that of the page.
 pub(crate) fn whole(
@@ -55,7 +57,7 @@ impl Run {
             };
             sections.push(("packing", "The packing", grainlab_viewer::figure(&self.name(), &views)? + &note));
         }
-        sections.push(("time", "Against time", self.against_time()));
+        sections.push(("time", "Against time", self.timeline.against_time()));
         sections.push(("structure", "Contacts and forces", self.structure()));
         sections.push(("moduli", "Moduli", self.moduli()));
         sections.push(("inference", "Inferred and counted", self.inferred()));
@@ -164,7 +166,7 @@ fn cards(state: &InvertedPacking) -> String {
 }
 
 /// A quantity; `value` and `below` are markup.
-fn card(symbol: &str, value: &str, meaning: &str, below: &str) -> String {
+pub fn card(symbol: &str, value: &str, meaning: &str, below: &str) -> String {
     let below = if below.is_empty() { String::new() } else { format!("<div class=\"below\">{below}</div>") };
     format!(
         "<div class=\"card\"><div class=\"symbol\">{} <span>{}</span></div><div class=\"value\">{value}</div>{below}</div>\n",

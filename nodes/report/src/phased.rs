@@ -8,6 +8,9 @@ const BINS: usize = 600;
 /// Fewest bins of a phase.
 const FEWEST: usize = 24;
 
+/// Most phases; values of later ones join those of the last.
+pub(crate) const MOST_PHASES: usize = 1000;
+
 /// A series with bins of its own in each phase, because phases differ much in length.
 #[derive(Clone, Debug)]
 pub(crate) struct Phased {
@@ -24,7 +27,8 @@ impl Phased {
 
     /// Adds a value of a phase.
     pub(crate) fn push(&mut self, phase: u32, time: f64, value: f64) {
-        if self.parts.last().is_none_or(|(known, _)| *known != phase) {
+        let is_other = self.parts.last().is_none_or(|(known, _)| *known != phase);
+        if is_other && self.parts.len() < MOST_PHASES {
             self.parts.push((phase, Decimated::new(self.bins)));
         }
         if let Some((_, part)) = self.parts.last_mut() {

@@ -82,7 +82,12 @@ impl Run {
         self.missing.extend(back.complaints.into_iter().filter(|line| !known(line)));
         let phases = self.scene.as_ref().map_or(1, |s| s.phases.len());
         match Timeline::read(recording, phases) {
-            Ok(timeline) => self.timeline = timeline,
+            Ok(timeline) => {
+                self.timeline = timeline;
+                // The scene has the names of all phases.
+                let phases = self.scene.iter().flat_map(|s| &s.phases).zip(0..);
+                phases.for_each(|(phase, n)| self.timeline.name(n, &phase.name));
+            }
             Err(error) => self.missing.push(format!("Nothing against time: {error}")),
         }
         if self.timeline.unreadable > 0 {
@@ -122,13 +127,6 @@ impl Run {
     /// The last packing at the end of a phase.
     pub(crate) fn last(&self) -> Option<&InvertedPacking> {
         self.states.last()
-    }
-
-    /// Name of a phase, by its number from 0.
-    pub(crate) fn phase_name(&self, phase: u32) -> String {
-        let of_scene = self.scene.as_ref().and_then(|s| s.phases.get(phase as usize)).map(|p| p.name.clone());
-        let name = of_scene.or_else(|| self.timeline.names.get(&phase).cloned());
-        name.filter(|n| !n.is_empty()).unwrap_or_else(|| format!("phase {}", phase + 1))
     }
 }
 

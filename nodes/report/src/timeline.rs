@@ -1,7 +1,7 @@
 //! A run against time, from one pass over its recording.
 
-use crate::phased::{PhaseAxis, Phased};
-use grainlab_core::Packing;
+use crate::phased::{MOST_PHASES, PhaseAxis, Phased};
+use grainlab_core::{ComponentControl, Packing};
 use grainlab_msgs::boundary::{EnergyReading, FabricReading, StressRequest};
 use grainlab_msgs::{Message, Topic, from_cdr, msg, simulated_seconds, topics};
 use grainlab_recordings::{ReadError, Recording, Selection};
@@ -9,13 +9,18 @@ use grainlab_viewer::{Film, View};
 use std::collections::BTreeMap;
 
 /// Names of the components, in the order of Voigt.
-pub(crate) const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
-/// A run against simulated time, s.
+/// Most measured structures that are kept; beyond, every second one is left out.
+const STRUCTURES: usize = 4096;
+
+/// A run against simulated time, s, in bounded memory.
 #[derive(Debug)]
-pub(crate) struct Timeline {
+pub struct Timeline {
     /// Pa, in the order of Voigt.
     pub(crate) stress: [Phased; 6],
+    /// Imposed stress, Pa, in the order of Voigt: no values where a strain rate is imposed.
+    pub(crate) targets: [Phased; 6],
     /// Pa.
     pub(crate) pressure: Phased,
     /// Pa.
@@ -27,7 +32,7 @@ pub(crate) struct Timeline {
     pub(crate) unbalanced: Phased,
     /// Number and first time of each phase, in order.
     pub(crate) phases: Vec<(u32, f64)>,
-    /// Names of phases, as the run published them.
+    /// Names of phases.
     pub(crate) names: BTreeMap<u32, String>,
     /// Last time.
     pub(crate) end: f64,
@@ -41,6 +46,8 @@ pub(crate) struct Timeline {
     pub(crate) last: Option<Packing>,
     /// Messages that could not be read.
     pub(crate) unreadable: usize,
+    /// Sequence number of the next request.
+    next: u64,
 }
 
 /// The structure of a packing at a time.
@@ -54,10 +61,11 @@ pub(crate) struct Structure {
 
 impl Timeline {
     /// Without data, for a run of this number of phases.
-    pub(crate) fn of_phases(phases: usize) -> Self {
+    pub fn of_phases(phases: usize) -> Self {
         let series = || Phased::of_phases(phases);
         Self {
             stress: std::array::from_fn(|_| series()),
+            targets: std::array::from_fn(|_| series()),
             pressure: series(),
             deviator: series(),
             strain: std::array::from_fn(|_| series()),
@@ -72,6 +80,7 @@ impl Timeline {
             film: Film::default(),
             last: None,
             unreadable: 0,
+            next: 0,
         }
     }
 
@@ -82,45 +91,25 @@ impl Timeline {
         let channels = recording.channels();
         let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
         let mut timeline = Self::of_phases(phases);
-        let mut next = 0;
         for message in recording.messages(&Selection::topics(names))? {
             let Some(topic) = of(&message.channel.topic) else { continue };
-            if timeline.take(topic.name, &message.payload, &mut next).is_none() {
+            if timeline.take(topic.name, &message.payload).is_none() {
                 timeline.unreadable += 1;
             }
         }
         Ok(timeline)
     }
 
-    /// Takes one message; `None` if it cannot be read. `next` is the number of the next request.
-    fn take(&mut self, topic: &str, payload: &[u8], next: &mut u64) -> Option<()> {
+    /// Takes one message; `None` if it cannot be read.
+    fn take(&mut self, topic: &str, payload: &[u8]) -> Option<()> {
         if topic == topics::STRESS.name {
-            let request = StressRequest::try_from(&decoded::<msg::Stress>(payload)?).ok()?;
-            // A request without an answer was published again.
-            if request.sequence >= *next {
-                *next = request.sequence + 1;
-                self.request(&request);
-            }
+            self.request(&StressRequest::try_from(&decoded::<msg::Stress>(payload)?).ok()?);
         } else if topic == topics::FABRIC.name {
             let message: msg::Fabric = decoded(payload)?;
             let time = simulated_seconds(&message.header.stamp);
-            let FabricReading { contacts, fabric, .. } = FabricReading::try_from(&message).ok()?;
-            if self.fabrics.last().is_none_or(|s| s.time < time) {
-                self.fabrics.push(Structure {
-                    time,
-                    z: contacts.mechanical_coordination,
-                    eps: fabric.contact_anisotropy,
-                    eps_stiffness: fabric.stiffness_anisotropy(),
-                });
-            }
+            self.structure(time, &FabricReading::try_from(&message).ok()?);
         } else if topic == topics::PACKING.name {
-            let packing = Packing::try_from(&decoded::<msg::Packing>(payload)?).ok()?;
-            // A restarted simulator may have published it again.
-            if self.last.as_ref().is_none_or(|p| p.step < packing.step) {
-                self.film.push(View::new(&packing, label(&packing)));
-                self.end = self.end.max(packing.time);
-                self.last = Some(packing);
-            }
+            self.packing(Packing::try_from(&decoded::<msg::Packing>(payload)?).ok()?);
         } else if topic == topics::ENERGY.name {
             let balance = EnergyReading::try_from(&decoded::<msg::EnergyBalance>(payload)?).ok()?;
             // A restarted simulator sends the balance of a phase again.
@@ -128,14 +117,21 @@ impl Timeline {
             self.energy.push(balance);
         } else {
             let state: msg::RunState = decoded(payload)?;
-            self.names.insert(state.phase, state.phase_name);
+            self.name(state.phase, &state.phase_name);
         }
         Some(())
     }
 
-    fn request(&mut self, request: &StressRequest) {
+    /// Takes a request of the lockstep. One that was published again is left out; returns whether it is new.
+    pub fn request(&mut self, request: &StressRequest) -> bool {
+        if request.sequence < self.next {
+            return false;
+        }
+        self.next = request.sequence + 1;
         let (time, phase) = (simulated_seconds(&request.stamp), request.phase);
-        if self.phases.last().is_none_or(|(phase, _)| *phase != request.phase) {
+        if self.phases.len() < MOST_PHASES
+            && self.phases.last().is_none_or(|(phase, _)| *phase != request.phase)
+        {
             self.phases.push((request.phase, time));
         }
         self.end = self.end.max(time);
@@ -144,11 +140,75 @@ impl Timeline {
         };
         push(&mut self.stress, request.stress.voigt());
         push(&mut self.strain, request.strain.voigt());
+        for (series, control) in self.targets.iter_mut().zip(&request.controls) {
+            if let ComponentControl::Stress(target) = control {
+                series.push(phase, time, *target);
+            }
+        }
         self.pressure.push(phase, time, request.stress.mean());
         self.deviator.push(phase, time, request.stress.deviatoric_invariant());
         self.solid_fraction.push(phase, time, request.solid_fraction);
         self.coordination.push(phase, time, request.coordination);
         self.unbalanced.push(phase, time, request.unbalanced);
+        true
+    }
+
+    /// Takes the structure of the packing at a time, s.
+    pub fn structure(&mut self, time: f64, FabricReading { contacts, fabric, .. }: &FabricReading) {
+        if self.fabrics.last().is_some_and(|s| s.time >= time) {
+            return;
+        }
+        if self.fabrics.len() >= STRUCTURES {
+            let mut n = 0;
+            self.fabrics.retain(|_| {
+                n += 1;
+                n % 2 == 1
+            });
+        }
+        self.fabrics.push(Structure {
+            time,
+            z: contacts.mechanical_coordination,
+            eps: fabric.contact_anisotropy,
+            eps_stiffness: fabric.stiffness_anisotropy(),
+        });
+    }
+
+    /// Takes a packing; returns whether it is new. A restarted simulator may publish it again.
+    pub fn packing(&mut self, packing: Packing) -> bool {
+        if self.last.as_ref().is_some_and(|p| p.step >= packing.step) {
+            return false;
+        }
+        self.film.push(View::new(&packing, label(&packing)));
+        self.end = self.end.max(packing.time);
+        self.last = Some(packing);
+        true
+    }
+
+    /// The last packing.
+    pub fn last(&self) -> Option<&Packing> {
+        self.last.as_ref()
+    }
+
+    /// The packings for pictures.
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// Takes the name of a phase, by its number from 0.
+    pub fn name(&mut self, phase: u32, name: &str) {
+        if !name.is_empty() && (self.names.len() < MOST_PHASES || self.names.contains_key(&phase)) {
+            self.names.insert(phase, name.to_owned());
+        }
+    }
+
+    /// The name of a phase, by its number from 0.
+    pub fn phase_name(&self, phase: u32) -> String {
+        self.names.get(&phase).cloned().unwrap_or_else(|| format!("phase {}", phase + 1))
+    }
+
+    /// Number of values of each series.
+    pub fn count(&self) -> usize {
+        self.pressure.count()
     }
 
     /// First time that is shown, s.

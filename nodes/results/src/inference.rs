@@ -134,7 +134,7 @@ impl Inference {
     }
 
     /// From a recording, for data from the topic `source`.
-    pub(crate) fn of_reading(source: &str, e: &EstimateReading) -> Self {
+    pub fn of_reading(source: &str, e: &EstimateReading) -> Self {
         let status = match e.status {
             EstimateStatus::Ok => "ok",
             EstimateStatus::Extrapolated => "extrapolated",

@@ -3,8 +3,13 @@
 (() => {
   const MAX_RATIO = 2, SMOOTH = 2, SLOW_FRAME = 42, FAST_FRAME = 24, LOWEST_RATIO = 0.45, FEW = 1000;
   const BEGIN = new THREE.Vector3(2.55, -2.15, 1.45);
-  const begin = (root) => {
+  // States are in the page, or come later and replace those shown.
+  const statesOfPage = () => {
     const about = JSON.parse(document.getElementById("viewer-about").textContent);
+    return { about, states: about.states.map((_, n) => document.getElementById(`viewer-state-${n}`).textContent) };
+  };
+  const begin = (root, given) => {
+    let { about, states } = given;
     const stage = root.querySelector(".stage"), poster = root.querySelector(".poster");
     const hint = root.querySelector(".hint"), legend = root.querySelector(".legend"), picked = root.querySelector(".picked");
     const part = (name) => root.querySelector(`[data-set=${name}]`);
@@ -17,13 +22,12 @@
       root.querySelector(".controls").hidden = root.querySelector(".keys").hidden = true;
       return;
     }
-    const last = about.states.length - 1;
-    const scale = Math.cbrt(about.states[last].volume);
+    let last = about.states.length - 1;
+    let scale = Math.cbrt(about.states[last].volume);
     const decoded = new Map();
     const stateOf = (n) => {
       if (!decoded.has(n)) {
-        const text = document.getElementById(`viewer-state-${n}`).textContent;
-        decoded.set(n, grainlabData.decode(about, about.states[n], text, scale));
+        decoded.set(n, grainlabData.decode(about, about.states[n], states[n], scale));
       }
       return decoded.get(n);
     };
@@ -63,7 +67,7 @@
     };
 
     let drawn = [], grains = null;
-    const numbers = new Uint32Array(about.grains);
+    let numbers = new Uint32Array(about.grains);
     const build = () => {
       drawn.forEach((mesh) => { scene.remove(mesh); mesh.geometry.dispose(); mesh.material.dispose(); });
       const state = stateOf(now.state), dark = isDark();
@@ -291,22 +295,38 @@
     document.addEventListener("themechange", build);
     new ResizeObserver(() => { resize(full()); draw(); }).observe(stage);
 
-    if (last > 0) {
-      root.querySelector(".states").hidden = false;
+    const showRange = () => {
+      root.querySelector(".states").hidden = last === 0;
       part("state").max = last;
-      part("state").value = last;
-    }
+      part("state").value = now.state;
+    };
+    // Other states in place of these. Who looks at the last one sees the new last one.
+    const replace = (next) => {
+      const atEnd = now.state === last;
+      ({ about, states } = next);
+      last = about.states.length - 1;
+      scale = Math.cbrt(about.states[last].volume);
+      now.state = atEnd ? last : Math.min(now.state, last);
+      numbers = new Uint32Array(about.grains);
+      decoded.clear();
+      uniforms.uPicked.value = -1;
+      picked.textContent = "";
+      showRange();
+      build();
+    };
+    showRange();
     poster.hidden = true;
     resize(full());
     reset();
     build();
-    root.view = { turn, render, now, build, ratio: () => ratio };
+    root.view = { turn, render, now, build, replace, ratio: () => ratio };
   };
 
   // WebGL starts when the figure is near the window: a long page opens at once.
   const observer = new IntersectionObserver((entries) => entries.filter((e) => e.isIntersecting).forEach((e) => {
     observer.unobserve(e.target);
-    begin(e.target);
+    begin(e.target, statesOfPage());
   }), { rootMargin: "200px" });
-  document.querySelectorAll("[data-viewer]").forEach((root) => observer.observe(root));
+  if (document.getElementById("viewer-about")) document.querySelectorAll("[data-viewer]").forEach((root) => observer.observe(root));
+  window.grainlabViewer = { show: (root, given) => (root.view ? root.view.replace(given) : begin(root, given)) };
 })();

@@ -54,6 +54,17 @@ pub fn figure(name: &str, views: &[&View]) -> Result<String, PictureError> {
     Ok(text)
 }
 
+/// The figure without states, for a page that receives them later: its script shows what [`states`] returns.
+pub fn empty_figure() -> String {
+    FIGURE.replace("{alt}", "Grains in their periodic cell").replace("src=\"{poster}\"", "hidden")
+}
+
+/// States of packings as JSON: `about` and `states`, the texts that [`figure`] has as elements.
+pub fn states(name: &str, views: &[&View]) -> String {
+    let states: Vec<String> = views.iter().map(|view| encode::state(view, views)).collect();
+    serde_json::json!({ "about": encode::about(name, views), "states": states }).to_string()
+}
+
 /// A page of its own with the figure.
 ///
 /// # Errors

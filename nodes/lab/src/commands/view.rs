@@ -1,11 +1,12 @@
-//! `grainlab view`: packings in three dimensions, as a page or as a picture.
+//! `grainlab view`: packings in three dimensions, as a page or as a picture; a running laboratory as a page.
 
 use super::packings::import;
 use grainlab_console::{Failure, count, print};
-use grainlab_node_kit::Exit;
+use grainlab_node_kit::{Exit, RosArgs};
 use grainlab_recordings::import::{Imported, each};
 use grainlab_report::write_page;
 use grainlab_viewer::{Film, MOST_GRAINS, Picture, Quantity, Size, View, page};
+use std::ffi::OsStr;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -14,15 +15,29 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab view recordings/runs/demo-1-1 --open          in a browser
   grainlab view packing.data -o packing.html
-  grainlab view recordings/runs/s2-1-1 --png s2.png --color force --size 1600x1200";
+  grainlab view recordings/runs/s2-1-1 --png s2.png --color force --size 1600x1200
+  grainlab view --live --open                            the run on the bus, and the next one when it ends
+  grainlab view --live --port 0 --ros-args -r __ns:=/left
+
+The page of --live is served on 127.0.0.1 until Ctrl-C. Without ROS_DOMAIN_ID it finds the run that was launched on this host.
+It belongs to no run, and no process waits for it.";
 
 /// What to show.
 #[derive(Debug, clap::Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS), allow_negative_numbers = true)]
 pub(crate) struct Args {
     /// Recording (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data file, YADE text export; text also as .gz
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
+    #[arg(value_name = "FILE", required_unless_present = "live")]
+    file: Option<PathBuf>,
+    /// Follow the running laboratory in a browser: stress, targets, curves, processes, packings
+    #[arg(long, conflicts_with_all = ["file", "output", "png"])]
+    live: bool,
+    /// Port of the page on 127.0.0.1, 0 for any free one [default: 8808, or any if that is taken]
+    #[arg(long, value_name = "PORT", requires = "live", conflicts_with = "file")]
+    port: Option<u16>,
+    /// ROS 2 arguments of --live: -r __ns:=/left, --log-level
+    #[arg(long, value_name = "ARGUMENTS", num_args = 0.., allow_hyphen_values = true, requires = "live", conflicts_with = "file")]
+    ros_args: Option<Vec<String>>,
     /// File of the page [default: NAME.view.html beside the file, or view.html in the directory of a run]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -68,17 +83,41 @@ impl From<Colour> for Quantity {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    match &args.png {
-        Some(png) => picture(args, png),
-        None => html(args),
+    match (&args.file, &args.png) {
+        (None, _) => live(args),
+        (Some(file), Some(png)) => picture(args, file, png),
+        (Some(file), None) => html(args, file),
     }
 }
 
+fn live(args: &Args) -> Result<Exit, Failure> {
+    let words =
+        args.ros_args.iter().flat_map(|rest| std::iter::once("--ros-args".to_owned()).chain(rest.clone()));
+    let (ros, plain) = RosArgs::parse(&words.collect::<Vec<_>>()).map_err(Failure::usage)?;
+    if let Some(stranger) = plain.first() {
+        return Err(Failure::usage(format!("unexpected argument {stranger:?}")));
+    }
+    let options = grainlab_live::Options { port: args.port, ros };
+    grainlab_live::run(&options, |url| if args.open { open(url.as_ref()) } else { Ok(()) })
+}
+
+/// Shows a page in a browser.
+fn open(page: &OsStr) -> Result<(), Failure> {
+    let quiet = Stdio::null;
+    let opened = Command::new("xdg-open").arg(page).stdin(quiet()).stdout(quiet()).stderr(quiet()).spawn();
+    let failed = |e| Failure::failed(format!("xdg-open: {e}; open {} in a browser", page.display()));
+    opened.map(|_| ()).map_err(failed)
+}
+
 /// Passes on the packings of the file; the exit is that of its warnings.
-fn packings(args: &Args, mut take: impl FnMut(Imported) -> ControlFlow<()>) -> Result<Exit, Failure> {
+fn packings(
+    args: &Args,
+    file: &Path,
+    mut take: impl FnMut(Imported) -> ControlFlow<()>,
+) -> Result<Exit, Failure> {
     let options = args.import.options()?;
     let mut too_large = None;
-    let warnings = each(&args.file, &options, &mut |imported| {
+    let warnings = each(file, &options, &mut |imported| {
         if imported.packing.grains() > MOST_GRAINS {
             too_large = Some(imported.packing.grains());
             return ControlFlow::Break(());
@@ -87,7 +126,7 @@ fn packings(args: &Args, mut take: impl FnMut(Imported) -> ControlFlow<()>) -> R
     })
     .map_err(|e| Failure::failed(e.to_string()))?;
     if let Some(grains) = too_large {
-        let path = args.file.display();
+        let path = file.display();
         return Err(Failure::failed(format!("{path}: {grains} grains; a picture has at most {MOST_GRAINS}")));
     }
     warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
@@ -107,16 +146,15 @@ fn view(imported: &Imported) -> View {
     )
 }
 
-fn html(args: &Args) -> Result<Exit, Failure> {
+fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
     let mut film = Film::default();
-    let exit = packings(args, |imported| {
+    let exit = packings(args, file, |imported| {
         film.push(view(&imported));
         ControlFlow::Continue(())
     })?;
     let states = film.states();
-    let last =
-        states.last().ok_or_else(|| Failure::failed(format!("{}: no packing", args.file.display())))?;
-    let name = name(&args.file);
+    let last = states.last().ok_or_else(|| Failure::failed(format!("{}: no packing", file.display())))?;
+    let name = name(file);
     let shown = match film.count() - states.len() {
         0 => count(states.len(), "state"),
         left_out => format!(
@@ -128,20 +166,16 @@ fn html(args: &Args) -> Result<Exit, Failure> {
     let about =
         format!("{}, {shown}. Positions are exact to 1/65536 of the cell.", count(last.grains(), "grain"));
     let text = page(&name, &about, &name, &states).map_err(Failure::failed)?;
-    let path = args.output.clone().unwrap_or_else(|| beside(&args.file));
+    let path = args.output.clone().unwrap_or_else(|| beside(file));
     write_page(&path, &text).map_err(Failure::failed)?;
     print(&format!("{}\n", path.display()))?;
     if args.open {
-        let quiet = Stdio::null;
-        let opened =
-            Command::new("xdg-open").arg(&path).stdin(quiet()).stdout(quiet()).stderr(quiet()).spawn();
-        opened
-            .map_err(|e| Failure::failed(format!("xdg-open: {e}; open {} in a browser", path.display())))?;
+        open(path.as_ref())?;
     }
     Ok(exit)
 }
 
-fn picture(args: &Args, png: &Path) -> Result<Exit, Failure> {
+fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
     let size: Size = args.size.parse().map_err(|e| Failure::usage(format!("--size: {e}")))?;
     if args.state == 0 {
         return Err(Failure::usage("--state 0: states are counted from 1, or from -1 at the end"));
@@ -149,7 +183,7 @@ fn picture(args: &Args, png: &Path) -> Result<Exit, Failure> {
     // Of those at the end, only as many as are needed are kept.
     let mut kept = std::collections::VecDeque::new();
     let mut count = 0;
-    let exit = packings(args, |imported| {
+    let exit = packings(args, file, |imported| {
         count += 1;
         if args.state > 0 && count == args.state {
             kept.push_back(view(&imported));
@@ -165,7 +199,7 @@ fn picture(args: &Args, png: &Path) -> Result<Exit, Failure> {
     })?;
     let is_there = args.state > 0 || kept.len() as u64 == args.state.unsigned_abs();
     let view = kept.pop_front().filter(|_| is_there).ok_or_else(|| {
-        Failure::failed(format!("{}: no state {}: there are {count}", args.file.display(), args.state))
+        Failure::failed(format!("{}: no state {}: there are {count}", file.display(), args.state))
     })?;
     let bytes = Picture::with_legend(&view, args.color.into(), size).png().map_err(Failure::failed)?;
     std::fs::write(png, bytes).map_err(|e| Failure::failed(format!("{}: {e}", png.display())))?;

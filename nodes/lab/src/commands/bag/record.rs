@@ -120,9 +120,9 @@ fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
     let hidden = args.include_hidden_topics;
     let wanted = Wanted::new(&args.topics, regex, exclude_regex, &args.exclude_topics, hidden);
     let wanted = wanted.map_err(Failure::usage)?;
-    if let Some(part) = args.topics.iter().find(|name| Topic::by_name(name).is_some_and(Topic::is_transport))
-    {
-        contract_topics(std::slice::from_ref(part))?;
+    let not_recorded = |name: &&String| Topic::by_name(name).is_some_and(|topic| !topic.is_recorded());
+    if let Some(name) = args.topics.iter().find(not_recorded) {
+        contract_topics(std::slice::from_ref(name))?;
     }
     if let Some(folder) = args.msg_path.iter().find(|folder| !folder.is_dir()) {
         return Err(Failure::usage(format!("--msg-path {}: there is no such folder", folder.display())));

@@ -1,0 +1,77 @@
+//! Some of the requests for viewers.
+
+use grainlab_experiment::ServoRequest;
+use grainlab_msgs::{msg, topics};
+use grainlab_node_kit::{Bus, BusError, Publisher};
+
+/// Most exchanges between two samples.
+const EXCHANGES: u64 = 64;
+
+/// Particle-steps after which a sample is due earlier: some 30 ms of computation, whatever the number of grains.
+const PARTICLE_STEPS: u64 = 1_000_000;
+
+/// Publishes some of the requests on [`topics::STRESS_SAMPLED`]. Which ones follows from the run alone, not from clocks.
+#[derive(Debug)]
+pub(crate) struct Samples {
+    publisher: Publisher<msg::Stress>,
+    due: Due,
+}
+
+impl Samples {
+    pub(crate) fn advertise(bus: &mut dyn Bus) -> Result<Self, BusError> {
+        Ok(Self { publisher: Publisher::advertise(bus, &topics::STRESS_SAMPLED)?, due: Due::default() })
+    }
+
+    /// Publishes a request, if a sample is due. A viewer that is behind loses it.
+    pub(crate) fn offer(
+        &mut self,
+        bus: &mut dyn Bus,
+        request: &ServoRequest,
+        grains: u32,
+        body: &[u8],
+    ) -> Result<(), BusError> {
+        if !self.due.at(request.sequence, request.step, grains) {
+            return Ok(());
+        }
+        match bus.publish(self.publisher.id(), body) {
+            Ok(_) | Err(BusError::Full { .. }) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Sequence number and step of the last sample.
+#[derive(Debug, Default)]
+struct Due(Option<(u64, u64)>);
+
+impl Due {
+    /// Whether this request is a sample.
+    fn at(&mut self, sequence: u64, step: u64, grains: u32) -> bool {
+        let due = self.0.is_none_or(|(last, at)| {
+            let particle_steps = step.saturating_sub(at).saturating_mul(u64::from(grains));
+            sequence.saturating_sub(last) >= EXCHANGES || particle_steps >= PARTICLE_STEPS
+        });
+        if due {
+            self.0 = Some((sequence, step));
+        }
+        due
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(grains: u32, steps_per_exchange: u64) -> Vec<u64> {
+        let mut due = Due::default();
+        (0..300).filter(|n| due.at(*n, n * steps_per_exchange, grains)).collect()
+    }
+
+    #[test]
+    fn the_first_request_is_a_sample_and_each_after_64_exchanges_or_a_million_particle_steps() {
+        assert_eq!(samples(10, 1), [0, 64, 128, 192, 256]);
+        assert_eq!(samples(500, 20)[..3], [0, 64, 128], "640,000 particle-steps");
+        assert_eq!(samples(10_000, 20)[..3], [0, 5, 10]);
+        assert_eq!(samples(1_000_000, 20).len(), 300);
+    }
+}

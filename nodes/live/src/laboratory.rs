@@ -1,0 +1,199 @@
+//! What is known of the run that the page shows, in bounded memory.
+
+use crate::pace::Pace;
+use grainlab_core::Packing;
+use grainlab_msgs::boundary::{
+    FabricReading, MicrostructureReading, ModuliReading, RunStateReading, RunStatus, StressRequest,
+};
+use grainlab_msgs::{msg, simulated_seconds};
+use grainlab_node_kit::{Exit, Report, RunId};
+use grainlab_report::Timeline;
+use grainlab_results::Inference;
+use std::time::Duration;
+
+/// Phases of a run of which nothing is known yet: they share the bins of the curves.
+const PHASES: usize = 6;
+
+/// Time over which the rate of the simulation is a mean.
+const RATE_WINDOW: Duration = Duration::from_secs(3);
+
+/// Time over which progress is extrapolated.
+const PROGRESS_WINDOW: Duration = Duration::from_secs(20);
+
+/// Most estimates that are kept of one packing.
+const ESTIMATES: usize = 64;
+
+/// How the run ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// The loading path is done.
+    Complete,
+    /// It ended early, with the reason.
+    Early(String),
+    /// The simulator has left without a report of the end.
+    Vanished,
+}
+
+/// One run. Messages are taken as they arrive; times are those of the reader's clock.
+#[derive(Debug)]
+pub struct Laboratory {
+    /// The id that the launcher gave, if it was launched.
+    pub(crate) run: Option<RunId>,
+    pub(crate) scene: String,
+    pub(crate) timeline: Timeline,
+    pub(crate) latest: Option<StressRequest>,
+    pub(crate) state: Option<RunStateReading>,
+    /// Structure and stiffness of the last measured packing, with its step.
+    pub(crate) fabric: Option<(u64, FabricReading)>,
+    pub(crate) moduli: Option<(u64, ModuliReading)>,
+    /// The estimates from one packing, with its step.
+    pub(crate) inferred: (u64, Vec<Inference>),
+    pub(crate) grains: Option<u32>,
+    pub(crate) steps: Pace,
+    pub(crate) progress: Pace,
+    pub(crate) end: Option<End>,
+    /// When it was first heard of.
+    pub(crate) began: Duration,
+    /// When the simulator was heard last.
+    pub(crate) heard: Duration,
+    /// Number of packings taken for pictures.
+    pub(crate) pictured: u64,
+    /// Grains of a packing that is too large for a picture.
+    pub(crate) too_large: Option<usize>,
+    /// Messages that do not satisfy the contract.
+    pub(crate) refused: u64,
+}
+
+impl Laboratory {
+    /// A run that was first heard of at this time.
+    pub fn new(run: Option<RunId>, now: Duration) -> Self {
+        Self {
+            run,
+            scene: String::new(),
+            timeline: Timeline::of_phases(PHASES),
+            latest: None,
+            state: None,
+            fabric: None,
+            moduli: None,
+            inferred: (0, Vec::new()),
+            grains: None,
+            steps: Pace::over(RATE_WINDOW),
+            progress: Pace::over(PROGRESS_WINDOW),
+            end: None,
+            began: now,
+            heard: now,
+            pictured: 0,
+            too_large: None,
+            refused: 0,
+        }
+    }
+
+    /// Takes a request of the lockstep.
+    pub fn request(&mut self, message: &msg::Stress, now: Duration) {
+        let Ok(request) = StressRequest::try_from(message) else { return self.refused += 1 };
+        self.heard = now;
+        if self.timeline.request(&request) {
+            self.steps.push(now, request.step as f64);
+            self.latest = Some(request);
+        }
+    }
+
+    /// Takes the state of the run.
+    pub fn run_state(&mut self, message: &msg::RunState, now: Duration) {
+        let Ok(state) = RunStateReading::try_from(message) else { return self.refused += 1 };
+        self.heard = now;
+        self.timeline.name(state.phase, &state.phase_name);
+        self.progress.push(now, state.progress);
+        self.steps.push(now, state.step as f64);
+        self.end = match state.status {
+            // A restarted simulator goes on.
+            RunStatus::Running => None,
+            RunStatus::Finished => Some(End::Complete),
+            RunStatus::Failed => Some(End::Early(state.message.clone())),
+        };
+        self.state = Some(state);
+    }
+
+    /// Takes a packing.
+    pub fn packing(&mut self, message: &msg::Packing) {
+        let Ok(packing) = Packing::try_from(message) else { return self.refused += 1 };
+        self.scene.clone_from(&message.scene);
+        self.grains = u32::try_from(packing.grains()).ok();
+        if packing.grains() > grainlab_viewer::MOST_GRAINS {
+            self.too_large = Some(packing.grains());
+        } else if self.timeline.packing(packing) {
+            self.pictured += 1;
+        }
+    }
+
+    /// Takes the structure of a packing.
+    pub fn fabric(&mut self, message: &msg::Fabric) {
+        let Ok(reading) = FabricReading::try_from(message) else { return self.refused += 1 };
+        self.timeline.structure(simulated_seconds(&message.header.stamp), &reading);
+        self.fabric = Some((message.source_step, reading));
+    }
+
+    /// Takes the stiffness of a packing.
+    pub fn moduli(&mut self, message: &msg::Moduli) {
+        match ModuliReading::try_from(message) {
+            Ok(reading) => self.moduli = Some((message.source_step, reading)),
+            Err(_) => self.refused += 1,
+        }
+    }
+
+    /// Takes what was inferred from a packing.
+    pub fn microstructure(&mut self, message: &msg::Microstructure) {
+        let Ok(reading) = MicrostructureReading::try_from(message) else { return self.refused += 1 };
+        let (step, known) = &mut self.inferred;
+        if *step != reading.source_step {
+            (*step, *known) = (reading.source_step, Vec::new());
+        }
+        for estimate in &reading.estimates {
+            let found = Inference::of_reading(&reading.source, estimate);
+            if known.len() < ESTIMATES && !known.contains(&found) {
+                known.push(found);
+            }
+        }
+    }
+
+    /// Takes a report of the simulator.
+    pub(crate) fn simulator(&mut self, report: &Report, now: Duration) {
+        self.heard = now;
+        let value = |name: &str| report.health.values.iter().find(|(key, _)| key == name).map(|(_, v)| v);
+        self.grains = value("grains").and_then(|n| n.parse().ok()).or(self.grains);
+        if let Some(scene) = value("scene") {
+            self.scene.clone_from(scene);
+        }
+        match report.exit {
+            Some(exit) if self.end.is_none() => {
+                self.end =
+                    Some(if exit == Exit::Done { End::Complete } else { End::Early(exit.to_string()) });
+            }
+            _ => {}
+        }
+    }
+
+    /// The simulator has left the bus.
+    pub(crate) fn left(&mut self) {
+        self.end.get_or_insert(End::Vanished);
+    }
+
+    /// Time since the simulator was heard.
+    pub(crate) fn silence(&self, now: Duration) -> Duration {
+        now.saturating_sub(self.heard)
+    }
+
+    /// Number of the phase under way, from 0.
+    pub(crate) fn phase(&self) -> Option<u32> {
+        let of_state = self.state.as_ref().map(|s| s.phase);
+        of_state.max(self.latest.as_ref().map(|r| r.phase))
+    }
+
+    /// Step of the simulation.
+    pub(crate) fn step(&self) -> Option<u64> {
+        self.state.as_ref().map(|s| s.step).max(self.latest.as_ref().map(|r| r.step))
+    }
+}
+
+#[cfg(test)]
+mod tests;

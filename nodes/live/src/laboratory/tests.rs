@@ -1,0 +1,59 @@
+use super::*;
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
+use grainlab_msgs::stamp;
+
+fn request(sequence: u64) -> msg::Stress {
+    let value = 1.0 + (sequence as f64).sin();
+    let request = StressRequest {
+        sequence,
+        step: 20 * sequence,
+        phase: u32::try_from(sequence / 10_000).unwrap(),
+        stamp: stamp(1e-6 * sequence as f64),
+        stress: SymTensor { xx: value, yy: value, zz: value, ..SymTensor::default() },
+        asymmetry: 0.0,
+        controls: [ComponentControl::Stress(2.0); 6],
+        rate: [0.0; 6],
+        rate_limit: 1.0,
+        law: ServoLaw::Scaled { response_time: 1e-3 },
+        tangent: [1e6; 6],
+        control_interval: 1e-6,
+        strain: SymTensor::default(),
+        solid_fraction: 0.6,
+        coordination: 4.0,
+        unbalanced: 1e-3,
+    };
+    msg::Stress::try_from(&request).unwrap()
+}
+
+#[test]
+fn the_history_of_a_long_run_is_bounded_and_ends_with_its_last_value() {
+    let mut lab = Laboratory::new(None, Duration::ZERO);
+    let size = |lab: &Laboratory| lab.timeline.drawings().iter().map(|(_, svg)| svg.len()).sum::<usize>();
+    let take = |lab: &mut Laboratory, range: std::ops::Range<u64>| {
+        range.for_each(|n| lab.request(&request(n), Duration::from_millis(n)));
+        size(lab)
+    };
+    let first = take(&mut lab, 0..10_000);
+    let whole = take(&mut lab, 10_000..300_000);
+    assert_eq!(lab.timeline.count(), 300_000);
+    // Thirty phases, each with at most 100 bins.
+    assert!(whole < 40 * first, "{first} bytes, then {whole}");
+    assert_eq!(lab.latest.as_ref().map(|r| r.sequence), Some(299_999));
+    // In one phase, more values make the curves no longer.
+    let mut one = Laboratory::new(None, Duration::ZERO);
+    let at = |n: u64| msg::Stress { phase: 0, ..request(n) };
+    (0..50_000).for_each(|n| one.request(&at(n), Duration::ZERO));
+    let early = size(&one);
+    (50_000..500_000).for_each(|n| one.request(&at(n), Duration::ZERO));
+    assert!(size(&one) < 2 * early, "{early} bytes, then {}", size(&one));
+}
+
+#[test]
+fn messages_that_do_not_satisfy_the_contract_are_counted_and_change_nothing() {
+    let mut lab = Laboratory::new(None, Duration::ZERO);
+    lab.request(&msg::Stress { solid_fraction: f64::NAN, ..request(1) }, Duration::ZERO);
+    lab.run_state(&msg::RunState { progress: 7.0, ..msg::RunState::default() }, Duration::ZERO);
+    lab.packing(&msg::Packing::default());
+    assert_eq!(lab.refused, 3);
+    assert!(lab.latest.is_none() && lab.state.is_none() && lab.timeline.count() == 0);
+}
