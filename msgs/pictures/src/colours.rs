@@ -1,5 +1,7 @@
 //! Colours of grains and forces.
 
+use crate::drawn::Drawn;
+
 /// Red, green and blue, 0 to 255.
 pub type Colour = [u8; 3];
 
@@ -34,4 +36,14 @@ pub fn ramp(share: f64) -> Colour {
 pub fn by_coordination() -> Vec<Colour> {
     // Grains with fewer than two contacts are rattlers.
     (0..=MOST_CONTACTS).map(|n| ramp((n as f64 - 2.0) / (MOST_CONTACTS - 2) as f64)).collect()
+}
+
+/// The colour of each grain: by coordination, rattlers grey.
+pub(crate) fn of_grains(drawn: &Drawn<'_>) -> Vec<Colour> {
+    let table = by_coordination();
+    let of = |(rattler, contacts): (&bool, &u32)| match rattler {
+        true => RATTLER,
+        false => table[(*contacts as usize).min(MOST_CONTACTS)],
+    };
+    drawn.rattler.iter().zip(&drawn.coordination).map(of).collect()
 }

@@ -1,6 +1,6 @@
 //! Grains as spheres.
 
-use crate::colours::{Colour, MOST_CONTACTS, RATTLER, by_coordination};
+use crate::colours::{Colour, of_grains};
 use crate::drawn::Drawn;
 use crate::marker::{marker, point};
 use grainlab_msgs::geometry_msgs::Vector3;
@@ -13,15 +13,11 @@ use std::collections::BTreeMap;
 /// All spheres of a list have one diameter and, without a colour for each, one colour: grains of equal size and colour are one
 /// list, and a grain that has no equal is a sphere of its own. Sizes are compared as `float32`, as viewers draw.
 pub(crate) fn spheres(drawn: &Drawn<'_>, header: &Header) -> Vec<Marker> {
-    let colours = by_coordination();
+    let colours = of_grains(drawn);
     let mut groups: BTreeMap<(u32, Colour), Vec<usize>> = BTreeMap::new();
     for (grain, radius) in drawn.packing.radii.iter().enumerate() {
-        let colour = match drawn.rattler[grain] {
-            true => RATTLER,
-            false => colours[(drawn.coordination[grain] as usize).min(MOST_CONTACTS)],
-        };
         // Positive numbers are in the order of their bits.
-        groups.entry(((*radius as f32).to_bits(), colour)).or_default().push(grain);
+        groups.entry(((*radius as f32).to_bits(), colours[grain])).or_default().push(grain);
     }
     let list = |(id, ((_, colour), grains)): (usize, ((u32, Colour), Vec<usize>))| {
         let diameter = 2.0 * drawn.packing.radii[grains[0]];

@@ -78,6 +78,12 @@ fn a_point_has_place_in_the_cell_size_and_state_of_its_grain() {
     assert_eq!(field(&cloud, "coordination"), [2.0, 2.0, 2.0, 0.0]);
     assert_eq!(field(&cloud, "normal_force"), [1.5, 3.5, 4.0, 0.0]);
     assert_eq!(field(&cloud, "rattler"), [0.0, 0.0, 0.0, 1.0]);
+    assert_eq!(field(&cloud, "radii"), field(&cloud, "radius"));
+    let [r, g, b] = RATTLER;
+    assert_eq!(field(&cloud, "colors")[3], f64::from(u32::from_be_bytes([r, g, b, 255])));
+    let ends: Vec<u32> =
+        cloud.fields.iter().map(|f| f.offset + if f.name == "rattler" { 1 } else { 4 }).collect();
+    assert!(ends.is_sorted() && *ends.last().unwrap() <= cloud.point_step, "{ends:?}");
 }
 
 fn of<'a>(all: &'a MarkerArray, ns: &str) -> Vec<&'a Marker> {

@@ -21,7 +21,7 @@ Examples:
 json, csv, parquet: a new folder with one file per topic: /a/b is a_b.csv. json has the lines of `grainlab bag cat`. csv and
 parquet have one row per message, with log_time and publish_time (ns since 1970; in Parquet timestamps). Fields are flattened: stress.xx. An array with at most --array-columns values in every
 message is as many columns: rate[0]; a longer one is JSON in one column. Values that are not there are empty. mcap: the recording
-written again. --pictures adds /packing/points (sensor_msgs/PointCloud2: x, y, z, radius, id, coordination, normal_force, rattler)
+written again. --pictures adds /packing/points (sensor_msgs/PointCloud2: x, y, z, radius, id, coordination, normal_force, rattler, and for Rerun radii, colors)
 and /packing/markers (visualization_msgs/MarkerArray in the namespaces grains, contacts, cell) in the frame `cell`. Exit 3 if a part could not be read or decoded.";
 
 /// Arguments of `grainlab bag convert`.

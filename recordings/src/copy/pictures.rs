@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use grainlab_core::Packing;
-use grainlab_msgs::{Message as _, Topic, from_cdr, msg, to_cdr, topics};
-use grainlab_pictures::{Drawn, markers, points};
+use grainlab_msgs::{Message as _, Topic, msg};
+use grainlab_pictures::{Drawn, Picture, packing};
 
 use super::channels::Channels;
 use super::error::CopyError;
@@ -15,7 +14,7 @@ use crate::writer::TopicSpec;
 /// The topics of pictures of a copy.
 #[derive(Default)]
 pub(super) struct Pictures {
-    /// By the place of a topic with packings, that of its points; its markers come next.
+    /// By the place of a topic with packings, that of its first picture; the others come next.
     places: BTreeMap<usize, usize>,
     /// Their channels, which follow those that are copied.
     pub(super) channels: Vec<Arc<ChannelInfo>>,
@@ -34,13 +33,12 @@ impl Pictures {
                 continue;
             }
             all.places.insert(place, copied.list.len() + all.channels.len());
-            for picture in topics::PICTURES {
-                let last = picture.name.rsplit('/').next().unwrap_or(picture.name);
-                let topic = format!("{}/{last}", channel.topic);
+            for picture in Picture::ALL {
+                let topic = picture.beside(&channel.topic);
                 if copied.list.iter().any(|c| c.topic == topic) {
                     return Err(CopyError::Pictured { topic });
                 }
-                all.channels.push(Arc::new(described(picture, &topic)));
+                all.channels.push(Arc::new(described(picture.topic(), &topic)));
             }
         }
         if all.places.is_empty() { Err(CopyError::NoPackings) } else { Ok(all) }
@@ -50,12 +48,10 @@ impl Pictures {
     /// packing is not valid, which is noted.
     pub(super) fn made(&mut self, place: usize, sequence: u32, payload: &[u8]) -> Vec<(usize, Vec<u8>)> {
         let Some(first) = self.places.get(&place) else { return Vec::new() };
-        let packing = from_cdr::<msg::Packing>(payload).map_err(|e| e.to_string());
-        let packing = packing.and_then(|m| Packing::try_from(&m).map_err(|e| e.to_string()));
-        match packing {
+        match packing(payload) {
             Ok(packing) => {
                 let drawn = Drawn::new(&packing);
-                vec![(*first, to_cdr(&points(&drawn))), (first + 1, to_cdr(&markers(&drawn)))]
+                Picture::ALL.iter().enumerate().map(|(n, p)| (first + n, p.encoded(&drawn))).collect()
             }
             Err(error) => {
                 self.missing += 1;
