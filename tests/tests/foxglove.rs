@@ -12,8 +12,15 @@ use system_tests::python;
 const MODULES: &str = "websockets, mcap_ros2";
 
 /// Latched, streamed, standard, and made in the bridge.
-const WANTED: [&str; 7] =
-    ["/packing", "/packing/points", "/packing/markers", "/stress", "/moduli", "/microstructure", "/rosout"];
+const WANTED: [&str; 7] = [
+    "/packing",
+    "/packing/points",
+    "/packing/markers",
+    "/stress",
+    "/moduli",
+    "/microstructure",
+    "/tf_static",
+];
 
 fn free_port() -> String {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();

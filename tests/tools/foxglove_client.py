@@ -23,23 +23,25 @@ PICTURES = ("/packing/points", "/packing/markers")
 
 
 def join(port, **options):
+    """A connection, for a `with`, once the server is there."""
     limit = time.monotonic() + 20
     while True:
         try:
-            return connect(
-                f"ws://127.0.0.1:{port}", subprotocols=["foxglove.sdk.v1"], max_size=None, compression=None, **options
-            )
+            socket.create_connection(("127.0.0.1", int(port))).close()
+            break
         except OSError:
             if time.monotonic() > limit:
                 raise
             time.sleep(0.05)
+    options |= {"subprotocols": ["foxglove.sdk.v1"], "max_size": None, "compression": None}
+    return connect(f"ws://127.0.0.1:{port}", **options)
 
 
 class Reader:
     """Subscriptions of one client, and the messages that came."""
 
-    def __init__(self, port, topics):
-        self.client = join(port)
+    def __init__(self, client, topics):
+        self.client = client
         self.topics = set(topics)
         self.channels = {}
         self.names = {}
@@ -93,8 +95,9 @@ def recorded(path):
 
 def read(port, seconds, recording, pictured, *topics):
     recording, pictured = Path(recording), Path(pictured)
-    reader = Reader(port, topics)
-    reader.run(float(seconds), lambda: recording.exists() and pictured.exists())
+    with join(port) as client:
+        reader = Reader(client, topics)
+        reader.run(float(seconds), lambda: recording.exists() and pictured.exists())
     truth = recorded(recording) | {name: recorded(pictured)[name] for name in PICTURES}
     counts = {}
     for topic, messages in reader.messages.items():
@@ -110,21 +113,18 @@ def read(port, seconds, recording, pictured, *topics):
 
 
 def stall(port):
-    client = join(port, max_queue=1)
-    client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-    subscribed = set()
-    while True:
-        # Everything that a run advertises: then nothing is read any longer.
-        frame = client.recv()
-        text = json.loads(frame) if isinstance(frame, str) else {}
-        for channel in text.get("channels", []) if text.get("op") == "advertise" else []:
-            wanted = [{"id": channel["id"], "channelId": channel["id"]}]
-            client.send(json.dumps({"op": "subscribe", "subscriptions": wanted}))
-            subscribed.add(channel["topic"])
-        if "/packing" in subscribed:
-            break
-    print(json.dumps({"subscribed": sorted(subscribed)}), flush=True)
-    sys.stdin.read()
+    with join(port, max_queue=1) as client:
+        client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        subscribed = set()
+        while "/packing" not in subscribed:
+            frame = client.recv()
+            text = json.loads(frame) if isinstance(frame, str) else {}
+            for channel in text.get("channels", []) if text.get("op") == "advertise" else []:
+                wanted = [{"id": channel["id"], "channelId": channel["id"]}]
+                client.send(json.dumps({"op": "subscribe", "subscriptions": wanted}))
+                subscribed.add(channel["topic"])
+        print(json.dumps({"subscribed": sorted(subscribed)}), flush=True)
+        sys.stdin.read()
 
 
 if __name__ == "__main__":
