@@ -116,7 +116,7 @@ def stall(port):
     with join(port, max_queue=1) as client:
         client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         subscribed = set()
-        while "/packing" not in subscribed:
+        while not {"/packing", "/packing/markers", "/stress"} <= subscribed:
             frame = client.recv()
             text = json.loads(frame) if isinstance(frame, str) else {}
             for channel in text.get("channels", []) if text.get("op") == "advertise" else []:
