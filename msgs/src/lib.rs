@@ -27,7 +27,8 @@ pub use clock::{EPOCH_SECONDS, simulated_seconds, stamp};
 pub use description::{FieldDescription, FieldTypeDescription, MessageDescription, TypeDescription};
 pub use generated::grainlab_msgs as msg;
 pub use generated::{
-    builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs, std_msgs, tf2_msgs,
+    builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs, sensor_msgs, std_msgs,
+    tf2_msgs, visualization_msgs,
 };
 pub use message::{FieldInfo, Message, TypeInfo};
 pub use topic::{Qos, Topic};

@@ -2,7 +2,7 @@
 
 use crate::message::TypeInfo;
 use crate::topic::{Qos, Topic};
-use crate::{diagnostic_msgs, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs};
+use crate::{diagnostic_msgs, msg, rcl_interfaces, rosgraph_msgs, sensor_msgs, tf2_msgs, visualization_msgs};
 
 impl Topic {
     /// The row of a topic, by its name with or without the leading slash. Names of this project may have a
@@ -14,10 +14,11 @@ impl Topic {
     /// assert!(Topic::by_name("/lab_3/clock").is_none());
     /// ```
     pub fn by_name(name: &str) -> Option<&'static Self> {
-        let last = name.rsplit('/').next().unwrap_or(name);
-        TOPICS.iter().find(|t| match t.name.strip_prefix('/') {
+        TOPICS.iter().chain(PICTURES).find(|t| match t.name.strip_prefix('/') {
             Some(absolute) => name.strip_prefix('/').unwrap_or(name) == absolute,
-            None => t.name == last,
+            None => {
+                name.strip_suffix(t.name).is_some_and(|before| before.is_empty() || before.ends_with('/'))
+            }
         })
     }
 
@@ -203,7 +204,30 @@ pub const TF_STATIC: Topic = Topic {
     summary: "the frame of the cell, for viewers",
 };
 
-/// Every topic of the contract.
+/// Grains for viewers.
+pub const PACKING_POINTS: Topic = Topic {
+    name: "packing/points",
+    info: TypeInfo::of::<sensor_msgs::PointCloud2>(),
+    qos: Qos::LATCHED,
+    writer: "packing_pictures",
+    reproducible: true,
+    summary: "the grains of the packing as points, for viewers",
+};
+
+/// Grains, contacts and cell for viewers.
+pub const PACKING_MARKERS: Topic = Topic {
+    name: "packing/markers",
+    info: TypeInfo::of::<visualization_msgs::MarkerArray>(),
+    qos: Qos::LATCHED,
+    writer: "packing_pictures",
+    reproducible: true,
+    summary: "grains, contacts and cell of the packing as markers, for viewers",
+};
+
+/// Pictures of the packing. They follow from [`PACKING`] at any time, so that a run does not record them.
+pub const PICTURES: &[Topic] = &[PACKING_POINTS, PACKING_MARKERS];
+
+/// Every topic of a run.
 pub const TOPICS: &[Topic] = &[
     STRESS,
     STRESS_SAMPLED,
@@ -237,6 +261,8 @@ mod tests {
             assert_eq!(Topic::by_name(&t.absolute_name()), Some(t));
             assert_eq!(TypeInfo::by_name(t.info.type_name), Some(&t.info));
         }
+        assert_eq!(Topic::by_name("/lab/packing/points"), Some(&PACKING_POINTS));
+        assert_eq!(Topic::by_name("points"), None);
         assert_eq!(Topic::by_name("stresses"), None);
         assert_eq!(Topic::by_name(""), None);
     }

@@ -91,6 +91,7 @@ fn copies_pass_the_acceptance_check_and_python_reads_the_same_values() {
         (&["merge", ours, bag, "--exclude", "rosout"], "merged"),
         (&["compress", bag, "--preset", "zstd_small"], "small.mcap"),
         (&["convert", ours, "--format", "mcap", "--chunk-size", "65536"], "converted"),
+        (&["convert", ours, "--pictures"], "pictured.mcap"),
     ] {
         let arguments = [&["bag"], arguments, &["-o", out]].concat();
         run(&lab, &arguments);
@@ -109,6 +110,10 @@ fn copies_pass_the_acceptance_check_and_python_reads_the_same_values() {
     let count = |path: &str| Recording::open(&lab.folder().join(path)).unwrap().info().messages;
     assert_eq!((count("imu"), count("small.mcap")), (200, 240));
     assert_eq!(count("converted"), Recording::open(Path::new(ours)).unwrap().info().messages);
+    let packings = Recording::open(Path::new(ours)).unwrap();
+    let packings = packings.messages(&Selection::topics(["/packing"])).unwrap().count() as u64;
+    assert!(packings > 0);
+    assert_eq!(count("pictured.mcap"), count("converted") + 2 * packings);
 }
 
 #[test]

@@ -8,6 +8,7 @@ Times, topics, types and all values have to be equal. Prints the number of messa
 
 import json
 import math
+import struct
 import sys
 from pathlib import Path
 
@@ -55,7 +56,14 @@ def common(ours, theirs):
         return {name: common(ours[name], theirs[name]) for name in ours}
     if isinstance(ours, list) and isinstance(theirs, list) and len(ours) == len(theirs):
         return [common(a, b) for a, b in zip(ours, theirs)]
+    if isinstance(ours, float) and abs(ours) < 3e38 and as_float32(ours) == theirs:
+        return ours
     return theirs
+
+
+def as_float32(value):
+    """`grainlab bag cat` prints a float32 with as many digits as it needs; the readers give it as a double."""
+    return struct.unpack("f", struct.pack("f", value))[0]
 
 
 def key(entry):

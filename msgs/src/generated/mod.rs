@@ -6,8 +6,10 @@ pub mod geometry_msgs;
 pub mod grainlab_msgs;
 pub mod rcl_interfaces;
 pub mod rosgraph_msgs;
+pub mod sensor_msgs;
 pub mod std_msgs;
 pub mod tf2_msgs;
+pub mod visualization_msgs;
 
 use crate::TypeInfo;
 
@@ -19,6 +21,7 @@ pub(crate) const TYPES: &[TypeInfo] = &[
     TypeInfo::of::<diagnostic_msgs::DiagnosticStatus>(),
     TypeInfo::of::<diagnostic_msgs::KeyValue>(),
     TypeInfo::of::<geometry_msgs::Point>(),
+    TypeInfo::of::<geometry_msgs::Pose>(),
     TypeInfo::of::<geometry_msgs::Quaternion>(),
     TypeInfo::of::<geometry_msgs::Transform>(),
     TypeInfo::of::<geometry_msgs::TransformStamped>(),
@@ -55,6 +58,14 @@ pub(crate) const TYPES: &[TypeInfo] = &[
     TypeInfo::of::<rcl_interfaces::ParameterEvent>(),
     TypeInfo::of::<rcl_interfaces::ParameterValue>(),
     TypeInfo::of::<rosgraph_msgs::Clock>(),
+    TypeInfo::of::<sensor_msgs::CompressedImage>(),
+    TypeInfo::of::<sensor_msgs::PointCloud2>(),
+    TypeInfo::of::<sensor_msgs::PointField>(),
+    TypeInfo::of::<std_msgs::ColorRGBA>(),
     TypeInfo::of::<std_msgs::Header>(),
     TypeInfo::of::<tf2_msgs::TFMessage>(),
+    TypeInfo::of::<visualization_msgs::Marker>(),
+    TypeInfo::of::<visualization_msgs::MarkerArray>(),
+    TypeInfo::of::<visualization_msgs::MeshFile>(),
+    TypeInfo::of::<visualization_msgs::UVCoordinate>(),
 ];

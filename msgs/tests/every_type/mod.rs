@@ -9,6 +9,7 @@ macro_rules! for_every_type {
         $check!(grainlab_msgs::diagnostic_msgs::DiagnosticStatus);
         $check!(grainlab_msgs::diagnostic_msgs::KeyValue);
         $check!(grainlab_msgs::geometry_msgs::Point);
+        $check!(grainlab_msgs::geometry_msgs::Pose);
         $check!(grainlab_msgs::geometry_msgs::Quaternion);
         $check!(grainlab_msgs::geometry_msgs::Transform);
         $check!(grainlab_msgs::geometry_msgs::TransformStamped);
@@ -45,8 +46,16 @@ macro_rules! for_every_type {
         $check!(grainlab_msgs::rcl_interfaces::ParameterEvent);
         $check!(grainlab_msgs::rcl_interfaces::ParameterValue);
         $check!(grainlab_msgs::rosgraph_msgs::Clock);
+        $check!(grainlab_msgs::sensor_msgs::CompressedImage);
+        $check!(grainlab_msgs::sensor_msgs::PointCloud2);
+        $check!(grainlab_msgs::sensor_msgs::PointField);
+        $check!(grainlab_msgs::std_msgs::ColorRGBA);
         $check!(grainlab_msgs::std_msgs::Header);
         $check!(grainlab_msgs::tf2_msgs::TFMessage);
+        $check!(grainlab_msgs::visualization_msgs::Marker);
+        $check!(grainlab_msgs::visualization_msgs::MarkerArray);
+        $check!(grainlab_msgs::visualization_msgs::MeshFile);
+        $check!(grainlab_msgs::visualization_msgs::UVCoordinate);
     };
 }
 pub(crate) use for_every_type;

@@ -32,5 +32,5 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let paths = std::slice::from_ref(&args.path);
     let (topics, interval) = (&Topics::default(), &Interval::default());
-    Job { operation: "compress", paths, topics, interval, latched: true }.run(&args.output)
+    Job { operation: "compress", paths, topics, interval, latched: true, pictures: false }.run(&args.output)
 }

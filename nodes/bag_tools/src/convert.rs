@@ -16,11 +16,13 @@ Examples:
   grainlab bag convert recordings/runs/demo-1-1 --format csv -o tables
   grainlab bag convert run.mcap --topics stress --format parquet -o tables
   grainlab bag convert old --format mcap --compression lz4 -o new
+  grainlab bag convert recordings/runs/demo-1-1 --pictures -o pictures.mcap      # for RViz, Foxglove, Lichtblick, Rerun
 
 json, csv, parquet: a new folder with one file per topic: /a/b is a_b.csv. json has the lines of `grainlab bag cat`. csv and
 parquet have one row per message, with log_time and publish_time (ns since 1970; in Parquet timestamps). Fields are flattened: stress.xx. An array with at most --array-columns values in every
 message is as many columns: rate[0]; a longer one is JSON in one column. Values that are not there are empty. mcap: the recording
-written again. Exit 3 if a part could not be read or decoded.";
+written again. --pictures adds /packing/points (sensor_msgs/PointCloud2: x, y, z, radius, id, coordination, normal_force, rattler, and for Rerun radii, colors)
+and /packing/markers (visualization_msgs/MarkerArray in the namespaces grains, contacts, cell) in the frame `cell`. Exit 3 if a part could not be read or decoded.";
 
 /// Arguments of `grainlab bag convert`.
 #[derive(Debug, clap::Args)]
@@ -32,9 +34,12 @@ pub struct Args {
     /// New folder; for mcap a new recording: a directory, or one file if the name ends with .mcap
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Format of the output
-    #[arg(long, value_enum)]
-    format: Format,
+    /// Format of the output [default with --pictures: mcap]
+    #[arg(long, value_enum, required_unless_present = "pictures")]
+    format: Option<Format>,
+    /// Write a recording in which packings have pictures beside them, for viewers that do not read packings
+    #[arg(long)]
+    pictures: bool,
     #[command(flatten)]
     topics: Topics,
     #[command(flatten)]
@@ -65,10 +70,18 @@ enum Format {
 /// If the recording cannot be read, a topic does not exist, or the output cannot be written.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let paths = std::slice::from_ref(&args.path);
-    if args.format == Format::Mcap {
-        let (topics, interval) = (&args.topics, &args.interval);
-        return Job { operation: "convert", paths, topics, interval, latched: true }
-            .write(&args.output, &args.form);
+    let format = match args.format {
+        Some(Format::Parquet) => TableFormat::Parquet,
+        Some(Format::Csv) => TableFormat::Csv,
+        Some(Format::Json) => TableFormat::Json,
+        Some(Format::Mcap) | None => {
+            let (topics, interval, pictures) = (&args.topics, &args.interval, args.pictures);
+            return Job { operation: "convert", paths, topics, interval, latched: true, pictures }
+                .write(&args.output, &args.form);
+        }
+    };
+    if args.pictures {
+        return Err(Failure::usage("--pictures are added to recordings: leave --format out, or choose mcap"));
     }
     let recordings = open(paths)?;
     args.topics.check(&recordings)?;
@@ -79,11 +92,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let selection = Selection { topics, start, end };
     let new = NewPath::begin(&args.output).map_err(Failure::usage)?;
     std::fs::create_dir(new.partial()).map_err(|e| failed(&args.output, &e))?;
-    let format = match args.format {
-        Format::Parquet => TableFormat::Parquet,
-        Format::Csv => TableFormat::Csv,
-        _ => TableFormat::Json,
-    };
     let mut tables = Tables::new(&args.output, new.partial(), format, args.array_columns);
     let messages = tables.convert(recording, &selection)?;
     let (files, decoders) = tables.finish()?;

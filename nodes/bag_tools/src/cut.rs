@@ -44,5 +44,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let paths = std::slice::from_ref(&args.path);
     let (topics, interval) = (&args.topics, &args.interval);
-    Job { operation: "cut", paths, topics, interval, latched: !args.no_latched }.run(&args.output)
+    Job { operation: "cut", paths, topics, interval, latched: !args.no_latched, pictures: false }
+        .run(&args.output)
 }

@@ -36,5 +36,5 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let paths = std::slice::from_ref(&args.path);
     let (topics, interval) = (&args.topics, &args.interval);
-    Job { operation: "filter", paths, topics, interval, latched: true }.run(&args.output)
+    Job { operation: "filter", paths, topics, interval, latched: true, pictures: false }.run(&args.output)
 }

@@ -37,5 +37,6 @@ pub struct Args {
 /// If a recording cannot be read, topics contradict each other, or the output cannot be written.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let (topics, interval) = (&args.topics, &args.interval);
-    Job { operation: "merge", paths: &args.paths, topics, interval, latched: true }.run(&args.output)
+    Job { operation: "merge", paths: &args.paths, topics, interval, latched: true, pictures: false }
+        .run(&args.output)
 }

@@ -5,7 +5,7 @@ use crate::opened::{losses, open};
 use crate::selection::Topics;
 use crate::times::Interval;
 use clap::ValueEnum;
-use grainlab_console::{Failure, count, print, say};
+use grainlab_console::{Failure, count, print, say, worse};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::copy::{self, CopyError, CopyOptions, Select};
 use std::path::{Path, PathBuf};
@@ -77,6 +77,8 @@ pub(crate) struct Job<'a> {
     pub(crate) interval: &'a Interval,
     /// Whether latched messages from before the start are copied.
     pub(crate) latched: bool,
+    /// Whether pictures of packings are added.
+    pub(crate) pictures: bool,
 }
 
 impl Job<'_> {
@@ -91,10 +93,13 @@ impl Job<'_> {
         self.topics.check(&recordings)?;
         let (start, end) = self.interval.of(&recordings)?;
         let select = Select { topic: &|c| self.topics.take(c), start, end, latched: self.latched };
-        let options = form.options(self.operation);
+        let options = CopyOptions { pictures: self.pictures, ..form.options(self.operation) };
         let copied = copy::copy(&recordings, &select, output, &options);
         let copied = copied.map_err(|e| match e {
-            CopyError::Clash { .. } | CopyError::Exists { .. } => Failure::usage(e),
+            CopyError::Clash { .. }
+            | CopyError::Exists { .. }
+            | CopyError::NoPackings
+            | CopyError::Pictured { .. } => Failure::usage(e),
             other => Failure::failed(other),
         })?;
         copied.notes.iter().for_each(|note| say!("grainlab: {note}"));
@@ -102,13 +107,18 @@ impl Job<'_> {
             0 => String::new(),
             n => format!(", {n} of them latched ones from before the start"),
         };
+        let pictures = match copied.pictures {
+            0 => String::new(),
+            n => format!(", {} of packings", count(n, "picture")),
+        };
         print(&format!(
-            "{}: {} on {}{latched}, {:.3} MB\n",
+            "{}: {} on {}{latched}{pictures}, {:.3} MB\n",
             copied.path.display(),
             count(copied.messages, "message"),
             count(copied.topics.len() as u64, "topic"),
             copied.bytes as f64 * 1e-6
         ))?;
-        Ok(losses(&recordings))
+        let complete = if copied.without_picture == 0 { Exit::Done } else { Exit::DataLoss };
+        Ok(worse(losses(&recordings), complete))
     }
 }

@@ -9,9 +9,11 @@ use grainlab_console::{Failure, scenes};
 use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
+use grainlab_foxglove_bridge::FoxgloveBridge;
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::NodeSpec;
 use grainlab_node_kit::{Bus, Exit, Names, Node, NodeError, ParameterSpec, Parameters, RosArgs, Scope};
+use grainlab_packing_pictures::PackingPictures;
 use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
 use grainlab_recordings::input;
 use grainlab_servo_controller::ServoController;
@@ -35,6 +37,10 @@ pub enum NodeKind {
     EmtInversion,
     /// Records every message.
     Recorder,
+    /// Publishes pictures of packings while somebody subscribes to them.
+    PackingPictures,
+    /// Offers the topics to viewers over a WebSocket.
+    FoxgloveBridge,
 }
 
 /// An unknown name of a node.
@@ -57,6 +63,8 @@ impl NodeKind {
             Self::AcousticProbe => "acoustic_probe",
             Self::EmtInversion => "emt_inversion",
             Self::Recorder => "recorder",
+            Self::PackingPictures => "packing_pictures",
+            Self::FoxgloveBridge => "foxglove_bridge",
         }
     }
 
@@ -74,6 +82,10 @@ impl NodeKind {
             Self::AcousticProbe => "measures wave speeds of packings",
             Self::EmtInversion => "infers the microstructure from moduli and wave speeds",
             Self::Recorder => "records every topic to MCAP",
+            Self::PackingPictures => {
+                "publishes packings as points and markers for viewers, while somebody subscribes"
+            }
+            Self::FoxgloveBridge => "offers every topic to Foxglove and Lichtblick over a WebSocket",
         }
     }
 
@@ -86,15 +98,21 @@ impl NodeKind {
             Self::AcousticProbe => grainlab_acoustic_probe::parameters(),
             Self::EmtInversion => grainlab_emt_inversion::parameters(),
             Self::Recorder => recorder::parameters(),
+            Self::PackingPictures => Vec::new(),
+            Self::FoxgloveBridge => grainlab_foxglove_bridge::parameters(),
         }
     }
 
     /// The processes whose samples it accepts when it is started by hand: the lockstep and its recorder
-    /// ignore launched runs; a measuring node accepts all.
+    /// ignore launched runs; a node that measures or shows accepts all.
     fn scope(self) -> Scope {
         match self {
             Self::DemSimulator | Self::ServoController | Self::Recorder => Scope::OwnRun,
-            Self::FabricAnalyzer | Self::AcousticProbe | Self::EmtInversion => Scope::Everyone,
+            Self::FabricAnalyzer
+            | Self::AcousticProbe
+            | Self::EmtInversion
+            | Self::PackingPictures
+            | Self::FoxgloveBridge => Scope::Everyone,
         }
     }
 
@@ -124,7 +142,11 @@ impl NodeKind {
     pub fn per_run(self) -> (RangeInclusive<usize>, &'static str) {
         match self {
             Self::Recorder | Self::DemSimulator => (1..=1, "one"),
-            Self::ServoController | Self::FabricAnalyzer | Self::AcousticProbe => (0..=1, "at most one"),
+            Self::ServoController
+            | Self::FabricAnalyzer
+            | Self::AcousticProbe
+            | Self::PackingPictures
+            | Self::FoxgloveBridge => (0..=1, "at most one"),
             Self::EmtInversion => (0..=usize::MAX, "any number"),
         }
     }
@@ -134,7 +156,12 @@ impl NodeKind {
         match self {
             Self::FabricAnalyzer => Some(topics::MODULI),
             Self::AcousticProbe => Some(topics::WAVE_SPEEDS),
-            Self::DemSimulator | Self::ServoController | Self::EmtInversion | Self::Recorder => None,
+            Self::DemSimulator
+            | Self::ServoController
+            | Self::EmtInversion
+            | Self::Recorder
+            | Self::PackingPictures
+            | Self::FoxgloveBridge => None,
         }
     }
 
@@ -166,6 +193,11 @@ impl NodeKind {
             Self::Recorder => {
                 let settings = recorder::Settings::of(parameters).map_err(|e| node_error(&e))?;
                 Box::new(Recorder::new(bus, &settings, recorded.clone())?)
+            }
+            Self::PackingPictures => Box::new(PackingPictures::new(bus)?),
+            Self::FoxgloveBridge => {
+                let settings = grainlab_foxglove_bridge::Settings::of(parameters).map_err(|e| usage(&e))?;
+                Box::new(FoxgloveBridge::new(bus, settings)?)
             }
         })
     }

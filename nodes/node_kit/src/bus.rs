@@ -111,6 +111,12 @@ pub trait Bus {
     /// Subscribes to a topic. Each of several subscriptions to one topic receives every sample.
     fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError>;
 
+    /// Ends a subscription: writers keep nothing for it any longer, and its handle is not valid any longer.
+    fn unsubscribe(&mut self, subscription: SubscriptionId);
+
+    /// Takes an advertised topic back: readers no longer see this writer, and its handle is not valid any longer.
+    fn withdraw(&mut self, publisher: PublisherId);
+
     /// Publishes one serialized message, encapsulation header included, and returns its RTPS sequence number.
     ///
     /// Waits at most some milliseconds for a reliable reader that is far behind, then drops the sample and returns

@@ -14,8 +14,9 @@ use std::sync::{Condvar, Mutex, Once, PoisonError};
 /// Maximum number of lines queued for `/rosout`; a full queue drops the oldest.
 const BACKLOG: usize = 1000;
 
-/// Libraries of which only errors are logged: their warnings concern single packets.
-const LIBRARIES: [&str; 3] = [LOG_TARGET, "ros2_client", "mio"];
+/// Libraries of which only errors are logged: their warnings concern single packets, or single clients.
+const LIBRARIES: [&str; 6] =
+    [LOG_TARGET, "ros2_client", "mio", "foxglove", "tokio_tungstenite", "tungstenite"];
 
 static LOGGER: Logger = Logger {
     settings: Mutex::new(Settings {

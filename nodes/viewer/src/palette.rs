@@ -1,9 +1,7 @@
-//! Colours of grains, distinct under colour blindness.
+//! What colours of grains show.
 
 use crate::view::View;
-
-/// Red, green and blue, 0 to 255.
-pub(crate) type Colour = [u8; 3];
+pub(crate) use grainlab_pictures::{Colour, MOST_CONTACTS, RAMP, RATTLER, by_coordination, ramp};
 
 /// What the colours of the grains show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,41 +29,8 @@ impl Quantity {
     }
 }
 
-/// From little to much: the lighter part of the map `batlow` (Crameri), equal steps of which look equal.
-pub(crate) const RAMP: [Colour; 7] = [
-    [26, 62, 94],
-    [40, 96, 101],
-    [84, 120, 79],
-    [143, 136, 56],
-    [214, 148, 84],
-    [247, 173, 146],
-    [252, 205, 222],
-];
-
-/// Contacts of a grain with a colour of their own; grains with more have that of the last.
-pub(crate) const MOST_CONTACTS: usize = 9;
-
-/// A rattler.
-pub(crate) const RATTLER: Colour = [196, 196, 204];
-
 /// A grain that carries force, where only this is shown.
 pub(crate) const CARRIER: Colour = [46, 104, 150];
-
-/// The colour of a share from 0 to 1.
-pub(crate) fn ramp(share: f64) -> Colour {
-    let x = share.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
-    let k = (x as usize).min(RAMP.len() - 2);
-    std::array::from_fn(|c| {
-        let [from, to] = [RAMP[k][c], RAMP[k + 1][c]].map(f64::from);
-        (from + (x - k as f64) * (to - from)).round() as u8
-    })
-}
-
-/// Colours by number of contacts, from none.
-pub(crate) fn by_coordination() -> Vec<Colour> {
-    // Grains with fewer than two contacts are rattlers.
-    (0..=MOST_CONTACTS).map(|n| ramp((n as f64 - 2.0) / (MOST_CONTACTS - 2) as f64)).collect()
-}
 
 /// The colour of each grain.
 pub(crate) fn colours(view: &View, quantity: Quantity) -> Vec<Colour> {

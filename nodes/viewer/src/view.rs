@@ -1,7 +1,7 @@
 //! One packing as it is drawn.
 
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_micromechanics::non_rattlers;
+use grainlab_pictures::{Drawn, DrawnContact};
 
 /// Most grains of a picture in a page: beyond, a page is too large for a browser.
 pub const MOST_GRAINS: usize = 200_000;
@@ -32,49 +32,19 @@ pub struct View {
     pub(crate) contacts: Vec<DrawnContact>,
 }
 
-/// A contact of grains at their places within the cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct DrawnContact {
-    pub(crate) i: u32,
-    pub(crate) j: u32,
-    /// Cell vectors added to the place of `j`.
-    pub(crate) image: [i32; 3],
-    /// Normal force, N.
-    pub(crate) force: f64,
-}
-
 impl View {
     /// A packing, with the name of its state.
     pub fn new(packing: &Packing, label: impl Into<String>) -> Self {
-        let n = packing.ids.len();
-        let fractional: Vec<Vec3> = packing.positions.iter().map(|x| packing.cell.fractional(x)).collect();
-        let carries = non_rattlers(packing);
-        let (mut coordination, mut touching, mut force) = (vec![0; n], vec![0u32; n], vec![0.0; n]);
-        let mut contacts = Vec::with_capacity(packing.contacts.len());
-        for c in &packing.contacts {
-            let (i, j) = (c.i as usize, c.j as usize);
-            for g in [i, j] {
-                touching[g] += 1;
-                force[g] += c.normal_force;
-                coordination[g] += u32::from(carries[i] && carries[j]);
-            }
-            // The image belongs to positions as held; those drawn are folded into the cell.
-            let image = std::array::from_fn(|k| {
-                i32::from(c.image[k]) + fractional[j][k].floor() as i32 - fractional[i][k].floor() as i32
-            });
-            if image.iter().all(|k| k.abs() <= FARTHEST) {
-                contacts.push(DrawnContact { i: c.i, j: c.j, image, force: c.normal_force.max(0.0) });
-            }
-        }
-        force.iter_mut().zip(&touching).for_each(|(f, n)| *f /= f64::from((*n).max(1)));
+        let Drawn { places, coordination, rattler, force, mut contacts, .. } = Drawn::new(packing);
+        contacts.retain(|c| c.image.iter().all(|k| k.abs() <= FARTHEST));
         Self {
             label: label.into(),
             cell: packing.cell,
             ids: packing.ids.clone(),
-            places: fractional.iter().map(|f| f.map(|v| (v - v.floor()).min(1.0 - f64::EPSILON))).collect(),
+            places,
             radii: packing.radii.clone(),
             coordination,
-            rattler: carries.iter().map(|c| !c).collect(),
+            rattler,
             force,
             contacts,
         }

@@ -32,6 +32,15 @@ pub enum CopyError {
         /// Its type.
         second_type: String,
     },
+    /// Pictures of packings are wanted, and there are no packings.
+    #[error("there is no topic of type grainlab_msgs/msg/Packing of which pictures could be made")]
+    NoPackings,
+    /// Pictures of packings are wanted, and there is a topic of their name.
+    #[error("there is a topic {topic} already: leave it out with --exclude {topic}")]
+    Pictured {
+        /// The topic.
+        topic: String,
+    },
     /// The file system returned an error.
     #[error("{path}: cannot {action}: {source}")]
     Io {

@@ -16,6 +16,8 @@ pub struct CopyOptions {
     pub checksums: bool,
     /// How the copy is made, for its metadata: `cut`, `merge`.
     pub operation: String,
+    /// Whether each topic with packings gets topics with pictures of them beside it.
+    pub pictures: bool,
 }
 
 /// The presets of rosbag2.
@@ -38,6 +40,7 @@ impl Default for CopyOptions {
             chunk_size: Some(1 << 20),
             checksums: true,
             operation,
+            pictures: false,
         }
     }
 }

@@ -11,6 +11,7 @@ use super::error::CopyError;
 use super::extras::Extras;
 use super::options::{CopyOptions, Select};
 use super::output::Output;
+use super::pictures::Pictures;
 use crate::reader::{ChannelInfo, Message, Messages, Recording, Selection};
 
 /// A finished copy.
@@ -20,13 +21,17 @@ pub struct Copied {
     pub path: PathBuf,
     /// Size of its MCAP file, bytes.
     pub bytes: u64,
-    /// Messages in it.
+    /// Messages in it, with pictures.
     pub messages: u64,
     /// Those that are latched and from before the start.
     pub latched: u64,
     /// Its topics.
     pub topics: Vec<String>,
-    /// Differences between the recordings that were settled, as text.
+    /// Pictures of packings added to them.
+    pub pictures: u64,
+    /// Packings of which no picture could be made.
+    pub without_picture: u64,
+    /// Differences between the recordings that were settled, and packings without a picture, as text.
     pub notes: Vec<String>,
 }
 
@@ -43,29 +48,28 @@ pub fn copy(
 ) -> Result<Copied, CopyError> {
     let channels = Channels::of(recordings, select)?;
     let extras = Extras::of(recordings, &options.operation);
+    let mut pictures = if options.pictures { Pictures::of(&channels)? } else { Pictures::default() };
     let mut output = Output::begin(to, recordings.first().map_or("ros2", Recording::profile), options)?;
-    for channel in &channels.list {
+    for channel in channels.list.iter().chain(&pictures.channels) {
         output.declare(channel)?;
     }
     for file in &extras.files {
         output.store(file)?;
     }
     let mut places = Places { channels: &channels, last: None, known: BTreeMap::new() };
-    let mut messages = 0;
-    let mut latched = 0;
+    let (mut messages, mut latched, mut made) = (0, 0, 0);
     let topics: Vec<String> = channels.list.iter().map(|c| c.topic.clone()).collect();
     if let Some(start) = select.start.filter(|_| select.latched) {
         for message in before(recordings, &channels, start) {
             let Some(place) = places.of(&message.channel) else { continue };
-            output.message(place, message.sequence, start, message.publish_time, &message.payload)?;
             latched += 1;
+            made += write(&mut output, &mut pictures, place, start, &message)?;
         }
     }
     for message in merged(recordings, &topics, select) {
         let Some(place) = places.of(&message.channel) else { continue };
-        let (log_time, publish_time) = (message.log_time, message.publish_time);
-        output.message(place, message.sequence, log_time, publish_time, &message.payload)?;
         messages += 1;
+        made += write(&mut output, &mut pictures, place, message.log_time, &message)?;
     }
     for record in &extras.metadata {
         output.metadata(record)?;
@@ -73,7 +77,34 @@ pub fn copy(
     let bytes = output.finish()?;
     let mut notes = channels.notes;
     notes.extend(extras.notes);
-    Ok(Copied { path: to.to_owned(), bytes, messages: messages + latched, latched, topics, notes })
+    notes.extend(pictures.notes);
+    Ok(Copied {
+        path: to.to_owned(),
+        bytes,
+        messages: messages + latched + made,
+        latched,
+        topics: channels.list.iter().chain(&pictures.channels).map(|c| c.topic.clone()).collect(),
+        pictures: made,
+        without_picture: pictures.missing,
+        notes,
+    })
+}
+
+/// Writes a message to the channel at this place, and the pictures of it, with its times; returns their number.
+fn write(
+    output: &mut Output,
+    pictures: &mut Pictures,
+    place: usize,
+    log_time: u64,
+    message: &Message,
+) -> Result<u64, CopyError> {
+    let (sequence, publish_time) = (message.sequence, message.publish_time);
+    output.message(place, sequence, log_time, publish_time, &message.payload)?;
+    let made = pictures.made(place, sequence, &message.payload);
+    for (place, payload) in &made {
+        output.message(*place, sequence, log_time, publish_time, payload)?;
+    }
+    Ok(made.len() as u64)
 }
 
 /// Finds the place of a channel; most messages are on the channel of the one before.

@@ -1,6 +1,10 @@
 //! Copies have the messages of their sources, and nothing is lost or overwritten on the way.
 
-use crate::support::{START, run_in, write_run};
+use crate::support::{SIMULATOR, START, contract, options, run_in, sample, write_run};
+use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_msgs::boundary::packing_message;
+use grainlab_msgs::to_cdr;
+use grainlab_pictures::{Drawn, Picture};
 use grainlab_recordings::copy::{CopyError, CopyOptions, Preset, Select, copy};
 use grainlab_recordings::{
     COPY_RECORD, ChannelInfo, Compression, METADATA_RECORD, Recording, RunWriter, Selection, TopicSpec,
@@ -162,4 +166,85 @@ fn a_damaged_recording_is_copied_as_far_as_it_is_readable_and_the_loss_is_a_warn
     copy(&source, &Select::default(), &to, &CopyOptions::default()).unwrap();
     assert!(!source[0].warnings().is_empty());
     assert_eq!(said(&sound(&to)), said(&open(&path)));
+}
+
+#[test]
+fn pictures_stand_beside_their_packings_and_a_packing_without_one_is_named() {
+    let root = tempfile::tempdir().unwrap();
+    let (run, _) = run_in(&root, 150);
+    let other = root.path().join("other");
+    let mut writer = RunWriter::create(&other, "other", &contract(), options()).unwrap();
+    let packing = reference_packing();
+    let body = to_cdr(&packing_message(&packing, "other", Vec::new()));
+    writer.write("/packing", &sample(SIMULATOR, 1, START, &body)).unwrap();
+    writer.finish().unwrap();
+
+    let with = CopyOptions { pictures: true, ..CopyOptions::default() };
+    let source = [open(&other), open(&run)];
+    let to = root.path().join("pictured.mcap");
+    let copied = copy(&source, &Select::default(), &to, &with).unwrap();
+    // The packing of the other run is empty, which none is.
+    assert_eq!((copied.pictures, copied.without_picture), (2, 1));
+    assert!(
+        copied.notes.iter().any(|n| n.contains("no picture") && n.contains("cell")),
+        "{:?}",
+        copied.notes
+    );
+    let made = sound(&to);
+    let found = said(&made);
+    for picture in Picture::ALL {
+        let name = picture.topic().absolute_name();
+        let channel = made.channel(&name).unwrap();
+        assert_eq!((channel.type_hash.as_str(), channel.is_latched()), (picture.topic().info.hash, true));
+        let [(_, sequence, log_time, _, payload)] =
+            &found.iter().filter(|m| m.0 == name).collect::<Vec<_>>()[..]
+        else {
+            panic!("one {name}")
+        };
+        assert_eq!((*sequence, *log_time), (1, START), "those of the packing");
+        assert_eq!(*payload, picture.encoded(&Drawn::new(&packing)));
+    }
+    let without = found.into_iter().filter(|m| !m.0.starts_with("/packing/")).collect::<Vec<_>>();
+    let plain = root.path().join("plain.mcap");
+    copy(&source, &Select::default(), &plain, &CopyOptions::default()).unwrap();
+    assert_eq!(without, said(&sound(&plain)), "nothing else differs");
+
+    let again = copy(&[made], &Select::default(), &root.path().join("again"), &with);
+    assert!(matches!(again, Err(CopyError::Pictured { topic }) if topic == "/packing/points"));
+    let stress = Select { topic: &|c| c.topic == "/stress", ..Select::default() };
+    let none = copy(&source, &stress, &root.path().join("none"), &with);
+    assert!(matches!(none, Err(CopyError::NoPackings)));
+}
+
+/// Two grains that touch.
+fn reference_packing() -> Packing {
+    let radius = 1e-4;
+    let overlap = 1e-8;
+    let material = Material::GLASS;
+    let contact = Contact {
+        i: 0,
+        j: 1,
+        image: [0; 3],
+        overlap,
+        normal: Vec3::x(),
+        normal_force: material.normal_force(radius / 2.0, overlap),
+        tangential_force: Vec3::zeros(),
+        rolling_force: Vec3::zeros(),
+    };
+    Packing {
+        step: 7,
+        time: 0.25,
+        cell: Cell::cube(1e-3).unwrap(),
+        deformation: Mat3::identity(),
+        ids: vec![0, 1],
+        radii: vec![radius; 2],
+        positions: vec![Vec3::repeat(2e-4), Vec3::new(4e-4 - overlap, 2e-4, 2e-4)],
+        velocities: vec![Vec3::zeros(); 2],
+        spins: vec![Vec3::zeros(); 2],
+        contacts: vec![contact],
+        material,
+        law: Default::default(),
+        friction: 0.3,
+        time_step: 1e-8,
+    }
 }

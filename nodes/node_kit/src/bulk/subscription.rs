@@ -68,6 +68,13 @@ impl BulkSubscription {
         })
     }
 
+    /// Ends the subscription, so that no writer waits for this reader.
+    pub fn close(self, bus: &mut dyn Bus) {
+        bus.withdraw(self.credits.id());
+        bus.unsubscribe(self.plain);
+        bus.unsubscribe(self.parts.id());
+    }
+
     /// The next message, if there is one. Never waits.
     ///
     /// The writer of a large message is the writer of its parts; its sequence number counts that writer's large

@@ -5,6 +5,7 @@ use super::direct::{self, Change, DdsTopic, Discovery, Inlet, Outlet};
 use super::error::create_error;
 use super::gate::Gate;
 use super::graph::Graph;
+use super::handles::Handles;
 use super::inbox::Inbox;
 use super::lock::lock;
 use super::network::Network;
@@ -63,9 +64,9 @@ pub struct DdsBus {
     declared: Declared,
     sim_time: SimTime,
     background_reader: BackgroundReader,
-    writers: Vec<Arc<Writer>>,
-    subscribers: Vec<Subscriber>,
-    readers: Vec<Reader>,
+    writers: Handles<Arc<Writer>>,
+    subscribers: Handles<Subscriber>,
+    readers: Handles<Reader>,
     inboxes: Inboxes,
     waker: Arc<Waker>,
     /// Another thread called, and no wait has returned it yet.
@@ -130,9 +131,9 @@ impl DdsBus {
             declared,
             sim_time: SimTime::default(),
             background_reader,
-            writers: Vec::new(),
-            subscribers: Vec::new(),
-            readers: Vec::new(),
+            writers: Handles::default(),
+            subscribers: Handles::default(),
+            readers: Handles::default(),
             inboxes,
             waker,
             called: Arc::default(),
@@ -187,14 +188,14 @@ impl DdsBus {
     /// The reader for `demand` on a topic. It is created at the first call.
     fn reader_for(&mut self, resolved: String, topic: &Topic, demand: Demand) -> Result<usize, BusError> {
         let serves = |r: &Reader| r.topic == resolved && lock(&r.inbox).demand().covers(demand);
-        if let Some(index) = self.readers.iter().position(serves) {
+        if let Some((index, _)) = self.readers.iter().find(|(_, r)| serves(r)) {
             return Ok(index);
         }
         let dds_topic = self.dds_topic(&resolved, topic)?;
         let reader = Inlet::new(&mut lock(&self.node), &dds_topic, topic, demand)?;
         self.unannounced = true;
         let mut inbox = Inbox::new(reader, resolved.clone(), demand, self.participant());
-        let index = self.readers.len();
+        let index = self.readers.next();
         self.poll
             .registry()
             .register(inbox.reader_mut(), Token(FIRST_READER + index), Interest::READABLE)
@@ -203,8 +204,7 @@ impl DdsBus {
         self.gate.add_reader(gid, &resolved);
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
-        self.readers.push(Reader { inbox, gid, topic: resolved, ready: false, notified: false });
-        Ok(index)
+        Ok(self.readers.add(Reader { inbox, gid, topic: resolved, ready: false, notified: false }))
     }
 
     /// Processes the events of discovery; true if something changed.
@@ -229,7 +229,7 @@ impl DdsBus {
     }
 
     fn has_data(&self) -> bool {
-        self.readers.iter().any(|r| r.ready || lock(&r.inbox).has_data())
+        self.readers.values().any(|r| r.ready || lock(&r.inbox).has_data())
     }
 
     /// Polls once. Returns the most urgent event; the others are found at the next call.
@@ -290,16 +290,36 @@ impl Bus for DdsBus {
         let dds_topic = self.dds_topic(&resolved, topic)?;
         let outlet = Outlet::new(&mut lock(&self.node), &dds_topic, topic)?;
         self.unannounced = true;
-        self.writers.push(Arc::new(Writer::new(outlet, resolved, direct::window(topic))));
-        Ok(PublisherId(self.writers.len() - 1))
+        let writer = Arc::new(Writer::new(outlet, resolved, direct::window(topic)));
+        Ok(PublisherId(self.writers.add(writer)))
     }
 
     fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let reader = self.reader_for(resolved, topic, demand.within(topic))?;
-        let place = lock(&self.readers[reader].inbox).add_queue();
-        self.subscribers.push(Subscriber { reader, place, taken: 0, refused: 0 });
-        Ok(SubscriptionId(self.subscribers.len() - 1))
+        let inbox = &self.readers.get(reader).ok_or(BusError::Handle("subscribe"))?.inbox;
+        let place = lock(inbox).add_queue();
+        Ok(SubscriptionId(self.subscribers.add(Subscriber { reader, place, taken: 0, refused: 0 })))
+    }
+
+    fn unsubscribe(&mut self, subscription: SubscriptionId) {
+        let Some(ended) = self.subscribers.remove(subscription.0) else { return };
+        let Some(reader) = self.readers.get(ended.reader) else { return };
+        if self.subscribers.values().any(|s| s.reader == ended.reader) {
+            lock(&reader.inbox).close_queue(ended.place);
+            return;
+        }
+        let Some(reader) = self.readers.remove(ended.reader) else { return };
+        if let Err(error) = self.poll.registry().deregister(lock(&reader.inbox).reader_mut()) {
+            log::error!("{}: cannot end the subscription in order: {error}", reader.topic);
+        }
+        lock(&self.inboxes).retain(|inbox| !Arc::ptr_eq(inbox, &reader.inbox));
+        self.gate.remove_reader(reader.gid);
+        self.unannounced = true;
+    }
+
+    fn withdraw(&mut self, publisher: PublisherId) {
+        self.unannounced |= self.writers.remove(publisher.0).is_some();
     }
 
     fn publish_about(
@@ -310,7 +330,7 @@ impl Bus for DdsBus {
     ) -> Result<i64, BusError> {
         let writer = self.writers.get(publisher.0).ok_or(BusError::Handle("publish"))?;
         let sequence = writer.write(body, about)?;
-        for reader in self.readers.iter().filter(|r| r.topic == writer.topic) {
+        for reader in self.readers.values().filter(|r| r.topic == writer.topic) {
             lock(&reader.inbox).deliver_own(SampleId { writer: writer.id(), sequence }, about, body);
         }
         Ok(sequence)
@@ -319,7 +339,7 @@ impl Bus for DdsBus {
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
         self.background_reader.seen();
         let subscriber = self.subscribers.get_mut(subscription.0).ok_or(BusError::Handle("take"))?;
-        let reader = &mut self.readers[subscriber.reader];
+        let reader = self.readers.get_mut(subscriber.reader).ok_or(BusError::Handle("take"))?;
         let mut inbox = lock(&reader.inbox);
         if std::mem::take(&mut reader.notified) {
             inbox.acknowledge();
@@ -385,7 +405,7 @@ impl Bus for DdsBus {
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
-        let reader = self.subscribers.get(subscription.0).map(|s| &self.readers[s.reader]);
+        let reader = self.subscribers.get(subscription.0).and_then(|s| self.readers.get(s.reader));
         reader.map_or(0, |r| self.graph.matches_of(r.gid, |guid| self.gate.admits(guid)))
     }
 
@@ -415,16 +435,16 @@ impl Bus for DdsBus {
     }
 
     fn published(&self) -> Vec<Published> {
-        self.writers.iter().flat_map(|w| w.published()).collect()
+        self.writers.values().flat_map(|w| w.published()).collect()
     }
 
     fn received(&self) -> Vec<Received> {
         let of = |s: &Subscriber| {
-            let reader = &self.readers[s.reader];
+            let reader = self.readers.get(s.reader)?;
             let refused = s.refused + lock(&reader.inbox).refused();
-            Received { topic: reader.topic.clone(), taken: s.taken, refused }
+            Some(Received { topic: reader.topic.clone(), taken: s.taken, refused })
         };
-        self.subscribers.iter().map(of).collect()
+        self.subscribers.values().filter_map(of).collect()
     }
 
     fn count_refused(&mut self, subscription: SubscriptionId) {
@@ -449,8 +469,8 @@ impl Bus for DdsBus {
         let deadline = Instant::now() + timeout;
         // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
         let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand().reliable;
-        let external = |w: &&Arc<Writer>| !self.readers.iter().any(|r| own(r, &w.topic));
-        self.writers.iter().filter(external).all(|writer| {
+        let external = |w: &&Arc<Writer>| !self.readers.values().any(|r| own(r, &w.topic));
+        self.writers.values().filter(external).all(|writer| {
             let left = deadline.saturating_duration_since(Instant::now());
             writer.outlet.wait_for_acknowledgments(left)
         })

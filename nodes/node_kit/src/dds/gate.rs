@@ -37,6 +37,11 @@ impl Gate {
         lock(&self.topics).insert(reader.to_bytes16(), topic.to_owned());
     }
 
+    /// Removes one of our readers.
+    pub(super) fn remove_reader(&self, reader: Gid) {
+        lock(&self.topics).remove(&reader.to_bytes16());
+    }
+
     /// Whether one of our readers accepts a sample of this writer.
     pub(super) fn takes(&self, writer: Gid, reader: Gid) -> bool {
         let mut admission = lock(&self.admission);

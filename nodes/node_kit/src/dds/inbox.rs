@@ -13,7 +13,8 @@ pub(super) struct Inbox {
     reader: Inlet,
     topic: String,
     demand: Demand,
-    queues: Vec<VecDeque<Sample>>,
+    /// One for each subscriber; that of one that left is `None`.
+    queues: Vec<Option<VecDeque<Sample>>>,
     /// Our own participant: the bus delivers its samples, and the copies from DDS are dropped.
     own: [u8; 12],
     /// Number of samples that RustDDS could not return: their representation is not CDR.
@@ -34,7 +35,7 @@ impl Inbox {
         let now = wall_nanos();
         let info = SampleInfo { writer, sequence, source_time: Some(now), received: now, about };
         let sample = Sample { body: body.to_vec(), info };
-        for queue in &mut self.queues {
+        for queue in self.queues.iter_mut().flatten() {
             push_bounded(queue, sample.clone(), self.demand.depth);
         }
     }
@@ -58,12 +59,17 @@ impl Inbox {
 
     /// Adds a subscriber and returns its index.
     pub(super) fn add_queue(&mut self) -> usize {
-        self.queues.push(VecDeque::new());
+        self.queues.push(Some(VecDeque::new()));
         self.queues.len() - 1
     }
 
+    /// Removes a subscriber.
+    pub(super) fn close_queue(&mut self, place: usize) {
+        self.queues[place] = None;
+    }
+
     pub(super) fn has_data(&self) -> bool {
-        self.queues.iter().any(|queue| !queue.is_empty())
+        self.queues.iter().flatten().any(|queue| !queue.is_empty())
     }
 
     pub(super) fn refused(&self) -> u64 {
@@ -77,13 +83,13 @@ impl Inbox {
 
     /// The next sample for one subscriber.
     pub(super) fn take(&mut self, place: usize) -> Result<Option<Sample>, BusError> {
-        if let Some(sample) = self.queues[place].pop_front() {
+        if let Some(sample) = self.queues[place].as_mut().and_then(VecDeque::pop_front) {
             return Ok(Some(sample));
         }
         // With one subscriber a sample is returned directly; with more, it is also queued for the others.
         let Some(sample) = self.read()? else { return Ok(None) };
         for (other, queue) in self.queues.iter_mut().enumerate() {
-            if other != place {
+            if let Some(queue) = queue.as_mut().filter(|_| other != place) {
                 push_bounded(queue, sample.clone(), self.demand.depth);
             }
         }
@@ -96,7 +102,8 @@ impl Inbox {
         let mut moved = false;
         while let Some(sample) = self.read()? {
             moved = true;
-            if let Some((last, others)) = self.queues.split_last_mut() {
+            let mut queues: Vec<&mut VecDeque<Sample>> = self.queues.iter_mut().flatten().collect();
+            if let Some((last, others)) = queues.split_last_mut() {
                 for queue in others {
                     push_bounded(queue, sample.clone(), self.demand.depth);
                 }

@@ -5,7 +5,7 @@
 //! - `gate`: which samples are accepted; `processes`: the process of a participant
 //! - `graph`: endpoints of other processes; `test_domain`: domains for tests
 //! - `network`: domain and reach; `static_peers`: hosts that are found without multicast
-//! - `lock`: locks that survive a panic; `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
+//! - `handles`: values by handles; `lock`: locks that survive a panic; `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
 
 mod background_reader;
 mod bus;
@@ -13,6 +13,7 @@ mod direct;
 mod error;
 mod gate;
 mod graph;
+mod handles;
 mod inbox;
 mod lock;
 mod network;

@@ -87,6 +87,18 @@ impl Bus for MemoryBus {
         Ok(SubscriptionId(self.readers.len() - 1))
     }
 
+    fn unsubscribe(&mut self, subscription: SubscriptionId) {
+        if let Some(reader) = self.readers.get(subscription.0) {
+            self.state.borrow_mut().readers[*reader].close();
+        }
+    }
+
+    fn withdraw(&mut self, publisher: PublisherId) {
+        if let Some(writer) = self.writers.get(publisher.0) {
+            self.state.borrow_mut().writers[*writer].alive = false;
+        }
+    }
+
     fn publish_about(
         &mut self,
         publisher: PublisherId,

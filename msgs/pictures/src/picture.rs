@@ -1,0 +1,67 @@
+//! From the bytes of a packing to the bytes of its pictures.
+
+use crate::drawn::Drawn;
+use crate::markers::markers;
+use crate::points::points;
+use grainlab_core::Packing;
+use grainlab_msgs::boundary::BoundaryError;
+use grainlab_msgs::{DecodeError, Topic, from_cdr, msg, to_cdr, topics};
+
+/// A picture of a packing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Picture {
+    /// [`points`].
+    Points,
+    /// [`markers`].
+    Markers,
+}
+
+/// Why there is no picture of a message.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// It is not a message of a packing.
+    #[error(transparent)]
+    Decode(#[from] DecodeError),
+    /// Its values are not those of a packing.
+    #[error(transparent)]
+    Refused(#[from] BoundaryError),
+}
+
+impl Picture {
+    /// Every picture.
+    pub const ALL: [Self; 2] = [Self::Points, Self::Markers];
+
+    /// The row of its topic.
+    pub const fn topic(self) -> &'static Topic {
+        match self {
+            Self::Points => &topics::PACKING_POINTS,
+            Self::Markers => &topics::PACKING_MARKERS,
+        }
+    }
+
+    /// The name of its topic beside a topic with packings: `/lab/packing/points`.
+    pub fn beside(self, packings: &str) -> String {
+        let last = match self {
+            Self::Points => "points",
+            Self::Markers => "markers",
+        };
+        format!("{packings}/{last}")
+    }
+
+    /// The picture as CDR.
+    pub fn encoded(self, drawn: &Drawn<'_>) -> Vec<u8> {
+        match self {
+            Self::Points => to_cdr(&points(drawn)),
+            Self::Markers => to_cdr(&markers(drawn)),
+        }
+    }
+}
+
+/// The packing in a message, checked.
+///
+/// # Errors
+/// If the bytes are not a message of a packing, or its values are not those of a packing.
+pub fn packing(body: &[u8]) -> Result<Packing, PictureError> {
+    let message: msg::Packing = from_cdr(body)?;
+    Ok(Packing::try_from(&message)?)
+}

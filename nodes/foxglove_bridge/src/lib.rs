@@ -1,0 +1,19 @@
+//! A node that offers the topics of the bus to Foxglove, Lichtblick and other clients of the Foxglove WebSocket protocol.
+//!
+//! - [`parameters`], [`Settings`]: port, address, folders with message files
+//! - [`FoxgloveBridge`]: the node
+//! - `topics`: the topics of the bus as channels; `source`: how samples of one are received
+//! - `pictures`: pictures of packings, made here; `server`: the WebSocket server and what its clients ask for
+//!
+//! A topic is received only while a client subscribes to it. Samples pass as they are, in CDR with `ros2msg` schemas. Each
+//! client has a queue of bounded length: one that does not read loses messages, and holds up nothing.
+
+mod node;
+mod pictures;
+mod server;
+mod settings;
+mod source;
+mod topics;
+
+pub use node::FoxgloveBridge;
+pub use settings::{Settings, SettingsError, parameters};

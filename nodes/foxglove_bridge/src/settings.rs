@@ -1,0 +1,69 @@
+//! Settings of the bridge.
+
+use grainlab_node_kit::{ParameterSpec, Parameters, Range};
+use grainlab_recordings::Definitions;
+use std::net::IpAddr;
+use std::path::PathBuf;
+
+/// The port of the bridge of ROS 2, which viewers try first.
+const PORT: i64 = 8765;
+
+/// Settings of the bridge.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Address to listen on.
+    pub address: IpAddr,
+    /// Port to listen on; 0 is any free one.
+    pub port: u16,
+    /// Where the definitions of message types come from.
+    pub definitions: Definitions,
+}
+
+/// A value that is not valid.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SettingsError {
+    /// Not an address.
+    #[error("address: {0:?} is not an IP address, such as 127.0.0.1, 0.0.0.0 or ::1")]
+    Address(String),
+    /// Not a folder.
+    #[error("msg_path: there is no folder {0}")]
+    Folder(String),
+}
+
+/// The parameters of the node.
+pub fn parameters() -> Vec<ParameterSpec> {
+    vec![
+        ParameterSpec::new("port", PORT, "TCP port to listen on; 0: any free one")
+            .within(Range::Integer { min: 0, max: u16::MAX as i64 }),
+        ParameterSpec::new(
+            "address",
+            "127.0.0.1",
+            "address to listen on; 0.0.0.0: every one, so that other hosts can read all topics",
+        ),
+        ParameterSpec::new(
+            "msg_path",
+            Vec::<String>::new(),
+            "folders with package/msg/Type.msg, for types that grainlab does not have",
+        ),
+    ]
+}
+
+impl Settings {
+    /// From the parameters of [`parameters`].
+    ///
+    /// # Errors
+    /// If the address is none, or a folder does not exist.
+    pub fn of(parameters: &Parameters) -> Result<Self, SettingsError> {
+        let address: String = parameters.get("address");
+        let folders: Vec<String> = parameters.get("msg_path");
+        if let Some(missing) = folders.iter().find(|f| !PathBuf::from(f).is_dir()) {
+            return Err(SettingsError::Folder(missing.clone()));
+        }
+        let folders: Vec<PathBuf> = folders.into_iter().map(PathBuf::from).collect();
+        Ok(Self {
+            address: address.parse().map_err(|_| SettingsError::Address(address))?,
+            port: u16::try_from(parameters.get::<i64>("port")).unwrap_or_default(),
+            definitions: Definitions::with_folders(&folders),
+        })
+    }
+}

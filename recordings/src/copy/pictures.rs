@@ -1,0 +1,84 @@
+//! Topics with pictures of packings, beside the topics of the packings.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use grainlab_msgs::{Message as _, Topic, msg};
+use grainlab_pictures::{Drawn, Picture, packing};
+
+use super::channels::Channels;
+use super::error::CopyError;
+use crate::reader::ChannelInfo;
+use crate::writer::TopicSpec;
+
+/// The topics of pictures of a copy.
+#[derive(Default)]
+pub(super) struct Pictures {
+    /// By the place of a topic with packings, that of its first picture; the others come next.
+    places: BTreeMap<usize, usize>,
+    /// Their channels, which follow those that are copied.
+    pub(super) channels: Vec<Arc<ChannelInfo>>,
+    /// Packings without a picture, and why.
+    pub(super) notes: Vec<String>,
+    /// Number of packings without a picture.
+    pub(super) missing: u64,
+}
+
+impl Pictures {
+    /// Those of all topics with packings.
+    pub(super) fn of(copied: &Channels) -> Result<Self, CopyError> {
+        let mut all = Self::default();
+        for (place, channel) in copied.list.iter().enumerate() {
+            if channel.ros_type != msg::Packing::TYPE || channel.message_encoding != "cdr" {
+                continue;
+            }
+            all.places.insert(place, copied.list.len() + all.channels.len());
+            for picture in Picture::ALL {
+                let topic = picture.beside(&channel.topic);
+                if copied.list.iter().any(|c| c.topic == topic) {
+                    return Err(CopyError::Pictured { topic });
+                }
+                all.channels.push(Arc::new(described(picture.topic(), &topic)));
+            }
+        }
+        if all.places.is_empty() { Err(CopyError::NoPackings) } else { Ok(all) }
+    }
+
+    /// The place and the bytes of each picture of a message of the channel at `place`: none if it has no packing, or the
+    /// packing is not valid, which is noted.
+    pub(super) fn made(&mut self, place: usize, sequence: u32, payload: &[u8]) -> Vec<(usize, Vec<u8>)> {
+        let Some(first) = self.places.get(&place) else { return Vec::new() };
+        match packing(payload) {
+            Ok(packing) => {
+                let drawn = Drawn::new(&packing);
+                Picture::ALL.iter().enumerate().map(|(n, p)| (first + n, p.encoded(&drawn))).collect()
+            }
+            Err(error) => {
+                self.missing += 1;
+                self.notes
+                    .push(format!("no picture of the packing with sequence number {sequence}: {error}"));
+                Vec::new()
+            }
+        }
+    }
+}
+
+/// The channel of a picture.
+fn described(picture: &Topic, topic: &str) -> ChannelInfo {
+    let spec = TopicSpec::of_contract(picture, topic);
+    let metadata = BTreeMap::from([
+        ("offered_qos_profiles".to_owned(), spec.qos.clone()),
+        ("topic_type_hash".to_owned(), spec.type_hash.clone()),
+    ]);
+    ChannelInfo {
+        topic: spec.name,
+        ros_type: spec.ros_type,
+        schema: spec.definition.clone().into_bytes(),
+        definition: spec.definition,
+        schema_encoding: spec.schema_encoding,
+        message_encoding: "cdr".to_owned(),
+        qos: spec.qos,
+        type_hash: spec.type_hash,
+        metadata,
+    }
+}
