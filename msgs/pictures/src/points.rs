@@ -23,13 +23,13 @@ const FIELDS: [(&str, u32, u8); 10] = [
 /// Bytes of a point, three of which are unused, so that every point is aligned.
 const STEP: usize = 40;
 
-/// One point a grain, in the order of the packing, within the cell: position and radius in m, id, number of contacts that are
+/// One point per grain, in the order of the packing, within the cell: position and radius in m, id, number of contacts that are
 /// not with rattlers, mean normal force of its contacts in N, 1 for a rattler, and its colour.
 pub fn points(drawn: &Drawn<'_>) -> PointCloud2 {
     let packing = drawn.packing;
     let colours = of_grains(drawn);
     let mut data = Vec::with_capacity(STEP * packing.grains());
-    for grain in 0..packing.grains() {
+    for (grain, [r, g, b]) in colours.into_iter().enumerate() {
         let mut point = [0; STEP];
         let centre = drawn.centre(grain);
         let numbers = [centre.x, centre.y, centre.z, packing.radii[grain]];
@@ -39,7 +39,6 @@ pub fn points(drawn: &Drawn<'_>) -> PointCloud2 {
         put(20, drawn.coordination[grain].to_le_bytes());
         put(24, (drawn.force[grain] as f32).to_le_bytes());
         put(28, (packing.radii[grain] as f32).to_le_bytes());
-        let [r, g, b] = colours[grain];
         put(32, u32::from_be_bytes([r, g, b, 255]).to_le_bytes());
         point[36] = u8::from(drawn.rattler[grain]);
         data.extend(point);

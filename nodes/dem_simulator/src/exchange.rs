@@ -181,10 +181,9 @@ impl DemSimulator {
         }
         if let Some(phase) = &advanced.ended {
             log::info!("phase {phase} ended at step {}", self.run.engine().steps());
-            if let Some(energy) = &advanced.energy {
-                if let Some(publisher) = &self.energy {
-                    publisher.publish(bus, &messages::energy(&self.run, phase, energy))?;
-                }
+            if let (Some(energy), Some(publisher)) = (&advanced.energy, &self.energy) {
+                let message = messages::energy(&self.run, phase, energy);
+                self.send_queue.push_state(publisher.id(), to_cdr(&message));
             }
             if !advanced.finished {
                 self.next_beat = now + BEAT;
