@@ -179,12 +179,17 @@ impl Supervisor {
                 self.complain(format!("{RECORDER} ended with exit code 1: see logs/{RECORDER}.log"));
                 self.children[recorder].quote_log(&self.logs);
             }
+            // A code of its own says why.
+            let by_itself = [Exit::Failure, Exit::DataLoss].map(|exit| Some(i32::from(exit.code())));
+            if !by_itself.contains(&self.code(RECORDER)) {
+                self.complain(format!("{RECORDER} was ended before its file was complete"));
+            }
             exit = worse(exit, Exit::DataLoss);
         }
         // A simulator that ended with an error fails the run, whatever was received before.
         let simulator = self.code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
         if exit == Exit::Done && simulator != Exit::Done {
-            self.complain(format!("{SIMULATOR} ended with exit code {}", simulator.code()));
+            self.complain(format!("{SIMULATOR} failed: see logs/{SIMULATOR}.log"));
             exit = simulator;
         }
         if self.foreign_failure {

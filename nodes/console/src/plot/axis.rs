@@ -17,6 +17,12 @@ const FEW_DECADES: f64 = 3.5;
 /// …and with more than this, every second one.
 const MANY_DECADES: f64 = 10.0;
 
+/// A logarithmic axis of less than this many decades is marked like a linear one: few digits are on it.
+const NARROW: f64 = 0.5;
+
+/// Number of marks below which an axis has no scale.
+const LEAST_MARKS: usize = 3;
+
 /// Approximate number of marks of a linear axis.
 const MARKS: f64 = 6.0;
 
@@ -82,10 +88,14 @@ impl Range {
     fn linear_marks(&self) -> Vec<(f64, String)> {
         let wanted = (self.high - self.low) / MARKS;
         let decade = 10f64.powf(wanted.log10().floor());
-        let step = [1.0, 2.0, 5.0].into_iter().map(|m| m * decade).find(|s| *s >= wanted);
-        let step = step.unwrap_or(10.0 * decade);
+        let numbers = |step: f64| (self.low / step).ceil() as i64..=(self.high / step).floor() as i64;
+        // The first step that is long enough, or the one before it where that one leaves fewer marks than a scale needs.
+        let steps = [10.0, 5.0, 2.0, 1.0].map(|m| m * decade);
+        let long = steps.iter().rposition(|s| *s >= wanted).unwrap_or(0);
+        let enough = |step: &&f64| numbers(**step).count() >= LEAST_MARKS;
+        let step = steps[long..].iter().find(enough).copied().unwrap_or(decade);
         let digits = (-step.log10().floor()).max(0.0) as usize;
-        let numbers = (self.low / step).ceil() as i64..=(self.high / step).floor() as i64;
+        let numbers = numbers(step);
         let mark = |n: i64| {
             let value = n as f64 * step;
             let text = if digits > 4 { format!("{value:e}") } else { format!("{value:.digits$}") };
@@ -97,6 +107,9 @@ impl Range {
     /// 1, 2 and 5 of every decade in the range, more on a short axis and fewer on a long one.
     fn log_marks(&self) -> Vec<(f64, String)> {
         let span = (self.high / self.low).log10();
+        if span < NARROW {
+            return self.linear_marks();
+        }
         let parts: &[f64] = match span {
             _ if span < ONE_DECADE => &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
             _ if span < FEW_DECADES => &[1.0, 2.0, 5.0],
@@ -152,5 +165,20 @@ mod tests {
         assert_eq!(texts(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(texts(-30.0, 100.0), ["0", "50", "100"]);
         assert!(texts(5.0, 5.0).len() > 2, "a single value has an axis, too");
+    }
+
+    #[test]
+    fn an_axis_of_any_range_has_at_least_three_marks() {
+        for scale in [Scale::Linear, Scale::Log] {
+            for low in [0.18, 0.31, 1.0, 4.67, 9.5, 123.0] {
+                for i in 1..60 {
+                    let high = low * (1.0 + 0.02 * f64::from(i));
+                    let axis = Range::of([low, high].into_iter(), scale, [0.0, 1.0]);
+                    let marks = axis.marks();
+                    assert!((3..=16).contains(&marks.len()), "{low} to {high}: {marks:?}");
+                    assert!(marks.iter().all(|(value, _)| axis.has(*value)));
+                }
+            }
+        }
     }
 }

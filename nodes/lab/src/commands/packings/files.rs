@@ -146,6 +146,7 @@ impl<M: Measure, O: Outlet<Found = M::Found>> Shop<'_, M, O> {
         let (complaints, exit) = read(&self.files[file], self.options, &mut |imported| {
             let job = Job { place: (file, packings), imported };
             packings += 1;
+            lock(&self.sink).found();
             let mut desk = self.desk();
             if desk.packings.len() < self.room {
                 desk.packings.push_back(job);

@@ -55,8 +55,13 @@ impl<O: Outlet> Sink<O> {
     /// Takes the end of a source, whose number of packings is then known.
     pub(crate) fn end(&mut self, file: usize, ending: Ending) -> Result<(), Failure> {
         self.endings.insert(file, ending);
-        self.bar.file_done();
+        self.bar.file_read();
         self.advance()
+    }
+
+    /// Takes note of a packing that was read.
+    pub(crate) fn found(&mut self) {
+        self.bar.found();
     }
 
     /// Packings measured so far.
@@ -65,7 +70,7 @@ impl<O: Outlet> Sink<O> {
     }
 
     fn advance(&mut self) -> Result<(), Failure> {
-        self.bar.packings(self.measured);
+        self.bar.measured(self.measured);
         loop {
             if let Some(found) = self.waiting.remove(&self.next) {
                 self.next.1 += 1;
