@@ -63,8 +63,9 @@ fn a_damaged_chunk_of_a_cut_file_is_left_out_and_named() {
     let root = tempfile::tempdir().unwrap();
     let (_, mut bytes) = run_in(&root, 1000);
     let cut = bytes.len() * 3 / 4;
-    let at = before_the_end(&bytes) * 2 / 3;
-    bytes[at] ^= 8;
+    let chunks = mcap::Summary::read(&bytes).unwrap().unwrap().chunk_indexes;
+    let chunk = chunks.iter().rfind(|c| c.chunk_start_offset + c.chunk_length < cut as u64 * 9 / 10).unwrap();
+    bytes[(chunk.chunk_start_offset + chunk.chunk_length * 2 / 3) as usize] ^= 8;
     let directory = killed(root.path(), &bytes, cut);
     let before = said(&directory);
     let done = recover(&directory).unwrap();
