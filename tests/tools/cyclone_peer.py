@@ -25,6 +25,8 @@ from ros_messages import LATCHED, message  # noqa: E402
 
 STREAM = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.Volatile, Policy.History.KeepLast(1000),
              Policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False))
+SAMPLED = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Policy.History.KeepLast(1000),
+              Policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False))
 # Messages of a topic to print: enough to compare, few enough to read.
 SHOWN = 20
 
@@ -62,7 +64,8 @@ def listen(seconds, *topics):
     for name, kind in (topic.split("=") for topic in topics):
         # A latched topic is read as such, so that the last message arrives whenever this starts.
         latched = not any(name.endswith(stream) for stream in ("stress", "strain_rate", "clock", "diagnostics"))
-        readers[name] = reader(participant, f"rt{name}", message(kind), LATCHED if latched else STREAM)
+        qos = SAMPLED if name.endswith("_sampled") else LATCHED if latched else STREAM
+        readers[name] = reader(participant, f"rt{name}", message(kind), qos)
     nodes, heard = set(), {name: [] for name in readers}
     end = time.monotonic() + float(seconds)
     while time.monotonic() < end:
