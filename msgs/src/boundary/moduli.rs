@@ -30,6 +30,10 @@ pub struct ModuliReading {
     pub pressure: f64,
     /// Solid fraction φ.
     pub solid_fraction: Option<f64>,
+    /// Axial stress less the lateral one over pressure, (σ_hh − (tr σ − σ_hh)/2)/p, about the reference axis.
+    pub stress_ratio: Option<f64>,
+    /// Standard deviation of the radii over their mean.
+    pub size_spread: Option<f64>,
     /// Unit axis of symmetry that was found.
     pub axis: Option<Vec3>,
     /// The three ratios γ/Δ.
@@ -61,6 +65,8 @@ pub fn moduli_message(
         covariance: Vec::new(),
         pressure: report.pressure(),
         solid_fraction: vec![report.solid_fraction],
+        stress_ratio: report.axial_stress_ratio().into_iter().collect(),
+        size_spread: vec![report.size_spread],
         axis: vector_message(&report.fabric.principal_axis.direction),
         strain_ratios: strain_ratios_message(&report.strain_ratios),
         grain_shear_modulus: report.material.shear_modulus,
@@ -86,6 +92,8 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
             covariance: CHECK.covariance("covariance", &m.covariance)?,
             pressure: CHECK.not_negative("pressure", m.pressure)?,
             solid_fraction: CHECK.optional_positive("solid_fraction", &m.solid_fraction)?,
+            stress_ratio: CHECK.optional_finite("stress_ratio", &m.stress_ratio)?,
+            size_spread: CHECK.optional_not_negative("size_spread", &m.size_spread)?,
             axis: CHECK.direction("axis", &m.axis)?,
             strain_ratios: CHECK.strain_ratios(&m.strain_ratios)?,
             material: material(m)?,

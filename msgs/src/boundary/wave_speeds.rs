@@ -36,6 +36,10 @@ pub struct WaveSpeedsReading {
     pub pressure: f64,
     /// Solid fraction φ.
     pub solid_fraction: Option<f64>,
+    /// Axial stress less the lateral one over pressure, (σ_hh − (tr σ − σ_hh)/2)/p, about the axis, e3 if unknown.
+    pub stress_ratio: Option<f64>,
+    /// Standard deviation of the radii over their mean.
+    pub size_spread: Option<f64>,
     /// Unit axis of symmetry.
     pub axis: Option<Vec3>,
     /// Shear modulus of the grains, Pa, more than 0.
@@ -68,6 +72,8 @@ pub fn wave_speeds_message(
         density_stddev: found.density_stddev.unwrap_or(0.0),
         pressure: found.pressure,
         solid_fraction: found.solid_fraction.unwrap_or(0.0),
+        stress_ratio: found.stress_ratio.into_iter().collect(),
+        size_spread: found.size_spread.into_iter().collect(),
         axis: vector_message(&found.axis.unwrap_or_default()),
         grain_shear_modulus: found.grain_shear_modulus,
         grain_poisson_ratio: found.grain_poisson_ratio,
@@ -105,6 +111,8 @@ impl TryFrom<&msg::WaveSpeeds> for WaveSpeedsReading {
             density_stddev: CHECK.known("density_stddev", m.density_stddev)?,
             pressure: CHECK.not_negative("pressure", m.pressure)?,
             solid_fraction: Some(CHECK.share("solid_fraction", m.solid_fraction)?).filter(|phi| *phi > 0.0),
+            stress_ratio: CHECK.optional_finite("stress_ratio", &m.stress_ratio)?,
+            size_spread: CHECK.optional_not_negative("size_spread", &m.size_spread)?,
             axis: CHECK.direction("axis", &m.axis)?,
             grain_shear_modulus: CHECK.positive(modulus, m.grain_shear_modulus)?,
             grain_poisson_ratio: CHECK.that(is_ratio, ratio, m.grain_poisson_ratio, "between 0 and 0.5")?,

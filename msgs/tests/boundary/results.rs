@@ -24,6 +24,7 @@ pub(crate) fn report() -> PackingReport {
         step: 7,
         material: Material::GLASS,
         solid_fraction: 0.64,
+        size_spread: 0.1,
         stress: Stress { tensor: SymTensor::isotropic(5e4), asymmetry: 0.0 },
         unbalanced_force_ratio: None,
         contacts: contacts(),

@@ -3,7 +3,7 @@
 use crate::Settings;
 use grainlab_acoustics::{AcousticsError, Measurement, Trace};
 use grainlab_core::results::NotJammed;
-use grainlab_core::{Packing, WaveMethod, stress};
+use grainlab_core::{Packing, Vec3, WaveMethod, stress};
 use grainlab_msgs::boundary::{
     BoundaryError, TraceReading, WaveSpeedsReading, WaveformReading, wave_speeds_message, waveform_message,
 };
@@ -80,13 +80,16 @@ pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, 
 /// The messages for a measured packing; `header` is that of the message of the packing.
 pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Result<Measured, BoundaryError> {
     let source_step = Some(packing.step).filter(|step| *step > 0);
+    let stress = stress::stress(packing).tensor;
     let reading = WaveSpeedsReading {
         stamp: header.stamp,
         source_step,
         density: found.density,
         density_stddev: Some(found.density_stddev).filter(|s| *s > 0.0),
-        pressure: stress::stress(packing).tensor.mean(),
+        pressure: stress.mean(),
         solid_fraction: Some(packing.solid_fraction()),
+        stress_ratio: stress.axial_ratio(&found.axis.unwrap_or_else(Vec3::z)),
+        size_spread: Some(packing.size_spread()),
         axis: found.axis,
         grain_shear_modulus: packing.material.shear_modulus,
         grain_poisson_ratio: packing.material.poisson_ratio,

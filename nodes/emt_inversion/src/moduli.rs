@@ -34,6 +34,8 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
             if as_stated { gamma } else { about(&axis, gamma) }
         },
         solid_fraction: reading.solid_fraction.map(Measured::exact),
+        stress_ratio: reading.stress_ratio.filter(|_| as_stated).map(Measured::exact),
+        size_spread: reading.size_spread,
         material: Some(reading.material),
     };
     // The covariance of the message refers to the moduli about the axis stated.

@@ -23,11 +23,15 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
             None => found(&speeds, &mut notes)?,
         },
     };
+    let along_stated = axis.cross(&reading.axis.unwrap_or_else(Vec3::z)).norm() < APART;
     let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
     let conditions = Conditions {
         pressure: Measured::exact(reading.pressure),
         gamma: StrainRatio::ZERO,
         solid_fraction: reading.solid_fraction.map(Measured::exact),
+        // That of the message is about its own axis.
+        stress_ratio: reading.stress_ratio.filter(|_| along_stated).map(Measured::exact),
+        size_spread: reading.size_spread,
         material: Some(Material {
             shear_modulus: reading.grain_shear_modulus,
             poisson_ratio: reading.grain_poisson_ratio,

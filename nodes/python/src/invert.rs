@@ -17,7 +17,7 @@ pub(crate) fn models() -> Vec<&'static str> {
 /// Infers coordination and anisotropy from moduli.
 #[pyfunction]
 #[pyo3(signature = (*, pressure, g12=None, g13=None, theta=None, c11=None, c33=None, c13=None, phi=None, gamma=None,
-    error=0.01, shear_modulus=None, poisson_ratio=None, model="relaxed"))]
+    stress_ratio=None, size_spread=None, error=0.01, shear_modulus=None, poisson_ratio=None, model="relaxed"))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn invert<'py>(
     py: Python<'py>,
@@ -30,6 +30,8 @@ pub(crate) fn invert<'py>(
     c13: Option<f64>,
     phi: Option<f64>,
     gamma: Option<f64>,
+    stress_ratio: Option<f64>,
+    size_spread: Option<f64>,
     error: f64,
     shear_modulus: Option<f64>,
     poisson_ratio: Option<f64>,
@@ -49,6 +51,8 @@ pub(crate) fn invert<'py>(
     let calibration = known.default_calibration();
     let mut conditions = Conditions::at(pressure);
     conditions.solid_fraction = phi.map(Measured::exact);
+    conditions.stress_ratio = stress_ratio.map(Measured::exact);
+    conditions.size_spread = size_spread;
     conditions.gamma = gamma.map_or(StrainRatio::ZERO, StrainRatio::given);
     let own = calibration.material();
     conditions.material = (shear_modulus.is_some() || poisson_ratio.is_some()).then(|| Material {

@@ -31,6 +31,10 @@ pub struct Moduli {
     pub pressure: f64,
     /// Dimensionless.
     pub solid_fraction: Vec<f64>,
+    /// axial stress less the lateral one over pressure, about h, one or none
+    pub stress_ratio: Vec<f64>,
+    /// standard deviation of the radii over their mean, one or none
+    pub size_spread: Vec<f64>,
     /// unit axis of symmetry found
     pub axis: Vector3,
     /// as measured on the sample
@@ -49,7 +53,7 @@ impl Message for Moduli {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Moduli";
     const TYPE: &'static str = "grainlab_msgs/msg/Moduli";
-    const HASH: &'static str = "RIHS01_282b9d9f16ea1f2c93b0ddc2b7e050200589d8571ad525a493da43120fb335f4";
+    const HASH: &'static str = "RIHS01_db7d1b7948a3c5cb00438e4796f689abb09de19b17ca026c488fb2d5ef409124";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
         "source_step" => (9, 0, ""),
@@ -61,6 +65,8 @@ impl Message for Moduli {
         "covariance" => (155, 0, ""),
         "pressure" => (11, 0, ""),
         "solid_fraction" => (155, 0, ""),
+        "stress_ratio" => (155, 0, ""),
+        "size_spread" => (155, 0, ""),
         "axis" => (1, 0, "geometry_msgs/msg/Vector3"),
         "strain_ratios" => (1, 0, "grainlab_msgs/msg/StrainRatios"),
         "grain_shear_modulus" => (11, 0, ""),

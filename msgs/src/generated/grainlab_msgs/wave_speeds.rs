@@ -21,6 +21,10 @@ pub struct WaveSpeeds {
     pub pressure: f64,
     /// 0 = unknown
     pub solid_fraction: f64,
+    /// axial stress less the lateral one over pressure, about the axis (e3 if unknown), one or none
+    pub stress_ratio: Vec<f64>,
+    /// standard deviation of the radii over their mean, one or none
+    pub size_spread: Vec<f64>,
     /// symmetry axis, zero = unknown
     pub axis: Vector3,
     /// Pa
@@ -37,7 +41,7 @@ impl Message for WaveSpeeds {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "WaveSpeeds";
     const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeeds";
-    const HASH: &'static str = "RIHS01_40fe8b2a58ee2c4c5120d6142ef4034b138f33be736eca8e0c7646952acb066b";
+    const HASH: &'static str = "RIHS01_cc176f3a4346a1e87870a281e09c20365d64a631a9bd81f097c6dfcb0fd4c0cf";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
         "source_step" => (9, 0, ""),
@@ -45,6 +49,8 @@ impl Message for WaveSpeeds {
         "density_stddev" => (11, 0, ""),
         "pressure" => (11, 0, ""),
         "solid_fraction" => (11, 0, ""),
+        "stress_ratio" => (155, 0, ""),
+        "size_spread" => (155, 0, ""),
         "axis" => (1, 0, "geometry_msgs/msg/Vector3"),
         "grain_shear_modulus" => (11, 0, ""),
         "grain_poisson_ratio" => (11, 0, ""),

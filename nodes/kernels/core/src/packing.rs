@@ -244,6 +244,16 @@ impl Packing {
         4.0 / 3.0 * std::f64::consts::PI * solid / self.cell.volume()
     }
 
+    /// Standard deviation of the radii over their mean; 0 for equal grains.
+    pub fn size_spread(&self) -> f64 {
+        let count = self.radii.len() as f64;
+        let mean = self.radii.iter().sum::<f64>() / count;
+        let variance = self.radii.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / count;
+        // Rounding of the mean alone does not make grains unequal.
+        let spread = variance.sqrt() / mean;
+        if spread > 1e-12 { spread } else { 0.0 }
+    }
+
     /// Branch vector of a contact, from the centre of `i` to the centre of the image of `j`, m.
     pub fn branch(&self, c: &Contact) -> Vec3 {
         self.positions[c.j as usize] - self.positions[c.i as usize] + self.cell.shift(c.image)

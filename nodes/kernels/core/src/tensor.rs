@@ -86,6 +86,13 @@ impl SymTensor {
         axis.dot(&(self.matrix() * axis))
     }
 
+    /// (σ_hh − (tr σ − σ_hh)/2)/p about the unit vector `axis` h, with p = tr σ/3, of a stress positive in compression;
+    /// `None` without pressure.
+    pub fn axial_ratio(&self, axis: &Vec3) -> Option<f64> {
+        let (p, along) = (self.mean(), self.along(axis));
+        (p > 0.0).then(|| 1.5 * (along / p - 1.0))
+    }
+
     /// The deviator: this less its mean on the diagonal.
     pub fn deviator(&self) -> Self {
         let m = self.mean();

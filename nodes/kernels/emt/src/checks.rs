@@ -32,6 +32,7 @@ pub(crate) fn common(
     structure: &Microstructure,
     calibration: &Calibration,
     uses_gamma: bool,
+    compares_state: bool,
 ) -> Vec<Warning> {
     let conditions = &observation.conditions;
     let mut warnings = Vec::new();
@@ -44,13 +45,13 @@ pub(crate) fn common(
     let coordinations = [structure.k, structure.k_hat, structure.z].into_iter().flatten();
     let highest = coordinations.fold(0.0, f64::max);
     add(highest > CLOSE_PACKING, Warning::CoordinationImpossible { coordination: highest });
-    if let Some(range) = calibration.pressures() {
+    if let Some(range) = calibration.pressures().filter(|_| !compares_state) {
         let pressure = observation.pressure();
         // The tolerance of a servo is not an extrapolation.
         let wide = [0.99 * range[0], 1.01 * range[1]];
         add(outside(pressure, wide), Warning::PressureOutsideFit { pressure, range });
     }
-    if let Some(nu) = conditions.material.map(|m| m.poisson_ratio) {
+    if let Some(nu) = conditions.material.map(|m| m.poisson_ratio).filter(|_| !compares_state) {
         let calibrated = calibration.material().poisson_ratio;
         add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
     }

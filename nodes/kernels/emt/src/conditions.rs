@@ -119,6 +119,10 @@ pub struct Conditions {
     pub gamma: StrainRatio,
     /// Solid fraction φ; `None` if not known.
     pub solid_fraction: Option<Measured>,
+    /// (σ_33 − (σ_11 + σ_22)/2)/p, in [−3/2, 3] where no stress is tensile; `None` takes the stress as isotropic.
+    pub stress_ratio: Option<Measured>,
+    /// Standard deviation of the radii of the grains over their mean; `None` takes the grains as equal.
+    pub size_spread: Option<f64>,
     /// Material of the grains; `None` takes that of the calibration.
     pub material: Option<Material>,
 }
@@ -130,6 +134,8 @@ impl Conditions {
             pressure: Measured::exact(pressure),
             gamma: StrainRatio::ZERO,
             solid_fraction: None,
+            stress_ratio: None,
+            size_spread: None,
             material: None,
         }
     }
@@ -143,11 +149,13 @@ impl Conditions {
         if self.pressure.value <= 0.0 {
             return Err(EmtError::NotPositive { quantity: "pressure", value: self.pressure.value });
         }
-        let phi = self.solid_fraction;
+        let (phi, ratio) = (self.solid_fraction, self.stress_ratio);
         for (quantity, value) in [
             ("stddev of pressure", Some(self.pressure.stddev)),
             ("stddev of gamma/Delta", Some(self.gamma.stddev)),
             ("stddev of the solid fraction", phi.map(|p| p.stddev)),
+            ("stddev of the stress ratio", ratio.map(|r| r.stddev)),
+            ("size spread", self.size_spread),
         ] {
             let Some(value) = value else { continue };
             finite(quantity, value)?;
@@ -160,6 +168,11 @@ impl Conditions {
             && !(phi.value > 0.0 && phi.value < 1.0)
         {
             return Err(EmtError::SolidFraction { phi: phi.value });
+        }
+        if let Some(ratio) = ratio.map(|r| r.value)
+            && !(-1.5..=3.0).contains(&ratio)
+        {
+            return Err(EmtError::StressRatio { ratio });
         }
         if let Some(m) = &self.material {
             finite("shear modulus of the grains", m.shear_modulus)?;

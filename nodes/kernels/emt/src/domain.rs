@@ -18,14 +18,37 @@ pub struct Domain {
     pub gamma: Range,
     /// Range of the Poisson ratio of the grains.
     pub poisson_ratio: Range,
+    /// Range of p/E*.
+    pub reduced_pressure: Range,
+    /// Range of (σ_33 − (σ_11 + σ_22)/2)/p.
+    pub stress_ratio: Range,
+    /// Range of the standard deviation of the radii over their mean.
+    pub size_spread: Range,
     /// Whether the solid fraction must be known.
     pub needs_solid_fraction: bool,
+    /// Whether the model compares pressure, grains and stress with the packings of its calibration.
+    pub compares_state: bool,
 }
 
 impl Domain {
     /// These structures, in every state that an elastic packing can have, whether or not its solid fraction is known.
     pub(crate) fn new(model: &'static str, structure: [Option<Range>; InferredQuantity::COUNT]) -> Self {
-        Self { model, structure, gamma: [-1.0, 1.0], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
+        Self {
+            model,
+            structure,
+            gamma: [-1.0, 1.0],
+            poisson_ratio: [0.0, 0.5],
+            reduced_pressure: [0.0, f64::INFINITY],
+            stress_ratio: [-1.5, 3.0],
+            size_spread: [0.0, f64::INFINITY],
+            needs_solid_fraction: false,
+            compares_state: false,
+        }
+    }
+
+    /// Refuses a pressure, Pa, outside the range for grains of this effective modulus E*, Pa.
+    pub(crate) fn validate_pressure(&self, pressure: f64, effective_young: f64) -> Result<(), EmtError> {
+        self.within("p/E*", pressure / effective_young, self.reduced_pressure)
     }
 
     /// The values of `structure` that the model uses, in the order of [`InferredQuantity::ALL`], with zero for the
@@ -46,6 +69,12 @@ impl Domain {
         self.within("gamma/Delta", conditions.gamma.value, self.gamma)?;
         if let Some(material) = &conditions.material {
             self.within("the Poisson ratio of the grains", material.poisson_ratio, self.poisson_ratio)?;
+        }
+        if let Some(ratio) = conditions.stress_ratio {
+            self.within("q/p", ratio.value, self.stress_ratio)?;
+        }
+        if let Some(spread) = conditions.size_spread {
+            self.within("the spread of the grain sizes", spread, self.size_spread)?;
         }
         if self.needs_solid_fraction && conditions.solid_fraction.is_none() {
             return Err(EmtError::Missing { model: self.model, missing: "the solid fraction" });

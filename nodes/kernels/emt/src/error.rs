@@ -47,6 +47,12 @@ pub enum EmtError {
         /// The value found.
         phi: f64,
     },
+    /// A stress ratio with a tensile stress.
+    #[error("the stress ratio (s33 - (s11 + s22)/2)/p = {ratio} is outside [-3/2, 3], where no stress is tensile")]
+    StressRatio {
+        /// The value found.
+        ratio: f64,
+    },
     /// An invalid Poisson ratio of the grains.
     #[error("the Poisson ratio of the grains, {nu}, is outside [0, 1/2]")]
     PoissonRatio {
@@ -153,6 +159,23 @@ pub enum EmtError {
         /// Name of the calibration.
         calibration: String,
     },
+    /// The packing differs too much from those of the calibration.
+    #[error(
+        "unknown: {quantity} = {value:.4} is too far from the packings of calibration `{calibration}`, [{low:.4}, {high:.4}], \
+         for an estimate"
+    )]
+    TooFar {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// Lowest of the packings.
+        low: f64,
+        /// Highest of the packings.
+        high: f64,
+        /// Name of the calibration.
+        calibration: String,
+    },
     /// Two microstructures explain the observation almost equally well.
     #[error(
         "coordination numbers {first:.3} and {second:.3} explain the moduli almost equally well: give more, or more accurate, \
@@ -175,6 +198,7 @@ impl EmtError {
             | EmtError::NegativeStddev { .. }
             | EmtError::Covariance { .. }
             | EmtError::SolidFraction { .. }
+            | EmtError::StressRatio { .. }
             | EmtError::PoissonRatio { .. }
             | EmtError::Missing { .. }
             | EmtError::NotCalibrated { .. } => true,
@@ -185,6 +209,7 @@ impl EmtError {
             | EmtError::NoAnisotropy { .. }
             | EmtError::ShearTooStiff { .. }
             | EmtError::NoCoordination { .. }
+            | EmtError::TooFar { .. }
             | EmtError::Ambiguous { .. } => false,
         }
     }

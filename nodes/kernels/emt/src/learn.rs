@@ -16,36 +16,45 @@ use isotropic::of_isotropic;
 use relaxation::network;
 use sample::bounds;
 
-/// Constants from isotropic and from anisotropic packings, all of one material. Without anisotropic ones only Eqs. 21
-/// and 22 are fitted.
+/// Constants from isotropic and from anisotropic packings, all of one material, and from others of any material, stress
+/// and sizes, which only the laws of the model `relaxed` use. Without anisotropic ones only Eqs. 21 and 22 are fitted.
 pub fn learn(
     name: &str,
     isotropic: &[CalibrationSample],
     anisotropic: &[CalibrationSample],
+    others: &[CalibrationSample],
 ) -> Result<Calibration, CalibrationError> {
-    let all: Vec<&CalibrationSample> = isotropic.iter().chain(anisotropic).collect();
-    let material = material(&all)?;
-    let (low, high) = bounds(all.iter().map(|s| s.pressure));
+    let own: Vec<&CalibrationSample> = isotropic.iter().chain(anisotropic).collect();
+    let material = material(&own)?;
+    others.iter().try_for_each(check)?;
+    let (low, high) = bounds(own.iter().map(|s| s.pressure));
     let mut calibration = Calibration {
         other: Some(of_isotropic(isotropic, InferredQuantity::Z)?),
         pressures: Some([low, high]),
         ..Calibration::of_isotropic(name.to_owned(), of_isotropic(isotropic, InferredQuantity::K)?, material)
     };
     if !anisotropic.is_empty() {
-        calibration.network = Some(Box::new(network(isotropic, anisotropic, &material)?));
+        let all: Vec<&CalibrationSample> = own.into_iter().chain(others).collect();
+        calibration.network = Some(Box::new(network(&all)?));
         calibration.discrepancies = discrepancies(isotropic, anisotropic, &calibration);
     }
     Ok(calibration)
+}
+
+/// Refuses numbers that are not finite.
+fn check(s: &CalibrationSample) -> Result<(), CalibrationError> {
+    if s.is_finite() {
+        return Ok(());
+    }
+    let requirement = "every number of a packing must be finite, and all moduli known and positive";
+    Err(CalibrationError::Constant { field: "a packing", value: s.pressure, requirement })
 }
 
 fn material(samples: &[&CalibrationSample]) -> Result<Material, CalibrationError> {
     let first =
         samples.first().ok_or(CalibrationError::Packings { what: "packings", found: 0, needed: 3 })?;
     for s in samples {
-        if !s.is_finite() {
-            let requirement = "every number of a packing must be finite, and all moduli known and positive";
-            return Err(CalibrationError::Constant { field: "a packing", value: s.pressure, requirement });
-        }
+        check(s)?;
         for (field, value, reference) in [
             ("shear modulus of the grains", s.material.shear_modulus, first.material.shear_modulus),
             ("Poisson ratio of the grains", s.material.poisson_ratio, first.material.poisson_ratio),

@@ -59,7 +59,8 @@ mod warning;
 mod wave_moduli;
 
 pub use calibration::{
-    AmplitudeLaw, Calibration, CalibrationError, IsotropicCalibration, ModelDiscrepancy,
+    Calibration, CalibrationError, DeviatorLaw, IsotropicCalibration, ModelDiscrepancy, NetworkState,
+    RattlerLaw, Reach,
     RelaxationCalibration, ScalingLaw,
 };
 pub use conditions::{Conditions, Measured, StrainRatio, StrainRatioSource};

@@ -6,14 +6,14 @@ use crate::moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 use grainlab_core::{Mat3, Stiffness};
 use nalgebra::{SMatrix, SymmetricEigen};
 
-/// Number of inputs of an inversion: the moduli, the pressure, γ/Δ and the solid fraction.
-pub const INPUTS: usize = MODULI + 3;
+/// Number of inputs of an inversion: the moduli, the pressure, γ/Δ, the solid fraction and the stress ratio q/p.
+pub const INPUTS: usize = MODULI + 4;
 
 /// Names of the inputs, in the order of the columns of a Jacobian.
 pub const INPUT_NAMES: [&str; INPUTS] =
-    ["G12", "G13", "Theta", "C11", "C33", "C13", "pressure", "gamma/Delta", "solid fraction"];
+    ["G12", "G13", "Theta", "C11", "C33", "C13", "pressure", "gamma/Delta", "solid fraction", "q/p"];
 
-/// Covariance of the relative errors of moduli, pressure and solid fraction and of the error of γ/Δ.
+/// Covariance of the relative errors of moduli, pressure and solid fraction and of the errors of γ/Δ and q/p.
 pub(crate) type InputCovariance = SMatrix<f64, INPUTS, INPUTS>;
 
 /// The known moduli of one transversely isotropic packing, and the state in which they were measured.
@@ -138,10 +138,12 @@ impl Observation {
         relative[(MODULI + 1, MODULI + 1)] = c.gamma.stddev.powi(2);
         relative[(MODULI + 2, MODULI + 2)] =
             c.solid_fraction.map_or(0.0, |phi| (phi.stddev / phi.value).powi(2));
+        relative[(MODULI + 3, MODULI + 3)] =
+            c.stress_ratio.map_or(0.0, |ratio| ratio.stddev.powi(2));
         Some(relative)
     }
 
-    /// The same with one input changed by the relative amount `by`, γ/Δ by the absolute one. `None` if the input is not
+    /// The same with one input changed by the relative amount `by`, γ/Δ and q/p by the absolute one. `None` if the input is not
     /// known.
     pub(crate) fn moved(&self, input: usize, by: f64) -> Option<Self> {
         let mut moved = self.clone();
@@ -153,7 +155,8 @@ impl Observation {
             }
             6 => moved.conditions.pressure.value *= 1.0 + by,
             7 => moved.conditions.gamma.value += by,
-            _ => moved.conditions.solid_fraction.as_mut()?.value *= 1.0 + by,
+            8 => moved.conditions.solid_fraction.as_mut()?.value *= 1.0 + by,
+            _ => moved.conditions.stress_ratio.as_mut()?.value += by,
         }
         Some(moved)
     }

@@ -1,6 +1,6 @@
 //! Propagation of distributions by sampling (JCGM 101:2008), where errors are too large for a linear propagation.
 //!
-//! Moduli, pressure, γ/Δ and solid fraction are drawn from normal distributions, each draw is inverted, and a
+//! Moduli, pressure, γ/Δ, solid fraction and q/p are drawn from normal distributions, each draw is inverted, and a
 //! draw of the model's error is added. With small errors this agrees with [`crate::Estimate`]. With large
 //! ones intervals become asymmetric, and some draws have no solution. These are counted. Every number here
 //! refers to the draws with a solution, and is not meaningful if many draws have none.
@@ -160,12 +160,15 @@ fn draw(
     for (modulus, value) in observation.moduli.known() {
         drawn.moduli = drawn.moduli.with(modulus, value + errors[modulus as usize]);
     }
-    let [pressure, gamma, phi] = normal.vector::<3>().into();
+    let [pressure, gamma, phi, ratio] = normal.vector::<4>().into();
     let conditions = &mut drawn.conditions;
     conditions.pressure.value += pressure * conditions.pressure.stddev;
     conditions.gamma.value += gamma * conditions.gamma.stddev;
     if let Some(fraction) = &mut conditions.solid_fraction {
         fraction.value += phi * fraction.stddev;
+    }
+    if let Some(measured) = &mut conditions.stress_ratio {
+        measured.value += ratio * measured.stddev;
     }
     drawn
 }

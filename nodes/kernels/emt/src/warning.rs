@@ -60,15 +60,16 @@ pub enum Warning {
     },
     /// γ/Δ is not known and was taken as zero.
     GammaAssumedZero,
-    /// The solid fraction is not known; that of the calibration's packings was taken, with their scatter.
-    SolidFractionAssumed {
-        /// Their mean.
-        phi: f64,
-    },
-    /// The solid fraction is outside the packings of the calibration. It determines the rattlers, and with them k.
-    SolidFractionOutsideFit {
-        /// φ.
-        phi: f64,
+    /// The stress ratio q/p is not known; the stress was taken as isotropic.
+    StressAssumedIsotropic,
+    /// The sizes of the grains are not known; they were taken as equal.
+    SizesAssumedEqual,
+    /// A quantity of the state is outside the packings of the calibration.
+    StateOutsideFit {
+        /// Its name.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
         /// Lowest and highest of the calibration.
         range: [f64; 2],
     },
@@ -121,7 +122,10 @@ impl Warning {
     pub fn is_extrapolation(&self) -> bool {
         !matches!(
             self,
-            Warning::GammaAssumedZero | Warning::SolidFractionAssumed { .. } | Warning::ErrorsLarge { .. }
+            Warning::GammaAssumedZero
+                | Warning::StressAssumedIsotropic
+                | Warning::SizesAssumedEqual
+                | Warning::ErrorsLarge { .. }
         )
     }
 }
@@ -178,19 +182,15 @@ impl fmt::Display for Warning {
                 )
             }
             Warning::GammaAssumedZero => write!(f, "gamma/Delta is not known and was taken as 0"),
-            Warning::SolidFractionAssumed { phi } => {
-                write!(
-                    f,
-                    "the solid fraction is not known: taken as {phi:.3}, with the scatter of the calibration's packings"
-                )
+            Warning::StressAssumedIsotropic => {
+                write!(f, "the stress ratio q/p is not known: the stress was taken as isotropic")
             }
-            Warning::SolidFractionOutsideFit { phi, range } => {
-                let [shown, low, high] = apart(*phi, *range, 4);
-                write!(
-                    f,
-                    "the solid fraction {shown} is outside {low} to {high}, the range of the calibration's packings: k is \
-                     not reliable"
-                )
+            Warning::SizesAssumedEqual => {
+                write!(f, "the spread of the grain sizes is not known: the grains were taken as equal")
+            }
+            Warning::StateOutsideFit { quantity, value, range } => {
+                let [shown, low, high] = apart(*value, *range, 4);
+                write!(f, "{quantity} = {shown} is outside {low} to {high}, the range of the calibration's packings")
             }
             Warning::OtherGrains { nu, calibrated } => write!(
                 f,
@@ -248,11 +248,13 @@ mod tests {
 
     #[test]
     fn a_value_just_outside_a_range_is_printed_outside_of_it() {
-        let text = |phi| Warning::SolidFractionOutsideFit { phi, range: [0.61834, 0.64663] }.to_string();
-        assert!(text(0.65).starts_with("the solid fraction 0.6500 is outside 0.6183 to 0.6466,"));
-        assert!(text(0.64667).starts_with("the solid fraction 0.6467 is outside 0.6183 to 0.6466,"));
-        assert!(text(0.646634).starts_with("the solid fraction 0.646634 is outside 0.618340 to 0.646630,"));
-        assert!(text(0.618339).starts_with("the solid fraction 0.618339 is outside 0.618340 to 0.646630,"));
+        let text = |value| {
+            Warning::StateOutsideFit { quantity: "q/p", value, range: [0.61834, 0.64663] }.to_string()
+        };
+        assert!(text(0.65).starts_with("q/p = 0.6500 is outside 0.6183 to 0.6466,"));
+        assert!(text(0.64667).starts_with("q/p = 0.6467 is outside 0.6183 to 0.6466,"));
+        assert!(text(0.646634).starts_with("q/p = 0.646634 is outside 0.618340 to 0.646630,"));
+        assert!(text(0.618339).starts_with("q/p = 0.618339 is outside 0.618340 to 0.646630,"));
         let text = Warning::CoordinationOutsideFit {
             quantity: InferredQuantity::Z,
             value: 4.000_01,

@@ -110,6 +110,7 @@ pub fn report(view: &PackingView<'_>, parts: ReportParts) -> PackingReport {
         step: packing.step,
         material: packing.material,
         solid_fraction: packing.solid_fraction(),
+        size_spread: packing.size_spread(),
         stress: view.stress,
         unbalanced_force_ratio: unbalanced_force_ratio(packing, &view.non_rattlers),
         symmetry: elasticity.stiffness().and_then(|s| symmetry(&s.tensor, tolerance)),

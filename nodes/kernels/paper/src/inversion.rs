@@ -42,6 +42,8 @@ impl Way {
         let conditions = Conditions {
             gamma: self.gamma.map_or(StrainRatio::ZERO, |source| StrainRatio::of(&r.strain_ratios, source)),
             solid_fraction: Some(Measured::exact(r.solid_fraction)),
+            stress_ratio: r.axial_stress_ratio().map(Measured::exact),
+            size_spread: Some(r.size_spread),
             material: Some(r.material),
             ..Conditions::at(r.pressure())
         };

@@ -19,11 +19,14 @@ Examples:
     grainlab campaign nodes/scenes/campaigns/anisotropic.toml
     C=recordings/campaigns
     grainlab calibrate --isotropic $C/isotropic/states.csv --anisotropic $C/anisotropic/states.csv \\
-      --preparation scene,set.friction --packing scene,set.friction,seed --out mine.toml
+      --preparation scene --packing scene,set.friction,seed --out mine.toml
     grainlab invert --table states.csv --calibration mine.toml
 
+With --other, the laws of the model relaxed are also learned from packings of other recipes, materials, stresses and sizes.
+
 Tables have the columns of `grainlab analyze --format csv`: pressure_pa, phi, grains, k, z, eps, eps_stiffness, all six
-moduli (g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa, or the stiffness), and g_total g_elastic g_contact if known;
+moduli (g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa, or the stiffness), and, if known, g_total g_elastic g_contact,
+axial_q_over_p and size_spread (else 0: isotropic stress, equal grains);
 and columns that identify the preparation of each packing and the packing.";
 
 /// Packings to learn from.
@@ -36,9 +39,12 @@ pub(crate) struct Args {
     /// Anisotropic packings, CSV; without them only Eqs. 21 and 22 are fitted, not the model relaxed
     #[arg(long, value_name = "FILE.csv")]
     anisotropic: Option<PathBuf>,
-    /// Columns that identify the preparation of a packing: the laws are tested on each preparation with those
-    /// learned from the others
-    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation,mu2")]
+    /// Packings of other recipes, materials, stresses and sizes, CSV: only for the model relaxed
+    #[arg(long, value_name = "FILE.csv", requires = "anisotropic")]
+    other: Option<PathBuf>,
+    /// Columns that identify the recipe of a packing: the laws are tested on each recipe with those learned from
+    /// the others
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation")]
     preparation: Vec<String>,
     /// Columns that identify the packing: states of one packing at several pressures are not independent
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation,mu2,seed")]
@@ -59,20 +65,24 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         Some(path) => packings::read(path, &naming)?,
         None => Vec::new(),
     };
+    let other = match &args.other {
+        Some(path) => packings::read(path, &naming)?,
+        None => Vec::new(),
+    };
     let file_name = args.out.as_ref().and_then(|path| path.file_stem()).map(|n| n.to_string_lossy());
     let file_name = file_name.filter(|n| n != "-").map_or_else(|| "unnamed".to_owned(), |n| n.into_owned());
     let name = args.name.clone().unwrap_or(file_name);
     let invalid = |e| Failure::new(Exit::PhysicsInvalid, format!("no calibration: {e}"));
-    let calibration = learn(&name, &isotropic, &anisotropic).map_err(invalid)?;
+    let calibration = learn(&name, &isotropic, &anisotropic, &other).map_err(invalid)?;
     let toml = calibration.to_toml().map_err(Failure::failed)?;
     match &args.out {
         Some(path) if path.as_os_str() == "-" => print(&toml)?,
         Some(path) => {
             std::fs::write(path, toml).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
-            print(&report::text(&calibration, &isotropic, &anisotropic))?;
+            print(&report::text(&calibration, [&isotropic, &anisotropic, &other]))?;
             say!("grainlab: {} is written; use it with --calibration {0}", path.display());
         }
-        None => print(&report::text(&calibration, &isotropic, &anisotropic))?,
+        None => print(&report::text(&calibration, [&isotropic, &anisotropic, &other]))?,
     }
     Ok(Exit::Done)
 }

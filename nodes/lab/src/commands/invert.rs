@@ -88,6 +88,12 @@ pub(crate) struct Args {
     /// Solid fraction
     #[arg(long, value_name = "PHI", conflicts_with = "table")]
     phi: Option<f64>,
+    /// Axial stress less the lateral one over pressure [default: unknown, the stress is taken as isotropic]
+    #[arg(long, value_name = "Q/P", conflicts_with = "table", allow_hyphen_values = true)]
+    stress_ratio: Option<f64>,
+    /// Standard deviation of the radii over their mean [default: unknown, the grains are taken as equal]
+    #[arg(long, value_name = "SPREAD", conflicts_with = "table")]
+    size_spread: Option<f64>,
     /// Relative one-sigma error of each modulus without its own error: 0.01 is one percent [default: unknown]
     #[arg(long, value_name = "REL")]
     error: Option<f64>,
@@ -206,6 +212,8 @@ impl Args {
         }
         state.gamma = self.gamma_over_delta.map(Measured::exact);
         state.phi = self.phi.map(Measured::exact);
+        state.stress_ratio = self.stress_ratio.map(Measured::exact);
+        state.size_spread = self.size_spread;
         state.relative_error = defaults.relative_error;
         state.grain_shear_modulus = defaults.grain_shear_modulus;
         state.poisson = defaults.poisson;

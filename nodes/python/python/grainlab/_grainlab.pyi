@@ -211,6 +211,8 @@ def invert(
     c33: float | None = None,
     c13: float | None = None,
     phi: float | None = None,
+    stress_ratio: float | None = None,
+    size_spread: float | None = None,
     gamma: float | None = None,
     error: float = 0.01,
     shear_modulus: float | None = None,

@@ -19,6 +19,8 @@ pub struct PackingReport {
     pub material: Material,
     /// Solid fraction φ.
     pub solid_fraction: f64,
+    /// Standard deviation of the radii over their mean.
+    pub size_spread: f64,
     /// Stress of the elastic contact forces.
     pub stress: Stress,
     /// Mean net force of non-rattlers over mean contact force; `None` without forces.
@@ -47,6 +49,12 @@ impl PackingReport {
     pub fn stress_ratio(&self) -> Option<f64> {
         let (p, q) = (self.pressure(), self.stress.tensor.deviatoric_invariant());
         (p > 0.0).then(|| q / p)
+    }
+
+    /// (σ_hh − (tr σ − σ_hh)/2)/p about the reference axis h: positive where the stress along h is the larger one; `None`
+    /// without pressure.
+    pub fn axial_stress_ratio(&self) -> Option<f64> {
+        self.stress.tensor.axial_ratio(&self.fabric.reference_axis)
     }
 
     /// ε of the contacts weighted by their normal stiffness; `None` without contacts.

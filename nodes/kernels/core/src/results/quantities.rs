@@ -13,6 +13,7 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
     // The state.
     "grains" "N" "1" "number of grains" Scalar, |r| r.contacts.grains;
     "phi" "φ" "1" "solid fraction" Scalar, |r| r.solid_fraction;
+    "size_spread" "" "1" "standard deviation of the radii over their mean" Scalar, |r| r.size_spread;
     "pressure_pa" "p" "Pa" "pressure, positive in compression"
         Scalar, |r| r.pressure(), or "p_pa" x 1.0, or "p_kpa" x 1e3;
     "stress_pa" "σ" "Pa" "Love-Weber stress of the elastic contact forces, positive in compression"
@@ -75,6 +76,8 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
     // Stress.
     "q_over_p" "q/p" "1" "deviatoric stress over pressure"
         Scalar, |r| r.stress_decomposition.stress_ratio();
+    "axial_q_over_p" "" "1" "axial stress less the lateral one over pressure, about h: (s_hh - (tr s - s_hh)/2)/p"
+        Scalar, |r| r.axial_stress_ratio();
     "predicted_q_over_p" "" "1" "the same by the anisotropies of contacts and forces"
         Scalar, |r| anisotropies(r).map(|a| a.stress_ratio().deviatoric_invariant());
     "anisotropy_contacts" "" "1" "traceless anisotropy tensor of the contacts"

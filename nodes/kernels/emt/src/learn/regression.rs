@@ -35,6 +35,56 @@ pub(super) fn linear<const N: usize>(
     Ok(Regression { coefficients, inverse, squares })
 }
 
+/// Coefficients of all columns, 0 for those that the rows do not determine, and the weighted sum of squared residuals.
+pub(super) struct Determined<const N: usize> {
+    pub(super) coefficients: [f64; N],
+    pub(super) squares: f64,
+}
+
+/// Share of a column that the columns before it must leave unexplained for its coefficient to be determined.
+const INDEPENDENT: f64 = 1e-5;
+
+/// As [`linear`], but a column that is zero or a combination of those before it gets the coefficient 0: packings of one
+/// material do not determine how the material acts.
+pub(super) fn determined<const N: usize>(
+    rows: &[([f64; N], f64, f64)],
+    what: &'static str,
+) -> Result<Determined<N>, CalibrationError> {
+    let column = |j: usize| DVector::from_fn(rows.len(), |i, _| rows[i].0[j] * rows[i].2);
+    let mut basis: Vec<DVector<f64>> = Vec::with_capacity(N);
+    let mut kept = Vec::with_capacity(N);
+    for j in 0..N {
+        let whole = column(j);
+        let norm = whole.norm();
+        let mut rest = whole;
+        // Twice, against rounding.
+        for _ in 0..2 {
+            for b in &basis {
+                let along = b.dot(&rest);
+                rest.axpy(-along, b, 1.0);
+            }
+        }
+        if rest.norm() > INDEPENDENT * norm {
+            basis.push(rest.normalize());
+            kept.push(j);
+        }
+    }
+    let n = kept.len();
+    if rows.len() <= n || n == 0 {
+        return Err(CalibrationError::Packings { what, found: rows.len(), needed: n + 1 });
+    }
+    let y = DVector::from_fn(rows.len(), |i, _| rows[i].1 * rows[i].2);
+    let q = DMatrix::from_columns(&basis);
+    let x = DMatrix::from_columns(&kept.iter().map(|j| column(*j)).collect::<Vec<_>>());
+    // x = q r with r upper triangular.
+    let (projected, r) = (q.transpose() * &y, q.transpose() * &x);
+    let singular = CalibrationError::Packings { what, found: rows.len(), needed: n + 1 };
+    let solution = r.solve_upper_triangular(&projected).ok_or(singular)?;
+    let mut coefficients = [0.0; N];
+    kept.iter().zip(solution.iter()).for_each(|(j, value)| coefficients[*j] = *value);
+    Ok(Determined { coefficients, squares: (x * solution - y).norm_squared() })
+}
+
 /// The minimum of `f` in [low, high], if it is the only one there, by golden-section search.
 pub(super) fn minimum(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     let golden = (5f64.sqrt() - 1.0) / 2.0;
@@ -67,6 +117,17 @@ mod tests {
         assert!(linear(&points[..2], "points").is_err());
         let same: Vec<_> = (0..5).map(|_| ([1.0, 3.0], 1.0, 1.0)).collect();
         assert!(matches!(linear(&same, "points"), Err(CalibrationError::Packings { .. })));
+    }
+
+    #[test]
+    fn columns_that_the_points_do_not_determine_get_no_coefficient() {
+        let points: Vec<_> =
+            (0..6).map(|i| ([1.0, 3.0, f64::from(i), 0.0], 2.0 - 0.5 * f64::from(i), 1.0)).collect();
+        let fit = determined(&points, "points").unwrap();
+        let [level, same, slope, zero] = fit.coefficients;
+        assert!((level - 2.0).abs() < 1e-12 && (slope + 0.5).abs() < 1e-12 && fit.squares < 1e-24);
+        assert_eq!((same, zero), (0.0, 0.0));
+        assert!(determined(&points[..2], "points").is_err());
     }
 
     #[test]

@@ -1,181 +1,203 @@
-//! The scaling laws of relaxed networks.
+//! The laws of relaxed networks, and the scatter of packings about them.
 
-use super::regression::{linear, minimum};
+use super::regression::{determined, minimum};
 use super::sample::{CalibrationSample, bounds};
 use crate::calibration::{
-    AmplitudeLaw, CalibrationError, ISOSTATIC, RelaxationCalibration, SCATTERED, ScalingLaw,
+    CalibrationError, DeviatorLaw, ISOSTATIC, NetworkState, RattlerLaw, Reach, RelaxationCalibration,
+    SCATTERED, ScalingLaw, Scatter,
 };
-use crate::invariants::Invariants;
-use grainlab_core::Material;
+use crate::invariants::{INVARIANTS, Invariants};
 use std::collections::BTreeSet;
 
-/// Reference pressure of the laws, Pa.
-const REFERENCE_PRESSURE: f64 = 1e5;
+/// Number of recipes needed: the laws are tested on each with those learned from the others.
+const RECIPES: usize = 3;
 
-/// Number of different preparations needed: the laws are tested on each with those learned from the others.
-const PREPARATIONS: usize = 3;
+/// Highest onset of stiffness, just above the isostatic point.
+const HIGHEST_ONSET: f64 = ISOSTATIC + 0.05;
+
+/// Repetitions of the fit of the scatter and of its growth, each with the other fixed; the third changes nothing.
+const REPETITIONS: usize = 4;
 
 /// One packing in the units of the laws, with its weight in the fits.
 struct Reduced<'a> {
     sample: &'a CalibrationSample,
     invariants: Invariants,
-    ln_phi: f64,
-    ln_p: f64,
+    state: NetworkState,
     weight: f64,
 }
 
-pub(super) fn network(
-    isotropic: &[CalibrationSample],
-    anisotropic: &[CalibrationSample],
-    material: &Material,
-) -> Result<RelaxationCalibration, CalibrationError> {
-    let preparations: BTreeSet<&str> =
-        isotropic.iter().chain(anisotropic).map(|s| s.preparation.as_str()).collect();
-    if preparations.len() < PREPARATIONS {
-        let what = "different preparations";
-        return Err(CalibrationError::Packings { what, found: preparations.len(), needed: PREPARATIONS });
+/// The laws from these packings, and their scatter from laws learned without the recipe of each packing.
+pub(super) fn network(samples: &[&CalibrationSample]) -> Result<RelaxationCalibration, CalibrationError> {
+    let recipes: BTreeSet<&str> = samples.iter().map(|s| s.preparation.as_str()).collect();
+    if recipes.len() < RECIPES {
+        let what = "different recipes";
+        return Err(CalibrationError::Packings { what, found: recipes.len(), needed: RECIPES });
     }
-    let all = || isotropic.iter().chain(anisotropic);
-    let count = (isotropic.len() + anisotropic.len()) as f64;
-    let moments = |value: fn(&CalibrationSample) -> f64| {
-        let mean = all().map(value).sum::<f64>() / count;
-        [mean, (all().map(|s| (value(s) - mean).powi(2)).sum::<f64>() / count).sqrt()]
-    };
-    let solid_fraction = moments(|s| s.solid_fraction);
-    let unit = |s: &CalibrationSample| material.effective_young().cbrt().powi(2) * s.pressure.cbrt();
-    let reduced = |s: &'_ CalibrationSample| -> Option<(Invariants, f64, f64)> {
-        let mut invariants = Invariants::of(&s.moduli)?;
-        invariants.ln_theta -= unit(s).ln();
-        invariants.ln_shear -= unit(s).ln();
-        Some((
-            invariants,
-            (s.solid_fraction / solid_fraction[0]).ln(),
-            (s.pressure / REFERENCE_PRESSURE).ln(),
-        ))
-    };
-    let rows: Vec<Reduced<'_>> = all()
-        .filter_map(|sample| {
-            let (invariants, ln_phi, ln_p) = reduced(sample)?;
-            Some(Reduced {
-                sample,
-                invariants,
-                ln_phi,
-                ln_p,
-                weight: RelaxationCalibration::excess(sample.z),
-            })
-        })
-        .collect();
-    let (z_low, z_high) = bounds(all().map(|s| s.z));
-    let (eps_low, eps_high) = bounds(all().map(|s| s.eps));
-    let (loosest, densest) = bounds(all().map(|s| s.solid_fraction));
-    let ranges = RelaxationCalibration {
-        z: [z_low, z_high],
-        eps: [eps_low, eps_high],
-        eps_spread: moments(|s| s.eps),
-        solid_fraction,
-        solid_fractions: [loosest, densest],
-        pressure: REFERENCE_PRESSURE,
-        grains: all().map(|s| s.grains).min().unwrap_or(0),
-        ..fitted(&rows.iter().collect::<Vec<_>>())?
-    };
-    // Scatter on preparations left out of the fit, for each z within the range of the others.
-    let mut squares = [[0.0; SCATTERED]; SCATTERED];
-    for preparation in preparations {
+    let rows: Vec<Reduced<'_>> = samples.iter().filter_map(|sample| reduced(sample)).collect();
+    let lowest = rows.iter().map(|r| r.sample.z).fold(f64::INFINITY, f64::min);
+    if lowest <= ISOSTATIC {
+        let requirement = "it must be above the isostatic 4, where a network becomes stiff";
+        return Err(CalibrationError::Constant { field: "z of a packing", value: lowest, requirement });
+    }
+    let laws = fitted(&rows.iter().collect::<Vec<_>>())?;
+    let mut residuals = Vec::with_capacity(rows.len());
+    for recipe in &recipes {
         let (left_out, kept): (Vec<_>, Vec<_>) =
-            rows.iter().partition(|row| row.sample.preparation == preparation);
-        let others = RelaxationCalibration { solid_fraction, pressure: REFERENCE_PRESSURE, ..fitted(&kept)? };
-        let (low, high) = bounds(kept.iter().map(|row| row.sample.z));
-        for row in left_out {
-            let reached = (low..=high).contains(&row.sample.z);
-            let residual = residual(if reached { &others } else { &ranges }, row);
-            for (i, a) in residual.iter().enumerate() {
-                for (j, b) in residual.iter().enumerate() {
-                    squares[i][j] += a * b / rows.len() as f64;
-                }
-            }
-        }
+            rows.iter().partition(|row| row.sample.preparation == *recipe);
+        let others = fitted(&kept)?;
+        residuals.extend(left_out.into_iter().map(|row| (row, residual(&others, row))));
     }
-    Ok(RelaxationCalibration { scatter: squares, ..ranges })
+    let (scatter, scatter_by_state) = scatter(&residuals)?;
+    // The recipes are a sample of all recipes: 95 % of a Student distribution, not of a normal one.
+    let scatter = scatter * student(recipes.len() - 1).powi(2);
+    let mean = rows.iter().map(|r| r.sample.eps).sum::<f64>() / rows.len() as f64;
+    let variance = rows.iter().map(|r| (r.sample.eps - mean).powi(2)).sum::<f64>() / rows.len() as f64;
+    let range = |value: fn(&CalibrationSample) -> f64| {
+        let (low, high) = bounds(rows.iter().map(|r| value(r.sample)));
+        [low, high]
+    };
+    Ok(RelaxationCalibration {
+        grains: rows.iter().map(|r| r.sample.grains).min().unwrap_or(0),
+        recipes: recipes.len() as u32,
+        eps_spread: [mean, variance.sqrt()],
+        scatter: std::array::from_fn(|i| std::array::from_fn(|j| scatter[(i, j)])),
+        scatter_by_state,
+        reach: Reach {
+            z: range(|s| s.z),
+            eps: range(|s| s.eps),
+            pressure: range(CalibrationSample::reduced_pressure),
+            stiffness_ratio: range(|s| s.material.stiffness_ratio()),
+            size_spread: range(|s| s.size_spread),
+            stress_ratio: range(|s| s.stress_ratio),
+        },
+        ..laws
+    })
+}
+
+/// `None` without a positive bulk and shear modulus.
+fn reduced(sample: &CalibrationSample) -> Option<Reduced<'_>> {
+    let mut invariants = Invariants::of(&sample.moduli)?;
+    let unit = sample.material.effective_young().cbrt().powi(2) * sample.pressure.cbrt();
+    invariants.ln_theta -= unit.ln();
+    invariants.ln_shear -= unit.ln();
+    let state =
+        NetworkState::of(sample.pressure, &sample.material, sample.size_spread, sample.stress_ratio);
+    Some(Reduced { sample, invariants, state, weight: RelaxationCalibration::excess(sample.z) })
 }
 
 /// The laws alone; all other constants are zero.
 fn fitted(rows: &[&Reduced<'_>]) -> Result<RelaxationCalibration, CalibrationError> {
     const WHAT: &str = "packings";
     let lowest = rows.iter().map(|r| r.sample.z).fold(f64::INFINITY, f64::min);
-    if lowest <= ISOSTATIC {
-        let requirement = "it must be above the isostatic 4, where a network becomes stiff";
-        return Err(CalibrationError::Constant { field: "z of a packing", value: lowest, requirement });
-    }
     let law = |value: fn(&Invariants) -> f64| {
         let at = |onset: f64| {
-            let points: Vec<_> = rows
-                .iter()
-                .map(|r| {
-                    let z = r.sample.z;
-                    ([1.0, z.ln(), (z - onset).ln(), r.ln_phi, r.ln_p], value(&r.invariants), r.weight)
-                })
-                .collect();
-            linear(&points, WHAT)
+            let point = |r: &&Reduced<'_>| {
+                (ScalingLaw::terms(r.sample.z, onset, &r.state), value(&r.invariants), r.weight)
+            };
+            determined(&rows.iter().map(point).collect::<Vec<_>>(), WHAT)
         };
-        let onset = minimum(2.0, lowest - 0.05, |onset| at(onset).map_or(f64::INFINITY, |fit| fit.squares));
-        let [level, by_z, by_excess, by_solid_fraction, by_pressure] = coefficients(&at(onset)?.coefficients);
-        Ok(ScalingLaw { level, by_z, by_excess, onset, by_solid_fraction, by_pressure })
+        let highest = HIGHEST_ONSET.min(lowest - 0.05);
+        let onset = minimum(2.0, highest, |onset| at(onset).map_or(f64::INFINITY, |fit| fit.squares));
+        Ok(ScalingLaw::new(at(onset)?.coefficients, onset))
     };
-    let amplitude = |value: fn(&Reduced<'_>) -> f64| {
-        let points: Vec<_> = rows
-            .iter()
-            .map(|r| {
-                let (z, eps) = (r.sample.z, r.sample.eps);
-                ([eps, eps * z / (z - ISOSTATIC)], value(r), r.weight)
-            })
-            .collect();
-        let [constant, critical] = coefficients(&linear(&points, WHAT)?.coefficients);
-        Ok(AmplitudeLaw { constant, critical })
+    let deviator = |value: fn(&Reduced<'_>) -> f64| {
+        let point = |r: &&Reduced<'_>| {
+            (DeviatorLaw::terms(r.sample.z, r.sample.eps, &r.state), value(r), r.weight)
+        };
+        Ok(DeviatorLaw::new(determined(&rows.iter().map(point).collect::<Vec<_>>(), WHAT)?.coefficients))
     };
-    let rattlers: Vec<_> = rows
-        .iter()
-        .filter(|r| r.sample.k < r.sample.z)
-        .map(|r| {
-            let share = 1.0 - r.sample.k / r.sample.z;
-            // Weighted by the fraction of rattlers, all errors of k count the same.
-            ([1.0, r.sample.z, r.ln_phi, r.ln_p], share.ln(), r.weight * share)
-        })
-        .collect();
+    let rattlers: Vec<_> =
+        rows.iter().map(|r| (RattlerLaw::terms(r.sample.z, &r.state), r.sample.k, 1.0)).collect();
     Ok(RelaxationCalibration {
         theta: law(|i| i.ln_theta)?,
         shear: law(|i| i.ln_shear)?,
-        dilatation: amplitude(|r| r.invariants.dilatation)?,
-        voigt: amplitude(|r| r.invariants.voigt)?,
-        harmonic: amplitude(|r| r.invariants.harmonic)?,
-        eps_stiffness: amplitude(|r| r.sample.eps_stiffness)?,
-        rattlers: coefficients(&linear(&rattlers, "packings with rattlers")?.coefficients),
+        dilatation: deviator(|r| r.invariants.dilatation)?,
+        voigt: deviator(|r| r.invariants.voigt)?,
+        harmonic: deviator(|r| r.invariants.harmonic)?,
+        eps_stiffness: deviator(|r| r.sample.eps_stiffness)?,
+        rattlers: RattlerLaw(determined(&rattlers, WHAT)?.coefficients),
         scatter: [[0.0; SCATTERED]; SCATTERED],
-        z: [0.0; 2],
-        eps: [0.0; 2],
+        scatter_by_state: [0.0; 2],
         eps_spread: [0.0; 2],
-        solid_fraction: [1.0, 0.0],
-        solid_fractions: [0.0; 2],
-        pressure: REFERENCE_PRESSURE,
+        reach: Reach::default(),
         grains: 0,
+        recipes: 0,
     })
 }
 
-fn coefficients<const N: usize>(found: &[f64]) -> [f64; N] {
-    std::array::from_fn(|i| found[i])
-}
-
-/// The difference between a packing and the laws, times (z − 4)/z.
+/// The difference between a packing and the laws, with the weights of [`RelaxationCalibration::weights`].
 fn residual(network: &RelaxationCalibration, row: &Reduced<'_>) -> [f64; SCATTERED] {
     let CalibrationSample { k, z, eps, eps_stiffness, .. } = *row.sample;
-    let i = &row.invariants;
+    let (i, state) = (&row.invariants, &row.state);
     let off = [
-        i.ln_theta - network.theta.value(z, row.ln_phi, row.ln_p),
-        i.ln_shear - network.shear.value(z, row.ln_phi, row.ln_p),
-        i.dilatation - network.dilatation.value(z) * eps,
-        i.voigt - network.voigt.value(z) * eps,
-        i.harmonic - network.harmonic.value(z) * eps,
-        eps_stiffness - network.eps_stiffness.value(z) * eps,
-        k - z * (1.0 - network.ln_rattlers(z, row.ln_phi, row.ln_p).exp()),
+        i.ln_theta - network.theta.value(z, state),
+        i.ln_shear - network.shear.value(z, state),
+        i.dilatation - network.dilatation.value(z, eps, state),
+        i.voigt - network.voigt.value(z, eps, state),
+        i.harmonic - network.harmonic.value(z, eps, state),
+        eps_stiffness - network.eps_stiffness.value(z, eps, state),
+        k - network.rattlers.value(z, state),
     ];
-    off.map(|v| v * row.weight)
+    let weights = RelaxationCalibration::weights(z);
+    std::array::from_fn(|i| off[i] * weights[i])
+}
+
+/// Covariance of the residuals, and how their variance grows with the variance of the radii and with ln p.
+fn scatter(
+    residuals: &[(&Reduced<'_>, [f64; SCATTERED])],
+) -> Result<(Scatter, [f64; 2]), CalibrationError> {
+    let mut by_state = [0.0; 2];
+    let mut covariance = Scatter::zeros();
+    for _ in 0..REPETITIONS {
+        covariance = Scatter::zeros();
+        let growth = |state: &NetworkState| {
+            (by_state[0] * state.size_variance + by_state[1] * state.ln_pressure).exp()
+        };
+        for (row, residual) in residuals {
+            let r = nalgebra::SVector::from(*residual);
+            covariance += r * r.transpose() / (growth(&row.state) * residuals.len() as f64);
+        }
+        let of_moduli = covariance.fixed_view::<INVARIANTS, INVARIANTS>(0, 0).into_owned();
+        let too_few = CalibrationError::Packings {
+            what: "packings",
+            found: residuals.len(),
+            needed: 2 * SCATTERED,
+        };
+        let inverse = of_moduli.try_inverse().ok_or(too_few)?;
+        // The logarithm of the normalised square of the residual: its mean changes with the state as that of the variance.
+        let points: Vec<_> = residuals
+            .iter()
+            .map(|(row, residual)| {
+                let r = nalgebra::SVector::<f64, INVARIANTS>::from_row_slice(&residual[..INVARIANTS]);
+                let square = r.dot(&(inverse * r)).max(f64::MIN_POSITIVE);
+                ([1.0, row.state.size_variance, row.state.ln_pressure], square.ln(), 1.0)
+            })
+            .collect();
+        let [_, by_sizes, by_pressure] = determined(&points, "packings")?.coefficients;
+        by_state = [by_sizes, by_pressure];
+    }
+    Ok((covariance, by_state))
+}
+
+/// Half width of the central 95 % of Student's distribution over that of a normal one (Abramowitz & Stegun 26.7.5, to 1e-3
+/// from three degrees of freedom on).
+fn student(degrees_of_freedom: usize) -> f64 {
+    const Z: f64 = crate::estimate::HALF_WIDTH;
+    let n = degrees_of_freedom.max(1) as f64;
+    let (z2, z4, z6) = (Z.powi(2), Z.powi(4), Z.powi(6));
+    let first = (z2 + 1.0) / (4.0 * n);
+    let second = (5.0 * z4 + 16.0 * z2 + 3.0) / (96.0 * n.powi(2));
+    let third = (3.0 * z6 + 19.0 * z4 + 17.0 * z2 - 15.0) / (384.0 * n.powi(3));
+    1.0 + first + second + third
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn student_s_distribution_is_wider_than_a_normal_one() {
+        for (degrees, quantile) in [(5, 2.5706), (10, 2.2281), (15, 2.1314), (30, 2.0423)] {
+            let found = 1.959_964 * super::student(degrees);
+            assert!((found / quantile - 1.0).abs() < 1e-3, "{degrees}: {found}");
+        }
+    }
 }

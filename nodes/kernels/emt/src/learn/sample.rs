@@ -21,6 +21,10 @@ pub struct CalibrationSample {
     pub pressure: f64,
     /// Solid fraction φ.
     pub solid_fraction: f64,
+    /// (σ_33 − (σ_11 + σ_22)/2)/p.
+    pub stress_ratio: f64,
+    /// Standard deviation of the radii over their mean.
+    pub size_spread: f64,
     /// All six moduli, Pa.
     pub moduli: Moduli,
     /// γ/Δ.
@@ -41,10 +45,17 @@ impl CalibrationSample {
         let conditions = Conditions {
             gamma: StrainRatio::of(&self.gamma, gamma),
             solid_fraction: Some(Measured::exact(self.solid_fraction)),
+            stress_ratio: Some(Measured::exact(self.stress_ratio)),
+            size_spread: Some(self.size_spread),
             material: Some(self.material),
             ..Conditions::at(self.pressure)
         };
         Observation { grains: Some(self.grains), ..Observation::new(self.moduli, conditions) }
+    }
+
+    /// p/E*.
+    pub(super) fn reduced_pressure(&self) -> f64 {
+        self.pressure / self.material.effective_young()
     }
 
     /// Whether every number is finite and every modulus positive.
@@ -52,6 +63,8 @@ impl CalibrationSample {
         let numbers = [
             self.pressure,
             self.solid_fraction,
+            self.stress_ratio,
+            self.size_spread,
             self.k,
             self.z,
             self.eps,

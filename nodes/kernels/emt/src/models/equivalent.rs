@@ -94,5 +94,5 @@ pub(super) fn domain(model: &'static str, calibration: &Calibration) -> Domain {
     structure[InferredQuantity::KHat as usize] =
         Some([-isotropic.constants()[1] * (1.0 + 1e-3), MAX_COORDINATION]);
     structure[InferredQuantity::Eps as usize] = Some([-0.5, 1.0]);
-    Domain { model, structure, gamma: [-0.5, 0.25], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
+    Domain { gamma: [-0.5, 0.25], ..Domain::new(model, structure) }
 }

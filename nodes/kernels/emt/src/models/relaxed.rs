@@ -1,7 +1,7 @@
 //! The moduli of a relaxed contact network, without γ/Δ.
 //!
-//! The scalars of the stiffness depend on the coordination number z. Its two deviators are proportional to ε, with
-//! factors that grow as the network approaches its isostatic point. The harmonic part depends on the fourth-order
+//! The scalars of the stiffness depend on the coordination number z, on p/E*, on k_t/k_n and on the sizes. Its two deviators
+//! are linear in ε and in q/p, with factors that grow as the network approaches its isostatic point. The harmonic part depends on the fourth-order
 //! fabric and hardly on ε (see [`crate::Invariants`]). Packings of the same structure still differ; their scatter is
 //! known as a covariance of these five numbers, and the estimate is the generalised least-squares one: for a linear
 //! model, the most probable one with a flat prior for z and ε. k and the ε weighted by contact stiffness follow from z,
@@ -13,7 +13,7 @@ mod fit;
 mod scan;
 mod state;
 
-use crate::calibration::{Calibration, RelaxationCalibration};
+use crate::calibration::{Calibration, Outside, Reach, RelaxationCalibration};
 use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;
@@ -24,7 +24,7 @@ use crate::point_estimate::{Misfit, PointEstimate};
 use crate::warning::Warning;
 use fit::{Data, Fit};
 use grainlab_core::results::{InferredQuantity, Microstructure};
-use state::State;
+use state::{State, too_far};
 
 /// The relaxed network: model `relaxed`.
 #[derive(Clone, Copy, Debug)]
@@ -46,11 +46,17 @@ impl Model for Relaxed {
 
     fn domain(&self, calibration: &Calibration) -> Domain {
         let mut structure = [None; InferredQuantity::COUNT];
-        if let Some(network) = calibration.network() {
-            structure[InferredQuantity::Z as usize] = Some(network.domain());
-            structure[InferredQuantity::Eps as usize] = Some(network.domain_of_eps());
+        let Some(network) = calibration.network() else { return Domain::new(NAME, structure) };
+        structure[InferredQuantity::Z as usize] = Some(network.domain());
+        structure[InferredQuantity::Eps as usize] = Some(network.domain_of_eps());
+        let [reduced_pressure, stress_ratio, size_spread] = network.reach.limits();
+        Domain {
+            reduced_pressure,
+            stress_ratio,
+            size_spread,
+            compares_state: true,
+            ..Domain::new(NAME, structure)
         }
-        Domain::new(NAME, structure)
     }
 
     fn predict(
@@ -60,7 +66,10 @@ impl Model for Relaxed {
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
         let network = network(calibration)?;
-        let found = self.domain(calibration).validate(structure, conditions)?;
+        let domain = self.domain(calibration);
+        let found = domain.validate(structure, conditions)?;
+        let material = conditions.material.as_ref().unwrap_or(calibration.material());
+        domain.validate_pressure(conditions.pressure.value, material.effective_young())?;
         let [z, eps] = [InferredQuantity::Z, InferredQuantity::Eps].map(|q| found[q as usize]);
         let state = State::of(conditions, None, network, calibration);
         let moduli = state.invariants(network, z, eps).moduli().map(|m| m * state.unit);
@@ -75,6 +84,7 @@ impl Model for Relaxed {
     fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError> {
         let network = network(calibration)?;
         let state = State::of(&observation.conditions, observation.grains, network, calibration);
+        state.within_reach(calibration.name())?;
         let data = Data::of(observation, &state);
         if data.used == 0 {
             return Err(EmtError::Missing { model: NAME, missing: "any modulus" });
@@ -86,6 +96,9 @@ impl Model for Relaxed {
             // Only the coordination number, with ε distributed as in the packings of the calibration.
             _ => scan::best(&data, network, &state, calibration.name(), true)?,
         };
+        if let Some(far) = fit.outside(network).iter().find(|o| o.is_too_far()) {
+            return Err(too_far(far, calibration.name()));
+        }
         Ok(point_estimate(&fit, &data, network, &state))
     }
 }
@@ -97,25 +110,23 @@ fn network(calibration: &Calibration) -> Result<&RelaxationCalibration, EmtError
 
 fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state: &State) -> PointEstimate {
     let mut warnings = Vec::new();
-    if !state.phi_known {
-        warnings.push(Warning::SolidFractionAssumed { phi: network.solid_fraction[0] });
+    if !state.stress_known {
+        warnings.push(Warning::StressAssumedIsotropic);
     }
-    let phi = state.ln_phi[0].exp() * network.solid_fraction[0];
-    let [loosest, densest] = network.solid_fractions;
-    // The tolerance is for the rounding of φ through a logarithm.
-    if !(loosest - 1e-9..=densest + 1e-9).contains(&phi) {
-        warnings.push(Warning::SolidFractionOutsideFit { phi, range: network.solid_fractions });
+    if !state.sizes_known {
+        warnings.push(Warning::SizesAssumedEqual);
     }
-    if !(network.z[0]..=network.z[1]).contains(&fit.z) {
-        warnings.push(Warning::CoordinationOutsideFit {
-            quantity: InferredQuantity::Z,
-            value: fit.z,
-            range: network.z,
-        });
+    for outside in &state.outside {
+        let Outside { quantity, value, range, .. } = *outside;
+        warnings.push(Warning::StateOutsideFit { quantity, value, range });
     }
-    let eps = fit.eps();
-    if let Some(eps) = eps.filter(|eps| !(network.eps[0]..=network.eps[1]).contains(eps)) {
-        warnings.push(Warning::EpsOutsideFit { eps, range: network.eps });
+    let Reach { z, eps, .. } = network.reach;
+    if !(z[0]..=z[1]).contains(&fit.z) {
+        let quantity = InferredQuantity::Z;
+        warnings.push(Warning::CoordinationOutsideFit { quantity, value: fit.z, range: z });
+    }
+    if let Some(found) = fit.eps().filter(|found| !(eps[0]..=eps[1]).contains(found)) {
+        warnings.push(Warning::EpsOutsideFit { eps: found, range: eps });
     }
     let misfit = fit
         .degrees_of_freedom(data)

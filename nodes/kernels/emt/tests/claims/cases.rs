@@ -43,6 +43,14 @@ impl Random {
         }
     }
 
+    /// A pressure from 100 Pa to 100 MPa that the domain has for these grains.
+    pub(crate) fn pressure(&mut self, domain: &Domain, material: &Material) -> f64 {
+        let [low, high] = domain.reduced_pressure.map(|p| p * material.effective_young());
+        // The ends are those of p/E*, to the rounding of a product.
+        let [low, high] = [low.max(1e2) * (1.0 + 1e-12), high.min(1e8) * (1.0 - 1e-12)];
+        self.with_ends([low.ln(), high.ln()]).exp().clamp(low, high)
+    }
+
     /// A structure and a state of a domain: pressures from 100 Pa to 100 MPa, solid fractions from 0.5 to
     /// 0.7, the grains of the calibration or others.
     pub(crate) fn case(&mut self, domain: &Domain) -> (Microstructure, Conditions) {
@@ -52,11 +60,14 @@ impl Random {
             poisson_ratio: self.with_ends(domain.poisson_ratio),
             density: 2500.0,
         };
+        let material = (self.0.next_u64() >> 63 == 0).then_some(other);
         let conditions = Conditions {
-            pressure: Measured::exact(10f64.powf(self.with_ends([2.0, 8.0]))),
+            pressure: Measured::exact(self.pressure(domain, &material.unwrap_or(Material::GLASS))),
             gamma: StrainRatio::given(self.with_ends(domain.gamma)),
             solid_fraction: Some(Measured::exact(self.within([0.5, 0.7]))),
-            material: (self.0.next_u64() >> 63 == 0).then_some(other),
+            stress_ratio: Some(Measured::exact(self.with_ends(domain.stress_ratio))),
+            size_spread: Some(self.with_ends(domain.size_spread.map(|s| s.min(1.0)))),
+            material,
         };
         (Microstructure::of_values(structure), conditions)
     }

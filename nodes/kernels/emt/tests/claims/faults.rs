@@ -93,6 +93,10 @@ fn states_that_no_packing_has_are_refused() {
         let e = fault(|o| o.conditions.solid_fraction = Some(Measured::exact(phi)));
         assert!(matches!(e, EmtError::SolidFraction { .. }), "{e}");
     }
+    for ratio in [-1.6, 3.1, f64::NAN] {
+        let e = fault(|o| o.conditions.stress_ratio = Some(Measured::exact(ratio)));
+        assert!(matches!(e, EmtError::StressRatio { .. }), "{e}");
+    }
     for nu in [-0.1, 0.51, f64::NAN] {
         let grains = Material { poisson_ratio: nu, ..Material::GLASS };
         let e = fault(|o| o.conditions.material = Some(grains));

@@ -108,7 +108,9 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
                 let conditions = Conditions {
                     gamma: StrainRatio::given(random.within(inner(domain.gamma))),
                     solid_fraction: Some(Measured::exact(random.within([0.5, 0.7]))),
-                    ..Conditions::at(10f64.powf(random.within([2.0, 8.0])))
+                    stress_ratio: Some(Measured::exact(random.within([-0.15, 0.25]))),
+                    size_spread: Some(random.within([0.0, 0.2])),
+                    ..Conditions::at(random.pressure(&domain, calibration.material()))
                 };
                 let predict = |s: &grainlab_core::results::Microstructure, c: &Conditions| {
                     model.predict(s, c, &calibration)
@@ -161,6 +163,10 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
                 });
                 state(GAMMA + 1, &|by| Conditions {
                     solid_fraction: conditions.solid_fraction.map(|m| scaled(m, by)),
+                    ..conditions
+                });
+                state(GAMMA + 2, &|by| Conditions {
+                    stress_ratio: conditions.stress_ratio.map(|m| Measured::exact(m.value + by)),
                     ..conditions
                 });
             }

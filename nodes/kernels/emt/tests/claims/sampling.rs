@@ -24,6 +24,8 @@ fn observed(model: &dyn Model, calibration: &Calibration, relative: f64) -> Opti
         pressure: known(1.0e5),
         gamma: StrainRatio { value: -0.05, stddev: relative, source: StrainRatioSource::Given },
         solid_fraction: Some(known(0.63)),
+        stress_ratio: Some(Measured { value: 0.0, stddev: relative }),
+        size_spread: Some(0.0),
         material: None,
     };
     match model.predict(&structure, &conditions, calibration) {
@@ -151,7 +153,11 @@ impl Model for Line {
             structure,
             gamma: [0.0, 0.0],
             poisson_ratio: [0.0, 0.5],
+            reduced_pressure: [0.0, f64::INFINITY],
+            stress_ratio: [-1.5, 3.0],
+            size_spread: [0.0, f64::INFINITY],
             needs_solid_fraction: false,
+            compares_state: false,
         }
     }
 

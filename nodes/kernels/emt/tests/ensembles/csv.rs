@@ -30,15 +30,18 @@ impl Table {
     }
 }
 
-/// The packings of one ensemble; path and friction are the preparation.
+/// The packings of one ensemble; the path is the recipe.
 pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
     let t = read(&format!("ensembles/{name}"));
+    let has = |column: &str| t.header.iter().any(|h| h == column);
     let sample = |row: &Vec<String>| {
         let number = |column| t.number(row, column);
-        let preparation = format!("{}-{}", t.cell(row, "preparation"), t.cell(row, "mu2"));
+        // Without these columns: isotropic stress, equal grains.
+        let optional = |column| if has(column) { t.number(row, column) } else { 0.0 };
+        let preparation = t.cell(row, "preparation").to_owned();
         let moduli = ["g12_pa", "g13_pa", "theta_pa", "ti_c11_pa", "ti_c33_pa", "ti_c13_pa"];
         CalibrationSample {
-            packing: format!("{preparation}-{}", t.cell(row, "seed")),
+            packing: format!("{preparation} {} {}", t.cell(row, "mu2"), t.cell(row, "seed")),
             preparation,
             grains: number("grains") as u32,
             material: Material {
@@ -48,6 +51,8 @@ pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
             },
             pressure: number("pressure_pa"),
             solid_fraction: number("phi"),
+            stress_ratio: optional("axial_q_over_p"),
+            size_spread: optional("size_spread"),
             moduli: Moduli::of_values(moduli.map(|m| Some(number(m)))),
             gamma: StrainRatios {
                 total: t.cell(row, "g_total").parse().ok(),

@@ -19,6 +19,12 @@ const ROUNDING: f64 = 1e-15;
 /// does one below the tolerance of the solve).
 const FLOPPY: f64 = 1e-9;
 
+/// Smallest relative residual that a solve can reach in double precision.
+const FINEST: f64 = 1e-14;
+
+/// Difference of the two evaluations, as a fraction of the largest entry of A, above which a solve counts as failed.
+const COARSEST: f64 = 1e-4;
+
 /// The stiffness of a spring network.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetworkStiffness {
@@ -36,7 +42,8 @@ pub struct NetworkStiffness {
     pub iterations: u32,
 }
 
-/// Relaxed and affine stiffness of `network`, solved to the relative residual `tolerance`; `None` if the
+/// Relaxed and affine stiffness of `network`, solved to the relative residual `tolerance`, or to a smaller
+/// one where the network is so soft that the two evaluations below differ by more than a thousand times that; `None` if the
 /// network resists no strain.
 ///
 /// The relaxed stiffness is evaluated by energy, with an error of second order in the residual and from
@@ -52,17 +59,29 @@ pub fn relaxed_stiffness(
     let affine = network.affine_stiffness();
     let scale = affine.0.amax();
     let (loads, norms) = network.affine_loads();
-    let solution = match solver {
-        Solver::Iterative => solve(network, &loads, &norms, tolerance, max_iterations)?,
-        Solver::Direct => direct::solve(network, &loads, &norms, tolerance, max_iterations)?,
+    // The difference of the two is xᵀr/V; x grows with the softest modes, which takes the factor.
+    let limit = 1e3 * tolerance;
+    let at = |tolerance: f64| {
+        let solution = match solver {
+            Solver::Iterative => solve(network, &loads, &norms, tolerance, max_iterations),
+            Solver::Direct => direct::solve(network, &loads, &norms, tolerance, max_iterations),
+        }?;
+        let (relaxed, by_stress) = network.stiffness_with(&solution.motion);
+        let relative = (relaxed - by_stress).amax() / scale;
+        Ok((solution, relaxed, by_stress, relative))
     };
-    let (relaxed, by_stress) = network.stiffness_with(&solution.motion);
-    if relaxed.amax() <= FLOPPY.max(tolerance) * scale {
+    let mut found = at(tolerance)?;
+    if found.1.amax() <= FLOPPY.max(tolerance) * scale {
         return Ok(None);
     }
-    let relative = (relaxed - by_stress).amax() / scale;
-    // The difference is xᵀr/V; x grows with the softest modes, which takes the factor.
-    let limit = 1e3 * tolerance;
+    if found.3 > limit {
+        // Near the isostatic point the modes are softer than that. A finer solve may be below the rounding of double
+        // precision: then the difference stays, and is stated.
+        let finer: Result<_, MicroError> = at((0.1 * tolerance * limit / found.3).max(FINEST));
+        found = finer.unwrap_or(found);
+    }
+    let (solution, relaxed, by_stress, relative) = found;
+    let limit = limit.max(COARSEST);
     if relative.is_nan() || relative > limit {
         return Err(MicroError::Inconsistent { relative, limit });
     }

@@ -45,7 +45,7 @@ pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSa
 
 /// The first `preparation` cells grouped by identify the preparation, those after them the packing.
 fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
-    let State { moduli, truth, phi, grains, grain_shear_modulus, poisson, .. } = &row.state;
+    let State { moduli, truth, phi, stress_ratio, size_spread, grains, grain_shear_modulus, poisson, .. } = &row.state;
     let need = |value: Option<f64>, name: &str| match value {
         Some(value) if value.is_finite() => Ok(value),
         Some(value) => Err(format!("{name} = {value} is not finite")),
@@ -69,6 +69,9 @@ fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
         },
         pressure: row.state.pressure.value,
         solid_fraction: need(phi.map(|p| p.value), "phi")?,
+        // Tables without them are of equal grains in an isotropic stress.
+        stress_ratio: need(Some(stress_ratio.map_or(0.0, |ratio| ratio.value)), "axial_q_over_p")?,
+        size_spread: need(Some(size_spread.unwrap_or(0.0)), "size_spread")?,
         moduli: *moduli,
         gamma: row.state.measured_gamma,
         k: need(truth.k, "k")?,

@@ -2,18 +2,18 @@
 
 use grainlab_console::Table;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{AmplitudeLaw, RelaxationCalibration, ScalingLaw};
+use grainlab_emt::{DeviatorLaw, RattlerLaw, Reach, RelaxationCalibration, ScalingLaw};
 use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration};
 use std::collections::BTreeSet;
 
 /// Constants with their standard errors, scatter, and ranges.
 pub(super) fn text(
     calibration: &Calibration,
-    isotropic: &[CalibrationSample],
-    anisotropic: &[CalibrationSample],
+    [isotropic, anisotropic, others]: [&[CalibrationSample]; 3],
 ) -> String {
     let mut text = format!("calibration {}\n", calibration.name());
-    for (kind, samples) in [("isotropic", isotropic), ("not isotropic", anisotropic)] {
+    for (kind, samples) in [("isotropic", isotropic), ("not isotropic", anisotropic), ("other", others)]
+    {
         if !samples.is_empty() {
             text += &format!("  {}\n", summary(kind, samples));
         }
@@ -64,38 +64,53 @@ fn line_table<'a>(lines: impl Iterator<Item = &'a IsotropicCalibration>) -> Stri
 }
 
 fn network_text(n: &RelaxationCalibration) -> String {
-    let mut laws = Table::new(["ln X =", "level", "ln z", "ln(z - z0)", "z0", "ln(phi/phi0)", "ln(p/p0)"]);
+    let head = ["ln X =", "level", "ln z", "ln(z - z0)", "z0", "ln p", "k_t/k_n - 8/9", "s^2"];
+    let mut laws = Table::new(head);
     for (name, l) in [("bulk", &n.theta), ("shear", &n.shear)] {
-        let ScalingLaw { level, by_z, by_excess, onset, by_solid_fraction, by_pressure } = *l;
-        let numbers = [level, by_z, by_excess, onset, by_solid_fraction, by_pressure];
+        let ScalingLaw { level, by_z, by_excess, onset, by_pressure, by_stiffness_ratio, by_size_variance } = *l;
+        let numbers = [level, by_z, by_excess, onset, by_pressure, by_stiffness_ratio, by_size_variance];
         laws.row(std::iter::once(name.to_owned()).chain(numbers.map(|v| format!("{v:.4}"))));
     }
-    let mut amplitudes = Table::new(["over eps", "constant", "z/(z - 4)"]);
-    for (name, a) in [
+    let head = ["X =", "eps", "eps u", "eps s^2", "eps (k_t/k_n - 8/9)", "eps ln p", "eps u ln p", "q/p", "u q/p"];
+    let mut deviators = Table::new(head);
+    for (name, law) in [
         ("dilatational deviator", &n.dilatation),
         ("Voigt deviator", &n.voigt),
         ("harmonic part", &n.harmonic),
         ("eps by stiffness", &n.eps_stiffness),
     ] {
-        let AmplitudeLaw { constant, critical } = *a;
-        amplitudes.row([name.to_owned(), format!("{constant:.4}"), format!("{critical:.4}")]);
+        let DeviatorLaw { by_eps, by_stress_ratio } = law;
+        let numbers = by_eps.iter().chain(by_stress_ratio).map(|v| format!("{v:.4}"));
+        deviators.row(std::iter::once(name.to_owned()).chain(numbers));
     }
+    let RattlerLaw([a, b, c, d, e]) = n.rattlers;
     let names = ["ln bulk", "ln shear", "dilatational", "Voigt", "harmonic", "eps by stiffness", "k"];
     let mut scatter = Table::new(names);
     scatter.row((0..names.len()).map(|i| format!("{:.4}", n.scatter[i][i].max(0.0).sqrt())));
-    let [z, eps] = [n.z, n.eps];
+    let Reach { z, eps, pressure, stiffness_ratio, size_spread, stress_ratio } = n.reach;
+    let [by_sizes, by_pressure] = n.scatter_by_state;
     format!(
-        "\nRelaxed networks of {} grains, in units of E*^(2/3) p^(1/3): z {:.3} to {:.3}, eps {:.3} to {:.3}, phi0 = {:.4}, \
-         p0 = {} kPa\n{}{}Scatter of packings left out of the fit of the laws, times (z - 4)/z\n{}",
+        "\nRelaxed networks of {} grains, {}, in units of E*^(2/3) p^(1/3)\nz {:.3} to {:.3}, eps {:.3} to {:.3}, p/E* {:.2e} \
+         to {:.2e}, k_t/k_n {:.3} to {:.3}, s (standard deviation of the radii over their mean) {:.3} to {:.3}, q/p {:.3} to \
+         {:.3}; p is p/E* over 1e-6, u = z/(z - 4)\n{}{}k = {a:.3} {b:+.4} z {c:+.4} z^2 {d:+.4} ln p {e:+.3} s^2\nScatter of \
+         packings left out of the laws by their recipes, all but that of k times (z - 4)/z; its variance grows as \
+         exp({by_sizes:.2} s^2 {by_pressure:+.3} ln p)\n{}",
         n.grains,
+        grainlab_console::count(n.recipes as usize, "recipe"),
         z[0],
         z[1],
         eps[0],
         eps[1],
-        n.solid_fraction[0],
-        n.pressure / 1e3,
+        pressure[0],
+        pressure[1],
+        stiffness_ratio[0],
+        stiffness_ratio[1],
+        size_spread[0],
+        size_spread[1],
+        stress_ratio[0],
+        stress_ratio[1],
         laws.text(),
-        amplitudes.text(),
+        deviators.text(),
         scatter.text(),
     )
 }

@@ -76,6 +76,10 @@ pub(super) static INPUTS: &[Input] = inputs! {
     "phi" Datum "" |s| s.phi.map(|p| p.value), |s, v| s.phi = Some(Measured::exact(v));
     "phi_sigma" Stddev "standard deviation of phi"
         |s| s.phi.map(|p| p.stddev), |s, v| if let Some(phi) = &mut s.phi { phi.stddev = v };
+    "axial_q_over_p" Datum "" |s| s.stress_ratio.map(|r| r.value), |s, v| s.stress_ratio = Some(Measured::exact(v));
+    "axial_q_over_p_sigma" Stddev "standard deviation of axial_q_over_p"
+        |s| s.stress_ratio.map(|r| r.stddev), |s, v| if let Some(ratio) = &mut s.stress_ratio { ratio.stddev = v };
+    "size_spread" Datum "" |s| s.size_spread, |s, v| s.size_spread = Some(v);
     "grains" Datum "" |s| s.grains, |s, v| s.grains = Some(v);
     "k" Truth "" |s| s.truth.k, |s, v| s.truth.k = Some(v);
     "k_hat" Truth "k of the equivalent isotropic packing, in the calibration's sense" |s| s.truth.k_hat, |s, v| s.truth.k_hat = Some(v);

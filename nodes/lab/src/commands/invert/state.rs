@@ -31,6 +31,10 @@ pub(crate) struct State {
     /// The γ/Δ measured by `grainlab analyze`.
     pub(crate) measured_gamma: StrainRatios,
     pub(crate) phi: Option<Measured>,
+    /// (σ_33 − (σ_11 + σ_22)/2)/p.
+    pub(crate) stress_ratio: Option<Measured>,
+    /// Standard deviation of the radii over their mean.
+    pub(crate) size_spread: Option<f64>,
     /// Pa.
     pub(crate) grain_shear_modulus: Option<f64>,
     pub(crate) poisson: Option<f64>,
@@ -56,6 +60,8 @@ impl State {
             gamma: None,
             measured_gamma: StrainRatios::default(),
             phi: None,
+            stress_ratio: None,
+            size_spread: None,
             grain_shear_modulus: None,
             poisson: None,
             truth: Microstructure::default(),
@@ -87,6 +93,8 @@ impl State {
         let mut conditions = Conditions::at(self.pressure.value);
         conditions.pressure = self.pressure;
         conditions.solid_fraction = self.phi;
+        conditions.stress_ratio = self.stress_ratio;
+        conditions.size_spread = self.size_spread;
         conditions.material = self.material(&way.calibration);
         if way.model.uses_gamma() {
             let model = way.model.name();

@@ -1,7 +1,7 @@
 //! The least squares problem at one coordination number, and what follows from its solution.
 
 use super::state::State;
-use crate::calibration::{RelaxationCalibration, SCATTERED};
+use crate::calibration::{NetworkState, Outside, RelaxationCalibration, SCATTERED};
 use crate::invariants::INVARIANTS;
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::Observation;
@@ -68,9 +68,8 @@ pub(super) struct Fit {
     pub(super) objective: f64,
     /// Observed minus predicted.
     residual: Moduli,
-    /// Derivatives of the moduli with respect to the invariants, ln φ, and (z, ε).
+    /// Derivatives of the moduli with respect to the invariants, and to (z, ε).
     by_invariants: SMatrix<f64, MODULI, INVARIANTS>,
-    by_ln_phi: Moduli,
     by_unknowns: SMatrix<f64, MODULI, 2>,
     /// Inverse of the covariance of the residual, and covariance of the unknowns.
     weight: Square,
@@ -94,21 +93,21 @@ impl Fit {
         eps: Option<f64>,
         fits_eps: bool,
     ) -> Option<Self> {
+        let laws = &state.laws;
         let deviators = [network.dilatation, network.voigt, network.harmonic];
         // The moduli are linear in ε.
         let isotropic = state.invariants(network, z, 0.0);
         let by_eps = |slopes: &SMatrix<f64, MODULI, INVARIANTS>| {
-            (0..3).map(|i| slopes.column(2 + i) * deviators[i].value(z)).sum::<Moduli>()
+            (0..3).map(|i| slopes.column(2 + i) * deviators[i].by_eps(z, laws)).sum::<Moduli>()
         };
         let at_zero = data.masked(isotropic.slopes());
         let first = Moduli::from(isotropic.moduli());
-        let covariance = |slopes: &SMatrix<f64, MODULI, INVARIANTS>, by_ln_phi: &Moduli, by_eps: &Moduli| {
+        let covariance = |slopes: &SMatrix<f64, MODULI, INVARIANTS>, by_eps: &Moduli| {
             let scatter = network
                 .scatter_at(z, state.variance_factor)
                 .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
                 .into_owned();
             let mut c = slopes * scatter * slopes.transpose() + data.covariance;
-            c += by_ln_phi * by_ln_phi.transpose() * state.ln_phi[1].powi(2);
             if !fits_eps {
                 let [mean, spread] = network.eps_spread;
                 c += by_eps * by_eps.transpose() * (mean * mean + spread * spread);
@@ -120,15 +119,11 @@ impl Fit {
             }
             c
         };
-        let phi = |slopes: &SMatrix<f64, MODULI, INVARIANTS>| {
-            slopes.column(0) * network.theta.by_solid_fraction
-                + slopes.column(1) * network.shear.by_solid_fraction
-        };
         let eps = match eps {
             Some(eps) => eps,
             None if fits_eps => {
                 let direction = by_eps(&at_zero);
-                let c = covariance(&at_zero, &phi(&at_zero), &direction);
+                let c = covariance(&at_zero, &direction);
                 let weighted = Cholesky::new(c)?.solve(&direction);
                 let residual = data.masked(data.value - first);
                 weighted.dot(&residual) / weighted.dot(&direction)
@@ -137,13 +132,12 @@ impl Fit {
         };
         let invariants = state.invariants(network, z, eps);
         let by_invariants = data.masked(invariants.slopes());
-        let by_ln_phi = phi(&by_invariants);
         let direction = by_eps(&by_invariants);
-        let c = covariance(&by_invariants, &by_ln_phi, &direction);
+        let c = covariance(&by_invariants, &direction);
         let cholesky = Cholesky::new(c)?;
         let by_z = by_invariants.column(0) * network.theta.slope(z)
             + by_invariants.column(1) * network.shear.slope(z)
-            + (0..3).map(|i| by_invariants.column(2 + i) * (deviators[i].slope(z) * eps)).sum::<Moduli>();
+            + (0..3).map(|i| by_invariants.column(2 + i) * deviators[i].slope(z, eps, laws)).sum::<Moduli>();
         let mut by_unknowns = SMatrix::<f64, MODULI, 2>::from_columns(&[by_z, direction]);
         let weight = cholesky.inverse();
         if !fits_eps {
@@ -164,7 +158,6 @@ impl Fit {
             objective: chi_square + ln_det,
             residual,
             by_invariants,
-            by_ln_phi,
             by_unknowns,
             weight,
             unknowns: information.try_inverse()?,
@@ -222,15 +215,12 @@ impl Fit {
         let (z, eps) = (self.z, self.eps);
         let gain = self.gain();
         let scatter = network.scatter_at(z, state.variance_factor);
-        let ln_rattlers = network.ln_rattlers(z, state.ln_phi[0], state.ln_p);
-        let rattlers = ln_rattlers.exp();
-        let [_, by_z, by_phi, by_p] = network.rattlers;
-        let amplitude = network.eps_stiffness;
+        let (laws, of_k, of_eps) = (&state.laws, network.rattlers, network.eps_stiffness);
         // Rows: ε weighted by stiffness, k. Columns: z, ε.
         let follows = SMatrix::<f64, 2, 2>::new(
-            amplitude.slope(z) * eps,
-            amplitude.value(z),
-            1.0 - rattlers - z * rattlers * by_z,
+            of_eps.slope(z, eps, laws),
+            of_eps.by_eps(z, laws),
+            of_k.slope(z),
             0.0,
         );
         // The scatter of these two is correlated with that of the moduli: regression on the residual.
@@ -241,11 +231,11 @@ impl Fit {
         let beyond = regression * self.residual;
         let known = self.fits_eps;
         let structure = Microstructure {
-            k: Some(z * (1.0 - rattlers) + beyond[1]),
+            k: Some(of_k.value(z, laws) + beyond[1]),
             k_hat: None,
             z: Some(z),
             eps: known.then_some(eps),
-            eps_stiffness: known.then_some(amplitude.value(z) * eps + beyond[0]),
+            eps_stiffness: known.then_some(of_eps.value(z, eps, laws) + beyond[0]),
         };
 
         let rows =
@@ -255,11 +245,21 @@ impl Fit {
         by_moduli.fixed_view_mut::<2, MODULI>(2, 0).copy_from(&following);
 
         // The residual changes with the data and, with opposite sign, with the prediction for the state.
-        let mut jacobian = Jacobian::zeros();
-        let by_ln_p = -data.value / 3.0
+        let deviators = [network.dilatation, network.voigt, network.harmonic];
+        let mut by_ln_p = -data.value / 3.0
             - self.by_invariants.column(0) * network.theta.by_pressure
             - self.by_invariants.column(1) * network.shear.by_pressure;
-        let by_state = [by_moduli * data.masked(by_ln_p), by_moduli * -self.by_ln_phi];
+        let mut by_stress = Moduli::zeros();
+        for (i, law) in deviators.iter().enumerate() {
+            by_ln_p -= self.by_invariants.column(2 + i) * law.by_ln_pressure(z, eps);
+            by_stress -= self.by_invariants.column(2 + i) * law.by_stress_ratio(z);
+        }
+        let mut by_pressure = by_moduli * data.masked(by_ln_p);
+        let mut by_stress = by_moduli * data.masked(by_stress);
+        by_pressure[2] += of_eps.by_ln_pressure(z, eps);
+        by_pressure[3] += of_k.by_ln_pressure();
+        by_stress[2] += of_eps.by_stress_ratio(z);
+        let mut jacobian = Jacobian::zeros();
         for (row, quantity) in rows.into_iter().enumerate() {
             if structure.get(quantity).is_none() {
                 continue;
@@ -268,13 +268,8 @@ impl Fit {
             for i in 0..MODULI {
                 jacobian[(of, i)] = by_moduli[(row, i)] * data.value[i];
             }
-            jacobian[(of, MODULI)] = by_state[0][row];
-            jacobian[(of, MODULI + 2)] = if state.phi_known { by_state[1][row] } else { 0.0 };
-        }
-        let of_k = InferredQuantity::K as usize;
-        jacobian[(of_k, MODULI)] -= z * rattlers * by_p;
-        if state.phi_known {
-            jacobian[(of_k, MODULI + 2)] -= z * rattlers * by_phi;
+            jacobian[(of, MODULI)] = by_pressure[row];
+            jacobian[(of, MODULI + 3)] = if state.stress_known { by_stress[row] } else { 0.0 };
         }
 
         // Errors from the scatter of the packings: through the moduli, and that of k and of ε weighted by stiffness.
@@ -283,17 +278,12 @@ impl Fit {
         by_scatter[(2, INVARIANTS)] = -1.0;
         by_scatter[(3, INVARIANTS + 1)] = -1.0;
         let mut errors = by_scatter * scatter * by_scatter.transpose();
-        if !state.phi_known {
-            let mut by_phi_row = by_state[1];
-            by_phi_row[3] -= z * rattlers * by_phi;
-            errors += by_phi_row * by_phi_row.transpose() * state.ln_phi[1].powi(2);
-        }
         if !self.fits_eps {
             let [mean, spread] = network.eps_spread;
-            let direction = self.of_eps(network);
-            let row = by_moduli * direction;
+            let row = by_moduli * self.of_eps(network, laws);
             errors += row * row.transpose() * (mean * mean + spread * spread);
         }
+        errors *= self.growth(data, network);
         let mut discrepancy = MicrostructureCovariance::zeros();
         for (a, qa) in rows.into_iter().enumerate() {
             for (b, qb) in rows.into_iter().enumerate() {
@@ -303,9 +293,21 @@ impl Fit {
         Inferred { structure, jacobian, discrepancy }
     }
 
+    /// The inferred quantities that are outside the packings of the calibration.
+    pub(super) fn outside(&self, network: &RelaxationCalibration) -> Vec<Outside> {
+        network.reach.outside_structure(self.z, self.eps())
+    }
+
+    /// Factor of the variance of the model's error, 1 or more: it grows with the distance of the structure from the
+    /// packings of the calibration, and where the moduli fit the laws less well than those of the packings.
+    fn growth(&self, data: &Data, network: &RelaxationCalibration) -> f64 {
+        let misfit = self.degrees_of_freedom(data).map_or(1.0, |n| (self.chi_square / n as f64).max(1.0));
+        self.outside(network).iter().map(Outside::growth).product::<f64>() * misfit
+    }
+
     /// Derivative of the moduli with respect to ε.
-    fn of_eps(&self, network: &RelaxationCalibration) -> Moduli {
-        let amplitudes = [network.dilatation, network.voigt, network.harmonic];
-        (0..3).map(|i| self.by_invariants.column(2 + i) * amplitudes[i].value(self.z)).sum()
+    fn of_eps(&self, network: &RelaxationCalibration, laws: &NetworkState) -> Moduli {
+        let deviators = [network.dilatation, network.voigt, network.harmonic];
+        (0..3).map(|i| self.by_invariants.column(2 + i) * deviators[i].by_eps(self.z, laws)).sum()
     }
 }

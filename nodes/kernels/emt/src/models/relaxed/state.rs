@@ -1,22 +1,25 @@
 //! The state of the sample, as the scaling laws take it.
 
-use crate::calibration::{Calibration, RelaxationCalibration};
+use crate::calibration::{Calibration, NetworkState, Outside, RelaxationCalibration};
 use crate::conditions::Conditions;
+use crate::error::EmtError;
 use crate::invariants::Invariants;
 
 /// The state of a sample in the units of the scaling laws.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct State {
     /// E*^⅔ p^⅓, Pa.
     pub(super) unit: f64,
-    /// ln(φ/φ0), and its standard deviation.
-    pub(super) ln_phi: [f64; 2],
-    /// ln of p/E* over that of the calibration's reference.
-    pub(super) ln_p: f64,
-    /// Whether φ was given.
-    pub(super) phi_known: bool,
-    /// Variance of the scatter of samples of this size over that of the packings of the calibration.
+    /// The state in the laws.
+    pub(super) laws: NetworkState,
+    /// Whether q/p was given.
+    pub(super) stress_known: bool,
+    /// Whether the sizes were given.
+    pub(super) sizes_known: bool,
+    /// Variance of the scatter in this state and of samples of this size over that of the calibration.
     pub(super) variance_factor: f64,
+    /// What is outside the packings of the calibration.
+    pub(super) outside: Vec<Outside>,
 }
 
 impl State {
@@ -26,30 +29,42 @@ impl State {
         network: &RelaxationCalibration,
         calibration: &Calibration,
     ) -> Self {
-        let own = calibration.material();
-        let young = conditions.material.as_ref().unwrap_or(own).effective_young();
+        let material = conditions.material.as_ref().unwrap_or(calibration.material());
+        let young = material.effective_young();
         let pressure = conditions.pressure.value;
-        let [mean, spread] = network.solid_fraction;
-        let ln_phi = match conditions.solid_fraction {
-            Some(phi) => [(phi.value / mean).ln(), phi.stddev / phi.value],
-            None => [0.0, spread / mean],
-        };
+        let stress_ratio = conditions.stress_ratio.map_or(0.0, |ratio| ratio.value);
+        let laws =
+            NetworkState::of(pressure, material, conditions.size_spread.unwrap_or(0.0), stress_ratio);
+        let outside = network.reach.outside(pressure / young, &laws);
+        let growth: f64 = outside.iter().map(Outside::growth).product();
         Self {
             unit: young.cbrt().powi(2) * pressure.cbrt(),
-            ln_phi,
-            ln_p: (pressure / network.pressure * (own.effective_young() / young)).ln(),
-            phi_known: conditions.solid_fraction.is_some(),
-            variance_factor: network.variance_factor(grains),
+            laws,
+            stress_known: conditions.stress_ratio.is_some(),
+            sizes_known: conditions.size_spread.is_some(),
+            variance_factor: network.variance_factor(grains) * network.growth(&laws) * growth,
+            outside,
         }
+    }
+
+    /// The first quantity that is too far from the packings of the calibration, if any, as an error.
+    pub(super) fn within_reach(&self, calibration: &str) -> Result<(), EmtError> {
+        self.outside.iter().find(|o| o.is_too_far()).map_or(Ok(()), |o| Err(too_far(o, calibration)))
     }
 
     pub(super) fn invariants(&self, network: &RelaxationCalibration, z: f64, eps: f64) -> Invariants {
         Invariants {
-            ln_theta: network.theta.value(z, self.ln_phi[0], self.ln_p),
-            ln_shear: network.shear.value(z, self.ln_phi[0], self.ln_p),
-            dilatation: network.dilatation.value(z) * eps,
-            voigt: network.voigt.value(z) * eps,
-            harmonic: network.harmonic.value(z) * eps,
+            ln_theta: network.theta.value(z, &self.laws),
+            ln_shear: network.shear.value(z, &self.laws),
+            dilatation: network.dilatation.value(z, eps, &self.laws),
+            voigt: network.voigt.value(z, eps, &self.laws),
+            harmonic: network.harmonic.value(z, eps, &self.laws),
         }
     }
+}
+
+/// The error of a quantity that is too far from the packings of the calibration.
+pub(super) fn too_far(outside: &Outside, calibration: &str) -> EmtError {
+    let Outside { quantity, value, range: [low, high], .. } = *outside;
+    EmtError::TooFar { quantity, value, low, high, calibration: calibration.to_owned() }
 }

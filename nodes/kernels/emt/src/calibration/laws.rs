@@ -1,0 +1,198 @@
+//! The laws of a relaxed network: its invariants and its rattlers as functions of structure and state.
+
+use serde::{Deserialize, Serialize};
+
+/// Coordination number at which a network of frictional grains is isostatic: 3 z/2 force components for 6 degrees of
+/// freedom per grain. Its response to a change of coordination diverges there.
+pub(crate) const ISOSTATIC: f64 = 4.0;
+
+/// p/E* at which the terms in the pressure vanish.
+pub(crate) const REFERENCE_PRESSURE: f64 = 1e-6;
+
+/// k_t/k_n at which the terms in it vanish: that of Mindlin contacts for ν = 0.2.
+pub(crate) const REFERENCE_STIFFNESS_RATIO: f64 = 8.0 / 9.0;
+
+/// The known state of a packing, as the laws take it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NetworkState {
+    /// ln of p/E* over 1e-6.
+    pub ln_pressure: f64,
+    /// k_t/k_n − 8/9 of the contacts.
+    pub stiffness_ratio: f64,
+    /// Variance of the radii over the square of their mean.
+    pub size_variance: f64,
+    /// (σ_33 − (σ_11 + σ_22)/2)/p.
+    pub stress_ratio: f64,
+}
+
+/// z/(z − 4). Where a modulus is proportional to (z − 4)/z, more contacts in one direction change it by d ln G/d ln z =
+/// 4/(z − 4).
+fn critical(z: f64) -> f64 {
+    z / (z - ISOSTATIC)
+}
+
+fn critical_slope(z: f64) -> f64 {
+    -ISOSTATIC / (z - ISOSTATIC).powi(2)
+}
+
+/// ln X = a + b ln z + c ln(z − z0) + d ln p + e (k_t/k_n − 8/9) + f s², with p as in [`NetworkState::ln_pressure`] and s²
+/// the variance of the radii.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScalingLaw {
+    /// a.
+    pub level: f64,
+    /// b.
+    pub by_z: f64,
+    /// c.
+    pub by_excess: f64,
+    /// z0, below every z of the packings.
+    pub onset: f64,
+    /// d.
+    pub by_pressure: f64,
+    /// e.
+    pub by_stiffness_ratio: f64,
+    /// f.
+    pub by_size_variance: f64,
+}
+
+impl ScalingLaw {
+    /// Number of coefficients beside z0.
+    pub(crate) const TERMS: usize = 6;
+
+    /// The terms that the coefficients multiply, in the order of the fields.
+    pub(crate) fn terms(z: f64, onset: f64, state: &NetworkState) -> [f64; Self::TERMS] {
+        [1.0, z.ln(), (z - onset).ln(), state.ln_pressure, state.stiffness_ratio, state.size_variance]
+    }
+
+    pub(crate) fn new([a, b, c, d, e, f]: [f64; Self::TERMS], onset: f64) -> Self {
+        Self {
+            level: a,
+            by_z: b,
+            by_excess: c,
+            onset,
+            by_pressure: d,
+            by_stiffness_ratio: e,
+            by_size_variance: f,
+        }
+    }
+
+    /// ln X.
+    pub(crate) fn value(&self, z: f64, state: &NetworkState) -> f64 {
+        let coefficients = [
+            self.level,
+            self.by_z,
+            self.by_excess,
+            self.by_pressure,
+            self.by_stiffness_ratio,
+            self.by_size_variance,
+        ];
+        dot(&coefficients, &Self::terms(z, self.onset, state))
+    }
+
+    /// d ln X/dz.
+    pub(crate) fn slope(&self, z: f64) -> f64 {
+        self.by_z / z + self.by_excess / (z - self.onset)
+    }
+}
+
+/// The anisotropy of a network: X = ε (a0 + a1 u + a2 s² + a3 (k_t/k_n − 8/9) + a4 ln p + a5 u ln p) + q/p (b0 + b1 u)
+/// with u = z/(z − 4). The second group: at the same ε, a stress deviator changes the stiffness of the contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeviatorLaw {
+    /// a0 to a5.
+    pub by_eps: [f64; 6],
+    /// b0 and b1.
+    pub by_stress_ratio: [f64; 2],
+}
+
+impl DeviatorLaw {
+    /// Number of coefficients.
+    pub(crate) const TERMS: usize = 8;
+
+    /// The terms that the coefficients multiply, those of ε first.
+    pub(crate) fn terms(z: f64, eps: f64, state: &NetworkState) -> [f64; Self::TERMS] {
+        let [a0, a1, a2, a3, a4, a5] = Self::factors(z, state).map(|f| f * eps);
+        let q = state.stress_ratio;
+        [a0, a1, a2, a3, a4, a5, q, q * critical(z)]
+    }
+
+    fn factors(z: f64, state: &NetworkState) -> [f64; 6] {
+        let (u, ln_p) = (critical(z), state.ln_pressure);
+        [1.0, u, state.size_variance, state.stiffness_ratio, ln_p, u * ln_p]
+    }
+
+    pub(crate) fn new([a0, a1, a2, a3, a4, a5, b0, b1]: [f64; Self::TERMS]) -> Self {
+        Self { by_eps: [a0, a1, a2, a3, a4, a5], by_stress_ratio: [b0, b1] }
+    }
+
+    /// dX/dε.
+    pub(crate) fn by_eps(&self, z: f64, state: &NetworkState) -> f64 {
+        dot(&self.by_eps, &Self::factors(z, state))
+    }
+
+    /// dX/d(q/p).
+    pub(crate) fn by_stress_ratio(&self, z: f64) -> f64 {
+        self.by_stress_ratio[0] + self.by_stress_ratio[1] * critical(z)
+    }
+
+    /// dX/d ln p.
+    pub(crate) fn by_ln_pressure(&self, z: f64, eps: f64) -> f64 {
+        eps * (self.by_eps[4] + self.by_eps[5] * critical(z))
+    }
+
+    /// X.
+    pub(crate) fn value(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
+        self.by_eps(z, state) * eps + self.by_stress_ratio(z) * state.stress_ratio
+    }
+
+    /// dX/dz.
+    pub(crate) fn slope(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
+        let of_eps = self.by_eps[1] + self.by_eps[5] * state.ln_pressure;
+        (of_eps * eps + self.by_stress_ratio[1] * state.stress_ratio) * critical_slope(z)
+    }
+}
+
+/// k = a + b z + c z² + d ln p + e s²: the coordination number with rattlers counted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "[f64; 5]", into = "[f64; 5]")]
+pub struct RattlerLaw(pub [f64; 5]);
+
+impl From<[f64; 5]> for RattlerLaw {
+    fn from(coefficients: [f64; 5]) -> Self {
+        Self(coefficients)
+    }
+}
+
+impl From<RattlerLaw> for [f64; 5] {
+    fn from(law: RattlerLaw) -> Self {
+        law.0
+    }
+}
+
+impl RattlerLaw {
+    /// The terms that the coefficients multiply.
+    pub(crate) fn terms(z: f64, state: &NetworkState) -> [f64; 5] {
+        [1.0, z, z * z, state.ln_pressure, state.size_variance]
+    }
+
+    /// k.
+    pub(crate) fn value(&self, z: f64, state: &NetworkState) -> f64 {
+        dot(&self.0, &Self::terms(z, state))
+    }
+
+    /// dk/dz.
+    pub(crate) fn slope(&self, z: f64) -> f64 {
+        self.0[1] + 2.0 * self.0[2] * z
+    }
+
+    /// dk/d ln p.
+    pub(crate) fn by_ln_pressure(&self) -> f64 {
+        self.0[3]
+    }
+}
+
+fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,134 @@
+//! What the packings of a calibration cover, and how far another packing is from them.
+
+use super::laws::NetworkState;
+use serde::{Deserialize, Serialize};
+
+/// Distance, in widths of a range, beyond which there is no estimate.
+const UNKNOWN: f64 = 0.5;
+
+/// Factor of the variance at the distance [`UNKNOWN`], less 1. The laws are smooth, but their errors outside are those of an
+/// extrapolation: packings outside the packings taught (`tests/ensembles`) need it.
+const GROWTH: f64 = 8.0;
+
+/// Share of a range within which a state at its end still counts as inside: the tolerance of a servo.
+const TOLERANCE: f64 = 1e-3;
+
+/// Lowest and highest of the packings of a calibration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reach {
+    /// z.
+    pub z: [f64; 2],
+    /// ε.
+    pub eps: [f64; 2],
+    /// p/E*.
+    pub pressure: [f64; 2],
+    /// k_t/k_n.
+    pub stiffness_ratio: [f64; 2],
+    /// Standard deviation of the radii over their mean.
+    pub size_spread: [f64; 2],
+    /// (σ_33 − (σ_11 + σ_22)/2)/p.
+    pub stress_ratio: [f64; 2],
+}
+
+/// One quantity outside its range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Outside {
+    pub(crate) quantity: &'static str,
+    pub(crate) value: f64,
+    pub(crate) range: [f64; 2],
+    /// Distance from the range in widths of it.
+    distance: f64,
+}
+
+impl Outside {
+    /// Whether it is too far for an estimate.
+    pub(crate) fn is_too_far(&self) -> bool {
+        // True for NaN.
+        !(self.distance <= UNKNOWN)
+    }
+
+    /// Factor of the variances of an estimate.
+    pub(crate) fn growth(&self) -> f64 {
+        1.0 + GROWTH * (self.distance / UNKNOWN).powi(2)
+    }
+}
+
+impl Reach {
+    /// The quantities of this state that are outside.
+    pub(crate) fn outside(&self, pressure: f64, state: &NetworkState) -> Vec<Outside> {
+        let size_spread = state.size_variance.max(0.0).sqrt();
+        let stiffness_ratio = state.stiffness_ratio + super::laws::REFERENCE_STIFFNESS_RATIO;
+        [
+            beyond("p/E*", pressure, self.pressure, f64::ln, 1.0),
+            beyond("k_t/k_n", stiffness_ratio, self.stiffness_ratio, |v| v, 0.1),
+            beyond("the spread of the grain sizes", size_spread, self.size_spread, |v| v, 0.1),
+            beyond("q/p", state.stress_ratio, self.stress_ratio, |v| v, 0.1),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// Beyond these ranges of p/E*, q/p and size spread there is no estimate.
+    pub(crate) fn limits(&self) -> [[f64; 2]; 3] {
+        let widened = |[low, high]: [f64; 2], least: f64| {
+            let width = UNKNOWN * (high - low).max(least);
+            [low - width, high + width]
+        };
+        let [_, sizes] = widened(self.size_spread, 0.1);
+        [
+            widened(self.pressure.map(f64::ln), 1.0).map(f64::exp),
+            widened(self.stress_ratio, 0.1),
+            [0.0, sizes],
+        ]
+    }
+
+    /// The inferred structure, if it is outside; ε `None` is inside.
+    pub(crate) fn outside_structure(&self, z: f64, eps: Option<f64>) -> Vec<Outside> {
+        let of_eps = eps.and_then(|eps| beyond("eps", eps, self.eps, |v| v, 0.1));
+        beyond("z", z, self.z, |v| v, 0.5).into_iter().chain(of_eps).collect()
+    }
+}
+
+/// The value, if it is outside: the distance is measured on the given scale, in widths of the range or of `least`, if that is
+/// wider.
+fn beyond(
+    quantity: &'static str,
+    value: f64,
+    range: [f64; 2],
+    scale: fn(f64) -> f64,
+    least: f64,
+) -> Option<Outside> {
+    let [low, high] = range.map(scale);
+    let width = (high - low).max(least);
+    let at = scale(value);
+    let distance = (low - at).max(at - high) / width;
+    // True for NaN.
+    let is_outside = !(distance <= TOLERANCE);
+    is_outside.then_some(Outside { quantity, value, range, distance })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variances_grow_with_the_distance_and_half_a_range_away_there_is_no_estimate() {
+        let at = |value| beyond("q/p", value, [-0.2, 0.3], |v| v, 0.1);
+        assert_eq!(at(0.3), None);
+        assert_eq!(at(-0.2001), None);
+        let near = at(0.35).unwrap();
+        assert!(!near.is_too_far() && (near.growth() - (1.0 + GROWTH * 0.04)).abs() < 1e-9, "{near:?}");
+        let far = at(-0.46).unwrap();
+        assert!(far.is_too_far() && at(f64::NAN).unwrap().is_too_far());
+    }
+
+    #[test]
+    fn a_pressure_is_compared_by_its_logarithm() {
+        let at = |value| beyond("p/E*", value, [1e-7, 1e-5], f64::ln, 1.0);
+        let (ten, below) = (at(1e-4).unwrap(), at(1e-8).unwrap());
+        assert!((ten.growth() - below.growth()).abs() < 1e-9 && !ten.is_too_far());
+        assert!(at(1.1e-4).unwrap().is_too_far());
+    }
+}
