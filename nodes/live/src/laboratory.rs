@@ -1,6 +1,6 @@
 //! What is known of the run that the page shows, in bounded memory.
 
-use crate::pace::Pace;
+use grainlab_console::Pace;
 use grainlab_core::Packing;
 use grainlab_msgs::boundary::{
     FabricReading, MicrostructureReading, ModuliReading, RunStateReading, RunStatus, StressRequest,
