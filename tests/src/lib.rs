@@ -2,6 +2,7 @@
 //!
 //! - [`lab`]: the `grainlab` binary under test, in a separate folder and DDS domain
 //! - [`process`]: one process, killed when dropped
+//! - [`terminal`]: a terminal of a given width, and what it shows
 //! - [`hosts`]: several hosts on one switch, as network namespaces
 //! - [`bodies`]: the content of a recording, topic by topic, without repeats
 //! - [`forger`]: a process outside the run that publishes forged messages
@@ -15,3 +16,4 @@ pub mod lab;
 pub mod lattice;
 pub mod process;
 pub mod python;
+pub mod terminal;

@@ -3,12 +3,13 @@
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use system_tests::bodies::assert_same;
 use system_tests::lab::{LIMIT, Lab, golden, grainlab};
-use system_tests::process::{Process, children};
+use system_tests::process::{Process, children, send};
 use system_tests::python;
+use system_tests::terminal::{Shown, Terminal};
 
 const NODES: [&str; 5] =
     ["dem_simulator", "servo_controller", "fabric_analyzer", "emt_inversion", "recorder"];
@@ -146,6 +147,29 @@ fn an_interrupted_launch_ends_every_process_and_finishes_the_recording() {
     }
     let recording = grainlab_recordings::Recording::open(&lab.last_run()).unwrap();
     assert_eq!(recording.warnings().len(), 0, "{:?}", recording.warnings());
+}
+
+#[test]
+fn on_a_terminal_a_phase_has_one_line_and_an_interrupted_launch_leaves_no_other() {
+    const COLUMNS: usize = 80;
+    let lab = Lab::new();
+    let (terminal, stderr) = Terminal::open(COLUMNS as u16);
+    let scene = golden("scenes/endless.toml");
+    let mut command = lab.command(&["launch", "--scene", &scene.to_string_lossy()]);
+    let mut launcher = command.env("TERM", "xterm").stdout(Stdio::null()).stderr(stderr).spawn().unwrap();
+    drop(command);
+    lab.until_recorded(200);
+    send(launcher.id(), libc::SIGINT);
+    assert_eq!(launcher.wait().unwrap().code(), Some(130));
+    let Shown { lines, erased } = terminal.shown();
+    assert!(erased.iter().any(|line| line.contains(" 1 of ")), "no live line was drawn: {erased:?}");
+    let wide = |line: &&String| line.chars().count() > COLUMNS;
+    assert_eq!(erased.iter().find(wide), None, "a live line is wider than the terminal");
+    // What is left: lines with the time that are about a phase that is over, or about the launch.
+    let progress = lines.iter().filter(|line| line.starts_with('['));
+    let left: Vec<_> = progress.filter(|l| l.contains(" of ") && !l.contains(" steps ")).collect();
+    assert!(left.is_empty(), "a live line is left: {left:?}");
+    assert_eq!(lines.last().map(String::as_str), Some(""), "the cursor is not in a line of its own");
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod verdict;
 
 use super::folder;
 use clap::ValueEnum;
+use grainlab_console::plot::Theme;
 use grainlab_console::{Failure, Format, json, print, say};
 use grainlab_node_kit::Exit;
 use grainlab_scene::Scene;
@@ -96,7 +97,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     };
     if let Some(folder) = &args.out {
         folder::write(folder, "accuracy.json", &json(&report)?)?;
-        folder::write(folder, "accuracy.svg", &plot::svg(&report))?;
+        folder::write(folder, "accuracy.svg", &plot::figure(&report).svg(Theme::Light))?;
     }
     print(&match args.format {
         Format::Json => json(&report)?,

@@ -11,6 +11,7 @@ pub(crate) use args::Args;
 
 use super::folder;
 use super::packing::load;
+use grainlab_console::plot::Theme;
 use grainlab_console::{Failure, Format, json, print};
 use grainlab_node_kit::Exit;
 
@@ -30,7 +31,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let report = report::report(rows);
     if let Some(folder) = &args.out {
         folder::write(folder, "acoustics.json", &json(&report)?)?;
-        folder::write(folder, "acoustics.svg", &plot::svg(&report))?;
+        folder::write(folder, "acoustics.svg", &plot::figure(&report).svg(Theme::Light))?;
         folder::write(folder, "dispersion.svg", &curves::svg(&packings[0])?)?;
     }
     print(&match args.format {

@@ -7,7 +7,8 @@ mod stepping;
 use super::numbers::{median, rounded};
 use super::packing;
 use clap::ValueEnum;
-use grainlab_console::{Failure, Format, Table, exact, json, print, say};
+use grainlab_console::plot::{Bar, Bars};
+use grainlab_console::{Failure, Format, Table, count, exact, json, print, say};
 use grainlab_core::Packing;
 use grainlab_dem::Simd;
 use grainlab_node_kit::Exit;
@@ -136,7 +137,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     print(&match args.format {
         Format::Json => json(&report)?,
         Format::Csv => table(&report.rows, exact).csv(),
-        Format::Table => report.machine.to_string() + &table(&report.rows, rounded).text(),
+        Format::Table => {
+            let table = report.machine.to_string() + &table(&report.rows, rounded).text();
+            // One case is no series.
+            if report.rows.len() > 1 { table + "\n" + &bars(&report.rows).text() } else { table }
+        }
     })?;
     Ok(Exit::Done)
 }
@@ -201,6 +206,24 @@ fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
         t.row(cells);
     }
     t
+}
+
+/// The rates by case, those of one size together.
+fn bars(rows: &[Row]) -> Bars {
+    let bar = |r: &Row| Bar {
+        name: format!("{} grains", r.grains),
+        value: r.particle_steps_per_second,
+        text: format!(
+            "{:.1}  {}, {}, {}",
+            1e-6 * r.particle_steps_per_second,
+            r.features.name(),
+            count(r.threads, "thread"),
+            r.simd
+        ),
+        ..Bar::default()
+    };
+    let title = "million particle-steps per second".to_owned();
+    Bars { title, from_zero: true, bars: rows.iter().map(bar).collect(), ..Bars::default() }
 }
 
 #[cfg(test)]

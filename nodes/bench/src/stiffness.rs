@@ -9,6 +9,7 @@ pub(crate) use args::Args;
 
 use super::folder;
 use super::packing::{copies, load, repeated};
+use grainlab_console::plot::Theme;
 use grainlab_console::{Failure, Format, json, print};
 use grainlab_core::{Mat3, Packing};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
@@ -32,7 +33,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let report = report::report(rows);
     if let Some(folder) = &args.out {
         folder::write(folder, "stiffness.json", &json(&report)?)?;
-        folder::write(folder, "stiffness.svg", &plot::svg(&report))?;
+        folder::write(folder, "stiffness.svg", &plot::figure(&report).svg(Theme::Light))?;
     }
     print(&match args.format {
         Format::Json => json(&report)?,

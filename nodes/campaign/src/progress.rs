@@ -1,5 +1,6 @@
 //! The progress of a campaign, with the time left.
 
+use grainlab_console::duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -101,25 +102,5 @@ impl Progress {
         }
         let left = self.began.elapsed().as_secs_f64() / ended as f64 * open as f64;
         format!(", {} left", duration(left))
-    }
-}
-
-/// A duration in two units at most.
-fn duration(seconds: f64) -> String {
-    let s = seconds.round() as u64;
-    match s {
-        0..60 => format!("{s} s"),
-        60..3600 => format!("{} min {} s", s / 60, s % 60),
-        _ => format!("{} h {} min", s / 3600, s % 3600 / 60),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_duration_has_two_units_at_most() {
-        assert_eq!([0.4, 59.4, 61.0, 3660.0].map(duration), ["0 s", "59 s", "1 min 1 s", "1 h 1 min"]);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! - [`Failure`], [`worse`]: the end of a command
 //! - [`Format`], [`Table`], [`print()`], [`say!`]: its output
-//! - [`count()`]: counts with their noun
+//! - [`count()`]: counts with their noun; [`duration()`]: times; [`Pace`]: rates and the time left
 //! - [`Dataset`]: typed columns, as CSV and Parquet
 //! - [`plot`]: plots as SVG; [`html`]: elements of HTML pages
 //! - [`scenes`]: built-in scenes, and those in files
@@ -10,15 +10,19 @@
 
 mod count;
 mod dataset;
+mod duration;
 mod failure;
 pub mod html;
 pub mod network;
 mod output;
+mod pace;
 pub mod plot;
 pub mod scenes;
 mod start;
 
 pub use count::count;
 pub use dataset::{Cell, Dataset};
+pub use duration::duration;
 pub use failure::{Failure, worse};
-pub use output::{CsvText, Format, Table, exact, fixed, json, print, print_more};
+pub use output::{CsvText, Format, Table, exact, fixed, json, print, print_more, say_line};
+pub use pace::Pace;

@@ -17,14 +17,20 @@ pub enum Format {
     Csv,
 }
 
-/// `eprintln!` that ignores a closed stderr: `2>&1 | head` must not end a run.
+/// `eprintln!` that ignores a closed stderr: `2>&1 | head` must not end a run. The line comes above a live line.
 #[macro_export]
 macro_rules! say {
-    ($($text:tt)*) => {{
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stderr(), $($text)*);
-    }};
+    ($($text:tt)*) => {
+        $crate::say_line(format!($($text)*))
+    };
 }
+
+/// Prints a line on stderr, as [`say!`] does.
+pub fn say_line(mut line: String) {
+    line.push('\n');
+    grainlab_node_kit::write_above_live_line(&line);
+}
+
 /// Writes `text` to stdout. A closed pipe (`| head`) is not an error.
 pub fn print(text: &str) -> Result<(), Failure> {
     print_more(text).map(|_| ())

@@ -1,11 +1,11 @@
-//! Plots as SVG: series of points over two axes, linear or logarithmic, with error bars, labels and a legend, in light or
+//! Plots as SVG and as text: series of points over two axes, linear or logarithmic, with error bars, labels and a legend, in light or
 //! dark. Points can have tooltips.
 //!
 //! - [`Figure`]: the contents; [`Theme`]: the colours; [`page_style`]: those of all plots of a page
 //! - [`Strip`]: one of several plots over a common axis; [`Rose`]: a quantity by direction; [`Bars`]: values by name
 //! - `axis`: positions of values, and the tick marks of an axis
 //! - `labels`: texts beside points, if there is room
-//! - `draw`: the elements; `style`: their colours
+//! - `draw`: the elements; `style`: their colours; `text`: plots for terminals
 
 mod axis;
 mod bars;
@@ -15,6 +15,7 @@ mod labels;
 mod rose;
 mod strip;
 mod style;
+mod text;
 
 pub use bars::{Bar, Bars};
 pub use figure::{Axis, Entry, Figure, Line, Marker, Point, Scale, Series, Theme};

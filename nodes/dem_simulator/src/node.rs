@@ -24,6 +24,10 @@ use std::time::Duration;
 
 /// Key of the diagnostics with the end conditions of the phase that do not hold.
 pub const UNMET: &str = "unmet";
+/// Key of the diagnostics with the share of the phase that is done, 0 to 1; empty if its end is not known beforehand.
+pub const PHASE_SHARE: &str = "phase_share";
+/// Key of the diagnostics with the name of the phase.
+pub const PHASE: &str = "phase";
 
 /// Period of `run_state` where nothing happens, wall time.
 pub(crate) const BEAT: Duration = Duration::from_secs(1);
@@ -290,6 +294,7 @@ impl Node for DemSimulator {
         let phase = self.run.path().phase(self.run.scene()).map_or("none", |p| p.name.as_str());
         let (counts, steps) =
             (self.lockstep.counts, self.run.engine().steps().saturating_sub(self.first_step));
+        let share = self.run.phase_share().filter(|_| self.stage == Stage::Running);
         let computing = self.computing.as_secs_f64();
         let particle_steps = steps as f64 * f64::from(self.run.scene().grains);
         let message = match self.stage {
@@ -299,8 +304,9 @@ impl Node for DemSimulator {
             Stage::Finished => "finished".into(),
         };
         Health::ok(message)
-            .with("phase", phase)
+            .with(PHASE, phase)
             .with(UNMET, if self.stage == Stage::Running { self.run.unmet() } else { String::new() })
+            .with(PHASE_SHARE, share.map_or_else(String::new, |s| format!("{s:.4}")))
             .with("step", self.run.engine().steps())
             .with("steps", steps)
             .with("scene", &self.run.scene().name)

@@ -60,6 +60,7 @@ impl Supervisor {
         watch: &Watch,
     ) -> bool {
         let mut hurried = false;
+        self.progress.wait_for("ending the processes");
         for ending in [Ending::Farewell, Ending::Record, Ending::Exit] {
             // An interrupted run ends at once; a complete run waits for stopped processes.
             let waits = exit != Exit::Interrupted && !hurried;

@@ -1,7 +1,7 @@
 //! The launcher: starts the processes of a launch file and supervises them until the run is done.
 //!
 //! - `child`: one process, which ends with the launcher
-//! - `progress`: a line for each phase
+//! - `progress`: a line for each phase; `phase_line`: that of a terminal
 //! - `pending_results`: results of the last packing that are still pending; `deadline`: their time limits
 //! - `watch`: the messages of the run
 //! - `stopped`: processes stopped by a signal; `time_limit`: a time limit that does not count the time for which they are
@@ -15,6 +15,7 @@ mod ending;
 pub mod last_packing;
 mod nodes;
 mod pending_results;
+mod phase_line;
 pub mod pipe;
 mod plan;
 mod progress;

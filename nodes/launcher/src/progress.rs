@@ -1,33 +1,64 @@
-//! Progress of a run for the user: a line for each phase, on stderr.
+//! Progress of a run for the user, on stderr: a line for each phase, which on a terminal shows its progress while it runs.
 
+use crate::phase_line::{self, PhaseName, Rest};
+use crate::watch::PhaseReport;
+use grainlab_console::{Pace, say, say_line};
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
+use grainlab_node_kit::{Terminal, draw_live_line, erase_live_line};
 use std::time::{Duration, Instant};
 
-/// Interval of the lines during a long phase.
+/// Interval of the lines during a long phase, where there is no terminal.
 const STILL: Duration = Duration::from_secs(10);
+
+/// Time over which the pace of a phase is a mean.
+const PACE: Duration = Duration::from_secs(10);
 
 /// Prints lines with the time since the start.
 #[derive(Debug)]
 pub(crate) struct Progress {
     begin: Instant,
     phases: usize,
-    phase: Option<u32>,
-    /// The end conditions of the phase that did not hold when the simulator last reported.
-    unmet: String,
+    phase: Option<Phase>,
+    /// What is waited for while no phase runs.
+    activity: &'static str,
     finished: bool,
     printed_at: Instant,
+}
+
+/// The phase under way.
+#[derive(Debug)]
+struct Phase {
+    index: u32,
+    name: PhaseName,
+    /// When it was first seen, and the step.
+    began: Instant,
+    first_step: u64,
+    /// What the simulator noted at its begin.
+    note: String,
+    /// What the simulator last reported.
+    report: PhaseReport,
+    pace: Pace,
 }
 
 impl Progress {
     /// For a path with this many phases.
     pub(crate) fn new(phases: usize) -> Self {
         let now = Instant::now();
-        Self { begin: now, phases, phase: None, unmet: String::new(), finished: false, printed_at: now }
+        let activity = "starting the processes";
+        Self { begin: now, phases, phase: None, activity, finished: false, printed_at: now }
+    }
+
+    fn seconds(&self) -> f64 {
+        self.begin.elapsed().as_secs_f64()
     }
 
     /// Prints a line with the time.
     pub(crate) fn say(&self, text: &str) {
-        grainlab_console::say!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
+        match Terminal::on_stderr() {
+            Some(terminal) => say_line(phase_line::wrapped(self.seconds(), text, terminal.width)),
+            None => say!("{} {text}", phase_line::time(self.seconds())),
+        }
+        self.draw();
     }
 
     /// Prints a line, at most once per interval.
@@ -38,34 +69,105 @@ impl Progress {
         }
     }
 
-    /// The end conditions of the present phase that do not hold: for the next line of a long phase.
-    pub(crate) fn unmet(&mut self, conditions: String) {
-        self.unmet = conditions;
+    /// Takes what the simulator reports of its phase. A report of the phase before may come late.
+    pub(crate) fn report(&mut self, report: PhaseReport) {
+        let Some(phase) = self.phase.as_mut().filter(|p| p.name.name == report.name) else { return };
+        if let Some(share) = report.share {
+            phase.pace.push(phase.began.elapsed(), share);
+        }
+        phase.report = report;
+        self.draw();
     }
 
-    /// Prints a line if a phase began or takes long.
+    /// What is waited for from now on, while no phase runs.
+    pub(crate) fn wait_for(&mut self, activity: &'static str) {
+        self.activity = activity;
+        self.phase = None;
+        self.draw();
+    }
+
+    /// Takes the state of the run: a phase began, is over, or takes long.
     pub(crate) fn show(&mut self, state: &RunStateReading) {
-        let step = state.step;
-        if state.status == RunStatus::Finished {
-            if !std::mem::replace(&mut self.finished, true) {
-                self.say(&format!("the loading path is done at step {step}"));
+        match state.status {
+            RunStatus::Finished if !std::mem::replace(&mut self.finished, true) => {
+                self.end_phase(state.step);
+                self.activity = "waiting for the results of the last packing";
+                self.say(&format!("the loading path is done at step {}", state.step));
             }
-            return;
+            RunStatus::Finished | RunStatus::Failed => {}
+            RunStatus::Running => {
+                let phase = self.phase.as_ref();
+                if phase.is_none_or(|p| p.index != state.phase) {
+                    // A restarted simulator may return to an earlier phase.
+                    if phase.is_some_and(|p| p.index < state.phase) {
+                        self.end_phase(state.step);
+                    }
+                    self.begin_phase(state);
+                } else if self.printed_at.elapsed() >= STILL && Terminal::on_stderr().is_none() {
+                    self.go_on(state.step);
+                }
+            }
         }
-        if state.status == RunStatus::Failed
-            || (self.phase == Some(state.phase) && self.printed_at.elapsed() < STILL)
-        {
-            return;
-        }
+        self.draw();
+    }
+
+    fn begin_phase(&mut self, state: &RunStateReading) {
         self.printed_at = Instant::now();
-        let (number, of, name) = (state.phase + 1, self.phases, &state.phase_name);
-        if self.phase.replace(state.phase) == Some(state.phase) {
-            let unmet = after(": ", &self.unmet);
-            self.say(&format!("phase {number} of {of}, {name} continues at step {step}{unmet}"));
-        } else {
-            self.unmet.clear();
-            let left_out = after(", ", &state.message);
-            self.say(&format!("phase {number} of {of}, {name} from step {step}{left_out}"));
+        let name = PhaseName { number: state.phase + 1, of: self.phases, name: state.phase_name.clone() };
+        self.phase = Some(Phase {
+            index: state.phase,
+            name: name.clone(),
+            began: Instant::now(),
+            first_step: state.step,
+            note: state.message.clone(),
+            report: PhaseReport::default(),
+            pace: Pace::over(PACE),
+        });
+        if Terminal::on_stderr().is_none() {
+            let PhaseName { number, of, name } = name;
+            let note = after(", ", &state.message);
+            self.say(&format!("phase {number} of {of}, {name} from step {}{note}", state.step));
+        }
+    }
+
+    /// A line of a phase that takes long.
+    fn go_on(&mut self, step: u64) {
+        self.printed_at = Instant::now();
+        let Some(Phase { name: PhaseName { number, of, name }, report, .. }) = &self.phase else { return };
+        let unmet = after(": ", &report.unmet);
+        self.say(&format!("phase {number} of {of}, {name} continues at step {step}{unmet}"));
+    }
+
+    /// On a terminal, the line of the phase that is over stays.
+    fn end_phase(&mut self, step: u64) {
+        let (Some(phase), Some(terminal)) = (self.phase.take(), Terminal::on_stderr()) else { return };
+        let counts = (step.saturating_sub(phase.first_step), phase.began.elapsed().as_secs_f64());
+        say_line(phase_line::done(self.seconds(), &phase.name, counts, &phase.note, terminal.width));
+    }
+
+    /// Draws the live line again; nothing where there is no terminal.
+    pub(crate) fn draw(&self) {
+        let Some(Terminal { width, colour }) = Terminal::on_stderr() else { return };
+        let line = match &self.phase {
+            Some(phase) => phase_line::live(self.seconds(), &phase.name, &phase.rest(), width, colour),
+            None => phase_line::activity(self.seconds(), self.activity, width),
+        };
+        draw_live_line(&line);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        erase_live_line();
+    }
+}
+
+impl Phase {
+    fn rest(&self) -> Rest {
+        match (self.report.share, self.report.unmet.as_str()) {
+            (Some(share), _) => Rest::Share(share, self.pace.time_until(1.0)),
+            (None, "") => Rest::Unknown,
+            (None, unmet) => Rest::Unmet(unmet.to_owned()),
         }
     }
 }

@@ -238,6 +238,7 @@ impl Supervisor {
                     }
                 }
                 () = sleep(POLL_PERIOD) => {
+                    self.progress.draw();
                     let suspended = self.look_for_stopped();
                     if let Some(late) = deadline.as_mut()
                         && late.limit.is_over(suspended)
@@ -283,6 +284,7 @@ impl Supervisor {
         let mut catching_up = TimeLimit::new(if behind { CATCHES_UP_WITHIN } else { Duration::ZERO });
         let mut waiting = TimeLimit::new(STOPPED_AT_MOST);
         loop {
+            self.progress.draw();
             let suspended = self.look_for_stopped();
             if catching_up.is_over(suspended) || waiting.is_over(false) {
                 return Exit::Done;
@@ -309,7 +311,7 @@ impl Supervisor {
                     RunStatus::Failed => self.failed = Some(state.message),
                 }
             }
-            Event::Unmet(conditions) => self.progress.unmet(conditions),
+            Event::Phase(report) => self.progress.report(report),
             Event::Goodbye(pid) => {
                 self.left.insert(pid);
             }

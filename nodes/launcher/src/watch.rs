@@ -4,7 +4,7 @@ use crate::run::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::Failure;
 use grainlab_console::network::bus_as;
-use grainlab_dem_simulator::UNMET;
+use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
 use grainlab_fabric_analyzer::WITHOUT_MODULI;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
@@ -67,8 +67,8 @@ pub(crate) enum Event {
     /// The process with this member number inferred the microstructure of the packing of this step from data of this
     /// topic.
     Microstructure { source: String, step: u64, member: u8 },
-    /// The end conditions of the present phase that do not hold.
-    Unmet(String),
+    /// How far the present phase is.
+    Phase(PhaseReport),
     /// The process with this id sent its last report.
     Goodbye(u32),
     /// The bus is open: messages are received from now on.
@@ -77,6 +77,17 @@ pub(crate) enum Event {
     Stranger(String),
     /// The watch itself failed.
     Failed(String),
+}
+
+/// How far a phase is, as the simulator reports it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct PhaseReport {
+    /// Its name.
+    pub(crate) name: String,
+    /// Share that is done, 0 to 1, if its end is known beforehand.
+    pub(crate) share: Option<f64>,
+    /// The end conditions that do not hold.
+    pub(crate) unmet: String,
 }
 
 /// A thread with its own bus.
@@ -189,8 +200,8 @@ impl RunSubscriptions {
                 if let Some(step) = step_under(MEASURING, &report) {
                     send(Event::Probing(step));
                 }
-                if let Some(unmet) = value_under(UNMET, &report) {
-                    send(Event::Unmet(unmet.to_owned()));
+                if let Some(phase) = phase_of(&report) {
+                    send(Event::Phase(phase));
                 }
                 if report.is_final() {
                     send(Event::Goodbye(report.pid));
@@ -233,6 +244,13 @@ fn strangers(bus: &dyn Bus) -> Vec<(&'static str, Stranger)> {
         bus.strange_writers(topic).into_iter().map(|w| (topic.name, bus.describe(w))).collect()
     };
     OF_THE_RUN.iter().flat_map(|topic| -> Vec<_> { of(topic) }).collect()
+}
+
+/// How far the present phase is, if the report is that of a simulator.
+fn phase_of(report: &Report) -> Option<PhaseReport> {
+    let share = value_under(PHASE_SHARE, report)?.parse().ok().filter(|s| (0.0..=1.0).contains(s));
+    let text = |key| value_under(key, report).map(str::to_owned);
+    Some(PhaseReport { name: text(PHASE)?, share, unmet: text(UNMET)? })
 }
 
 /// The step that a node reports under this key.

@@ -1,6 +1,6 @@
 //! What is known of the run that the page shows, in bounded memory.
 
-use crate::pace::Pace;
+use grainlab_console::Pace;
 use grainlab_core::Packing;
 use grainlab_msgs::boundary::{
     FabricReading, MicrostructureReading, ModuliReading, RunStateReading, RunStatus, StressRequest,
@@ -17,8 +17,8 @@ const PHASES: usize = 6;
 /// Time over which the rate of the simulation is a mean.
 const RATE_WINDOW: Duration = Duration::from_secs(3);
 
-/// Time over which progress is extrapolated.
-const PROGRESS_WINDOW: Duration = Duration::from_secs(20);
+/// Time over which the pace of a phase is a mean.
+const PHASE_WINDOW: Duration = Duration::from_secs(10);
 
 /// Most estimates that are kept of one packing.
 const ESTIMATES: usize = 64;
@@ -32,6 +32,16 @@ pub(crate) enum End {
     Early(String),
     /// The simulator has left without a report of the end.
     Vanished,
+}
+
+/// How far the phase is, as the simulator last reported.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct PhaseReport {
+    pub(crate) name: String,
+    /// Share that is done, 0 to 1, where the end is known beforehand.
+    pub(crate) share: Option<f64>,
+    /// The end conditions that do not hold.
+    pub(crate) unmet: String,
 }
 
 /// One run. Messages are taken as they arrive; times are those of the reader's clock.
@@ -50,7 +60,10 @@ pub struct Laboratory {
     pub(crate) inferred: (u64, Vec<Inference>),
     pub(crate) grains: Option<u32>,
     pub(crate) steps: Pace,
-    pub(crate) progress: Pace,
+    /// The phase under way.
+    pub(crate) of_phase: PhaseReport,
+    /// The share of that phase.
+    pub(crate) pace: Pace,
     pub(crate) end: Option<End>,
     /// When it was first heard of.
     pub(crate) began: Duration,
@@ -78,7 +91,8 @@ impl Laboratory {
             inferred: (0, Vec::new()),
             grains: None,
             steps: Pace::over(RATE_WINDOW),
-            progress: Pace::over(PROGRESS_WINDOW),
+            of_phase: PhaseReport::default(),
+            pace: Pace::over(PHASE_WINDOW),
             end: None,
             began: now,
             heard: now,
@@ -103,7 +117,6 @@ impl Laboratory {
         let Ok(state) = RunStateReading::try_from(message) else { return self.refused += 1 };
         self.heard = now;
         self.timeline.name(state.phase, &state.phase_name);
-        self.progress.push(now, state.progress);
         self.steps.push(now, state.step as f64);
         self.end = match state.status {
             // A restarted simulator goes on.
@@ -164,6 +177,19 @@ impl Laboratory {
         if let Some(scene) = value("scene") {
             self.scene.clone_from(scene);
         }
+        let text = |name: &str| value(name).cloned().unwrap_or_default();
+        let of_phase = PhaseReport {
+            name: text("phase"),
+            share: value("phase_share").and_then(|s| s.parse().ok()).filter(|s| (0.0..=1.0).contains(s)),
+            unmet: text("unmet"),
+        };
+        if of_phase.name != self.of_phase.name {
+            self.pace = Pace::over(PHASE_WINDOW);
+        }
+        if let Some(share) = of_phase.share {
+            self.pace.push(now, share);
+        }
+        self.of_phase = of_phase;
         match report.exit {
             Some(exit) if self.end.is_none() => {
                 self.end =

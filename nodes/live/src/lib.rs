@@ -1,7 +1,7 @@
 //! `grainlab view --live`: a page that follows a running laboratory.
 //!
 //! - [`run`]: joins the bus, serves the page, follows one run after the other; [`Options`]: what it needs
-//! - `domain`: where to look for a run; `follower`: subscriptions; [`Laboratory`]: what is known of a run; `pace`: its rates
+//! - `domain`: where to look for a run; `follower`: subscriptions; [`Laboratory`]: what is known of a run
 //! - `markup`, `status`: a laboratory as parts of the page; `snapshot`: the parts that browsers receive; `page`: what stays
 //! - [`Server`]: HTTP and server-sent events on the loopback interface
 //!
@@ -13,7 +13,6 @@ mod follower;
 mod laboratory;
 mod live;
 mod markup;
-mod pace;
 mod page;
 mod server;
 mod snapshot;

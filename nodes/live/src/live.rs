@@ -143,6 +143,7 @@ impl Show {
         parts.set("cards", known.cards());
         parts.set("targets", known.targets());
         parts.set("structure", known.structure());
+        parts.set("no-packing", known.no_packing());
         if let Some(follower) = follower {
             parts.set("nodes", known.nodes(follower.peers().iter(), follower.bus_now()));
         }

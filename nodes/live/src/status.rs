@@ -67,34 +67,65 @@ impl Laboratory {
                     duration(silence.as_secs_f64())
                 ),
             ),
-            None => ("good run", format!("Running{}", self.note())),
+            None => ("good run", "Running".to_owned()),
         }
     }
 
-    /// The conditions at which the phase ends that do not hold yet.
-    fn note(&self) -> String {
-        let message =
-            self.state.as_ref().filter(|s| s.status == RunStatus::Running).map(|s| s.message.as_str());
-        message.filter(|m| !m.is_empty()).map_or_else(String::new, |m| format!(": {m}"))
+    /// What the report of the simulator says about the end of the present phase: the share that is done and the time left, or
+    /// the conditions that do not hold.
+    fn rest_of_phase(&self, name: &str) -> String {
+        let report = &self.of_phase;
+        // A report may come later than the state that it is compared with.
+        if self.end.is_some() || report.name != name {
+            return String::new();
+        }
+        match report.share {
+            Some(share) => {
+                let left = self.pace.time_until(1.0).map(|s| format!(", about {} left", duration(s)));
+                format!(": {:.0} %{}", (100.0 * share).floor(), left.unwrap_or_default())
+            }
+            None if report.unmet.is_empty() => String::new(),
+            None => format!(", not yet: {}", report.unmet),
+        }
     }
 
     fn progress_bar(&self) -> String {
         let Some(state) = &self.state else { return String::new() };
         let percent = 100.0 * state.progress;
-        let left = match (&self.end, self.progress.time_until(1.0)) {
-            (Some(_), _) => String::new(),
-            (None, Some(seconds)) => format!(" · about {} left", duration(seconds)),
-            (None, None) => " · time left not known".to_owned(),
+        let note = if state.status == RunStatus::Running && !state.message.is_empty() {
+            paragraph(&format!("This phase is computed {}.", state.message))
+        } else {
+            String::new()
         };
-        let phase = self
-            .phase()
-            .map_or_else(String::new, |n| format!("phase {}, {}", n + 1, self.timeline.phase_name(n)));
+        let phase = self.phase().map_or_else(String::new, |n| {
+            let name = self.timeline.phase_name(n);
+            format!("phase {}, {name}{}", n + 1, self.rest_of_phase(&name))
+        });
         format!(
             "<div class=\"progress\" role=\"progressbar\" aria-label=\"Progress\" aria-valuemin=\"0\" aria-valuemax=\"100\" \
              aria-valuenow=\"{percent:.0}\"><i style=\"width:{percent:.1}%\"></i></div>\n\
-             <p class=\"below\"><span>{}</span><span>{percent:.0} % of the loading path{left}</span></p>\n",
+             <p class=\"below\"><span>{}</span><span>{percent:.0} % of the phases are over</span></p>\n{note}",
             escaped(&phase)
         )
+    }
+
+    /// Why no packing is shown.
+    pub(crate) fn no_packing(&self) -> String {
+        let published = self.state.as_ref().map_or(0, |s| s.packings);
+        match (self.too_large, published) {
+            (Some(grains), _) => {
+                format!(
+                    "The packing has {grains} grains; a picture has at most {}.",
+                    grainlab_viewer::MOST_GRAINS
+                )
+            }
+            (None, 0) => "No packing has been published yet.".to_owned(),
+            (None, n) => format!(
+                "{} published, none received by this page. A packing over 2 MB (some 6,000 grains) is sent in parts, which a run \
+                 does not repeat for a page that joins later: the next one is shown. All are in the recording.",
+                count(n, "packing")
+            ),
+        }
     }
 
     /// Who is there; `now` is the time of the bus.
@@ -147,7 +178,50 @@ fn row(peer: &Peer, now: Duration) -> Vec<Cell> {
 
 #[cfg(test)]
 mod tests {
-    use super::duration;
+    use super::*;
+    use grainlab_node_kit::{Health, Report};
+
+    /// A laboratory in a phase, with a report of its simulator at each of these times and shares.
+    fn reported(name: &str, shares: &[(u64, &str)]) -> Laboratory {
+        let mut lab = Laboratory::new(None, Duration::ZERO);
+        let message = grainlab_msgs::msg::RunState {
+            phase_name: "extension".to_owned(),
+            progress: 0.5,
+            packings: 1,
+            message: "without spins".to_owned(),
+            ..Default::default()
+        };
+        lab.run_state(&message, Duration::ZERO);
+        for (second, share) in shares {
+            let unmet = "unbalanced is 2e-3, above 1e-3";
+            let health = Health::ok("").with("phase", name).with("phase_share", share).with("unmet", unmet);
+            let (node, published, received) = ("simulator".to_owned(), Vec::new(), Vec::new());
+            let report = Report { node, pid: 1, health, exit: None, published, received };
+            lab.simulator(&report, Duration::from_secs(*second));
+        }
+        lab
+    }
+
+    #[test]
+    fn a_phase_of_known_end_has_a_share_and_a_time_and_another_its_open_conditions() {
+        let heading = |lab: &Laboratory| lab.heading(0, 0, Duration::from_secs(2));
+        let known = heading(&reported("extension", &[(0, "0.20"), (2, "0.40")]));
+        assert!(known.contains("extension: 40 %, about 6 s left<"), "{known}");
+        assert!(known.contains(">Running<") && known.contains("computed without spins."), "{known}");
+        let open = heading(&reported("extension", &[(0, "")]));
+        assert!(open.contains("extension, not yet: unbalanced is 2e-3, above 1e-3<"), "{open}");
+        let late = heading(&reported("gas", &[(0, "0.9")]));
+        assert!(late.contains("phase 1, extension<"), "the report is of another phase: {late}");
+    }
+
+    #[test]
+    fn a_page_without_packings_says_why() {
+        let mut lab = reported("extension", &[]);
+        assert!(lab.no_packing().starts_with("1 packing published, none received"));
+        lab.too_large = Some(300_000);
+        assert!(lab.no_packing().contains("300000 grains"));
+        assert!(Laboratory::new(None, Duration::ZERO).no_packing().contains("No packing has been"));
+    }
 
     #[test]
     fn durations_are_in_a_unit_that_readers_grasp() {

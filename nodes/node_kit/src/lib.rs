@@ -16,7 +16,7 @@
 //!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
 //! - `exit`: exit codes; `signals`: SIGINT and SIGTERM; `logging`: log lines on stderr; `rosout`: the same on `/rosout`;
-//!   `wall_clock`: their stamps
+//!   `wall_clock`: their stamps; `terminal`: its width and colours, and a line that is drawn again
 
 mod admission;
 mod args;
@@ -43,6 +43,7 @@ mod run;
 mod sample;
 mod services;
 mod signals;
+mod terminal;
 mod typed;
 mod wall_clock;
 pub mod watchdog;
@@ -74,5 +75,6 @@ pub use peers::{Liveliness, Peer, PeerWatch, Peers, SILENCE};
 pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};
 pub use sample::{Sample, SampleId, SampleInfo, WriterId, WriterIdError};
 pub use signals::Signals;
+pub use terminal::{Terminal, draw_live_line, erase_live_line, write_above_live_line};
 pub use typed::{Publisher, Subscription, TakeError};
 pub use worker::Worker;

@@ -3,12 +3,13 @@
 use crate::args::RosArgs;
 use crate::dds::LOG_TARGET;
 use crate::diagnostics::wall_stamp;
+use crate::terminal::{colour_wanted, write_above_live_line};
 use crate::wall_clock::wall_nanos;
 use grainlab_msgs::rcl_interfaces::Log;
 use log::{Level, LevelFilter, Metadata, Record};
 use std::cell::Cell;
 use std::collections::VecDeque;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::sync::{Condvar, Mutex, Once, PoisonError};
 
 /// Maximum number of lines queued for `/rosout`; a full queue drops the oldest.
@@ -106,15 +107,6 @@ impl Logger {
     }
 }
 
-/// Colour on a terminal, if `NO_COLOR` is unset and `RCUTILS_COLORIZED_OUTPUT` is not 0 (1 forces it, as in ROS 2).
-fn colour_wanted(lookup: impl Fn(&str) -> Option<String>, terminal: bool) -> bool {
-    match lookup("RCUTILS_COLORIZED_OUTPUT").as_deref() {
-        Some("1") => true,
-        Some("0") => false,
-        _ => terminal && lookup("NO_COLOR").is_none_or(|v| v.is_empty()),
-    }
-}
-
 impl Settings {
     /// The level of a module.
     fn level_of(&self, target: &str) -> LevelFilter {
@@ -158,8 +150,7 @@ impl log::Log for Logger {
             let line = format!("[{name}] [{}.{:09}] [{}]: {text}", stamp.sec, stamp.nanosec, settings.name);
             let (colour, reset) =
                 if settings.colour && !colour.is_empty() { (colour, "\x1b[0m") } else { ("", "") };
-            // One write, so that lines of several processes on one terminal do not mix. A closed stderr is ignored.
-            let _ = std::io::stderr().write_all(format!("{colour}{line}{reset}\n").as_bytes());
+            write_above_live_line(&format!("{colour}{line}{reset}\n"));
         }
         if settings.rosout && !PUBLISHES.get() {
             if settings.queue.len() >= BACKLOG {
@@ -207,18 +198,5 @@ mod tests {
         let asked = settings(LevelFilter::Info, &[("ros2_client", LevelFilter::Trace)]);
         assert_eq!(asked.level_of("ros2_client::node"), LevelFilter::Trace);
         assert_eq!(asked.level_of("mio"), LevelFilter::Error);
-    }
-
-    #[test]
-    fn colour_is_for_terminals_and_can_be_refused_or_forced() {
-        let with = |variables: &'static [(&str, &str)]| {
-            move |name: &str| variables.iter().find(|(n, _)| *n == name).map(|(_, v)| (*v).to_owned())
-        };
-        assert!(colour_wanted(with(&[]), true));
-        assert!(!colour_wanted(with(&[]), false));
-        assert!(!colour_wanted(with(&[("NO_COLOR", "1")]), true));
-        assert!(colour_wanted(with(&[("NO_COLOR", "")]), true));
-        assert!(colour_wanted(with(&[("RCUTILS_COLORIZED_OUTPUT", "1")]), false));
-        assert!(!colour_wanted(with(&[("RCUTILS_COLORIZED_OUTPUT", "0")]), true));
     }
 }

@@ -4,7 +4,7 @@ use super::knobs::Knob;
 use super::report::Report;
 use super::row::Row;
 use clap::ValueEnum;
-use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
+use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 
 /// The legend.
 const NOTES: [&str; 4] = [
@@ -14,8 +14,8 @@ const NOTES: [&str; 4] = [
     "grey line: Pareto front",
 ];
 
-/// The plot as SVG; each point has a tooltip.
-pub(crate) fn svg(report: &Report) -> String {
+/// The plot; each point has a tooltip.
+pub(crate) fn figure(report: &Report) -> Figure {
     let drawn = |row: &&Row| point(row).is_some();
     let knobs: Vec<Knob> = (Knob::value_variants().iter().copied())
         .filter(|knob| report.rows.iter().filter(drawn).any(|r| r.knob == *knob))
@@ -44,7 +44,6 @@ pub(crate) fn svg(report: &Report) -> String {
         series,
         legend: knobs.iter().map(colour).chain([Entry::Gap]).chain(notes).collect(),
     }
-    .svg(Theme::Light)
 }
 
 /// `None` without a time and an error.

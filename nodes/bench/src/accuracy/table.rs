@@ -39,6 +39,7 @@ pub(crate) fn text(report: &Report) -> String {
     text += &block(report, |row| row.changes).text();
     text += "\n* the default; g12 and theta relative to the converged run; combined: over the seed scatter, unresolved errors \
              with their bound\n\n";
+    text += &format!("{}\n", super::plot::figure(report).text("only an upper bound"));
     for line in &report.verdict {
         text += &format!("{line}\n");
     }

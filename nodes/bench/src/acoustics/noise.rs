@@ -4,6 +4,7 @@
 use super::args::Args;
 use crate::packing::load_all;
 use grainlab_acoustics::{Measurement, with_speed_noise};
+use grainlab_console::plot::{Bar, Bars};
 use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
 use grainlab_core::Packing;
 use grainlab_core::results::InferredQuantity;
@@ -62,7 +63,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     print(&match args.format {
         Format::Json => json(&rows)?,
         Format::Csv => table(&rows, exact).csv(),
-        Format::Table => table(&rows, |v| fixed(v, 4)).text(),
+        Format::Table => table(&rows, |v| fixed(v, 4)).text() + "\n" + &bars(&rows).text(),
     })?;
     Ok(Exit::Done)
 }
@@ -140,6 +141,17 @@ fn row(noise: Option<f64>, packings: usize, errors: &[Errors]) -> Row {
     };
     let inferred = errors.iter().filter(|e| e.iter().any(Option::is_some)).count();
     Row { noise, packings, inferred, k: score(0), z: score(1), eps: score(2), eps_stiffness: score(3) }
+}
+
+/// The error of ε by level of noise.
+fn bars(rows: &[Row]) -> Bars {
+    let bar = |r: &Row| {
+        let rms = r.eps.rms?;
+        let name = r.noise.map_or_else(|| "moduli".to_owned(), |n| format!("noise {n}"));
+        Some(Bar { name, value: rms, text: format!("{rms:.4}"), ..Bar::default() })
+    };
+    let title = "rms error of eps".to_owned();
+    Bars { title, from_zero: true, bars: rows.iter().filter_map(bar).collect(), ..Bars::default() }
 }
 
 fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {

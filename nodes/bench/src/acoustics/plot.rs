@@ -3,10 +3,10 @@
 use super::args::Method;
 use super::report::{Report, Row};
 use clap::ValueEnum;
-use grainlab_console::plot::{Axis, Entry, Figure, Marker, Point, Series, Theme};
+use grainlab_console::plot::{Axis, Entry, Figure, Marker, Point, Series};
 
-/// The plot as SVG; each point has a tooltip.
-pub(super) fn svg(report: &Report) -> String {
+/// The plot; each point has a tooltip.
+pub(super) fn figure(report: &Report) -> Figure {
     let methods: Vec<Method> = (Method::value_variants().iter().copied())
         .filter(|m| report.rows.iter().any(|r| r.method == *m && errors(r).is_some()))
         .collect();
@@ -32,7 +32,6 @@ pub(super) fn svg(report: &Report) -> String {
             .map(|m| Entry::Shape(Marker::Circle, Some(*m as usize), false, m.name().to_owned()))
             .collect(),
     }
-    .svg(Theme::Light)
 }
 
 /// Found and stated error, if both are known.

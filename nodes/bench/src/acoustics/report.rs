@@ -59,7 +59,7 @@ pub(super) fn text(report: &Report) -> String {
             text += &format!("{} {}: {failure}\n", row.method.name(), setting(row.value));
         }
     }
-    text += "\n";
+    text += &format!("\n{}\n", super::plot::figure(report).text("the error that the method states"));
     report.notes.iter().for_each(|note| text += &format!("{note}\n"));
     text
 }

@@ -3,13 +3,13 @@
 use super::args::Method;
 use super::report::{Report, Row};
 use clap::ValueEnum;
-use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
+use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 
 /// Smaller errors are rounding, and drawn at this value.
 const ROUNDING: f64 = 1e-16;
 
-/// The plot as SVG; each point has a tooltip.
-pub(super) fn svg(report: &Report) -> String {
+/// The plot; each point has a tooltip.
+pub(super) fn figure(report: &Report) -> Figure {
     let sizes = sizes(report);
     let series = |size: &(bool, usize), method: &Method| {
         let rows = report.rows.iter().filter(|r| r.method == *method && key(r) == *size);
@@ -33,7 +33,6 @@ pub(super) fn svg(report: &Report) -> String {
         series: sizes.iter().flat_map(|size| methods.iter().map(move |method| series(size, method))).collect(),
         legend: legend(report, &sizes),
     }
-    .svg(Theme::Light)
 }
 
 fn point(row: &Row, labelled: bool) -> Option<Point> {
@@ -81,6 +80,7 @@ fn legend(report: &Report, sizes: &[(bool, usize)]) -> Vec<Entry> {
 mod tests {
     use super::*;
     use crate::stiffness::report::{Error, report};
+    use grainlab_console::plot::Theme;
 
     #[test]
     fn an_error_of_nothing_is_drawn_at_rounding() {
@@ -95,7 +95,7 @@ mod tests {
             error: Error { stiffness: Some(0.0), against: "" },
             failure: None,
         };
-        let picture = svg(&report(vec![row]));
+        let picture = figure(&report(vec![row])).svg(Theme::Light);
         assert!(
             picture.contains("<circle") && !picture.contains("NaN") && !picture.contains("inf"),
             "{picture}"

@@ -111,7 +111,7 @@ pub(super) fn text(report: &Report) -> String {
         }
         text += &format!("\n{}", t.text());
     }
-    text += "\n";
+    text += &format!("\n{}\n", super::plot::figure(report).text("copies of a packing"));
     for note in report.notes {
         text += &format!("{note}\n");
     }

@@ -1,7 +1,7 @@
 //! One of several plots over a common axis: small, with the legend beside its title, and bands for the stages of that axis.
 
 use super::draw::{Drawing, class};
-use super::figure::{Entry, Figure};
+use super::figure::{Entry, Figure, Scale};
 use super::labels::Area;
 use crate::html::escaped;
 
@@ -37,15 +37,18 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// The plot as SVG. The attributes `data-frame` (left, top, right, bottom) and `data-x` (values at left and right) are for
-    /// scripts that read positions.
+    /// The plot as SVG. The attributes `data-frame` (left, top, right, bottom) `data-x` (values at left and right) and
+    /// `data-y` (values at bottom and top, and the spacing) are for scripts that read positions.
     pub fn svg(&self) -> String {
         let Figure { title, subtitle, x, y, legend, .. } = &self.figure;
         let [left, top, right, bottom] = FRAME;
         let [across, up] = self.figure.ranges(FRAME);
         let [low, high] = across.ends();
+        let [lowest, highest] = up.ends();
+        let spacing = if y.scale == Scale::Log { "log" } else { "linear" };
         let attributes = format!(
-            " class=\"plot\" role=\"img\" aria-label=\"{}\" data-frame=\"{left} {top} {right} {bottom}\" data-x=\"{low} {high}\"",
+            " class=\"plot\" role=\"img\" aria-label=\"{}\" data-frame=\"{left} {top} {right} {bottom}\" data-x=\"{low} {high}\" \
+             data-y=\"{lowest} {highest} {spacing}\"",
             escaped(&[title.as_str(), subtitle].join(". "))
         );
         let mut drawing = Drawing::blank(PICTURE, FRAME, &attributes, "");

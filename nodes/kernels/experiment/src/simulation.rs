@@ -261,6 +261,11 @@ impl Simulation {
         self.path.unmet(&self.scene, &self.observation())
     }
 
+    /// Share of the present phase that is done, 0 to 1; `None` if its end is not known beforehand.
+    pub fn phase_share(&self) -> Option<f64> {
+        self.path.phase_share(&self.scene, &self.observation())
+    }
+
     /// Progress of the phase.
     fn travelled(&self) -> Travelled {
         let (steps, time) = (self.engine.steps(), self.engine.time() - self.path.began);

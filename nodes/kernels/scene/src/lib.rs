@@ -5,7 +5,7 @@
 //! - `compose`: bases and overrides; `assignment`: `KEY=VALUE`
 //! - `parse`, `phases`, `servo`, `until`: a table to [`Scene`], with every fault reported at once
 //! - `canonical`: the scene as text again
-//! - `path`: the loading path as a state machine
+//! - `path`: the loading path as a state machine; `phase_share`: how much of a phase is done, where its end is known
 //!
 //! A scene is data: the same text and seed always define the same run.
 
@@ -23,6 +23,7 @@ mod nearest;
 mod overlay;
 mod parse;
 mod path;
+mod phase_share;
 mod phases;
 mod reader;
 mod record;

@@ -199,6 +199,39 @@ fn the_last_phase_finishes_the_path_and_a_timeout_names_what_was_not_met() {
 }
 
 #[test]
+fn the_share_of_a_phase_is_known_where_imposed_rates_and_time_alone_end_it() {
+    let scene = Scene::parse(GOOD).unwrap();
+    let share = |phase, seen: &Observation| {
+        PathState { phase, began: 1.0, holding_since: None }.phase_share(&scene, seen)
+    };
+    // At 12 1/s from a solid fraction of 0.3, 0.6 is reached after ln 2 / 36 s; half of it is sqrt 2 times 0.3.
+    let end = 2.0_f64.ln() / 36.0;
+    let half = Observation { solid_fraction: 0.3 * 2.0_f64.sqrt(), ..seen(1.0 + 0.5 * end) };
+    assert!((share(0, &half).unwrap() - 0.5).abs() < 1e-12);
+    // A strain of 0.002 at 4 1/s.
+    let strained = |zz: f64| SymTensor::from_voigt([0.0, 0.0, zz, 0.0, 0.0, 0.0]);
+    let quarter = Observation { strain: strained(0.0005), ..seen(1.0 + 0.0005 / 4.0) };
+    assert!((share(2, &quarter).unwrap() - 0.25).abs() < 1e-12);
+    let over = Observation { strain: strained(0.002), ..seen(1.0 + 0.002 / 4.0) };
+    assert_eq!(share(2, &over), Some(1.0));
+    // A speed and an unbalanced force are answers of the packing, also where they hold at present.
+    assert_eq!(share(1, &Observation { speed: 0.0, ..seen(1.1) }), None);
+    assert_eq!(share(3, &Observation { unbalanced: 0.0, ..seen(1.1) }), None);
+    assert_eq!(share(6, &seen(1.1)), None, "the path is done");
+}
+
+#[test]
+fn the_time_for_which_conditions_must_hold_is_a_part_of_the_phase() {
+    let text = GOOD.replace("speed = 1e-3, hold = 1e-4", "elapsed = 3e-4, hold = 1e-4");
+    let scene = Scene::parse(&text).unwrap();
+    let share = |time, holding_since| {
+        PathState { phase: 1, began: 0.0, holding_since }.phase_share(&scene, &seen(time)).unwrap()
+    };
+    assert!((share(1e-4, None) - 0.25).abs() < 1e-12);
+    assert!((share(3.5e-4, Some(3e-4)) - 0.875).abs() < 1e-12);
+}
+
+#[test]
 fn grains_have_one_size_or_a_law() {
     let of =
         |diameter: &str| Scene::parse(&GOOD.replace("diameter = 2e-4", &format!("diameter = {diameter}")));

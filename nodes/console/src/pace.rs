@@ -1,4 +1,4 @@
-//! How fast a run advances, by the wall clock of the reader.
+//! How fast a quantity grows, by the wall clock of the reader.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -8,19 +8,19 @@ const KEPT: usize = 512;
 
 /// A quantity that grows, over the last seconds.
 #[derive(Clone, Debug)]
-pub(crate) struct Pace {
+pub struct Pace {
     window: Duration,
     values: VecDeque<(Duration, f64)>,
 }
 
 impl Pace {
     /// Over this time.
-    pub(crate) fn over(window: Duration) -> Self {
+    pub fn over(window: Duration) -> Self {
         Self { window, values: VecDeque::new() }
     }
 
     /// Adds a value at a time. One that is less than the last begins anew: the process was restarted.
-    pub(crate) fn push(&mut self, now: Duration, value: f64) {
+    pub fn push(&mut self, now: Duration, value: f64) {
         if self.values.back().is_some_and(|(_, last)| value < *last) {
             self.values.clear();
         }
@@ -33,14 +33,14 @@ impl Pace {
     }
 
     /// Increase per second; `None` before it is known.
-    pub(crate) fn per_second(&self) -> Option<f64> {
+    pub fn per_second(&self) -> Option<f64> {
         let ((from, low), (to, high)) = (self.values.front()?, self.values.back()?);
         let time = to.saturating_sub(*from).as_secs_f64();
         (time > 0.2).then(|| (high - low) / time)
     }
 
     /// Seconds until it reaches `end` at this rate; `None` where it does not, or before a tenth of the window has passed.
-    pub(crate) fn time_until(&self, end: f64) -> Option<f64> {
+    pub fn time_until(&self, end: f64) -> Option<f64> {
         let ((from, _), (to, last)) = (self.values.front()?, self.values.back()?);
         let rate = self.per_second().filter(|r| *r > 0.0)?;
         (10 * to.saturating_sub(*from) > self.window).then(|| (end - last).max(0.0) / rate)

@@ -1,0 +1,45 @@
+//! How much of a phase is done, where its end is known beforehand.
+
+use crate::model::{Condition, Measure, Phase, Scene};
+use crate::path::{Observation, PathState};
+use grainlab_core::ComponentControl;
+
+impl PathState {
+    /// Share of the present phase that is done, 0 to 1, in simulated time. It is known where every condition follows from
+    /// elapsed time and imposed strain rates: a time, an imposed strain, the solid fraction of a cell whose three normal
+    /// components are imposed or held. `None` where the phase ends by the answer of the packing (stress, unbalanced force,
+    /// speed), and once the path is done.
+    pub fn phase_share(&self, scene: &Scene, seen: &Observation) -> Option<f64> {
+        let phase = self.phase(scene)?;
+        let elapsed = seen.time - self.began;
+        let times = phase.until.all.iter().map(|c| time_until(c, phase, seen, elapsed));
+        let until_met = times.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
+        let held = self.holding_since.map_or(0.0, |since| seen.time - since);
+        let left = until_met + (phase.until.hold - held).max(0.0);
+        let share = elapsed / (elapsed + left);
+        share.is_finite().then(|| share.clamp(0.0, 1.0))
+    }
+}
+
+/// Simulated time until a condition holds, s, at the imposed rates; `None` where these do not determine it.
+fn time_until(condition: &Condition, phase: &Phase, seen: &Observation, elapsed: f64) -> Option<f64> {
+    let controls = phase.controls();
+    let rate_of = |component: usize| match controls[component] {
+        ComponentControl::StrainRate(rate) => Some(rate),
+        ComponentControl::Held => Some(0.0),
+        ComponentControl::Stress(_) => None,
+    };
+    // Distance to the bound and the rate at which it shrinks.
+    let (distance, rate) = match *condition {
+        Condition::AtLeast(Measure::Elapsed, time) => (time - elapsed, 1.0),
+        Condition::AtLeast(Measure::Strain(c), bound) => (bound - seen.strain.voigt()[c], rate_of(c)?),
+        Condition::AtMost(Measure::Strain(c), bound) => (seen.strain.voigt()[c] - bound, -rate_of(c)?),
+        Condition::AtLeast(Measure::SolidFraction, bound) => {
+            // Its logarithm grows as the volumetric strain shrinks.
+            ((bound / seen.solid_fraction).ln(), -(rate_of(0)? + rate_of(1)? + rate_of(2)?))
+        }
+        _ => return None,
+    };
+    let is_met = distance <= 0.0 && rate >= 0.0;
+    if is_met { Some(0.0) } else { (rate > 0.0).then(|| distance / rate) }
+}
