@@ -1,0 +1,8 @@
+//! Prints the rows.
+fn main() {
+    let all = [grainlab_verification::lammps_pairs::rows(), grainlab_verification::chung_ooi::rows()];
+    for r in all.into_iter().flat_map(Result::unwrap) {
+        let w = r.worst();
+        println!("{:<62} {:?} {:.2e} <= {:.0e}  unexplained {:?}  {:?}", r.name, r.verdict(), r.difference().unwrap_or(-1.0), r.tolerance, r.unexplained(), w);
+    }
+}

@@ -1,0 +1,62 @@
+//! The eight tests of Chung & Ooi, Granular Matter 13, 643 (2011), for codes of spheres.
+//!
+//! A rigid plane is a sphere of 10⁵ times the radius, of the same material with twice its shear modulus: two of these have E* and
+//! G* of one sphere of the material upon a rigid body.
+
+mod data;
+mod elastic;
+mod oblique;
+mod restitution;
+mod spinning;
+
+use crate::error::VerificationError;
+use crate::lammps_pairs::material;
+use crate::reference::parse;
+use crate::row::Row;
+use data::{Data, Solid};
+use grainlab_core::Material;
+
+/// The name of the suite.
+pub const NAME: &str = "chung-ooi";
+
+const PAPER: &str = "Chung & Ooi, Granular Matter 13, 643 (2011)";
+
+/// Every row.
+pub fn rows() -> Result<Vec<Row>, VerificationError> {
+    let data: Data = parse("chung_ooi.toml", include_str!("../../data/chung_ooi.toml"))?;
+    let mut rows = Vec::new();
+    for case in &data.elastic {
+        rows.extend(elastic::rows(case)?);
+    }
+    for solid in &data.restitution {
+        rows.push(restitution::row(solid)?);
+    }
+    rows.push(restitution::perfectly_plastic());
+    for case in &data.oblique {
+        rows.extend(oblique::rows(case, &data.measured)?);
+    }
+    for case in &data.microscopic {
+        rows.extend(oblique::microscopic(case)?);
+    }
+    for case in &data.spinning {
+        rows.extend(spinning::rows(case)?);
+    }
+    rows.extend(spinning::counter_spinning(&data.counter_spinning)?);
+    Ok(rows)
+}
+
+/// Curves that Kratos digitised.
+fn digitised(test: u32) -> String {
+    format!("{PAPER}, test {test}, digitised by Kratos (DEMApplication)")
+}
+
+impl Solid {
+    fn material(&self) -> Material {
+        material(self.young, self.poisson, self.density)
+    }
+
+    /// The material with which two spheres have E* and G* of one sphere of this material upon a rigid body.
+    fn upon_rigid(&self) -> Material {
+        material(2.0 * self.young, self.poisson, self.density)
+    }
+}

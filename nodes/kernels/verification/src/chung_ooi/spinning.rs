@@ -1,0 +1,71 @@
+//! Tests 6, 7 and 8: a spinning sphere upon a plane and upon a larger sphere, and two that spin against each other.
+
+use super::data::{CounterSpinning, Spinning};
+use super::{NAME, PAPER, digitised};
+use crate::error::VerificationError;
+use crate::restitution::damping_for;
+use crate::row::{Measure, Point, Row};
+use crate::two_spheres::TwoSpheres;
+use grainlab_core::Vec3;
+
+const RADIUS: f64 = 0.1;
+const SPEED: f64 = 0.2;
+const FRICTION: f64 = 0.4;
+const RESTITUTION: f64 = 0.5;
+
+/// Up to this 3.5 μ (1 + e) v_n/v_t a sphere slides throughout.
+const SLIDING: f64 = 1.0;
+
+/// Tests 6 and 8.
+pub(super) fn rows(case: &Spinning) -> Result<Vec<Row>, VerificationError> {
+    let (mut sliding, mut all) = (Vec::new(), Vec::new());
+    for [slip, theirs] in &case.beta {
+        let surface = 3.5 * FRICTION * (1.0 + RESTITUTION) * SPEED / slip;
+        let spin = Vec3::y() * (-surface / RADIUS);
+        let upon =
+            TwoSpheres::upon(case.solid.upon_rigid(), RADIUS, case.ratio, Vec3::z() * -SPEED, spin);
+        let upon = TwoSpheres { friction: FRICTION, damping: damping_for(RESTITUTION), ..upon.in_steps(1000.0) };
+        let after = upon.collide()?;
+        let beta = -(after.velocities[0].x - after.spins[0].y * RADIUS) / surface;
+        let point = Point::new(*slip, *theirs, beta);
+        all.push(point);
+        if *slip < SLIDING {
+            sliding.push(point);
+        }
+    }
+    let row = |part: &str, tolerance, points| {
+        let name = format!("test {}, {}, surface restitution, {part}", case.test, case.solid.name);
+        Row::new(NAME, name, digitised(case.test), "", Measure::OfSum, tolerance, points)
+    };
+    let mut rows = vec![row("sliding", 0.03, sliding), row("all", 0.15, all)];
+    if case.test == 8 {
+        let note = "The larger sphere has 50 times the radius, not 5 times the radius and 1,000 times the density: all grains of a \
+                    packing are of one density. The ratio of the masses is theirs.";
+        rows = rows.into_iter().map(|r| r.with_note(note)).collect();
+    }
+    Ok(rows)
+}
+
+/// Test 7.
+pub(super) fn counter_spinning(case: &CounterSpinning) -> Result<Vec<Row>, VerificationError> {
+    let (mut spins, mut tangential) = (Vec::new(), Vec::new());
+    for spin in &case.spins {
+        let spin_of = |sign: f64| Vec3::y() * (sign * spin);
+        let pair = TwoSpheres::upon(case.solid.material(), RADIUS, 1.0, Vec3::z() * -SPEED, spin_of(1.0));
+        let velocities = [Vec3::z() * -SPEED, Vec3::z() * SPEED];
+        let pair = TwoSpheres { velocities, spins: [spin_of(1.0), spin_of(-1.0)], ..pair }.in_steps(1000.0);
+        let pair = TwoSpheres { friction: FRICTION, damping: damping_for(RESTITUTION), ..pair };
+        let after = pair.collide()?;
+        spins.push(Point::new(*spin, *spin, after.spins[0].y));
+        tangential.push(Point::new(*spin, 0.0, after.velocities[0].x));
+    }
+    let row = |what: &str, unit, measure, points| {
+        let name = format!("test 7, {}, {what}", case.solid.name);
+        let source = format!("{PAPER}, test 7: opposite spins have no slip");
+        Row::new(NAME, name, source, unit, measure, 1e-12, points)
+    };
+    Ok(vec![
+        row("spin after", "rad/s", Measure::Relative, spins),
+        row("tangential velocity after", "m/s", Measure::Absolute, tangential),
+    ])
+}

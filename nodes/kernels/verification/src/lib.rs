@@ -1,0 +1,13 @@
+//! The engine and the measurements beside numbers of other codes and of the literature.
+
+pub mod chung_ooi;
+mod error;
+mod hertz;
+pub mod lammps_pairs;
+mod reference;
+mod restitution;
+mod row;
+mod two_spheres;
+
+pub use error::VerificationError;
+pub use row::{Measure, Point, Row, Verdict};
