@@ -3,6 +3,7 @@
 pub mod chung_ooi;
 mod error;
 mod hertz;
+mod lammps_impacts;
 pub mod lammps_pairs;
 mod reference;
 mod restitution;

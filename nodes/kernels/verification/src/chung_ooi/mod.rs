@@ -5,12 +5,14 @@
 
 mod data;
 mod elastic;
+mod microscopic;
 mod oblique;
 mod restitution;
 mod spinning;
 
 use crate::error::VerificationError;
 use crate::lammps_pairs::material;
+use crate::lammps_impacts::Impacts;
 use crate::reference::parse;
 use crate::row::Row;
 use data::{Data, Solid};
@@ -32,11 +34,12 @@ pub fn rows() -> Result<Vec<Row>, VerificationError> {
         rows.push(restitution::row(solid)?);
     }
     rows.push(restitution::perfectly_plastic());
-    for case in &data.oblique {
-        rows.extend(oblique::rows(case, &data.measured)?);
+    let impacts = Impacts::new()?;
+    for (n, case) in data.oblique.iter().enumerate() {
+        rows.extend(oblique::rows(n, case, &data.measured, &impacts)?);
     }
-    for case in &data.microscopic {
-        rows.extend(oblique::microscopic(case)?);
+    for (n, case) in data.microscopic.iter().enumerate() {
+        rows.extend(microscopic::rows(n, case, &impacts)?);
     }
     for case in &data.spinning {
         rows.extend(spinning::rows(case)?);
