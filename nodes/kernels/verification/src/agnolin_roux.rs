@@ -84,7 +84,8 @@ pub fn rows(state: &State) -> Result<Vec<Row>, VerificationError> {
 }
 
 fn prepared(scene: &str) -> Result<PackingReport, VerificationError> {
-    let failed = |what: &dyn std::fmt::Display| VerificationError::Measurement(format!("a prepared state: {what}"));
+    let failed =
+        |what: &dyn std::fmt::Display| VerificationError::Measurement(format!("a prepared state: {what}"));
     let mut run = Simulation::new(Scene::parse(scene).map_err(|e| failed(&e))?).map_err(|e| failed(&e))?;
     while let Some(request) = run.request() {
         let answer = grainlab_servo::control(&request.servo_input()).map_err(|e| failed(&e))?;

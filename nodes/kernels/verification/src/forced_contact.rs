@@ -46,7 +46,12 @@ pub(crate) struct Forces {
 
 impl<S: ContactSprings> ForcedContact<S> {
     /// A new contact.
-    pub(crate) fn new(law: SpringDashpotSlider<S>, effective_radius: f64, effective_mass: f64, time_step: f64) -> Self {
+    pub(crate) fn new(
+        law: SpringDashpotSlider<S>,
+        effective_radius: f64,
+        effective_mass: f64,
+        time_step: f64,
+    ) -> Self {
         let history = Vec3::zeros();
         Self { law, effective_radius, effective_mass, time_step, history, contact_radius: 0.0 }
     }
@@ -65,7 +70,8 @@ impl<S: ContactSprings> ForcedContact<S> {
             spin_velocity: lanes(m.spin_velocity),
             spin_sum: lanes(m.spin_sum),
         };
-        let f = self.law.full_force::<f64, true, true, true>(&kinematics, lanes(self.history), self.time_step);
+        let f =
+            self.law.full_force::<f64, true, true, true>(&kinematics, lanes(self.history), self.time_step);
         let vector = |v: LaneVec3<f64>| Vec3::new(v.x, v.y, v.z);
         (self.history, self.contact_radius) = (vector(f.history), contact_radius);
         Forces { normal: f.normal, tangential: vector(f.tangential) }

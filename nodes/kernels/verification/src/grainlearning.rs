@@ -9,7 +9,8 @@ use grainlab_core::contact::ContactLaw;
 /// The name of the suite.
 pub const NAME: &str = "grainlearning";
 
-const SOURCE: &str = "GrainLearning, tutorials/physics_based/two_particle_collision/collision_obs.txt (ab74934)";
+const SOURCE: &str =
+    "GrainLearning, tutorials/physics_based/two_particle_collision/collision_obs.txt (ab74934)";
 
 /// log10 of Young's modulus, and Poisson's ratio, with which the tutorial made its data.
 const TRUTH: [f64; 2] = [9.3, 0.2];
@@ -45,9 +46,20 @@ pub fn rows() -> Result<Vec<Row>, VerificationError> {
         0.75 * modulus
     );
     Ok(vec![
-        row("E/(1 - nu^2) from every force", "Pa", 1e-10, vec![Point::new(0.0, young / (1.0 - poisson * poisson), modulus)]),
-        row("E, were nu known to be 0.2", "Pa", 1e-10, vec![Point::new(poisson, young, modulus * (1.0 - poisson * poisson))]),
-        row("forces along the ridge nu = 0 to 0.5, over theirs", "", 1e-10, along.to_vec()).with_note(ridge.clone()),
+        row(
+            "E/(1 - nu^2) from every force",
+            "Pa",
+            1e-10,
+            vec![Point::new(0.0, young / (1.0 - poisson * poisson), modulus)],
+        ),
+        row(
+            "E, were nu known to be 0.2",
+            "Pa",
+            1e-10,
+            vec![Point::new(poisson, young, modulus * (1.0 - poisson * poisson))],
+        ),
+        row("forces along the ridge nu = 0 to 0.5, over theirs", "", 1e-10, along.to_vec())
+            .with_note(ridge.clone()),
         Row::not_comparable(NAME, "nu", SOURCE, ridge),
     ])
 }

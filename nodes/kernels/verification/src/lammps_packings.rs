@@ -33,7 +33,8 @@ pub struct Reference {
 /// The rows of the packing of equal spheres, which has its contact forces.
 pub fn equal_spheres(packing: &Packing, reference: &Reference) -> Result<Vec<Row>, VerificationError> {
     let settings = Settings { tolerance: 1e-12, ..Settings::default() };
-    let report = analyze(packing, &settings).map_err(|e| VerificationError::Measurement(e.to_string()))?.report;
+    let report =
+        analyze(packing, &settings).map_err(|e| VerificationError::Measurement(e.to_string()))?.report;
     let found = from_positions(packing)?;
     let one = |theirs, ours| vec![Point::new(0.0, theirs, ours)];
     let row = |name: &str, unit, measure, tolerance, points| {
@@ -41,20 +42,45 @@ pub fn equal_spheres(packing: &Packing, reference: &Reference) -> Result<Vec<Row
     };
     let stress = report.stress.tensor.matrix();
     let components = (0..3).flat_map(|i| (i..3).map(move |j| (i, j)));
-    let stress = components.map(|(i, j)| Point::new((3 * i + j) as f64, reference.stress[i][j], stress[(i, j)]));
+    let stress =
+        components.map(|(i, j)| Point::new((3 * i + j) as f64, reference.stress[i][j], stress[(i, j)]));
     let forces = packing.contacts.iter().zip(&found.contacts).enumerate();
     let forces = forces.map(|(n, (a, b))| Point::new(n as f64, a.normal_force, b.normal_force)).collect();
     let counts = &report.contacts;
     let mut rows = vec![
-        row("contacts from positions", "", Measure::Absolute, 0.0, one(reference.contacts, found.contacts.len() as f64)),
+        row(
+            "contacts from positions",
+            "",
+            Measure::Absolute,
+            0.0,
+            one(reference.contacts, found.contacts.len() as f64),
+        ),
         row("normal forces from positions", "N", Measure::OfLargest, 1e-10, forces),
-        row("solid fraction", "", Measure::Relative, 1e-12, one(reference.solid_fraction, report.solid_fraction)),
+        row(
+            "solid fraction",
+            "",
+            Measure::Relative,
+            1e-12,
+            one(reference.solid_fraction, report.solid_fraction),
+        ),
         row("k", "", Measure::Relative, 1e-12, one(reference.coordination[0], counts.coordination)),
-        row("z", "", Measure::Relative, 1e-12, one(reference.coordination[1], counts.mechanical_coordination)),
+        row(
+            "z",
+            "",
+            Measure::Relative,
+            1e-12,
+            one(reference.coordination[1], counts.mechanical_coordination),
+        ),
         row("stress of the contact forces", "Pa", Measure::OfLargest, 1e-8, stress.collect()),
     ];
     if let Some(forces) = &counts.forces {
-        rows.push(row("mean normal force", "N", Measure::Relative, 1e-9, one(reference.mean_force, forces.mean_normal)));
+        rows.push(row(
+            "mean normal force",
+            "N",
+            Measure::Relative,
+            1e-9,
+            one(reference.mean_force, forces.mean_normal),
+        ));
     }
     let Some(stiffness) = report.stiffness() else {
         return Err(VerificationError::Measurement("a packing of LAMMPS found no stiffness".to_owned()));
@@ -64,7 +90,13 @@ pub fn equal_spheres(packing: &Packing, reference: &Reference) -> Result<Vec<Row
         theirs.iter().zip(ours).enumerate().map(|(n, (t, o))| Point::new(n as f64, *t, o)).collect::<Vec<_>>()
     };
     rows.push(row("stiffness, sparse solve", "Pa", Measure::OfLargest, 1e-8, points(&reference.stiffness)));
-    rows.push(row("stiffness, strain probe of LAMMPS", "Pa", Measure::OfLargest, 1e-3, points(&reference.probed)));
+    rows.push(row(
+        "stiffness, strain probe of LAMMPS",
+        "Pa",
+        Measure::OfLargest,
+        1e-3,
+        points(&reference.probed),
+    ));
     Ok(rows)
 }
 
@@ -83,7 +115,8 @@ pub fn unequal_spheres(packing: &Packing, stress: &[f64; 6]) -> Vec<Row> {
 fn from_positions(packing: &Packing) -> Result<Packing, VerificationError> {
     let settings = EngineSettings { friction: packing.friction, ..EngineSettings::default() };
     let (radii, positions) = (packing.radii.clone(), &packing.positions);
-    let mut engine = Engine::new(packing.cell, packing.material, radii, positions, settings).with_law(packing.law);
+    let mut engine =
+        Engine::new(packing.cell, packing.material, radii, positions, settings).with_law(packing.law);
     engine.initialise()?;
     Ok(engine.packing(Mat3::identity()))
 }

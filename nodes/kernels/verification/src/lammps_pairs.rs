@@ -1,8 +1,8 @@
 //! Two spheres beside LAMMPS, as its own tests of `pair granular` record them.
 
 use crate::error::VerificationError;
-use crate::reference::parse;
 use crate::lammps_impacts::{Impacts, Law};
+use crate::reference::parse;
 use crate::restitution::{Damped, Springs, damping_with_attraction};
 use crate::row::{Measure, Point, Row};
 use crate::two_spheres::{PLANE, TwoSpheres};
@@ -122,7 +122,8 @@ fn equal_spheres() -> Result<Vec<Row>, VerificationError> {
         let (mut velocity, mut spin) = (Vec::new(), Vec::new());
         for incidence in INCIDENCE {
             let incoming = Vec3::new(0.03 * incidence, 0.0, -0.1);
-            let pair = TwoSpheres::upon(Material::GLASS, RADIUS, 1.0, incoming, Vec3::zeros()).in_steps(1000.0);
+            let pair =
+                TwoSpheres::upon(Material::GLASS, RADIUS, 1.0, incoming, Vec3::zeros()).in_steps(1000.0);
             let after = TwoSpheres { friction: 0.3, tangential, ..pair }.collide()?;
             let theirs = impacts.find([0, 0, 0], incidence, law)?;
             velocity.push(Point::new(incidence, theirs.v_x, after.velocities[0].x));

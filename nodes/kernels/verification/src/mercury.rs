@@ -123,9 +123,7 @@ fn to_and_fro(step: usize) -> f64 {
 fn clamped(material: &Material, steps: usize, step: f64, overlap: f64) -> f64 {
     let stiffness = material.tangential_stiffness(RADIUS, overlap);
     let limit = FRICTION * material.normal_force(RADIUS, overlap);
-    (0..steps).fold(0.0, |f: f64, n| {
-        (f + stiffness * to_and_fro(n) * step).clamp(-limit, limit)
-    })
+    (0..steps).fold(0.0, |f: f64, n| (f + stiffness * to_and_fro(n) * step).clamp(-limit, limit))
 }
 
 /// Two spheres sheared against each other, then turned about each other by 1.67 rad. `turn` turns the whole test.
@@ -227,7 +225,8 @@ fn restitution() -> Result<Row, VerificationError> {
     let pair = TwoSpheres::upon(material, 1.0, 1.0, -Vec3::z(), Vec3::zeros());
     let pair = TwoSpheres { velocities: [-Vec3::z(), Vec3::z()], ..pair }.in_steps(1000.0);
     let after = TwoSpheres { damping: damping_for(0.8), ..pair }.collide()?;
-    let points = vec![Point::new(0.0, 0.8, after.velocities[0].z), Point::new(1.0, -0.8, after.velocities[1].z)];
+    let points =
+        vec![Point::new(0.0, 0.8, after.velocities[0].z), Point::new(1.0, -0.8, after.velocities[1].z)];
     let source = source("HertzContactRestitutionUnitTest");
     Ok(Row::new(NAME, "velocities after, restitution 0.8", source, "m/s", Measure::Absolute, 0.01, points))
 }

@@ -24,8 +24,12 @@ const SOURCE: &str = "ON-DEM WG4 (ON-DEM-WG4-testingInteractions 9299158)";
 
 /// Every row.
 pub fn rows() -> Result<Vec<Row>, VerificationError> {
-    Ok([elastic()?, vec![plastic(), turned("out of the plane", Vec3::y()), turned("in the plane", Vec3::z())], missing()]
-        .concat())
+    Ok([
+        elastic()?,
+        vec![plastic(), turned("out of the plane", Vec3::y()), turned("in the plane", Vec3::z())],
+        missing(),
+    ]
+    .concat())
 }
 
 fn contact(steps_per_step: f64) -> ForcedContact<Linear> {
@@ -134,7 +138,10 @@ fn turned(what: &str, axis: Vec3) -> Row {
             points.extend((0..3).map(|k| Point::new(f64::from(n / PARTS), wanted[k], forces.tangential[k])));
         }
     }
-    let source = format!("{SOURCE}, F_run_test.py: motion {}; closed form", if what.starts_with("out") { 3 } else { 4 });
+    let source = format!(
+        "{SOURCE}, F_run_test.py: motion {}; closed form",
+        if what.starts_with("out") { 3 } else { 4 }
+    );
     let name = format!("test {}, shear turned {what}", if what.starts_with("out") { 3 } else { 4 });
     Row::new(NAME, name, source, "N", Measure::OfLargest, 1e-3, points).with_note(
         "In 16 parts of their step, which turns the pair by 0.094 rad: our rotation of the history is second order in the angle of a step.",

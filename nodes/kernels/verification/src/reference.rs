@@ -13,7 +13,9 @@ pub(crate) fn table(file: &'static str, text: &str) -> Result<Vec<Vec<f64>>, Ver
     let row = |line: &str| {
         let words = line.split([',', ' ', '\t']).filter(|w| !w.is_empty());
         words
-            .map(|w| w.parse().map_err(|_| VerificationError::Data { file, why: format!("{w:?} is no number") }))
+            .map(|w| {
+                w.parse().map_err(|_| VerificationError::Data { file, why: format!("{w:?} is no number") })
+            })
             .collect()
     };
     text.lines().filter(|l| !l.starts_with('#') && !l.trim().is_empty()).map(row).collect()

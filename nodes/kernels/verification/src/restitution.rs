@@ -88,7 +88,12 @@ mod tests {
         }
         // Without attraction a contact keeps more: the difference vanishes with the damping.
         let more = |e: f64| restitution(damping_with_attraction(e)) - e;
-        assert!(more(0.5) > more(0.9) && more(0.9) > 0.0 && more(0.98) < 2e-3, "{} {}", more(0.5), more(0.98));
+        assert!(
+            more(0.5) > more(0.9) && more(0.9) > 0.0 && more(0.98) < 2e-3,
+            "{} {}",
+            more(0.5),
+            more(0.98)
+        );
     }
 
     /// Schwager & Pöschel, Granular Matter 9, 465 (2007), Eq. 21.

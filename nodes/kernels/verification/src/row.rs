@@ -163,7 +163,9 @@ impl Row {
         let difference = |p: &Point| (p.ours - wanted(p)).abs();
         let size = |p: &Point| wanted(p).abs();
         Some(match self.measure {
-            Measure::Relative => largest(&|p| if difference(p) == 0.0 { 0.0 } else { difference(p) / size(p) }),
+            Measure::Relative => {
+                largest(&|p| if difference(p) == 0.0 { 0.0 } else { difference(p) / size(p) })
+            }
             Measure::OfLargest => largest(&difference) / largest(&size),
             Measure::OfSum => sum(&difference) / sum(&size),
             Measure::Absolute => largest(&difference),

@@ -14,11 +14,15 @@ pub const NAME: &str = "smooth-moduli";
 /// them.
 pub fn rows(packing: &Packing, matscipy: &str) -> Result<Vec<Row>, VerificationError> {
     let theirs = table("smooth_500_matscipy.csv", matscipy)?;
-    let cases = [("springs alone", Springs::Normal), ("with the term of the normal forces", Springs::PrestressedNormal)];
+    let cases = [
+        ("springs alone", Springs::Normal),
+        ("with the term of the normal forces", Springs::PrestressedNormal),
+    ];
     let mut rows = Vec::new();
     for ((what, springs), theirs) in cases.into_iter().zip(theirs.chunks(6)) {
         let settings = Settings { springs, solver: Solver::Direct, ..Settings::default() };
-        let report = analyze(packing, &settings).map_err(|e| VerificationError::Measurement(e.to_string()))?.report;
+        let report =
+            analyze(packing, &settings).map_err(|e| VerificationError::Measurement(e.to_string()))?.report;
         let found = report.elasticity.into_stiffness();
         let found = found.map_err(|why| VerificationError::Measurement(format!("smooth spheres: {why}")))?;
         let points = theirs.iter().flatten().zip(found.tensor.row_major()).enumerate();

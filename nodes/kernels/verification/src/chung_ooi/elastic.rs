@@ -41,7 +41,9 @@ pub(super) fn rows(case: &Elastic) -> Result<Vec<Row>, VerificationError> {
         };
         let points = case.path.iter().map(point).collect();
         let row = row("force by overlap", digitised(case.test), "N", Measure::OfSum, 0.01, points);
-        rows.push(row.with_note("The digitised points scatter about Hertz's law by up to some percent; explained is that law."));
+        rows.push(row.with_note(
+            "The digitised points scatter about Hertz's law by up to some percent; explained is that law.",
+        ));
     }
     Ok(rows)
 }

@@ -11,8 +11,8 @@ mod restitution;
 mod spinning;
 
 use crate::error::VerificationError;
-use crate::lammps_pairs::material;
 use crate::lammps_impacts::Impacts;
+use crate::lammps_pairs::material;
 use crate::reference::parse;
 use crate::row::Row;
 use data::{Data, Solid};

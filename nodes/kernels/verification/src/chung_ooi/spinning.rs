@@ -42,7 +42,8 @@ pub(super) fn rows(case: &Spinning) -> Result<Vec<Row>, VerificationError> {
         }
     }
     let name = |part: &str| format!("test {}, {}, surface restitution, {part}", case.test, case.solid.name);
-    let row = |points| Row::new(NAME, name("sliding"), digitised(case.test), "", Measure::OfSum, 0.03, points);
+    let row =
+        |points| Row::new(NAME, name("sliding"), digitised(case.test), "", Measure::OfSum, 0.03, points);
     let heavy = if case.test == 8 { HEAVY_NOTE } else { "" };
     let difference = row(all).difference().unwrap_or(f64::NAN);
     let sticking = format!(
