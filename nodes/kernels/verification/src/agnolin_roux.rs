@@ -2,13 +2,15 @@
 
 use crate::error::VerificationError;
 use crate::row::{Measure, Point, Row};
-use grainlab_core::results::PackingReport;
 use grainlab_experiment::Simulation;
 use grainlab_micromechanics::{Settings, analyze};
 use grainlab_scene::Scene;
 
 /// The name of the suite.
 pub const NAME: &str = "agnolin-roux";
+
+/// Seeds of the packings of a state.
+pub const SEEDS: [u64; 3] = [1, 2, 3];
 
 /// A state, as published.
 #[derive(Clone, Copy, Debug)]
@@ -68,28 +70,40 @@ pub const STATES: [State; 4] = [
     },
 ];
 
-/// The rows of a state. It takes a while: 4,000 grains are prepared and measured.
-pub fn rows(state: &State) -> Result<Vec<Row>, VerificationError> {
-    let report = prepared(state.scene)?;
-    let row = |what: &str, tolerance, theirs, ours| {
-        let points = vec![Point::new(0.0, theirs, ours)];
-        let name = format!("state {}, {what}", state.name);
-        Row::new(NAME, name, state.source, "", Measure::Absolute, tolerance, points).with_note(state.note)
-    };
-    let (phi, z) = (report.solid_fraction, report.contacts.mechanical_coordination);
-    Ok(vec![
-        row("solid fraction", 0.003, state.solid_fraction, phi),
-        row("z", state.coordination_tolerance, state.coordination, z),
-    ])
+/// What is compared of one packing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// φ.
+    pub solid_fraction: f64,
+    /// z.
+    pub coordination: f64,
 }
 
-fn prepared(scene: &str) -> Result<PackingReport, VerificationError> {
+/// Prepares a state with one of the [`SEEDS`] and measures it: 4,000 grains, up to a minute.
+pub fn prepared(state: &State, seed: u64) -> Result<Found, VerificationError> {
     let failed =
         |what: &dyn std::fmt::Display| VerificationError::Measurement(format!("a prepared state: {what}"));
-    let mut run = Simulation::new(Scene::parse(scene).map_err(|e| failed(&e))?).map_err(|e| failed(&e))?;
+    let scene = Scene { seed, ..Scene::parse(state.scene).map_err(|e| failed(&e))? };
+    let mut run = Simulation::new(scene).map_err(|e| failed(&e))?;
     while let Some(request) = run.request() {
         let answer = grainlab_servo::control(&request.servo_input()).map_err(|e| failed(&e))?;
         run.advance(&answer.rate).map_err(|e| failed(&e))?;
     }
-    Ok(analyze(&run.packing(), &Settings::default()).map_err(|e| failed(&e))?.report)
+    let report = analyze(&run.packing(), &Settings::default()).map_err(|e| failed(&e))?.report;
+    Ok(Found { solid_fraction: report.solid_fraction, coordination: report.contacts.mechanical_coordination })
+}
+
+/// The rows of a state: means over packings of all [`SEEDS`].
+pub fn rows(state: &State, found: &[Found]) -> Vec<Row> {
+    let mean = |of: fn(&Found) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
+    let row = |what: &str, tolerance, theirs, ours| {
+        let points = vec![Point::new(0.0, theirs, ours)];
+        let name = format!("state {}, {what}, mean of {} packings", state.name, found.len());
+        Row::new(NAME, name, state.source, "", Measure::Absolute, tolerance, points).with_note(state.note)
+    };
+    let z_tolerance = state.coordination_tolerance;
+    vec![
+        row("solid fraction", 0.003, state.solid_fraction, mean(|f| f.solid_fraction)),
+        row("z", z_tolerance, state.coordination, mean(|f| f.coordination)),
+    ]
 }

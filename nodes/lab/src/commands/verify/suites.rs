@@ -6,6 +6,7 @@ use grainlab_verification::{
     Row, VerificationError, agnolin_roux, chung_ooi, grainlearning, lammps_packings, lammps_pairs, mercury,
     ondem, smooth_moduli, uniaxial,
 };
+use rayon::prelude::*;
 
 /// Comparisons that belong together.
 pub(super) struct Suite {
@@ -45,17 +46,21 @@ pub(super) const SUITES: [Suite; 9] = [
     }),
     Suite {
         name: agnolin_roux::NAME,
-        about: "four packings of 4,000 grains prepared as Agnolin & Roux have them",
+        about: "twelve packings of 4,000 grains prepared as Agnolin & Roux have them",
         slow: true,
-        rows: || {
-            let mut rows = Vec::new();
-            for state in &agnolin_roux::STATES {
-                rows.extend(made(agnolin_roux::rows(state))?);
-            }
-            Ok(rows)
-        },
+        rows: agnolin_roux,
     },
 ];
+
+/// Packings are prepared side by side.
+fn agnolin_roux() -> Result<Vec<Row>, Failure> {
+    let runs = agnolin_roux::STATES.iter().flat_map(|state| agnolin_roux::SEEDS.map(|seed| (state, seed)));
+    let runs: Vec<_> = runs.collect();
+    let found = runs.par_iter().map(|(state, seed)| agnolin_roux::prepared(state, *seed));
+    let found = made(found.collect::<Result<Vec<_>, _>>())?;
+    let of_states = agnolin_roux::STATES.iter().zip(found.chunks(agnolin_roux::SEEDS.len()));
+    Ok(of_states.flat_map(|(state, found)| agnolin_roux::rows(state, found)).collect())
+}
 
 const fn quick(name: &'static str, about: &'static str, rows: fn() -> Result<Vec<Row>, Failure>) -> Suite {
     Suite { name, about, slow: false, rows }
