@@ -25,9 +25,13 @@ impl Damped {
     /// The collision at a damping, as a fraction of critical.
     pub(crate) fn new(springs: Springs, damping: f64) -> Self {
         const STEP: f64 = 2e-4;
-        let (elastic, dashpot): (fn(f64) -> f64, fn(f64) -> f64) = match springs {
-            Springs::Hertz => (|x| x.powf(1.5), |x| 1.5f64.sqrt() * x.powf(0.25)),
-            Springs::Linear => (|x| x, |_| 1.0),
+        let elastic = |x: f64| match springs {
+            Springs::Hertz => x.powf(1.5),
+            Springs::Linear => x,
+        };
+        let dashpot = |x: f64| match springs {
+            Springs::Hertz => 1.5f64.sqrt() * x.powf(0.25),
+            Springs::Linear => 1.0,
         };
         let force = |x: f64, v: f64| {
             let x = x.max(0.0);

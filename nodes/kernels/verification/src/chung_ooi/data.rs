@@ -1,6 +1,13 @@
 //! The tables of `data/chung_ooi.toml`.
 
+use crate::lammps_pairs::material;
+use grainlab_core::Material;
 use serde::Deserialize;
+
+/// The name of the suite.
+pub const NAME: &str = "chung-ooi";
+
+pub(super) const PAPER: &str = "Chung & Ooi, Granular Matter 13, 643 (2011)";
 
 /// Abscissa and ordinate of a curve.
 pub(super) type Curve = Vec<[f64; 2]>;
@@ -92,4 +99,21 @@ pub(super) struct CounterSpinning {
     pub(super) solid: Solid,
     /// rad/s
     pub(super) spins: Vec<f64>,
+}
+
+/// Curves that Kratos digitised.
+pub(super) fn digitised(test: u32) -> String {
+    format!("{PAPER}, test {test}, digitised by Kratos (DEMApplication)")
+}
+
+impl Solid {
+    /// The material itself.
+    pub(super) fn material(&self) -> Material {
+        material(self.young, self.poisson, self.density)
+    }
+
+    /// The material with which two spheres have E* and G* of one sphere of this material upon a rigid body.
+    pub(super) fn upon_rigid(&self) -> Material {
+        material(2.0 * self.young, self.poisson, self.density)
+    }
 }

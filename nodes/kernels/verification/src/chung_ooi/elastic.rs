@@ -1,7 +1,6 @@
 //! Tests 1 and 2: elastic normal impact of two spheres, and of a sphere upon a rigid plane.
 
-use super::data::Elastic;
-use super::{NAME, digitised};
+use super::data::{Elastic, NAME, digitised};
 use crate::error::VerificationError;
 use crate::row::{Measure, Point, Row};
 use crate::two_spheres::{PLANE, TwoSpheres};

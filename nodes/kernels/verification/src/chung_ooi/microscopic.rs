@@ -1,7 +1,6 @@
 //! Test 5: oblique impact of a sphere of 10 µm upon a rigid plane.
 
-use super::data::Microscopic;
-use super::{NAME, digitised};
+use super::data::{Microscopic, NAME, digitised};
 use crate::error::VerificationError;
 use crate::lammps_impacts::{After, Impacts, Law};
 use crate::row::{Measure, Point, Row};
@@ -14,6 +13,9 @@ const FRICTION: f64 = 0.3;
 
 /// From this v_t/(μ v_n) on, a sphere of restitution 1 slides throughout.
 const SLIDING: f64 = 7.0;
+
+/// What is read off an impact.
+type Quantity = fn(After) -> f64;
 
 fn upon_plane(case: &Microscopic, incidence: f64) -> TwoSpheres {
     let velocity = Vec3::new(incidence * FRICTION * NORMAL_SPEED, 0.0, -NORMAL_SPEED);
@@ -48,8 +50,8 @@ pub(super) fn rows(
     impacts: &Impacts,
 ) -> Result<Vec<Row>, VerificationError> {
     let mut rows = Vec::new();
-    let quantities: [(&str, fn(After) -> f64, _); 2] =
-        [("surface after", surface, &case.surface), ("spin after", spin, &case.spin)];
+    let quantities =
+        [("surface after", surface as Quantity, &case.surface), ("spin after", spin, &case.spin)];
     for (curve, (what, quantity, data)) in quantities.into_iter().enumerate() {
         let (mut sliding, mut sticking) = (Vec::new(), Vec::new());
         for [incidence, theirs] in data {

@@ -10,18 +10,13 @@ mod oblique;
 mod restitution;
 mod spinning;
 
+pub use data::NAME;
+
 use crate::error::VerificationError;
 use crate::lammps_impacts::Impacts;
-use crate::lammps_pairs::material;
 use crate::reference::parse;
 use crate::row::Row;
-use data::{Data, Solid};
-use grainlab_core::Material;
-
-/// The name of the suite.
-pub const NAME: &str = "chung-ooi";
-
-const PAPER: &str = "Chung & Ooi, Granular Matter 13, 643 (2011)";
+use data::Data;
 
 /// Every row.
 pub fn rows() -> Result<Vec<Row>, VerificationError> {
@@ -46,20 +41,4 @@ pub fn rows() -> Result<Vec<Row>, VerificationError> {
     }
     rows.extend(spinning::counter_spinning(&data.counter_spinning)?);
     Ok(rows)
-}
-
-/// Curves that Kratos digitised.
-fn digitised(test: u32) -> String {
-    format!("{PAPER}, test {test}, digitised by Kratos (DEMApplication)")
-}
-
-impl Solid {
-    fn material(&self) -> Material {
-        material(self.young, self.poisson, self.density)
-    }
-
-    /// The material with which two spheres have E* and G* of one sphere of this material upon a rigid body.
-    fn upon_rigid(&self) -> Material {
-        material(2.0 * self.young, self.poisson, self.density)
-    }
 }

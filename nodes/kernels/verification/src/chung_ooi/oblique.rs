@@ -1,7 +1,6 @@
 //! Test 4: oblique impact of a sphere upon a rigid plane.
 
-use super::data::{Measured, Oblique};
-use super::{NAME, PAPER, digitised};
+use super::data::{Measured, NAME, Oblique, PAPER, digitised};
 use crate::error::VerificationError;
 use crate::lammps_impacts::{After, Impacts, Law};
 use crate::restitution::damping_for;

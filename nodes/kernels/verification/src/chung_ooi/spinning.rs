@@ -1,7 +1,6 @@
 //! Tests 6, 7 and 8: a spinning sphere upon a plane and upon a larger sphere, and two that spin against each other.
 
-use super::data::{CounterSpinning, Spinning};
-use super::{NAME, PAPER, digitised};
+use super::data::{CounterSpinning, NAME, PAPER, Spinning, digitised};
 use crate::error::VerificationError;
 use crate::restitution::{Damped, Springs, damping_for};
 use crate::row::{Measure, Point, Row};
@@ -15,10 +14,6 @@ const RESTITUTION: f64 = 0.5;
 
 /// Up to this 3.5 μ (1 + e) v_n/v_t a sphere slides throughout.
 const SLIDING: f64 = 1.0;
-
-const SPIN_NOTE: &str = "Our Coulomb limit is friction times the elastic normal force, without the dashpot, so that a sliding contact \
-                         transfers friction times the impulse of that part: at this restitution 0.956 of the friction coefficient times \
-                         the whole impulse. Explained is that, in closed form.";
 
 const HEAVY_NOTE: &str = " The larger sphere has 50 times the radius, not 5 times the radius and 1,000 times the density: all grains of a \
                           packing are of one density. The ratio of the masses is theirs.";
@@ -51,8 +46,12 @@ pub(super) fn rows(case: &Spinning) -> Result<Vec<Row>, VerificationError> {
          the sliding part alone. Over the whole curve the difference is {:.0} % of the sum.{heavy}",
         100.0 * difference
     );
+    let note = format!(
+        "Our Coulomb limit is friction times the elastic normal force, without the dashpot: what slides transfers friction times the \
+         impulse of that part, here {share:.3} of the whole impulse. Explained is that, in closed form.{heavy}"
+    );
     Ok(vec![
-        row(sliding).with_note(format!("{SPIN_NOTE}{heavy}")),
+        row(sliding).with_note(note),
         Row::not_comparable(NAME, name("sticking"), digitised(case.test), sticking),
     ])
 }
