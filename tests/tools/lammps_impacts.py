@@ -109,6 +109,10 @@ def cases(data):
             for incidence, _ in solid[curve]:
                 v = incidence * 0.3 * 5.0, -5.0
                 yield 5, solid["material"], curve, incidence, (solid, 1e-5, 1e5, v, 0.0, 0.3, 0.0)
+    for curve in ("surface", "spin"):
+        for incidence, _ in data["finite_elements"][curve]:
+            v = incidence * 0.3 * 5.0, -5.0
+            yield 5, "steel", f"finite_elements_{curve}", incidence, (data["microscopic"][0], 1e-5, 1e5, v, 0.0, 0.3, 0.0)
     for solid in data["spinning"]:
         for slip, _ in solid["beta"]:
             spin = -3.5 * 0.4 * 1.5 * 0.2 / slip / 0.1
@@ -121,11 +125,12 @@ def main():
     with open(folder / "lammps_impacts.csv", "w", newline="") as out:
         out.write("# LAMMPS 22 Jul 2025 (update 4), by tests/tools/lammps_impacts.py: velocities (m/s) and spin (rad/s) after an\n")
         out.write("# impact of tests 4, 5, 6 and 8 of Chung & Ooi; laws: 0 mindlin_rescale/force, 1 mindlin. Materials and abscissae\n")
-        out.write("# in the order of chung_ooi.toml; curves: 0 curve or surface or beta, 1 spin or measured e_t, 2 measured spin.\n")
+        out.write("# in the order of chung_ooi.toml; curves: 0 curve or surface or beta, 1 spin or measured e_t, 2 measured spin or finite elements' surface, 3 their spin.\n")
         out.write("# Test 0: two equal spheres without dashpots; laws: 0 mindlin_rescale/force, 1 mindlin/force.\n")
         out.write("# test,material,curve,abscissa,law,v_x,v_z,spin\n")
         rows = csv.writer(out, lineterminator="\n")
-        curves = {"curve": 0, "surface": 0, "beta": 0, "spin": 1, "measured_tangential_restitution": 1, "measured_spin": 2}
+        curves = {"curve": 0, "surface": 0, "beta": 0, "spin": 1, "measured_tangential_restitution": 1, "measured_spin": 2,
+                  "finite_elements_surface": 2, "finite_elements_spin": 3}
         materials = {4: "oblique", 5: "microscopic", 6: "spinning", 8: "spinning"}
         # Two equal spheres of glass, R 0.1 mm, v_n 0.1 m/s, mu 0.3; v_t/(mu v_n) as abscissa: overlaps of 1e-3 R.
         glass = {"young": 69.6e9 / 2, "poisson": 0.2, "density": 2500.0}

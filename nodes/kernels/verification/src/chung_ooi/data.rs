@@ -21,6 +21,7 @@ pub(super) struct Data {
     pub(super) oblique: Vec<Oblique>,
     pub(super) measured: Measured,
     pub(super) microscopic: Vec<Microscopic>,
+    pub(super) finite_elements: FiniteElements,
     pub(super) spinning: Vec<Spinning>,
     pub(super) counter_spinning: CounterSpinning,
 }
@@ -77,6 +78,14 @@ pub(super) struct Measured {
 pub(super) struct Microscopic {
     #[serde(flatten)]
     pub(super) solid: Solid,
+    pub(super) surface: Curve,
+    pub(super) spin: Curve,
+}
+
+/// The steel sphere of test 5 by finite elements.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FiniteElements {
     pub(super) surface: Curve,
     pub(super) spin: Curve,
 }

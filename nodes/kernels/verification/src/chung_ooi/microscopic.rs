@@ -1,6 +1,6 @@
 //! Test 5: oblique impact of a sphere of 10 µm upon a rigid plane.
 
-use super::data::{Microscopic, NAME, digitised};
+use super::data::{FiniteElements, Microscopic, NAME, digitised};
 use crate::error::VerificationError;
 use crate::lammps_impacts::{After, Impacts, Law};
 use crate::row::{Measure, Point, Row};
@@ -73,6 +73,35 @@ pub(super) fn rows(
              does, and Kratos judges the sliding part alone. Explained is LAMMPS with the same law as ours; it takes the slip at \
              radius R and the torque at R - overlap/2, ours both at R - overlap/2, so that a few times overlap/R remain.",
         ));
+    }
+    Ok(rows)
+}
+
+/// The rows beside finite elements, for the first material, which is theirs.
+pub(super) fn finite_elements(
+    cases: &[Microscopic],
+    theirs: &FiniteElements,
+    impacts: &Impacts,
+) -> Result<Vec<Row>, VerificationError> {
+    let mut rows = Vec::new();
+    for case in cases {
+        let curves =
+            [("surface after", surface as Quantity, &theirs.surface), ("spin after", spin, &theirs.spin)];
+        for (curve, (what, quantity, data)) in curves.into_iter().enumerate() {
+            let mut points = Vec::new();
+            for [incidence, theirs] in data {
+                let ours = quantity(impact(case, *incidence)?);
+                // Curves 2 and 3 of the impacts by LAMMPS.
+                let same_law = impacts.find([5, 0, 2 + curve], *incidence, Law::Incremental)?;
+                points.push(Point::explained(*incidence, *theirs, ours, quantity(same_law)));
+            }
+            let name = format!("test 5, {}, finite elements, {what}", case.solid.name);
+            let row = Row::new(NAME, name, digitised(5), "", Measure::OfSum, 0.05, points);
+            rows.push(row.with_note(
+                "Finite elements have partial slip within the area of contact, which neither ours nor LAMMPS's tangential law has. \
+                 Explained is LAMMPS with the same law.",
+            ));
+        }
     }
     Ok(rows)
 }

@@ -17,6 +17,7 @@ use crate::lammps_impacts::Impacts;
 use crate::reference::parse;
 use crate::row::Row;
 use data::Data;
+use std::collections::BTreeMap;
 
 /// Every row.
 pub fn rows() -> Result<Vec<Row>, VerificationError> {
@@ -36,8 +37,12 @@ pub fn rows() -> Result<Vec<Row>, VerificationError> {
     for (n, case) in data.microscopic.iter().enumerate() {
         rows.extend(microscopic::rows(n, case, &impacts)?);
     }
+    rows.extend(microscopic::finite_elements(&data.microscopic[..1], &data.finite_elements, &impacts)?);
+    let mut seen = BTreeMap::new();
     for case in &data.spinning {
-        rows.extend(spinning::rows(case)?);
+        let material = seen.entry(case.test).or_insert(0);
+        rows.extend(spinning::rows(*material, case, &impacts)?);
+        *material += 1;
     }
     rows.extend(spinning::counter_spinning(&data.counter_spinning)?);
     Ok(rows)
