@@ -2,7 +2,7 @@
 
 use crate::commands::{
     analyze, bag, calibrate, campaign, completions, invert, launch, man, probe, report, reproduce, run,
-    scene, view,
+    scene, verify, view,
 };
 use clap::{CommandFactory, Parser, Subcommand};
 use grainlab_bench as bench;
@@ -68,6 +68,8 @@ enum Command {
     Analyze(analyze::Args),
     /// Send waves through packings from files: their speeds, and the moduli that follow.
     Probe(probe::Args),
+    /// Compare with other codes and the literature: one table of numbers, tolerances and verdicts.
+    Verify(verify::Args),
     /// Measure cost and accuracy on this machine.
     #[command(subcommand)]
     Bench(bench::Command),
@@ -99,6 +101,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Analyze(args)) => analyze::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),
+        Some(Command::Verify(args)) => verify::run(&args),
         Some(Command::Bench(command)) => bench::run(&command),
         Some(Command::Completions(args)) => completions::run(&args, Cli::command()),
         Some(Command::Man(args)) => man::run(&args, Cli::command()),

@@ -14,4 +14,5 @@ pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod run;
 pub(crate) mod scene;
+pub(crate) mod verify;
 pub(crate) mod view;

@@ -1,0 +1,208 @@
+//! One comparison: their numbers, ours, and what follows.
+
+use serde::Serialize;
+
+/// One number of theirs and of ours.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// Where along the comparison: an angle, an overlap, a step. The row says which.
+    pub at: f64,
+    /// Their number.
+    pub theirs: f64,
+    /// Ours.
+    pub ours: f64,
+    /// What ours should be for the reason in the note of the row, where it should not be theirs.
+    pub explained: Option<f64>,
+}
+
+impl Point {
+    /// A number that should be theirs.
+    pub fn new(at: f64, theirs: f64, ours: f64) -> Self {
+        Self { at, theirs, ours, explained: None }
+    }
+
+    /// A number that should be `explained`, for the reason in the note of the row.
+    pub fn explained(at: f64, theirs: f64, ours: f64, explained: f64) -> Self {
+        Self { explained: Some(explained), ..Self::new(at, theirs, ours) }
+    }
+}
+
+/// How the difference of a row is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// The largest relative difference.
+    Relative,
+    /// The largest difference over the largest magnitude of theirs.
+    OfLargest,
+    /// The sum of the differences over the sum of the magnitudes of theirs, as Kratos judges the curves of Chung & Ooi.
+    OfSum,
+    /// The largest difference, in the unit of the row.
+    Absolute,
+}
+
+/// What follows from a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Within the tolerance.
+    Passed,
+    /// Not within the tolerance, but within it of the number that follows from the reason in the note.
+    Explained,
+    /// The engine lacks what the comparison needs; the note says what.
+    NotComparable,
+    /// Outside the tolerance, without an explanation.
+    Failed,
+}
+
+impl Verdict {
+    /// The word in the table.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Explained => "explained",
+            Self::NotComparable => "not comparable",
+            Self::Failed => "FAILED",
+        }
+    }
+}
+
+/// One comparison.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// The suite it belongs to, as in `--only`.
+    pub suite: &'static str,
+    /// What is compared.
+    pub name: String,
+    /// Where their numbers are from.
+    pub source: String,
+    /// Unit of the numbers; empty for a pure number.
+    pub unit: &'static str,
+    /// The numbers; none if the engine lacks what is needed.
+    pub points: Vec<Point>,
+    /// How the difference is counted.
+    pub measure: Measure,
+    /// The largest difference that passes.
+    pub tolerance: f64,
+    /// What differs and why; empty where nothing does.
+    pub note: String,
+}
+
+impl Row {
+    /// A row without a note.
+    pub fn new(
+        suite: &'static str,
+        name: impl Into<String>,
+        source: impl Into<String>,
+        unit: &'static str,
+        measure: Measure,
+        tolerance: f64,
+        points: Vec<Point>,
+    ) -> Self {
+        let note = String::new();
+        Self { suite, name: name.into(), source: source.into(), unit, points, measure, tolerance, note }
+    }
+
+    /// A comparison that needs what the engine lacks: `note` says what.
+    pub fn not_comparable(
+        suite: &'static str,
+        name: impl Into<String>,
+        source: impl Into<String>,
+        note: impl Into<String>,
+    ) -> Self {
+        Self::new(suite, name, source, "", Measure::Relative, 0.0, Vec::new()).with_note(note)
+    }
+
+    /// The same row with a note.
+    #[must_use]
+    pub fn with_note(self, note: impl Into<String>) -> Self {
+        Self { note: note.into(), ..self }
+    }
+
+    /// The difference from their numbers; `None` where nothing is compared.
+    pub fn difference(&self) -> Option<f64> {
+        self.against(|p| p.theirs)
+    }
+
+    /// The difference from the explained numbers; `None` where no number is explained.
+    pub fn unexplained(&self) -> Option<f64> {
+        let explained = self.points.iter().any(|p| p.explained.is_some());
+        explained.then(|| self.against(|p| p.explained.unwrap_or(p.theirs))).flatten()
+    }
+
+    /// What follows.
+    pub fn verdict(&self) -> Verdict {
+        // A difference that is not a number is no pass.
+        let within = |difference: f64| difference <= self.tolerance;
+        match (self.difference(), self.unexplained()) {
+            (None, _) => Verdict::NotComparable,
+            (Some(d), _) if within(d) => Verdict::Passed,
+            (_, Some(d)) if within(d) => Verdict::Explained,
+            _ => Verdict::Failed,
+        }
+    }
+
+    /// The point of the largest difference.
+    pub fn worst(&self) -> Option<&Point> {
+        let size = |p: &Point| {
+            let difference = (p.ours - p.theirs).abs();
+            if self.measure == Measure::Relative { difference / p.theirs.abs() } else { difference }
+        };
+        self.points.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
+    }
+
+    fn against(&self, wanted: impl Fn(&Point) -> f64) -> Option<f64> {
+        if self.points.is_empty() {
+            return None;
+        }
+        // `f64::max` would drop what is not a number.
+        let largest = |of: &dyn Fn(&Point) -> f64| {
+            self.points.iter().map(of).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+        };
+        let sum = |of: &dyn Fn(&Point) -> f64| self.points.iter().map(of).sum::<f64>();
+        let difference = |p: &Point| (p.ours - wanted(p)).abs();
+        let size = |p: &Point| wanted(p).abs();
+        Some(match self.measure {
+            Measure::Relative => {
+                largest(&|p| if difference(p) == 0.0 { 0.0 } else { difference(p) / size(p) })
+            }
+            Measure::OfLargest => largest(&difference) / largest(&size),
+            Measure::OfSum => sum(&difference) / sum(&size),
+            Measure::Absolute => largest(&difference),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(measure: Measure, tolerance: f64, points: Vec<Point>) -> Row {
+        Row::new("suite", "name", "source", "m", measure, tolerance, points)
+    }
+
+    #[test]
+    fn each_measure_counts_the_difference_as_it_says() {
+        let points = vec![Point::new(0.0, 1.0, 1.1), Point::new(1.0, -10.0, -9.5)];
+        for (measure, expected) in [
+            (Measure::Relative, 0.1),
+            (Measure::OfLargest, 0.05),
+            (Measure::OfSum, 0.6 / 11.0),
+            (Measure::Absolute, 0.5),
+        ] {
+            let found = row(measure, 0.0, points.clone()).difference().unwrap();
+            assert!((found - expected).abs() < 1e-12, "{measure:?}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_row_passes_within_its_tolerance_and_else_only_by_its_explanation() {
+        let of = |point| row(Measure::Relative, 0.01, vec![point]).verdict();
+        assert_eq!(of(Point::new(0.0, 1.0, 1.005)), Verdict::Passed);
+        assert_eq!(of(Point::new(0.0, 1.0, 1.5)), Verdict::Failed);
+        assert_eq!(of(Point::explained(0.0, 1.0, 1.5, 1.501)), Verdict::Explained);
+        assert_eq!(of(Point::explained(0.0, 1.0, 1.6, 1.501)), Verdict::Failed);
+        assert_eq!(of(Point::new(0.0, 1.0, f64::NAN)), Verdict::Failed);
+        assert_eq!(Row::not_comparable("s", "n", "s", "no walls").verdict(), Verdict::NotComparable);
+    }
+}

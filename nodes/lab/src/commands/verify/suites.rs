@@ -1,0 +1,71 @@
+//! The list of suites.
+
+use super::embedded;
+use grainlab_console::Failure;
+use grainlab_verification::{
+    Row, VerificationError, agnolin_roux, chung_ooi, grainlearning, lammps_packings, lammps_pairs, mercury,
+    ondem, smooth_moduli, uniaxial,
+};
+use rayon::prelude::*;
+
+/// Comparisons that belong together.
+pub(super) struct Suite {
+    /// As in `--only`.
+    pub(super) name: &'static str,
+    /// What is compared.
+    pub(super) about: &'static str,
+    /// Whether it takes minutes.
+    pub(super) slow: bool,
+    /// Makes the comparisons.
+    pub(super) rows: fn() -> Result<Vec<Row>, Failure>,
+}
+
+/// Every suite, in the order of the table.
+pub(super) const SUITES: [Suite; 9] = [
+    quick(
+        lammps_pairs::NAME,
+        "two spheres, as LAMMPS's own tests record them",
+        || made(lammps_pairs::rows()),
+    ),
+    quick(chung_ooi::NAME, "the eight tests of Chung & Ooi", || made(chung_ooi::rows())),
+    quick(mercury::NAME, "the Mindlin tests of MercuryDPM", || made(mercury::rows())),
+    quick(ondem::NAME, "the prescribed motions of ON-DEM", || made(ondem::rows())),
+    quick(grainlearning::NAME, "what a force curve of GrainLearning fixes", || made(grainlearning::rows())),
+    quick(smooth_moduli::NAME, "moduli of smooth spheres by matscipy", || {
+        made(smooth_moduli::rows(&embedded::smooth_spheres()?, embedded::MATSCIPY))
+    }),
+    quick(lammps_packings::NAME, "packings of LAMMPS: contacts, forces, stress, stiffness", || {
+        let (packing, reference) = embedded::equal_spheres()?;
+        let mut rows = made(lammps_packings::equal_spheres(&packing, &reference))?;
+        let (packing, stress) = embedded::unequal_spheres()?;
+        rows.extend(lammps_packings::unequal_spheres(&packing, &stress));
+        Ok(rows)
+    }),
+    quick(uniaxial::NAME, "uniaxial compression step by step beside LAMMPS", || {
+        made(uniaxial::rows(&embedded::to_compress()?, embedded::UNIAXIAL))
+    }),
+    Suite {
+        name: agnolin_roux::NAME,
+        about: "twelve packings of 4,000 grains prepared as Agnolin & Roux have them",
+        slow: true,
+        rows: agnolin_roux,
+    },
+];
+
+/// Packings are prepared side by side.
+fn agnolin_roux() -> Result<Vec<Row>, Failure> {
+    let runs = agnolin_roux::STATES.iter().flat_map(|state| agnolin_roux::SEEDS.map(|seed| (state, seed)));
+    let runs: Vec<_> = runs.collect();
+    let found = runs.par_iter().map(|(state, seed)| agnolin_roux::prepared(state, *seed));
+    let found = made(found.collect::<Result<Vec<_>, _>>())?;
+    let of_states = agnolin_roux::STATES.iter().zip(found.chunks(agnolin_roux::SEEDS.len()));
+    Ok(of_states.flat_map(|(state, found)| agnolin_roux::rows(state, found)).collect())
+}
+
+const fn quick(name: &'static str, about: &'static str, rows: fn() -> Result<Vec<Row>, Failure>) -> Suite {
+    Suite { name, about, slow: false, rows }
+}
+
+fn made<T>(result: Result<T, VerificationError>) -> Result<T, Failure> {
+    result.map_err(|e| Failure::failed(e.to_string()))
+}
