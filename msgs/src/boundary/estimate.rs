@@ -6,8 +6,8 @@ use crate::msg::Estimate;
 use grainlab_core::results::InferredQuantity;
 
 /// The data, in the order of every row of [`Inferred::information`].
-pub const DATA: [&str; 9] =
-    ["G12", "G13", "Theta", "C11", "C33", "C13", "pressure", "gamma/Delta", "solid fraction"];
+pub const DATA: [&str; 10] =
+    ["G12", "G13", "Theta", "C11", "C33", "C13", "pressure", "gamma/Delta", "solid fraction", "q/p"];
 
 /// The checked result of one model.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +65,7 @@ pub struct Inferred {
     pub condition_number: Option<f64>,
     /// Contribution of each of [`DATA`] to the variance of each quantity from the data; the sum of a row is
     /// 1.
-    pub information: [Option<[f64; 9]>; 5],
+    pub information: [Option<[f64; DATA.len()]>; 5],
 }
 
 /// Credible intervals.
@@ -218,18 +218,18 @@ fn condition_number(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
     })
 }
 
-fn information(m: &Estimate, known: &[bool; 5]) -> Result<[Option<[f64; 9]>; 5], BoundaryError> {
+fn information(m: &Estimate, known: &[bool; 5]) -> Result<[Option<[f64; DATA.len()]>; 5], BoundaryError> {
     CHECK.all_finite("information", &m.information)?;
     let mut rows = [None; 5];
     for (i, row) in rows.iter_mut().enumerate() {
-        let start = 9 * i;
-        let shares: [f64; 9] = std::array::from_fn(|j| m.information[start + j]);
+        let start = DATA.len() * i;
+        let shares: [f64; DATA.len()] = std::array::from_fn(|j| m.information[start + j]);
         if let Some(j) = shares.iter().position(|s| *s != 0.0) {
             CHECK.that(known[i], &format!("information[{}]", start + j), shares[j], NOTHING)?;
             // Contributions of correlated data may be large and cancel, so that rounding affects the sum.
             let slack = 1e-6 * shares.iter().map(|s| s.abs()).sum::<f64>();
             let (sum, name) =
-                (shares.iter().sum::<f64>(), format!("sum of information[{start}..{}]", start + 9));
+                (shares.iter().sum::<f64>(), format!("sum of information[{start}..{}]", start + DATA.len()));
             CHECK.that((sum - 1.0).abs() <= slack, &name, sum, "1, or the row all 0 if unknown")?;
             *row = Some(shares);
         }

@@ -33,7 +33,7 @@ fn estimate() -> Estimate {
     }
     (e.covariance[1], e.covariance[5]) = (0.004, 0.004);
     // ε: contributions of G12 and G13, reduced by their correlation.
-    (e.information[27], e.information[28], e.information[29]) = (0.75, 0.5, -0.25);
+    (e.information[30], e.information[31], e.information[32]) = (0.75, 0.5, -0.25);
     e
 }
 
@@ -58,7 +58,7 @@ fn an_estimate_has_none_where_the_model_gives_no_value() {
     assert_eq!(found.interval, Some(Interval { level: 0.68, bounds }));
     assert_eq!(found.misfit, Some(Misfit { chi_square: 1.5, degrees_of_freedom: 2 }));
     assert_eq!(found.condition_number, Some(12.0));
-    let of_eps = [0.75, 0.5, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let of_eps = [0.75, 0.5, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(found.information, [None, None, None, Some(of_eps), None]);
 }
 
@@ -160,14 +160,14 @@ fn each_fault_of_an_estimate_is_refused_by_name() {
             ),
             (|m| m.estimates[0].condition_number[0] = 0.5, "Estimate.condition_number = 0.5 is refused"),
             (|m| m.estimates[0].condition_number[0] = NAN, "Estimate.condition_number = NaN is refused"),
-            (|m| m.estimates[0].information[44] = NAN, "Estimate.information[44] = NaN is refused"),
+            (|m| m.estimates[0].information[49] = NAN, "Estimate.information[49] = NaN is refused"),
             (
-                |m| m.estimates[0].information[20] = 1.0,
-                "Estimate.information[20] = 1.0 is refused: it must be 0, because",
+                |m| m.estimates[0].information[22] = 1.0,
+                "Estimate.information[22] = 1.0 is refused: it must be 0, because",
             ),
             (
-                |m| m.estimates[0].information[30] = 0.5,
-                "Estimate.sum of information[27..36] = 1.5 is refused: it must be 1",
+                |m| m.estimates[0].information[34] = 0.5,
+                "Estimate.sum of information[30..40] = 1.5 is refused: it must be 1",
             ),
         ],
         |m| MicrostructureReading::try_from(m),

@@ -124,6 +124,7 @@ fn an_inversion_reads_what_the_analysis_measured() {
         assert!((read / measured - 1.0f64).abs() < 1e-14, "{read} {measured}");
     }
     assert_eq!(r.strain_ratios, report().strain_ratios);
+    assert_eq!((r.stress_ratio, r.size_spread), (Some(0.0), Some(0.1)));
     assert_eq!((r.pressure, r.solid_fraction, r.material), (5e4, Some(0.64), Material::GLASS));
     assert_eq!((r.grains, r.axis, r.covariance), (Some(500), Some(Vec3::z()), None));
     assert_eq!((sent.source_step, &sent.header), (7, &header()));
@@ -139,6 +140,8 @@ fn fields_unknown_to_an_instrument_are_none() {
         theta: vec![170e6],
         pressure: 5e4,
         solid_fraction: vec![0.64],
+        stress_ratio: vec![0.0],
+        size_spread: vec![0.1],
         grain_shear_modulus: 29e9,
         grain_poisson_ratio: 0.2,
         grain_density: 2500.0,
@@ -189,6 +192,8 @@ fn each_fault_of_the_moduli_is_refused_by_name() {
             (|m| m.covariance[3] = 1.0, "Moduli.covariance[3] = 1.0 is refused: it must be symmetric"),
             (|m| m.pressure = -5e4, "Moduli.pressure = -50000.0 is refused"),
             (|m| m.solid_fraction[0] = 0.0, "Moduli.solid_fraction = 0.0 is refused"),
+            (|m| m.stress_ratio[0] = NAN, "Moduli.stress_ratio = NaN is refused"),
+            (|m| m.size_spread[0] = -0.1, "Moduli.size_spread = -0.1 is refused"),
             (|m| m.axis.z = 0.5, "Moduli.|axis| = 0.5 is refused: it must be 1"),
             (|m| m.axis.x = NAN, "Moduli.|axis| = NaN is refused"),
             (|m| m.strain_ratios.total[0] = NAN, "Moduli.strain_ratios.total = NaN is refused"),

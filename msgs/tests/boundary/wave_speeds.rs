@@ -34,6 +34,8 @@ fn sent() -> msg::WaveSpeeds {
         density_stddev: 8.0,
         pressure: 5e4,
         solid_fraction: 0.64,
+        stress_ratio: vec![-0.1],
+        size_spread: vec![0.2],
         axis: z,
         grain_shear_modulus: 29e9,
         grain_poisson_ratio: 0.2,
@@ -49,6 +51,7 @@ fn an_inversion_reads_the_speeds_that_were_sent() {
     assert_eq!((r.stamp, r.source_step, r.axis), (stamp(0.25), Some(7), Some(Vec3::z())));
     assert_eq!((r.density, r.density_stddev, r.pressure), (1550.0, Some(8.0), 5e4));
     assert_eq!((r.solid_fraction, r.grain_shear_modulus, r.grain_poisson_ratio), (Some(0.64), 29e9, 0.2));
+    assert_eq!((r.stress_ratio, r.size_spread), (Some(-0.1), Some(0.2)));
     let compression =
         WaveSpeed { direction: Vec3::z(), polarization: Vec3::z(), speed: 500.0, stddev: Some(1.5) };
     let shear = WaveSpeed { polarization: Vec3::x(), speed: 300.0, stddev: None, ..compression };
@@ -77,6 +80,8 @@ fn zeros_of_an_instrument_are_unknown() {
         source_step: 0,
         density_stddev: 0.0,
         solid_fraction: 0.0,
+        stress_ratio: vec![],
+        size_spread: vec![],
         axis: Vector3::default(),
         speeds: Vec::new(),
         ..sent()
@@ -108,6 +113,8 @@ fn each_fault_of_the_wave_speeds_is_refused_by_name() {
             (|m| m.density_stddev = -1.0, "WaveSpeeds.density_stddev = -1.0 is refused"),
             (|m| m.pressure = -5e4, "WaveSpeeds.pressure = -50000.0 is refused"),
             (|m| m.solid_fraction = 1.5, "WaveSpeeds.solid_fraction = 1.5 is refused"),
+            (|m| m.stress_ratio[0] = f64::NAN, "WaveSpeeds.stress_ratio = NaN is refused"),
+            (|m| m.size_spread[0] = -0.1, "WaveSpeeds.size_spread = -0.1 is refused"),
             (|m| m.axis.z = 0.5, "WaveSpeeds.|axis| = 0.5 is refused: it must be 1"),
             (|m| m.axis.x = NAN, "WaveSpeeds.|axis| = NaN is refused"),
             (|m| m.grain_shear_modulus = 0.0, "WaveSpeeds.grain_shear_modulus = 0.0 is refused"),

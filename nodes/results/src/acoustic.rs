@@ -201,6 +201,8 @@ mod tests {
             density_stddev: Some(3.0),
             pressure: 5e4,
             solid_fraction: Some(0.6),
+            stress_ratio: Some(0.0),
+            size_spread: Some(0.0),
             axis: Some(Vec3::z()),
             grain_shear_modulus: 29e9,
             grain_poisson_ratio: 0.2,

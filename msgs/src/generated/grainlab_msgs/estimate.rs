@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// What one model infers. Numbers hold for STATUS_OK and STATUS_EXTRAPOLATED. What may be missing is an array of one entry, or of none.
 /// Arrays have the quantities in the order k, k_hat, z, eps, eps_stiffness.
-/// The columns of information are G12, G13, Theta, C11, C33, C13, pressure, gamma/Delta, solid fraction.
+/// The columns of information are G12, G13, Theta, C11, C33, C13, pressure, gamma/Delta, solid fraction, q/p.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// for example "ratio"
@@ -44,7 +44,7 @@ pub struct Estimate {
     pub condition_number: Vec<f64>,
     /// share of each datum in the variance that the data cause, a row per quantity, all 0 = unknown
     #[serde(with = "crate::fixed_array")]
-    pub information: [f64; 45],
+    pub information: [f64; 50],
     /// for a reader, empty if there is nothing to say
     pub warnings: Vec<String>,
 }
@@ -83,7 +83,7 @@ impl Default for Estimate {
             chi_square: Default::default(),
             degrees_of_freedom: Default::default(),
             condition_number: Default::default(),
-            information: [f64::default(); 45],
+            information: [f64::default(); 50],
             warnings: Default::default(),
         }
     }
@@ -93,7 +93,7 @@ impl Message for Estimate {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Estimate";
     const TYPE: &'static str = "grainlab_msgs/msg/Estimate";
-    const HASH: &'static str = "RIHS01_91ac000b067ddf1a2c03467ed6cba39f9b55eb9c2d2d77ccc0030908f57e0524";
+    const HASH: &'static str = "RIHS01_6bfb6bb547edd24a33c3fa7465efcfaaa9f00943a5ce62e6b166fd00c976a436";
     const FIELDS: &'static [FieldInfo] = fields!(
         "model" => (17, 0, ""),
         "calibration" => (17, 0, ""),
@@ -112,7 +112,7 @@ impl Message for Estimate {
         "chi_square" => (11, 0, ""),
         "degrees_of_freedom" => (7, 0, ""),
         "condition_number" => (155, 0, ""),
-        "information" => (59, 45, ""),
+        "information" => (59, 50, ""),
         "warnings" => (161, 0, ""),
     );
     const DEFINITION: &'static str = definition!("msg/Estimate.msg");

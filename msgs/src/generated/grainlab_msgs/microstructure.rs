@@ -22,7 +22,7 @@ impl Message for Microstructure {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Microstructure";
     const TYPE: &'static str = "grainlab_msgs/msg/Microstructure";
-    const HASH: &'static str = "RIHS01_9897c63c07bdcb0ff119df4aeac2dbd997010d883b3fdd88621aefc99001ef43";
+    const HASH: &'static str = "RIHS01_805de0ee416d16dbd0c050fd89e67b541a5c60560720bcff13afc2c9b0c8c133";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
         "source_step" => (9, 0, ""),

@@ -48,7 +48,9 @@ pub enum EmtError {
         phi: f64,
     },
     /// A stress ratio with a tensile stress.
-    #[error("the stress ratio (s33 - (s11 + s22)/2)/p = {ratio} is outside [-3/2, 3], where no stress is tensile")]
+    #[error(
+        "the stress ratio (s33 - (s11 + s22)/2)/p = {ratio} is outside [-3/2, 3], where no stress is tensile"
+    )]
     StressRatio {
         /// The value found.
         ratio: f64,

@@ -142,13 +142,7 @@ pub(crate) fn assemble(
             return Err(EmtError::NotFinite { quantity: "the estimate", value: *value });
         }
     }
-    warnings.extend(checks::common(
-        observation,
-        &structure,
-        calibration,
-        uses_gamma,
-        domain.compares_state,
-    ));
+    warnings.extend(checks::common(observation, &structure, calibration, uses_gamma, domain.compares_state));
     let extrapolated = warnings.iter().any(Warning::is_extrapolation) || !domain.contains(&structure);
     Ok(Estimate {
         model,

@@ -60,8 +60,7 @@ mod wave_moduli;
 
 pub use calibration::{
     Calibration, CalibrationError, DeviatorLaw, IsotropicCalibration, ModelDiscrepancy, NetworkState,
-    RattlerLaw, Reach,
-    RelaxationCalibration, ScalingLaw,
+    RattlerLaw, Reach, RelaxationCalibration, ScalingLaw,
 };
 pub use conditions::{Conditions, Measured, StrainRatio, StrainRatioSource};
 pub use domain::{Domain, Range};

@@ -138,8 +138,7 @@ impl Observation {
         relative[(MODULI + 1, MODULI + 1)] = c.gamma.stddev.powi(2);
         relative[(MODULI + 2, MODULI + 2)] =
             c.solid_fraction.map_or(0.0, |phi| (phi.stddev / phi.value).powi(2));
-        relative[(MODULI + 3, MODULI + 3)] =
-            c.stress_ratio.map_or(0.0, |ratio| ratio.stddev.powi(2));
+        relative[(MODULI + 3, MODULI + 3)] = c.stress_ratio.map_or(0.0, |ratio| ratio.stddev.powi(2));
         Some(relative)
     }
 

@@ -190,7 +190,10 @@ impl fmt::Display for Warning {
             }
             Warning::StateOutsideFit { quantity, value, range } => {
                 let [shown, low, high] = apart(*value, *range, 4);
-                write!(f, "{quantity} = {shown} is outside {low} to {high}, the range of the calibration's packings")
+                write!(
+                    f,
+                    "{quantity} = {shown} is outside {low} to {high}, the range of the calibration's packings"
+                )
             }
             Warning::OtherGrains { nu, calibrated } => write!(
                 f,

@@ -67,16 +67,10 @@ impl NetworkState {
 }
 
 impl RelaxationCalibration {
-    /// Range of z of the model: slightly wider than that of the packings, where the laws still rise.
+    /// Range of the search for z: slightly wider than that of the packings, where the laws still rise.
     pub(crate) fn domain(&self) -> [f64; 2] {
         let [low, high] = self.reach.z;
         [(low - 0.1).max(ISOSTATIC + 0.05), high + 0.3]
-    }
-
-    /// Range of ε of the model: twice that of the packings, since the model is linear in ε.
-    pub(crate) fn domain_of_eps(&self) -> [f64; 2] {
-        let reach = 2.0 * self.reach.eps[0].abs().max(self.reach.eps[1].abs());
-        [-reach, reach]
     }
 
     /// (z − 4)/z, by which the scatter of all but k is divided: fluctuations grow towards the isostatic point.

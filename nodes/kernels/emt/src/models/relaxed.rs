@@ -47,9 +47,9 @@ impl Model for Relaxed {
     fn domain(&self, calibration: &Calibration) -> Domain {
         let mut structure = [None; InferredQuantity::COUNT];
         let Some(network) = calibration.network() else { return Domain::new(NAME, structure) };
-        structure[InferredQuantity::Z as usize] = Some(network.domain());
-        structure[InferredQuantity::Eps as usize] = Some(network.domain_of_eps());
-        let [reduced_pressure, stress_ratio, size_spread] = network.reach.limits();
+        let Reach { z, eps, pressure: reduced_pressure, stress_ratio, size_spread, .. } = network.reach;
+        structure[InferredQuantity::Z as usize] = Some(z);
+        structure[InferredQuantity::Eps as usize] = Some(eps);
         Domain {
             reduced_pressure,
             stress_ratio,

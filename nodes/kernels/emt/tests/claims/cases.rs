@@ -46,8 +46,8 @@ impl Random {
     /// A pressure from 100 Pa to 100 MPa that the domain has for these grains.
     pub(crate) fn pressure(&mut self, domain: &Domain, material: &Material) -> f64 {
         let [low, high] = domain.reduced_pressure.map(|p| p * material.effective_young());
-        // The ends are those of p/E*, to the rounding of a product.
-        let [low, high] = [low.max(1e2) * (1.0 + 1e-12), high.min(1e8) * (1.0 - 1e-12)];
+        // So far from the ends that numerical derivatives stay inside.
+        let [low, high] = [low.max(1e2) * 1.01, high.min(1e8) / 1.01];
         self.with_ends([low.ln(), high.ln()]).exp().clamp(low, high)
     }
 

@@ -2,6 +2,7 @@
 //! ones.
 
 mod csv;
+mod left_out;
 
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, CalibrationSample, Moduli, Modulus, Observation, StrainRatioSource, learn};
@@ -19,8 +20,13 @@ fn ours() -> &'static Calibration {
 /// each number, an absolute 1e-12 for those that are zero up to rounding.
 #[test]
 fn the_built_in_calibration_is_learned_from_the_stored_ensembles() {
-    let learned =
-        learn("grainlab", &csv::samples("isotropic.csv"), &csv::samples("anisotropic.csv")).unwrap();
+    let learned = learn(
+        "grainlab",
+        &csv::samples("isotropic.csv"),
+        &csv::samples("anisotropic.csv"),
+        &csv::samples("wide.csv"),
+    )
+    .unwrap();
     let numbers = |c: &Calibration| -> Vec<String> {
         let text = c.to_toml().unwrap();
         text.split(|c: char| " =[],\n".contains(c)).filter(|w| !w.is_empty()).map(String::from).collect()
@@ -92,12 +98,12 @@ fn unseen_packings_give_back_z_and_eps_without_any_gamma() {
 }
 
 #[test]
-fn stated_intervals_hold_the_truth_of_unseen_packings_in_90_to_99_percent() {
+fn stated_intervals_hold_the_truth_of_at_least_95_percent_of_unseen_packings() {
     for quantity in
         [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness]
     {
         let covered = errors("relaxed", StrainRatioSource::Zero, quantity, |m| m).covered;
-        assert!((0.90..=0.99).contains(&covered), "{quantity}: {covered}");
+        assert!(covered >= 0.95, "{quantity}: {covered}");
     }
 }
 

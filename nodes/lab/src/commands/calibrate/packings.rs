@@ -45,7 +45,8 @@ pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSa
 
 /// The first `preparation` cells grouped by identify the preparation, those after them the packing.
 fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
-    let State { moduli, truth, phi, stress_ratio, size_spread, grains, grain_shear_modulus, poisson, .. } = &row.state;
+    let State { moduli, truth, phi, stress_ratio, size_spread, grains, grain_shear_modulus, poisson, .. } =
+        &row.state;
     let need = |value: Option<f64>, name: &str| match value {
         Some(value) if value.is_finite() => Ok(value),
         Some(value) => Err(format!("{name} = {value} is not finite")),

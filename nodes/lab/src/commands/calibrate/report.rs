@@ -2,8 +2,8 @@
 
 use grainlab_console::Table;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{DeviatorLaw, RattlerLaw, Reach, RelaxationCalibration, ScalingLaw};
 use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration};
+use grainlab_emt::{DeviatorLaw, RattlerLaw, Reach, RelaxationCalibration, ScalingLaw};
 use std::collections::BTreeSet;
 
 /// Constants with their standard errors, scatter, and ranges.
@@ -12,8 +12,7 @@ pub(super) fn text(
     [isotropic, anisotropic, others]: [&[CalibrationSample]; 3],
 ) -> String {
     let mut text = format!("calibration {}\n", calibration.name());
-    for (kind, samples) in [("isotropic", isotropic), ("not isotropic", anisotropic), ("other", others)]
-    {
+    for (kind, samples) in [("isotropic", isotropic), ("not isotropic", anisotropic), ("other", others)] {
         if !samples.is_empty() {
             text += &format!("  {}\n", summary(kind, samples));
         }
@@ -67,11 +66,13 @@ fn network_text(n: &RelaxationCalibration) -> String {
     let head = ["ln X =", "level", "ln z", "ln(z - z0)", "z0", "ln p", "k_t/k_n - 8/9", "s^2"];
     let mut laws = Table::new(head);
     for (name, l) in [("bulk", &n.theta), ("shear", &n.shear)] {
-        let ScalingLaw { level, by_z, by_excess, onset, by_pressure, by_stiffness_ratio, by_size_variance } = *l;
+        let ScalingLaw { level, by_z, by_excess, onset, by_pressure, by_stiffness_ratio, by_size_variance } =
+            *l;
         let numbers = [level, by_z, by_excess, onset, by_pressure, by_stiffness_ratio, by_size_variance];
         laws.row(std::iter::once(name.to_owned()).chain(numbers.map(|v| format!("{v:.4}"))));
     }
-    let head = ["X =", "eps", "eps u", "eps s^2", "eps (k_t/k_n - 8/9)", "eps ln p", "eps u ln p", "q/p", "u q/p"];
+    let head =
+        ["X =", "eps", "eps u", "eps s^2", "eps (k_t/k_n - 8/9)", "eps ln p", "eps u ln p", "q/p", "u q/p"];
     let mut deviators = Table::new(head);
     for (name, law) in [
         ("dilatational deviator", &n.dilatation),

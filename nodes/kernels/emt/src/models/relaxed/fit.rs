@@ -217,12 +217,8 @@ impl Fit {
         let scatter = network.scatter_at(z, state.variance_factor);
         let (laws, of_k, of_eps) = (&state.laws, network.rattlers, network.eps_stiffness);
         // Rows: ε weighted by stiffness, k. Columns: z, ε.
-        let follows = SMatrix::<f64, 2, 2>::new(
-            of_eps.slope(z, eps, laws),
-            of_eps.by_eps(z, laws),
-            of_k.slope(z),
-            0.0,
-        );
+        let follows =
+            SMatrix::<f64, 2, 2>::new(of_eps.slope(z, eps, laws), of_eps.by_eps(z, laws), of_k.slope(z), 0.0);
         // The scatter of these two is correlated with that of the moduli: regression on the residual.
         let regression =
             scatter.fixed_view::<2, INVARIANTS>(INVARIANTS, 0) * self.by_invariants.transpose() * self.weight;

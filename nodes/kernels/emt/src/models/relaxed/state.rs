@@ -33,8 +33,7 @@ impl State {
         let young = material.effective_young();
         let pressure = conditions.pressure.value;
         let stress_ratio = conditions.stress_ratio.map_or(0.0, |ratio| ratio.value);
-        let laws =
-            NetworkState::of(pressure, material, conditions.size_spread.unwrap_or(0.0), stress_ratio);
+        let laws = NetworkState::of(pressure, material, conditions.size_spread.unwrap_or(0.0), stress_ratio);
         let outside = network.reach.outside(pressure / young, &laws);
         let growth: f64 = outside.iter().map(Outside::growth).product();
         Self {
