@@ -109,7 +109,7 @@ fn recommended(e: &Inference, source: &str, truth: &PackingReport) -> Vec<String
     let title = format!("from {source} alone, by model {} ({}):", e.model, standing(e));
     let values = estimate(e, truth).map(|(name, value, sigma, error)| {
         let sigma = sigma.unwrap_or_else(|| "?".to_owned());
-        row("", &format!("{name:4}{value:6} +- {sigma:6}  error {error}"))
+        row("", &format!("{name:6}{value:6} +- {sigma:6}  error {error}"))
     });
     std::iter::once(row("Inferred", &title)).chain(values).collect()
 }
@@ -142,12 +142,13 @@ fn counted(r: &PackingReport) -> String {
         format!(" about ({:.2}, {:.2}, {:.2})", axis.x, axis.y, axis.z)
     };
     format!(
-        "{}, {}: k {:.3}, z {:.3}, eps {}{about}",
+        "{}, {}: k {:.3}, z {:.3}, eps {}, eps_k {}{about}",
         count(c.contacts, "contact"),
         count(c.rattlers, "rattler"),
         c.coordination,
         c.mechanical_coordination,
-        fixed(eps(r), 4)
+        fixed(eps(r), 4),
+        fixed(r.stiffness_anisotropy(), 4)
     )
 }
 
@@ -195,9 +196,11 @@ fn estimate(
         ("k", e.values.k, e.sigma.k, c.coordination, 3),
         ("z", e.values.z, e.sigma.z, c.mechanical_coordination, 3),
         ("eps", e.values.eps, e.sigma.eps, truth.fabric.contact_anisotropy, 4),
-    ];
-    parts.into_iter().filter_map(|(name, value, sigma, truth, digits)| {
-        let value = value?;
+    ]
+    .map(|(name, value, sigma, truth, digits)| (name, value, sigma, Some(truth), digits));
+    let weighted = ("eps_k", e.values.eps_stiffness, e.sigma.eps_stiffness, truth.stiffness_anisotropy(), 4);
+    parts.into_iter().chain([weighted]).filter_map(|(name, value, sigma, truth, digits)| {
+        let (value, truth) = (value?, truth?);
         let sigma = sigma.map(|s| format!("{s:.digits$}"));
         Some((name, format!("{value:.digits$}"), sigma, format!("{:+.digits$}", value - truth)))
     })

@@ -47,8 +47,7 @@ pub(crate) struct Outside {
 impl Outside {
     /// Whether it is too far for an estimate.
     pub(crate) fn is_too_far(&self) -> bool {
-        // True for NaN.
-        !(self.distance <= UNKNOWN)
+        self.distance.is_nan() || self.distance > UNKNOWN
     }
 
     /// Factor of the variances of an estimate.
@@ -93,8 +92,7 @@ fn beyond(
     let width = (high - low).max(least);
     let at = scale(value);
     let distance = (low - at).max(at - high) / width;
-    // True for NaN.
-    let is_outside = !(distance <= TOLERANCE);
+    let is_outside = distance.is_nan() || distance > TOLERANCE;
     is_outside.then_some(Outside { quantity, value, range, distance })
 }
 
