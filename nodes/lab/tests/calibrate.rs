@@ -28,9 +28,10 @@ fn words_and_numbers(text: &str) -> (Vec<String>, Vec<f64>) {
 #[test]
 fn the_built_in_calibration_is_learned_from_its_packings() {
     let (isotropic, anisotropic) = (ensemble("isotropic"), ensemble("anisotropic"));
-    let tables =
-        ["calibrate", "--isotropic", &isotropic, "--anisotropic", &anisotropic, "--name", "grainlab"];
-    let learned = grainlab(&[&tables[..], &["--out", "-"]].concat());
+    let (files, wide) = (["--isotropic", &isotropic, "--anisotropic", &anisotropic], ensemble("wide"));
+    let learned = grainlab(
+        &[&["calibrate"], &files[..], &["--other", &wide, "--name", "grainlab", "--out", "-"]].concat(),
+    );
     assert_eq!(learned.status.code(), Some(0), "{}", text(&learned.stderr));
     let (words, numbers) = words_and_numbers(&text(&learned.stdout));
     let (known_words, known) = words_and_numbers(&std::fs::read_to_string(BUILTIN).unwrap());

@@ -5,6 +5,7 @@
 //!   state
 //! - [`table`], [`mod@print`]: results in order, as text
 //! - [`explain`]: contributions of the data to the uncertainty; [`sampled`]: the posterior by sampling
+//! - [`speeds`]: the moduli of measured wave speeds
 //! - [`judge`]: results against the truth in a table
 //! - [`calibrations`]: by name
 
@@ -18,6 +19,7 @@ mod lines;
 mod print;
 mod rows;
 mod sampled;
+mod speeds;
 mod state;
 mod table;
 mod way;
@@ -37,6 +39,9 @@ const EXAMPLES: &str = "\
 Examples:
   The first state of the paper's Table III (k = 5.73, k_hat = 5.63, eps = 0.016), with 1 % error on each modulus:
     grainlab invert --g12 121.7e6 --g13 127.4e6 --theta 144.4e6 --pressure 50e3 --gamma-over-delta -0.0623 --error 0.01
+  Wave speeds of a laboratory, by angle to the axis in degrees and mode (p, sv, sh), or by direction and polarization:
+    printf 'angle_deg,mode,speed,speed_sigma\n0,p,439,4\n90,p,426,4\n45,p,430,4\n0,sv,268,3\n90,sh,265,3\n' |
+      grainlab invert --speeds - --density 1498 --pressure 50e3 --stress-ratio 0 --size-spread 0
   Many states, or the output of an analysis:
     grainlab invert --table states.csv --format csv
     grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --gamma contact --format csv
@@ -85,6 +90,16 @@ pub(crate) struct Args {
     /// Poisson ratio of the grains [default: that of the calibration]
     #[arg(long, value_name = "NU")]
     poisson: Option<f64>,
+    /// Wave speeds from a CSV file instead of moduli: angle_deg and mode, or direction_x.. and polarization_x..; speed in
+    /// m/s, speed_sigma; - is the standard input
+    #[arg(long, value_name = "FILE.csv", requires = "density", conflicts_with_all = ["table", "g12", "g13", "theta", "c11", "c33", "c13"])]
+    speeds: Option<PathBuf>,
+    /// Density of the mass that moves with the waves, kg/m3
+    #[arg(long, value_name = "RHO", requires = "speeds")]
+    density: Option<f64>,
+    /// Standard deviation of the density, kg/m3
+    #[arg(long, value_name = "SIGMA", requires = "density", default_value_t = 0.0)]
+    density_sigma: f64,
     /// Solid fraction
     #[arg(long, value_name = "PHI", conflicts_with = "table")]
     phi: Option<f64>,
@@ -125,7 +140,7 @@ pub(crate) struct Args {
     plot: Option<PathBuf>,
     /// Also sample the distribution of the estimates by this number of draws of the data: for large errors,
     /// for which linear error propagation is inaccurate; 20000 suffices
-    #[arg(long, value_name = "N", conflicts_with = "table", requires = "error", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+    #[arg(long, value_name = "N", conflicts_with = "table", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
     samples: Option<u32>,
     /// Seed of the samples: the same one gives the same numbers
     #[arg(long, value_name = "SEED", requires = "samples", default_value_t = 0)]
@@ -217,6 +232,12 @@ impl Args {
         state.relative_error = defaults.relative_error;
         state.grain_shear_modulus = defaults.grain_shear_modulus;
         state.poisson = defaults.poisson;
+        if let (Some(path), Some(value)) = (&self.speeds, self.density) {
+            speeds::add(&mut state, path, Measured { value, stddev: self.density_sigma })?;
+        }
+        if self.samples.is_some() && self.error.is_none() && state.full_covariance.is_none() {
+            return Err(Failure::usage("--samples needs --error, or --speeds with speed_sigma"));
+        }
         Ok(state)
     }
 }

@@ -100,3 +100,34 @@ fn small_errors_sampled_agree_with_those_propagated_and_a_seed_repeats_them() {
     let people = grainlab(&[&S1[..], &flags].concat(), b"");
     assert!(text(&people.stdout).contains("without solution"));
 }
+
+/// v = √(C/ρ) along and across the axis.
+#[test]
+fn wave_speeds_give_what_their_moduli_give() {
+    const MODULI: [f64; 4] = [271.4e6, 285.6e6, 105.1e6, 108.9e6];
+    const DENSITY: f64 = 1500.0;
+    let state = ["invert", "--pressure=50e3", "--stress-ratio=0", "--size-spread=0", "--model=relaxed"];
+    let flags = ["--c11", "--c33", "--g12", "--g13"].iter().zip(MODULI).map(|(f, m)| format!("{f}={m}"));
+    let flags: Vec<String> = flags.chain(["--error=0.01".to_owned()]).collect();
+    let by_moduli = json(&[&state[..], &flags.iter().map(String::as_str).collect::<Vec<_>>()].concat());
+    let mut table = "angle_deg,mode,speed,speed_sigma\n".to_owned();
+    for ((angle, mode), modulus) in [(90, "p"), (0, "p"), (90, "sh"), (0, "sv")].iter().zip(MODULI) {
+        let speed = (modulus / DENSITY).sqrt();
+        table += &format!("{angle},{mode},{speed},{}\n", 0.005 * speed);
+    }
+    let output = grainlab(
+        &[&state[..], &["--speeds=-", "--density=1500", "--format=json"]].concat(),
+        table.as_bytes(),
+    );
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("do not determine Theta, C13"), "{}", text(&output.stderr));
+    let by_speeds: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for key in ["k", "z", "eps", "eps_stiffness"] {
+        let [moduli, speeds] = [&by_moduli, &by_speeds].map(|a| a["results"][0][key].as_f64().unwrap());
+        assert!((moduli - speeds).abs() < 1e-9, "{key}: {moduli} {speeds}");
+    }
+    let refused =
+        grainlab(&[&state[..], &["--speeds=-", "--density=1500"]].concat(), b"angle_deg,mode,speed\n0,q,1\n");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("line 2: mode"), "{}", text(&refused.stderr));
+}

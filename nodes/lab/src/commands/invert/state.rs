@@ -20,6 +20,8 @@ pub(crate) struct State {
     pub(crate) projected: bool,
     /// Standard deviations of the moduli, Pa.
     pub(crate) sigma: [Option<f64>; grainlab_emt::MODULI],
+    /// Covariance of all moduli, Pa², if they follow from wave speeds.
+    pub(crate) full_covariance: Option<ModuliCovariance>,
     /// Relative standard deviation of the moduli without their own.
     pub(crate) relative_error: Option<f64>,
     /// Θ for the model `ratio-as-printed`, if it differs, Pa.
@@ -54,6 +56,7 @@ impl State {
             projected: false,
             grains: None,
             sigma: [None; grainlab_emt::MODULI],
+            full_covariance: None,
             relative_error: None,
             theta_printed: None,
             pressure,
@@ -136,6 +139,9 @@ impl State {
 
     /// Independent errors; moduli without one are exact if others have one. `None` if no error is known.
     fn covariance(&self, moduli: &Moduli) -> Option<ModuliCovariance> {
+        if self.full_covariance.is_some() {
+            return self.full_covariance;
+        }
         if self.relative_error.is_none() && self.sigma.iter().all(Option::is_none) {
             return None;
         }
