@@ -23,9 +23,11 @@ pub struct Probed {
 
 /// Quantities of the packing in CSV: the inputs of an inversion besides the speeds, and its truth. The moduli
 /// are those from the speeds, under the names that `grainlab invert --table` reads.
-const BESIDE: [&str; 10] = [
+const BESIDE: [&str; 12] = [
     "grains",
     "phi",
+    "axial_q_over_p",
+    "size_spread",
     "pressure_pa",
     "grain_shear_modulus_pa",
     "poisson",

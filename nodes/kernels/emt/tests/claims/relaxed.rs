@@ -257,16 +257,17 @@ fn intervals_grow_outside_the_packings_taught_and_far_away_the_answer_is_unknown
 }
 
 #[test]
-fn fewer_grains_scatter_more() {
-    let sigma = |grains| {
+fn fewer_grains_scatter_more_and_more_grains_less() {
+    let sigma = |quantity, grains| {
         let exact = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.0);
-        let o = Observation { grains, ..exact };
-        Relaxed.infer(&o, ours()).unwrap().stddev(InferredQuantity::Eps).unwrap()
+        Relaxed.infer(&Observation { grains, ..exact }, ours()).unwrap().stddev(quantity).unwrap()
     };
-    // A quarter of the grains, twice the standard deviation. More grains than in the calibration do not
-    // reduce it.
-    assert!((sigma(Some(500)) / sigma(Some(2000)) - 2.0).abs() < 1e-9);
-    assert_eq!(sigma(Some(1_000_000)), sigma(None));
+    let eps = |grains| sigma(InferredQuantity::Eps, Some(grains));
+    // A quarter of the grains, twice the standard deviation. More grains reduce the part that is due to the sample.
+    assert!((eps(500) / eps(2000) - 2.0).abs() < 1e-9);
+    assert!((eps(8000) / eps(2000) - 0.55f64.sqrt()).abs() < 1e-9);
+    assert!((eps(u32::MAX) / eps(2000) - 0.4f64.sqrt()).abs() < 1e-6);
+    assert_eq!(sigma(InferredQuantity::Eps, None), eps(2000));
 }
 
 /// Hertz contacts have no length scale, and no pressure scale but E*.

@@ -104,7 +104,7 @@ impl Fit {
         let first = Moduli::from(isotropic.moduli());
         let covariance = |slopes: &SMatrix<f64, MODULI, INVARIANTS>, by_eps: &Moduli| {
             let scatter = network
-                .scatter_at(z, state.variance_factor)
+                .scatter_at(z, &state.variance_factors)
                 .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
                 .into_owned();
             let mut c = slopes * scatter * slopes.transpose() + data.covariance;
@@ -214,7 +214,7 @@ impl Fit {
     pub(super) fn inferred(&self, data: &Data, network: &RelaxationCalibration, state: &State) -> Inferred {
         let (z, eps) = (self.z, self.eps);
         let gain = self.gain();
-        let scatter = network.scatter_at(z, state.variance_factor);
+        let scatter = network.scatter_at(z, &state.variance_factors);
         let (laws, of_k, of_eps) = (&state.laws, network.rattlers, network.eps_stiffness);
         // Rows: ε weighted by stiffness, k. Columns: z, ε.
         let follows =

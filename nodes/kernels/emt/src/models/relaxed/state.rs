@@ -1,6 +1,6 @@
 //! The state of the sample, as the scaling laws take it.
 
-use crate::calibration::{Calibration, NetworkState, Outside, RelaxationCalibration};
+use crate::calibration::{Calibration, NetworkState, Outside, RelaxationCalibration, SCATTERED};
 use crate::conditions::Conditions;
 use crate::error::EmtError;
 use crate::invariants::Invariants;
@@ -16,8 +16,8 @@ pub(super) struct State {
     pub(super) stress_known: bool,
     /// Whether the sizes were given.
     pub(super) sizes_known: bool,
-    /// Variance of the scatter in this state and of samples of this size over that of the calibration.
-    pub(super) variance_factor: f64,
+    /// Variances of the scatter in this state and of samples of this size over those of the calibration.
+    pub(super) variance_factors: [f64; SCATTERED],
     /// What is outside the packings of the calibration.
     pub(super) outside: Vec<Outside>,
 }
@@ -41,7 +41,7 @@ impl State {
             laws,
             stress_known: conditions.stress_ratio.is_some(),
             sizes_known: conditions.size_spread.is_some(),
-            variance_factor: network.variance_factor(grains) * network.growth(&laws) * growth,
+            variance_factors: network.variance_factors(grains).map(|f| f * network.growth(&laws) * growth),
             outside,
         }
     }
