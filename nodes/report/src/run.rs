@@ -8,6 +8,10 @@ use grainlab_results::read_back::{self, InvertedPacking};
 use grainlab_scene::Scene;
 use std::path::{Path, PathBuf};
 
+const NO_RECORDING: &str = "No recording";
+
+const NO_SUMMARY: &str = "No summary";
+
 /// A run.
 #[derive(Debug)]
 pub struct Run {
@@ -27,6 +31,19 @@ pub struct Run {
 }
 
 impl Run {
+    /// Why this is no run: it has no summary, no scene and no packing.
+    pub fn nothing(&self) -> Option<&str> {
+        let summary = !self.missing.iter().any(|line| line.starts_with(NO_SUMMARY));
+        let found = summary || !self.scene_text.is_empty() || !self.states.is_empty();
+        let reason = self.missing.iter().find(|line| line.starts_with(NO_RECORDING));
+        (!found).then(|| reason.map_or("it has no summary, no scene and no packing", String::as_str))
+    }
+
+    /// Whether something could not be read.
+    pub fn is_incomplete(&self) -> bool {
+        !self.missing.is_empty()
+    }
+
     /// Reads the files of a run: a run directory, or a recording.
     pub fn read(path: &Path) -> Self {
         let directory = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
@@ -45,7 +62,7 @@ impl Run {
         run.read_scene(recording.as_ref().ok(), &directory.join("scene.toml"));
         match recording {
             Ok(recording) => run.read_recording(&recording),
-            Err(error) => run.missing.push(format!("No recording: {error}")),
+            Err(error) => run.missing.push(format!("{NO_RECORDING}: {error}")),
         }
         run
     }
@@ -57,7 +74,7 @@ impl Run {
         match found {
             Ok(summary) => self.summary = summary,
             Err(error) => self.missing.push(format!(
-                "No summary: summary.json: {error}. How the run ended, and the messages that it lost, are not known"
+                "{NO_SUMMARY}: summary.json: {error}. How the run ended, and the messages that it lost, are not known"
             )),
         }
     }

@@ -23,16 +23,22 @@ pub enum ReportError {
     },
 }
 
-/// Writes a page to a file, whole or not at all.
+/// Writes a page to a file, whole or not at all. What is no file, such as a pipe or a device, is written to as it is; a link
+/// stays one.
 ///
 /// # Errors
 /// If it cannot be written.
 pub fn write_page(path: &Path, text: &str) -> Result<(), ReportError> {
-    let partial = path.with_extension("html.part");
-    let written = std::fs::write(&partial, text).and_then(|()| std::fs::rename(&partial, path));
+    let failed = |source| ReportError::Write { path: path.to_owned(), source };
+    if path.metadata().is_ok_and(|found| !found.is_file()) {
+        return std::fs::write(path, text).map_err(failed);
+    }
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let partial = target.with_extension("html.part");
+    let written = std::fs::write(&partial, text).and_then(|()| std::fs::rename(&partial, &target));
     written.map_err(|source| {
         let _ = std::fs::remove_file(&partial);
-        ReportError::Write { path: path.to_owned(), source }
+        failed(source)
     })
 }
 
@@ -44,4 +50,20 @@ pub fn write_report(directory: &Path) -> Result<PathBuf, ReportError> {
     let path = directory.join(FILE);
     write_page(&path, &Run::read(directory).html()?)?;
     Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_a_link_and_its_file_gets_the_page() {
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link] = ["page.html", "link.html"].map(|name| folder.path().join(name));
+        std::fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write_page(&link, "new").unwrap();
+        assert!(link.is_symlink() && std::fs::read_to_string(&file).unwrap() == "new");
+    }
 }

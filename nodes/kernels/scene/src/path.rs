@@ -118,7 +118,7 @@ impl PathState {
         let unmet: Vec<String> = unmet.map(|c| describe(c, phase, seen, elapsed)).collect();
         if unmet.is_empty() {
             let held = seen.time - self.holding_since.unwrap_or(seen.time);
-            return format!("every condition has held for {held:.4e} s of {:e} s", phase.until.hold);
+            return format!("all hold for {held:.1e} of {:e} s", phase.until.hold);
         }
         unmet.join(", ")
     }

@@ -1,6 +1,6 @@
 //! `grainlab report`: pages of recorded runs.
 
-use grainlab_console::{Failure, count, print};
+use grainlab_console::{Failure, count, print, say, worse};
 use grainlab_node_kit::Exit;
 use grainlab_report::{FILE, Run, overview, write_page};
 use std::path::{Path, PathBuf};
@@ -30,28 +30,53 @@ pub(crate) struct Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if let [run] = args.runs.as_slice() {
-        exists(run)?;
+        let found = read(run)?;
         let path = args.output.clone().unwrap_or_else(|| beside(run));
-        write(&Run::read(run), &path)?;
+        write(&found, &path)?;
         print(&format!("{}\n", path.display()))?;
-        return Ok(Exit::Done);
+        return Ok(standing(run, &found));
     }
-    args.runs.iter().try_for_each(|run| exists(run))?;
     let output = args.output.clone().unwrap_or_else(|| OVERVIEW.into());
     let mut all = Vec::with_capacity(args.runs.len());
+    let mut exit = Exit::Done;
     for directory in &args.runs {
-        let (run, path) = (Run::read(directory), beside(directory));
-        write(&run, &path)?;
-        all.push((run.without_series(), link(&output, &path)));
+        match read(directory) {
+            Ok(run) => {
+                let path = beside(directory);
+                write(&run, &path)?;
+                exit = worse(exit, standing(directory, &run));
+                all.push((run.without_series(), link(&output, &path)));
+            }
+            Err(failure) => {
+                say!("grainlab: {failure}");
+                exit = worse(exit, Exit::Failure);
+            }
+        }
+    }
+    if all.is_empty() {
+        return Err(Failure::failed("there is no run to report"));
     }
     write_page(&output, &overview(&all)).map_err(Failure::failed)?;
     print(&format!("{}: {}, each with {FILE}\n", output.display(), count(all.len(), "run")))?;
-    Ok(Exit::Done)
+    Ok(exit)
 }
 
-fn exists(run: &Path) -> Result<(), Failure> {
-    let found = run.metadata().map(|_| ());
-    found.map_err(|e| Failure::failed(format!("{}: {e}", run.display())))
+fn read(path: &Path) -> Result<Run, Failure> {
+    path.metadata().map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    let run = Run::read(path);
+    match run.nothing() {
+        Some(why) => Err(Failure::failed(format!("{} is no run: {why}", path.display()))),
+        None => Ok(run),
+    }
+}
+
+/// Data were lost if something could not be read.
+fn standing(path: &Path, run: &Run) -> Exit {
+    if run.is_incomplete() {
+        say!("grainlab: {}: not all of it can be read: the page names what is missing", path.display());
+        return Exit::DataLoss;
+    }
+    Exit::Done
 }
 
 fn write(run: &Run, path: &Path) -> Result<(), Failure> {

@@ -58,6 +58,12 @@ fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
         }
     }
     need(Some(row.state.pressure.value), "the pressure")?;
+    if let Some(spread) = size_spread.filter(|s| !(0.0..=1.0).contains(s)) {
+        return Err(format!("size_spread = {spread} is outside [0, 1]"));
+    }
+    if let Some(ratio) = stress_ratio.filter(|r| !(-1.5..=3.0).contains(&r.value)) {
+        return Err(format!("axial_q_over_p = {} is outside [-1.5, 3]", ratio.value));
+    }
     let (preparation, packing) = row.group.split_at(preparation);
     Ok(CalibrationSample {
         preparation: preparation.join(" "),
