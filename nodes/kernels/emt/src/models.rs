@@ -3,6 +3,8 @@
 pub(crate) mod directional;
 pub(crate) mod effective_medium;
 mod equivalent;
+pub(crate) mod hertz_mindlin;
+pub(crate) mod johnson;
 pub(crate) mod ratio;
 pub(crate) mod relaxed;
 mod shear_ratio;
