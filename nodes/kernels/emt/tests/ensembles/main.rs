@@ -2,7 +2,9 @@
 //! ones.
 
 mod csv;
+mod least_squares;
 mod left_out;
+mod stress_and_fabric;
 
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, CalibrationSample, Moduli, Modulus, Observation, StrainRatioSource, learn};
