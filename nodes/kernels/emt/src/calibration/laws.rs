@@ -35,8 +35,8 @@ fn critical_slope(z: f64) -> f64 {
     -ISOSTATIC / (z - ISOSTATIC).powi(2)
 }
 
-/// ln X = a + b ln z + c ln(z − z0) + d ln p + e (k_t/k_n − 8/9) + f s², with p as in [`NetworkState::ln_pressure`] and s²
-/// the variance of the radii.
+/// ln X = a + b ln z + c ln(z − z0) + d ln p + e κ + f s² + (g κ + h ln p) ln z, with κ = k_t/k_n − 8/9, p as in
+/// [`NetworkState::ln_pressure`] and s² the variance of the radii.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScalingLaw {
@@ -54,18 +54,21 @@ pub struct ScalingLaw {
     pub by_stiffness_ratio: f64,
     /// f.
     pub by_size_variance: f64,
+    /// g and h.
+    pub mixed: [f64; 2],
 }
 
 impl ScalingLaw {
     /// Number of coefficients beside z0.
-    pub(crate) const TERMS: usize = 6;
+    pub(crate) const TERMS: usize = 8;
 
     /// The terms that the coefficients multiply, in the order of the fields.
     pub(crate) fn terms(z: f64, onset: f64, state: &NetworkState) -> [f64; Self::TERMS] {
-        [1.0, z.ln(), (z - onset).ln(), state.ln_pressure, state.stiffness_ratio, state.size_variance]
+        let (ln_z, ln_p, kappa) = (z.ln(), state.ln_pressure, state.stiffness_ratio);
+        [1.0, ln_z, (z - onset).ln(), ln_p, kappa, state.size_variance, kappa * ln_z, ln_p * ln_z]
     }
 
-    pub(crate) fn new([a, b, c, d, e, f]: [f64; Self::TERMS], onset: f64) -> Self {
+    pub(crate) fn new([a, b, c, d, e, f, g, h]: [f64; Self::TERMS], onset: f64) -> Self {
         Self {
             level: a,
             by_z: b,
@@ -74,6 +77,7 @@ impl ScalingLaw {
             by_pressure: d,
             by_stiffness_ratio: e,
             by_size_variance: f,
+            mixed: [g, h],
         }
     }
 
@@ -86,45 +90,62 @@ impl ScalingLaw {
             self.by_pressure,
             self.by_stiffness_ratio,
             self.by_size_variance,
+            self.mixed[0],
+            self.mixed[1],
         ];
         dot(&coefficients, &Self::terms(z, self.onset, state))
     }
 
     /// d ln X/dz.
-    pub(crate) fn slope(&self, z: f64) -> f64 {
-        self.by_z / z + self.by_excess / (z - self.onset)
+    pub(crate) fn slope(&self, z: f64, state: &NetworkState) -> f64 {
+        let [by_stiffness_ratio, by_pressure] = self.mixed;
+        let by_ln_z =
+            self.by_z + by_stiffness_ratio * state.stiffness_ratio + by_pressure * state.ln_pressure;
+        by_ln_z / z + self.by_excess / (z - self.onset)
+    }
+
+    /// d ln X/d ln p.
+    pub(crate) fn by_ln_pressure(&self, z: f64) -> f64 {
+        self.by_pressure + self.mixed[1] * z.ln()
     }
 }
 
-/// The anisotropy of a network: X = ε (a0 + a1 u + a2 s² + a3 (k_t/k_n − 8/9) + a4 ln p + a5 u ln p) + q/p (b0 + b1 u)
-/// with u = z/(z − 4). The second group: at the same ε, a stress deviator changes the stiffness of the contacts.
+/// The anisotropy of a network: X = ε (a0 + a1 u + a2 s² + a3 κ + a4 ln p + a5 u ln p + a6 z + a7 u κ) + q/p (b0 + b1 u +
+/// b2 u ln p) with u = z/(z − 4) and κ = k_t/k_n − 8/9. The second group: at the same ε, a stress deviator changes the
+/// stiffness of the contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviatorLaw {
-    /// a0 to a5.
-    pub by_eps: [f64; 6],
-    /// b0 and b1.
-    pub by_stress_ratio: [f64; 2],
+    /// a0 to a7.
+    pub by_eps: [f64; 8],
+    /// b0 to b2.
+    pub by_stress_ratio: [f64; 3],
 }
 
 impl DeviatorLaw {
     /// Number of coefficients.
-    pub(crate) const TERMS: usize = 8;
+    pub(crate) const TERMS: usize = 11;
 
     /// The terms that the coefficients multiply, those of ε first.
     pub(crate) fn terms(z: f64, eps: f64, state: &NetworkState) -> [f64; Self::TERMS] {
-        let [a0, a1, a2, a3, a4, a5] = Self::factors(z, state).map(|f| f * eps);
-        let q = state.stress_ratio;
-        [a0, a1, a2, a3, a4, a5, q, q * critical(z)]
+        let [a0, a1, a2, a3, a4, a5, a6, a7] = Self::factors(z, state).map(|f| f * eps);
+        let [b0, b1, b2] = Self::stress_factors(z, state).map(|f| f * state.stress_ratio);
+        [a0, a1, a2, a3, a4, a5, a6, a7, b0, b1, b2]
     }
 
-    fn factors(z: f64, state: &NetworkState) -> [f64; 6] {
-        let (u, ln_p) = (critical(z), state.ln_pressure);
-        [1.0, u, state.size_variance, state.stiffness_ratio, ln_p, u * ln_p]
+    fn factors(z: f64, state: &NetworkState) -> [f64; 8] {
+        let (u, ln_p, kappa) = (critical(z), state.ln_pressure, state.stiffness_ratio);
+        [1.0, u, state.size_variance, kappa, ln_p, u * ln_p, z, u * kappa]
     }
 
-    pub(crate) fn new([a0, a1, a2, a3, a4, a5, b0, b1]: [f64; Self::TERMS]) -> Self {
-        Self { by_eps: [a0, a1, a2, a3, a4, a5], by_stress_ratio: [b0, b1] }
+    fn stress_factors(z: f64, state: &NetworkState) -> [f64; 3] {
+        let u = critical(z);
+        [1.0, u, u * state.ln_pressure]
+    }
+
+    pub(crate) fn new(coefficients: [f64; Self::TERMS]) -> Self {
+        let [a0, a1, a2, a3, a4, a5, a6, a7, by_stress_ratio @ ..] = coefficients;
+        Self { by_eps: [a0, a1, a2, a3, a4, a5, a6, a7], by_stress_ratio }
     }
 
     /// dX/dε.
@@ -133,39 +154,42 @@ impl DeviatorLaw {
     }
 
     /// dX/d(q/p).
-    pub(crate) fn by_stress_ratio(&self, z: f64) -> f64 {
-        self.by_stress_ratio[0] + self.by_stress_ratio[1] * critical(z)
+    pub(crate) fn by_stress_ratio(&self, z: f64, state: &NetworkState) -> f64 {
+        dot(&self.by_stress_ratio, &Self::stress_factors(z, state))
     }
 
     /// dX/d ln p.
-    pub(crate) fn by_ln_pressure(&self, z: f64, eps: f64) -> f64 {
-        eps * (self.by_eps[4] + self.by_eps[5] * critical(z))
+    pub(crate) fn by_ln_pressure(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
+        let u = critical(z);
+        eps * (self.by_eps[4] + self.by_eps[5] * u) + state.stress_ratio * self.by_stress_ratio[2] * u
     }
 
     /// X.
     pub(crate) fn value(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
-        self.by_eps(z, state) * eps + self.by_stress_ratio(z) * state.stress_ratio
+        self.by_eps(z, state) * eps + self.by_stress_ratio(z, state) * state.stress_ratio
     }
 
     /// dX/dz.
     pub(crate) fn slope(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
-        let of_eps = self.by_eps[1] + self.by_eps[5] * state.ln_pressure;
-        (of_eps * eps + self.by_stress_ratio[1] * state.stress_ratio) * critical_slope(z)
+        let [_, a1, _, _, _, a5, a6, a7] = self.by_eps;
+        let of_eps = a1 + a5 * state.ln_pressure + a7 * state.stiffness_ratio;
+        let of_stress = self.by_stress_ratio[1] + self.by_stress_ratio[2] * state.ln_pressure;
+        (of_eps * eps + of_stress * state.stress_ratio) * critical_slope(z) + a6 * eps
     }
 }
 
-/// k = a + b z + c z² + d ln p + e s²: the coordination number with rattlers counted.
+/// k = a + b z + c z² + d z³ + e ln p + f s² + g z s²: the coordination number with rattlers counted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "[f64; 5]", into = "[f64; 5]")]
-pub struct RattlerLaw(pub [f64; 5]);
+#[serde(from = "[f64; 7]", into = "[f64; 7]")]
+pub struct RattlerLaw(pub [f64; 7]);
 
-impl From<[f64; 5]> for RattlerLaw {
-    fn from(coefficients: [f64; 5]) -> Self {
+impl From<[f64; 7]> for RattlerLaw {
+    fn from(coefficients: [f64; 7]) -> Self {
         Self(coefficients)
     }
 }
 
-impl From<RattlerLaw> for [f64; 5] {
+impl From<RattlerLaw> for [f64; 7] {
     fn from(law: RattlerLaw) -> Self {
         law.0
     }
@@ -173,8 +197,9 @@ impl From<RattlerLaw> for [f64; 5] {
 
 impl RattlerLaw {
     /// The terms that the coefficients multiply.
-    pub(crate) fn terms(z: f64, state: &NetworkState) -> [f64; 5] {
-        [1.0, z, z * z, state.ln_pressure, state.size_variance]
+    pub(crate) fn terms(z: f64, state: &NetworkState) -> [f64; 7] {
+        let s2 = state.size_variance;
+        [1.0, z, z * z, z * z * z, state.ln_pressure, s2, z * s2]
     }
 
     /// k.
@@ -183,13 +208,14 @@ impl RattlerLaw {
     }
 
     /// dk/dz.
-    pub(crate) fn slope(&self, z: f64) -> f64 {
-        self.0[1] + 2.0 * self.0[2] * z
+    pub(crate) fn slope(&self, z: f64, state: &NetworkState) -> f64 {
+        let [_, b, c, d, _, _, g] = self.0;
+        b + 2.0 * c * z + 3.0 * d * z * z + g * state.size_variance
     }
 
     /// dk/d ln p.
     pub(crate) fn by_ln_pressure(&self) -> f64 {
-        self.0[3]
+        self.0[4]
     }
 }
 

@@ -20,4 +20,4 @@ pub use laws::{DeviatorLaw, NetworkState, RattlerLaw, ScalingLaw};
 pub(crate) use reach::Outside;
 pub use reach::Reach;
 pub use relaxation::RelaxationCalibration;
-pub(crate) use relaxation::{SCATTERED, Scatter};
+pub(crate) use relaxation::{GROUPS, SCATTERED, Scatter};

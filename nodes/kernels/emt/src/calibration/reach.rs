@@ -1,6 +1,6 @@
 //! What the packings of a calibration cover, and how far another packing is from them.
 
-use super::laws::NetworkState;
+use super::laws::{NetworkState, REFERENCE_PRESSURE, REFERENCE_STIFFNESS_RATIO};
 use serde::{Deserialize, Serialize};
 
 /// Distance, in widths of a range, beyond which there is no estimate.
@@ -11,7 +11,7 @@ const UNKNOWN: f64 = 0.5;
 const GROWTH: f64 = 12.0;
 
 /// Factor of the variance just outside.
-const OUTSIDE: f64 = 1.5;
+const OUTSIDE: f64 = 1.8;
 
 /// Share of a range within which a state at its end still counts as inside: the tolerance of a servo.
 const TOLERANCE: f64 = 1e-3;
@@ -60,7 +60,7 @@ impl Reach {
     /// The quantities of this state that are outside.
     pub(crate) fn outside(&self, pressure: f64, state: &NetworkState) -> Vec<Outside> {
         let size_spread = state.size_variance.max(0.0).sqrt();
-        let stiffness_ratio = state.stiffness_ratio + super::laws::REFERENCE_STIFFNESS_RATIO;
+        let stiffness_ratio = state.stiffness_ratio + REFERENCE_STIFFNESS_RATIO;
         [
             beyond("p/E*", pressure, self.pressure, f64::ln, 1.0),
             beyond("k_t/k_n", stiffness_ratio, self.stiffness_ratio, |v| v, 0.1),
@@ -70,6 +70,20 @@ impl Reach {
         .into_iter()
         .flatten()
         .collect()
+    }
+
+    /// The states at the ends of the ranges of p and k_t/k_n, of equal grains in isotropic stress.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = NetworkState> {
+        let [low, high] = self.stiffness_ratio.map(|ratio| ratio - REFERENCE_STIFFNESS_RATIO);
+        self.pressure.into_iter().flat_map(move |pressure| {
+            let ln_pressure = (pressure / REFERENCE_PRESSURE).ln();
+            [low, high].map(|stiffness_ratio| NetworkState {
+                ln_pressure,
+                stiffness_ratio,
+                size_variance: 0.0,
+                stress_ratio: 0.0,
+            })
+        })
     }
 
     /// The inferred structure, if it is outside; ε `None` is inside.

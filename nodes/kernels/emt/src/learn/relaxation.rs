@@ -3,10 +3,10 @@
 use super::regression::{determined, minimum};
 use super::sample::{CalibrationSample, bounds};
 use crate::calibration::{
-    CalibrationError, DeviatorLaw, ISOSTATIC, NetworkState, RattlerLaw, Reach, RelaxationCalibration,
+    CalibrationError, DeviatorLaw, GROUPS, ISOSTATIC, NetworkState, RattlerLaw, Reach, RelaxationCalibration,
     SCATTERED, ScalingLaw, Scatter,
 };
-use crate::invariants::{INVARIANTS, Invariants};
+use crate::invariants::Invariants;
 use std::collections::BTreeSet;
 
 /// Number of recipes needed: the laws are tested on each with those learned from the others.
@@ -115,7 +115,7 @@ fn fitted(rows: &[&Reduced<'_>]) -> Result<RelaxationCalibration, CalibrationErr
         eps_stiffness: deviator(|r| r.sample.eps_stiffness)?,
         rattlers: RattlerLaw(determined(&rattlers, WHAT)?.coefficients),
         scatter: [[0.0; SCATTERED]; SCATTERED],
-        scatter_by_state: [0.0; 2],
+        scatter_by_state: [[0.0; 2]; GROUPS.len()],
         eps_spread: [0.0; 2],
         reach: Reach::default(),
         grains: 0,
@@ -140,34 +140,40 @@ fn residual(network: &RelaxationCalibration, row: &Reduced<'_>) -> [f64; SCATTER
     std::array::from_fn(|i| off[i] * weights[i])
 }
 
-/// Covariance of the residuals, and how their variance grows with the variance of the radii and with ln p.
-fn scatter(residuals: &[(&Reduced<'_>, [f64; SCATTERED])]) -> Result<(Scatter, [f64; 2]), CalibrationError> {
-    let mut by_state = [0.0; 2];
+/// Covariance of the residuals, and how the variances of each group grow with the variance of the radii and with ln p.
+fn scatter(
+    residuals: &[(&Reduced<'_>, [f64; SCATTERED])],
+) -> Result<(Scatter, [[f64; 2]; GROUPS.len()]), CalibrationError> {
+    let mut by_state = [[0.0; 2]; GROUPS.len()];
     let mut covariance = Scatter::zeros();
     for _ in 0..REPETITIONS {
         covariance = Scatter::zeros();
-        let growth = |state: &NetworkState| {
-            (by_state[0] * state.size_variance + by_state[1] * state.ln_pressure).exp()
-        };
         for (row, residual) in residuals {
-            let r = nalgebra::SVector::from(*residual);
-            covariance += r * r.transpose() / (growth(&row.state) * residuals.len() as f64);
+            let growth = RelaxationCalibration::growth(&by_state, &row.state);
+            let r = nalgebra::SVector::<f64, SCATTERED>::from_fn(|i, _| residual[i] / growth[i].sqrt());
+            covariance += r * r.transpose() / residuals.len() as f64;
         }
-        let of_moduli = covariance.fixed_view::<INVARIANTS, INVARIANTS>(0, 0).into_owned();
-        let too_few =
-            CalibrationError::Packings { what: "packings", found: residuals.len(), needed: 2 * SCATTERED };
-        let inverse = of_moduli.try_inverse().ok_or(too_few)?;
-        // The logarithm of the normalised square of the residual: its mean changes with the state as that of the variance.
-        let points: Vec<_> = residuals
-            .iter()
-            .map(|(row, residual)| {
-                let r = nalgebra::SVector::<f64, INVARIANTS>::from_row_slice(&residual[..INVARIANTS]);
-                let square = r.dot(&(inverse * r)).max(f64::MIN_POSITIVE);
-                ([1.0, row.state.size_variance, row.state.ln_pressure], square.ln(), 1.0)
-            })
-            .collect();
-        let [_, by_sizes, by_pressure] = determined(&points, "packings")?.coefficients;
-        by_state = [by_sizes, by_pressure];
+        for (group, growth) in GROUPS.into_iter().zip(&mut by_state) {
+            let (start, size) = (group.start, group.len());
+            let inverse = covariance.view((start, start), (size, size)).into_owned().try_inverse();
+            let too_few = CalibrationError::Packings {
+                what: "packings",
+                found: residuals.len(),
+                needed: 2 * SCATTERED,
+            };
+            let inverse = inverse.ok_or(too_few)?;
+            // The logarithm of the normalised square of the residual: its mean changes with the state as that of the variance.
+            let points: Vec<_> = residuals
+                .iter()
+                .map(|(row, residual)| {
+                    let r = nalgebra::DVector::from_row_slice(&residual[group.clone()]);
+                    let square = r.dot(&(&inverse * &r)).max(f64::MIN_POSITIVE);
+                    ([1.0, row.state.size_variance, row.state.ln_pressure], square.ln(), 1.0)
+                })
+                .collect();
+            let [_, by_sizes, by_pressure] = determined(&points, "packings")?.coefficients;
+            *growth = [by_sizes, by_pressure];
+        }
     }
     Ok((covariance, by_state))
 }

@@ -213,7 +213,25 @@ fn people(judged: &[Judged], by: &[String]) -> String {
         let counts = [s.rows.to_string(), s.solved.to_string()];
         t.row(j.group.iter().cloned().chain(cells).chain(counts).chain(numbers));
     }
-    t.without_empty_columns().text()
+    t.without_empty_columns().text() + &overconfident(judged)
+}
+
+/// One line for each quantity whose intervals hold the truth far less often than stated.
+fn overconfident(judged: &[Judged]) -> String {
+    let line = |j: &Judged| {
+        format!(
+            "{}{}: its 95 % intervals hold {} in {} of {} rows: these packings are unlike those of calibration {}, or {} was \
+             counted in another way\n",
+            j.group.iter().map(|cell| format!("{cell} ")).collect::<String>(),
+            j.model,
+            j.truth,
+            j.score.covered(),
+            j.score.intervals,
+            j.calibration,
+            j.truth,
+        )
+    };
+    judged.iter().filter(|j| j.score.is_overconfident()).map(line).collect()
 }
 
 fn csv(judged: &[Judged], by: &[String]) -> String {

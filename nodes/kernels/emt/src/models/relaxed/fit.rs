@@ -135,8 +135,8 @@ impl Fit {
         let direction = by_eps(&by_invariants);
         let c = covariance(&by_invariants, &direction);
         let cholesky = Cholesky::new(c)?;
-        let by_z = by_invariants.column(0) * network.theta.slope(z)
-            + by_invariants.column(1) * network.shear.slope(z)
+        let by_z = by_invariants.column(0) * network.theta.slope(z, laws)
+            + by_invariants.column(1) * network.shear.slope(z, laws)
             + (0..3).map(|i| by_invariants.column(2 + i) * deviators[i].slope(z, eps, laws)).sum::<Moduli>();
         let mut by_unknowns = SMatrix::<f64, MODULI, 2>::from_columns(&[by_z, direction]);
         let weight = cholesky.inverse();
@@ -217,8 +217,12 @@ impl Fit {
         let scatter = network.scatter_at(z, &state.variance_factors);
         let (laws, of_k, of_eps) = (&state.laws, network.rattlers, network.eps_stiffness);
         // Rows: ε weighted by stiffness, k. Columns: z, ε.
-        let follows =
-            SMatrix::<f64, 2, 2>::new(of_eps.slope(z, eps, laws), of_eps.by_eps(z, laws), of_k.slope(z), 0.0);
+        let follows = SMatrix::<f64, 2, 2>::new(
+            of_eps.slope(z, eps, laws),
+            of_eps.by_eps(z, laws),
+            of_k.slope(z, laws),
+            0.0,
+        );
         // The scatter of these two is correlated with that of the moduli: regression on the residual.
         let regression =
             scatter.fixed_view::<2, INVARIANTS>(INVARIANTS, 0) * self.by_invariants.transpose() * self.weight;
@@ -243,18 +247,18 @@ impl Fit {
         // The residual changes with the data and, with opposite sign, with the prediction for the state.
         let deviators = [network.dilatation, network.voigt, network.harmonic];
         let mut by_ln_p = -data.value / 3.0
-            - self.by_invariants.column(0) * network.theta.by_pressure
-            - self.by_invariants.column(1) * network.shear.by_pressure;
+            - self.by_invariants.column(0) * network.theta.by_ln_pressure(z)
+            - self.by_invariants.column(1) * network.shear.by_ln_pressure(z);
         let mut by_stress = Moduli::zeros();
         for (i, law) in deviators.iter().enumerate() {
-            by_ln_p -= self.by_invariants.column(2 + i) * law.by_ln_pressure(z, eps);
-            by_stress -= self.by_invariants.column(2 + i) * law.by_stress_ratio(z);
+            by_ln_p -= self.by_invariants.column(2 + i) * law.by_ln_pressure(z, eps, laws);
+            by_stress -= self.by_invariants.column(2 + i) * law.by_stress_ratio(z, laws);
         }
         let mut by_pressure = by_moduli * data.masked(by_ln_p);
         let mut by_stress = by_moduli * data.masked(by_stress);
-        by_pressure[2] += of_eps.by_ln_pressure(z, eps);
+        by_pressure[2] += of_eps.by_ln_pressure(z, eps, laws);
         by_pressure[3] += of_k.by_ln_pressure();
-        by_stress[2] += of_eps.by_stress_ratio(z);
+        by_stress[2] += of_eps.by_stress_ratio(z, laws);
         let mut jacobian = Jacobian::zeros();
         for (row, quantity) in rows.into_iter().enumerate() {
             if structure.get(quantity).is_none() {

@@ -36,12 +36,14 @@ impl State {
         let laws = NetworkState::of(pressure, material, conditions.size_spread.unwrap_or(0.0), stress_ratio);
         let outside = network.reach.outside(pressure / young, &laws);
         let growth: f64 = outside.iter().map(Outside::growth).product();
+        let of_sample = network.variance_factors(grains);
+        let of_state = RelaxationCalibration::growth(&network.scatter_by_state, &laws);
         Self {
             unit: young.cbrt().powi(2) * pressure.cbrt(),
             laws,
             stress_known: conditions.stress_ratio.is_some(),
             sizes_known: conditions.size_spread.is_some(),
-            variance_factors: network.variance_factors(grains).map(|f| f * network.growth(&laws) * growth),
+            variance_factors: std::array::from_fn(|i| of_sample[i] * of_state[i] * growth),
             outside,
         }
     }

@@ -87,6 +87,36 @@ impl Score {
     }
 }
 
+impl Score {
+    /// Whether so few intervals contain the truth that it is no chance: fewer than 90 % where 95 % are stated, and less than
+    /// once in a thousand in independent rows.
+    pub(super) fn is_overconfident(&self) -> bool {
+        const STATED: f64 = 0.95;
+        const TOO_FEW: f64 = 0.9;
+        const CHANCE: f64 = 1e-3;
+        self.coverage().is_some_and(|c| c < TOO_FEW)
+            && binomial_tail(self.covered, self.intervals, STATED) < CHANCE
+    }
+
+    /// Intervals that contain the truth.
+    pub(super) fn covered(&self) -> u64 {
+        self.covered
+    }
+}
+
+/// Probability of this number of successes or fewer in `n` trials.
+fn binomial_tail(successes: u64, n: u64, probability: f64) -> f64 {
+    // From the logarithm of each term, since the first is tiny for many trials.
+    let odds = (probability / (1.0 - probability)).ln();
+    let mut term = n as f64 * (1.0 - probability).ln();
+    let mut sum = term.exp();
+    for k in 0..successes.min(n) {
+        term += odds + ((n - k) as f64 / (k + 1) as f64).ln();
+        sum += term.exp();
+    }
+    sum.min(1.0)
+}
+
 impl Serialize for Score {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
@@ -128,6 +158,16 @@ mod tests {
         let rms = (errors.map(|e| e * e).iter().sum::<f64>() / 3.0).sqrt();
         assert!((score.rms().unwrap() - rms).abs() < 1e-6);
         assert_eq!(score.coverage(), Some(2.0 / 3.0));
+    }
+
+    #[test]
+    fn few_intervals_that_hold_the_truth_are_overconfident_unless_by_chance() {
+        // By hand: .05^3 + 3 .95 .05^2, and all.
+        assert!((binomial_tail(1, 3, 0.95) - 0.00725).abs() < 1e-12);
+        assert!((binomial_tail(2000, 2000, 0.95) - 1.0).abs() < 1e-9);
+        let of = |covered, intervals| Score { covered, intervals, ..Score::default() }.is_overconfident();
+        assert!(of(0, 16) && of(12, 20) && of(340, 384));
+        assert!(!of(14, 16) && !of(0, 1) && !of(350, 384) && !of(0, 0), "by chance, or nearly enough");
     }
 
     #[test]
