@@ -200,7 +200,7 @@ impl fmt::Display for Warning {
                 write!(f, "the model has contacts in all directions alike: eps is unknown, not zero")
             }
             Warning::StickingShare { share } => {
-                let outside = if is_share(*share) { "" } else { ", outside [0, 1]" };
+                let outside = if is_share(*share) { "" } else { " (outside [0, 1])" };
                 write!(
                     f,
                     "the shear modulus over Theta is that of contacts of which a share f = {share:.3}{outside} sticks"

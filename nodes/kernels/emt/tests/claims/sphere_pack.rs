@@ -54,6 +54,37 @@ fn stiffness_is_the_integral_over_the_sphere() {
     }
 }
 
+/// The closed form of Johnson et al., with α² = ε/e3 of the equal strain ε and the further strain e3, B = 2/(π C_n) and
+/// C = (4/π)(1/C_t − 1/C_n), where C_t/C_n = k_t/k_n, and Iₙ = ∫₀¹ xⁿ (α² + x²)^½ dx.
+#[test]
+fn stiffness_is_the_published_one_where_the_further_strain_compresses() {
+    for (alpha, ratio) in [0.05, 0.3, 1.0, 3.0, 8.0].into_iter().flat_map(|a: f64| [0.7, 0.9].map(|r| (a, r)))
+    {
+        let square = alpha * alpha;
+        let end = (1.0 + square).sqrt();
+        let i0 = 0.5 * (end + square * ((end + 1.0) / alpha).ln());
+        let i2 = 0.25 * (end.powi(3) - square * i0);
+        let i4 = (end.powi(3) - 3.0 * square * i2) / 6.0;
+        // In units of 2/(π C_n).
+        let (b, c) = (1.0, 2.0 * (1.0 / ratio - 1.0));
+        let flat = i0 - 2.0 * i2 + i4;
+        let published = [
+            2.0 * b * (i0 - i2) + 0.75 * c * flat,
+            0.25 * c * flat,
+            c * (i2 - i4),
+            4.0 * b * i2 + 2.0 * c * i4,
+            0.5 * b * (i0 + i2) + c * (i2 - i4),
+            b * (i0 - i2) + 0.25 * c * flat,
+        ];
+        // 1 + 2g : −6g as ε : e3.
+        let t = of(-1.0 / (6.0 * square + 2.0), ratio).stiffness();
+        for (found, expected) in [t.c11, t.c12, t.c13, t.c33, t.g13, t.g12].into_iter().zip(published) {
+            let off = found / t.c33 - expected / published[3];
+            assert!(off.abs() < 1e-12, "alpha {alpha}, k_t/k_n {ratio}: {found} {expected}");
+        }
+    }
+}
+
 #[test]
 fn contact_stiffness_and_pressure_are_the_integrals_over_the_sphere() {
     let sphere = directions();
