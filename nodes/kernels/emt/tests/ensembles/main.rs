@@ -4,6 +4,7 @@
 mod csv;
 mod least_squares;
 mod left_out;
+mod rock_physics;
 mod stress_and_fabric;
 
 use grainlab_core::results::InferredQuantity;
