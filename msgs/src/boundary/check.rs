@@ -4,6 +4,7 @@ use super::error::BoundaryError;
 use crate::geometry_msgs::Vector3;
 use crate::msg::{self, SymmetricTensor};
 use crate::std_msgs::Header;
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::StrainRatios;
 use grainlab_core::{SymTensor, Vec3};
 
@@ -68,6 +69,20 @@ impl Check {
     /// A positive number that may be missing.
     pub(super) fn optional_positive(self, field: &str, entries: &[f64]) -> Checked<Option<f64>> {
         self.optional(field, entries, |field, v| self.positive(field, *v))
+    }
+
+    /// The contact law of this name with these parameters.
+    pub(super) fn contact_law(self, name: &str, parameters: &[f64]) -> Checked<ContactLaw> {
+        ContactLaw::new(name, parameters)
+            .map_err(|fault| BoundaryError::ContactLaw { message: self.0, fault })
+    }
+
+    /// The contact law, with an empty name for unknown.
+    pub(super) fn optional_contact_law(self, name: &str, parameters: &[f64]) -> Checked<Option<ContactLaw>> {
+        if name.is_empty() && parameters.is_empty() {
+            return Ok(None);
+        }
+        self.contact_law(name, parameters).map(Some)
     }
 
     /// A quantity with 0 for unknown.

@@ -40,8 +40,13 @@ pub enum BoundaryError {
         allowed: &'static str,
     },
     /// The contact law is unknown, or its parameters are invalid.
-    #[error("Packing.contact_law is refused: {0}")]
-    ContactLaw(#[from] grainlab_core::contact::UnknownLaw),
+    #[error("{message}.contact_law is refused: {fault}")]
+    ContactLaw {
+        /// Name of the message.
+        message: &'static str,
+        /// What is wrong.
+        fault: grainlab_core::contact::UnknownLaw,
+    },
     /// An array of the wrong length.
     #[error("{message}.{field} has {found} entries and is refused: it must have {expected} ({reason})")]
     Length {

@@ -5,6 +5,7 @@ use super::elastic_stiffness::{elastic_stiffness, elastic_stiffness_message};
 use super::error::BoundaryError;
 use crate::msg;
 use crate::std_msgs::Header;
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::{ElasticStiffness, PackingReport, StrainRatios};
 use grainlab_core::{Material, Vec3};
 
@@ -40,6 +41,8 @@ pub struct ModuliReading {
     pub strain_ratios: StrainRatios,
     /// Material of the grains.
     pub material: Material,
+    /// Contact law of the grains.
+    pub contact_law: Option<ContactLaw>,
     /// The full stiffness, of a packing.
     pub stiffness: Option<ElasticStiffness>,
 }
@@ -72,6 +75,8 @@ pub fn moduli_message(
         grain_shear_modulus: report.material.shear_modulus,
         grain_poisson_ratio: report.material.poisson_ratio,
         grain_density: report.material.density,
+        contact_law: report.law.name().to_owned(),
+        contact_law_parameters: report.law.parameters(),
         stiffness: vec![elastic_stiffness_message(stiffness)],
     };
     ModuliReading::try_from(&message)?;
@@ -97,6 +102,7 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
             axis: CHECK.direction("axis", &m.axis)?,
             strain_ratios: CHECK.strain_ratios(&m.strain_ratios)?,
             material: material(m)?,
+            contact_law: CHECK.optional_contact_law(&m.contact_law, &m.contact_law_parameters)?,
             stiffness: CHECK.optional("stiffness", &m.stiffness, |_, s| elastic_stiffness(CHECK, s))?,
         })
     }

@@ -4,7 +4,6 @@ use super::check::{Check, header};
 use super::error::BoundaryError;
 use crate::std_msgs::Header;
 use crate::{msg, stamp};
-use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 
 const CHECK: Check = Check("Packing");
@@ -65,7 +64,7 @@ impl TryFrom<&msg::Packing> for Packing {
                 requirement: "the volume of a right-handed cell, finite and more than 0",
             });
         };
-        let law = ContactLaw::new(&m.contact_law, &m.contact_law_parameters)?;
+        let law = CHECK.contact_law(&m.contact_law, &m.contact_law_parameters)?;
         let packing = Packing {
             step: m.step,
             time: m.time,

@@ -6,6 +6,7 @@ use crate::builtin_interfaces::Time;
 use crate::geometry_msgs::Vector3;
 use crate::msg;
 use crate::std_msgs::Header;
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 
 const CHECK: Check = Check("WaveSpeeds");
@@ -46,6 +47,8 @@ pub struct WaveSpeedsReading {
     pub grain_shear_modulus: f64,
     /// Poisson ratio of the grains, in [0, 0.5].
     pub grain_poisson_ratio: f64,
+    /// Contact law of the grains.
+    pub contact_law: Option<ContactLaw>,
     /// The speeds, in the order of the message; may be empty.
     pub speeds: Vec<MeasuredWave>,
     /// Notes; may be empty.
@@ -77,6 +80,8 @@ pub fn wave_speeds_message(
         axis: vector_message(&found.axis.unwrap_or_default()),
         grain_shear_modulus: found.grain_shear_modulus,
         grain_poisson_ratio: found.grain_poisson_ratio,
+        contact_law: found.contact_law.map_or_else(String::new, |law| law.name().to_owned()),
+        contact_law_parameters: found.contact_law.map_or_else(Vec::new, |law| law.parameters()),
         speeds: found.speeds.iter().map(speed_message).collect(),
         warnings: found.warnings.clone(),
     };
@@ -116,6 +121,7 @@ impl TryFrom<&msg::WaveSpeeds> for WaveSpeedsReading {
             axis: CHECK.direction("axis", &m.axis)?,
             grain_shear_modulus: CHECK.positive(modulus, m.grain_shear_modulus)?,
             grain_poisson_ratio: CHECK.that(is_ratio, ratio, m.grain_poisson_ratio, "between 0 and 0.5")?,
+            contact_law: CHECK.optional_contact_law(&m.contact_law, &m.contact_law_parameters)?,
             speeds: m.speeds.iter().enumerate().map(|(i, s)| speed(i, s)).collect::<Result<_, _>>()?,
             warnings: m.warnings.clone(),
         })

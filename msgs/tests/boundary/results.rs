@@ -1,5 +1,6 @@
 use super::refuses;
 use super::structure::{contacts, fabric, stress_decomposition};
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::{
     ElasticStiffness, Elasticity, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
 };
@@ -23,6 +24,7 @@ pub(crate) fn report() -> PackingReport {
     PackingReport {
         step: 7,
         material: Material::GLASS,
+        law: ContactLaw::default(),
         solid_fraction: 0.64,
         size_spread: 0.1,
         stress: Stress { tensor: SymTensor::isotropic(5e4), asymmetry: 0.0 },
@@ -126,6 +128,7 @@ fn an_inversion_reads_what_the_analysis_measured() {
     assert_eq!(r.strain_ratios, report().strain_ratios);
     assert_eq!((r.stress_ratio, r.size_spread), (Some(0.0), Some(0.1)));
     assert_eq!((r.pressure, r.solid_fraction, r.material), (5e4, Some(0.64), Material::GLASS));
+    assert_eq!(r.contact_law, Some(ContactLaw::default()));
     assert_eq!((r.grains, r.axis, r.covariance), (Some(500), Some(Vec3::z()), None));
     assert_eq!((sent.source_step, &sent.header), (7, &header()));
 }
@@ -148,6 +151,7 @@ fn fields_unknown_to_an_instrument_are_none() {
         ..msg::Moduli::default()
     };
     let r = ModuliReading::try_from(&message).unwrap();
+    assert_eq!(r.contact_law, None);
     assert_eq!((r.grains, r.stiffness, r.axis, r.strain_ratios), (None, None, None, StrainRatios::default()));
     assert_eq!(r.covariance.unwrap().to_vec(), message.covariance);
     let shear_alone = msg::Moduli { theta: vec![], solid_fraction: vec![], ..message };
@@ -159,6 +163,7 @@ fn fields_unknown_to_an_instrument_are_none() {
 fn each_fault_of_the_moduli_is_refused_by_name() {
     let mut good = moduli_sent();
     good.covariance = vec![4e12, 1e12, 0.0, 1e12, 4e12, 0.0, 0.0, 0.0, 9e12];
+    (good.contact_law, good.contact_law_parameters) = ("linear".to_owned(), vec![1e5, 0.5]);
     refuses(
         &good,
         &[
@@ -193,6 +198,11 @@ fn each_fault_of_the_moduli_is_refused_by_name() {
             (|m| m.pressure = -5e4, "Moduli.pressure = -50000.0 is refused"),
             (|m| m.solid_fraction[0] = 0.0, "Moduli.solid_fraction = 0.0 is refused"),
             (|m| m.stress_ratio[0] = NAN, "Moduli.stress_ratio = NaN is refused"),
+            (
+                |m| m.contact_law = "hooke".into(),
+                "Moduli.contact_law is refused: unknown contact law \"hooke\"",
+            ),
+            (|m| m.contact_law.clear(), "Moduli.contact_law is refused: unknown contact law \"\""),
             (|m| m.size_spread[0] = -0.1, "Moduli.size_spread = -0.1 is refused"),
             (|m| m.axis.z = 0.5, "Moduli.|axis| = 0.5 is refused: it must be 1"),
             (|m| m.axis.x = NAN, "Moduli.|axis| = NaN is refused"),

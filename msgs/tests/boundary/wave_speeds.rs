@@ -39,6 +39,8 @@ fn sent() -> msg::WaveSpeeds {
         axis: z,
         grain_shear_modulus: 29e9,
         grain_poisson_ratio: 0.2,
+        contact_law: "linear".to_owned(),
+        contact_law_parameters: vec![1e5, 0.5],
         speeds: vec![compression, shear],
         warnings: vec!["send less".to_owned()],
     }
@@ -52,6 +54,7 @@ fn an_inversion_reads_the_speeds_that_were_sent() {
     assert_eq!((r.density, r.density_stddev, r.pressure), (1550.0, Some(8.0), 5e4));
     assert_eq!((r.solid_fraction, r.grain_shear_modulus, r.grain_poisson_ratio), (Some(0.64), 29e9, 0.2));
     assert_eq!((r.stress_ratio, r.size_spread), (Some(-0.1), Some(0.2)));
+    assert_eq!(r.contact_law, Some("linear:1e5,0.5".parse().unwrap()));
     let compression =
         WaveSpeed { direction: Vec3::z(), polarization: Vec3::z(), speed: 500.0, stddev: Some(1.5) };
     let shear = WaveSpeed { polarization: Vec3::x(), speed: 300.0, stddev: None, ..compression };
@@ -82,12 +85,15 @@ fn zeros_of_an_instrument_are_unknown() {
         solid_fraction: 0.0,
         stress_ratio: vec![],
         size_spread: vec![],
+        contact_law: String::new(),
+        contact_law_parameters: vec![],
         axis: Vector3::default(),
         speeds: Vec::new(),
         ..sent()
     };
     let r = WaveSpeedsReading::try_from(&message).unwrap();
     assert_eq!((r.source_step, r.density_stddev, r.solid_fraction, r.axis), (None, None, None, None));
+    assert_eq!(r.contact_law, None);
     assert!(r.speeds.is_empty());
 }
 
@@ -114,6 +120,7 @@ fn each_fault_of_the_wave_speeds_is_refused_by_name() {
             (|m| m.pressure = -5e4, "WaveSpeeds.pressure = -50000.0 is refused"),
             (|m| m.solid_fraction = 1.5, "WaveSpeeds.solid_fraction = 1.5 is refused"),
             (|m| m.stress_ratio[0] = f64::NAN, "WaveSpeeds.stress_ratio = NaN is refused"),
+            (|m| m.contact_law_parameters[1] = NAN, "WaveSpeeds.contact_law is refused: parameters"),
             (|m| m.size_spread[0] = -0.1, "WaveSpeeds.size_spread = -0.1 is refused"),
             (|m| m.axis.z = 0.5, "WaveSpeeds.|axis| = 0.5 is refused: it must be 1"),
             (|m| m.axis.x = NAN, "WaveSpeeds.|axis| = NaN is refused"),

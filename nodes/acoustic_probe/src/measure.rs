@@ -93,6 +93,7 @@ pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Resu
         axis: found.axis,
         grain_shear_modulus: packing.material.shear_modulus,
         grain_poisson_ratio: packing.material.poisson_ratio,
+        contact_law: Some(packing.law),
         speeds: found.waves.clone(),
         warnings: found.warnings.iter().map(ToString::to_string).collect(),
     };

@@ -37,6 +37,7 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
         stress_ratio: reading.stress_ratio.filter(|_| as_stated).map(Measured::exact),
         size_spread: reading.size_spread,
         material: Some(reading.material),
+        contact_law: reading.contact_law,
     };
     // The covariance of the message refers to the moduli about the axis stated.
     let covariance = reading.covariance.filter(|_| as_stated).map(|c| Mat3::from_row_slice(&c));

@@ -38,6 +38,7 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
             // An instrument measures the density of the sample; no model needs that of a grain.
             ..Material::GLASS
         }),
+        contact_law: reading.contact_law,
     };
     let fitted = christoffel::moduli_from_speeds(&speeds, density, Some(axis), conditions)?;
     notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));

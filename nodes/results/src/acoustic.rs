@@ -206,6 +206,7 @@ mod tests {
             axis: Some(Vec3::z()),
             grain_shear_modulus: 29e9,
             grain_poisson_ratio: 0.2,
+            contact_law: None,
             speeds: directions.iter().flat_map(along).collect(),
             warnings: vec!["send less".to_owned()],
         }

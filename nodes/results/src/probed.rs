@@ -23,7 +23,7 @@ pub struct Probed {
 
 /// Quantities of the packing in CSV: the inputs of an inversion besides the speeds, and its truth. The moduli
 /// are those from the speeds, under the names that `grainlab invert --table` reads.
-const BESIDE: [&str; 12] = [
+const BESIDE: [&str; 13] = [
     "grains",
     "phi",
     "axial_q_over_p",
@@ -31,6 +31,7 @@ const BESIDE: [&str; 12] = [
     "pressure_pa",
     "grain_shear_modulus_pa",
     "poisson",
+    "contact_law",
     "k",
     "z",
     "eps",

@@ -45,6 +45,10 @@ pub struct Moduli {
     pub grain_poisson_ratio: f64,
     /// kg/m3
     pub grain_density: f64,
+    /// name, as in Packing, empty = unknown
+    pub contact_law: String,
+    /// as in Packing
+    pub contact_law_parameters: Vec<f64>,
     /// one, or none where only the moduli are known
     pub stiffness: Vec<ElasticStiffness>,
 }
@@ -53,7 +57,7 @@ impl Message for Moduli {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Moduli";
     const TYPE: &'static str = "grainlab_msgs/msg/Moduli";
-    const HASH: &'static str = "RIHS01_db7d1b7948a3c5cb00438e4796f689abb09de19b17ca026c488fb2d5ef409124";
+    const HASH: &'static str = "RIHS01_a7be8a313b41734c7f28f5e5b9cac1f128b94d0faf6d10b22f2413bbd440921c";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
         "source_step" => (9, 0, ""),
@@ -72,6 +76,8 @@ impl Message for Moduli {
         "grain_shear_modulus" => (11, 0, ""),
         "grain_poisson_ratio" => (11, 0, ""),
         "grain_density" => (11, 0, ""),
+        "contact_law" => (17, 0, ""),
+        "contact_law_parameters" => (155, 0, ""),
         "stiffness" => (145, 0, "grainlab_msgs/msg/ElasticStiffness"),
     );
     const DEFINITION: &'static str = definition!(

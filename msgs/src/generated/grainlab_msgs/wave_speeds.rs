@@ -31,6 +31,10 @@ pub struct WaveSpeeds {
     pub grain_shear_modulus: f64,
     /// Dimensionless.
     pub grain_poisson_ratio: f64,
+    /// name, as in Packing, empty = unknown
+    pub contact_law: String,
+    /// as in Packing
+    pub contact_law_parameters: Vec<f64>,
     /// one per mode and direction
     pub speeds: Vec<WaveSpeed>,
     /// what a reader should know, empty if there is nothing to say
@@ -41,7 +45,7 @@ impl Message for WaveSpeeds {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "WaveSpeeds";
     const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeeds";
-    const HASH: &'static str = "RIHS01_cc176f3a4346a1e87870a281e09c20365d64a631a9bd81f097c6dfcb0fd4c0cf";
+    const HASH: &'static str = "RIHS01_f5ce689f7781ec7588580a1a302d8eafa61e13175307c5a726b966cd2ad54fe6";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
         "source_step" => (9, 0, ""),
@@ -54,6 +58,8 @@ impl Message for WaveSpeeds {
         "axis" => (1, 0, "geometry_msgs/msg/Vector3"),
         "grain_shear_modulus" => (11, 0, ""),
         "grain_poisson_ratio" => (11, 0, ""),
+        "contact_law" => (17, 0, ""),
+        "contact_law_parameters" => (155, 0, ""),
         "speeds" => (145, 0, "grainlab_msgs/msg/WaveSpeed"),
         "warnings" => (161, 0, ""),
     );

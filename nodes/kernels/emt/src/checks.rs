@@ -55,6 +55,8 @@ pub(crate) fn common(
         let calibrated = calibration.material().poisson_ratio;
         add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
     }
+    let rolls = conditions.contact_law.is_some_and(|law| law.rolling.is_some());
+    add(rolls, Warning::RollingResistance);
     if let Some(asymmetry) = observation.asymmetry {
         let scatter = observation.grains.map_or(0.0, |n| SCATTER / f64::from(n.max(1)).sqrt());
         add(asymmetry > scatter.max(ASYMMETRY), Warning::NotTransverselyIsotropic { asymmetry });

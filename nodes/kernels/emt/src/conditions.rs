@@ -2,6 +2,7 @@
 
 use crate::error::EmtError;
 use grainlab_core::Material;
+use grainlab_core::contact::{ContactLaw, SpringLaw};
 use grainlab_core::results::StrainRatios;
 use std::fmt;
 
@@ -125,6 +126,8 @@ pub struct Conditions {
     pub size_spread: Option<f64>,
     /// Material of the grains; `None` takes that of the calibration.
     pub material: Option<Material>,
+    /// Contact law of the grains; `None` takes Hertz–Mindlin contacts.
+    pub contact_law: Option<ContactLaw>,
 }
 
 impl Conditions {
@@ -137,6 +140,7 @@ impl Conditions {
             stress_ratio: None,
             size_spread: None,
             material: None,
+            contact_law: None,
         }
     }
 
@@ -145,6 +149,9 @@ impl Conditions {
         let finite = |quantity: &'static str, value: f64| {
             if value.is_finite() { Ok(()) } else { Err(EmtError::NotFinite { quantity, value }) }
         };
+        if let Some(SpringLaw::Linear(_)) = self.contact_law.map(|law| law.springs) {
+            return Err(EmtError::LinearSprings);
+        }
         finite("pressure", self.pressure.value)?;
         if self.pressure.value <= 0.0 {
             return Err(EmtError::NotPositive { quantity: "pressure", value: self.pressure.value });

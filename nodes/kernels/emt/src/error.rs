@@ -55,6 +55,12 @@ pub enum EmtError {
         /// The value found.
         ratio: f64,
     },
+    /// Contacts that are no Hertz contacts.
+    #[error(
+        "unknown: the contacts are linear springs, whose stiffness does not follow from the material of the grains; every \
+         model is for Hertz-Mindlin contacts"
+    )]
+    LinearSprings,
     /// An invalid Poisson ratio of the grains.
     #[error("the Poisson ratio of the grains, {nu}, is outside [0, 1/2]")]
     PoissonRatio {
@@ -204,7 +210,8 @@ impl EmtError {
             | EmtError::PoissonRatio { .. }
             | EmtError::Missing { .. }
             | EmtError::NotCalibrated { .. } => true,
-            EmtError::Unstable { .. }
+            EmtError::LinearSprings
+            | EmtError::Unstable { .. }
             | EmtError::OutsideDomain { .. }
             | EmtError::GammaOutOfRange { .. }
             | EmtError::RatioOutOfRange { .. }

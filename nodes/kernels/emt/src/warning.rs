@@ -87,6 +87,8 @@ pub enum Warning {
         /// ν of the calibration.
         calibrated: f64,
     },
+    /// The contacts resist rolling, and those of the calibration's packings do not.
+    RollingResistance,
     /// The stiffness is not isotropic about the axis.
     NotTransverselyIsotropic {
         /// Relative part that is not isotropic.
@@ -190,6 +192,9 @@ impl fmt::Display for Warning {
                 )
             }
             Warning::GammaAssumedZero => write!(f, "gamma/Delta is not known and was taken as 0"),
+            Warning::RollingResistance => {
+                write!(f, "the contacts resist rolling; no model knows packings whose contacts do")
+            }
             Warning::StressAssumedIsotropic => {
                 write!(f, "the stress ratio q/p is not known: the stress was taken as isotropic")
             }

@@ -109,6 +109,7 @@ pub fn report(view: &PackingView<'_>, parts: ReportParts) -> PackingReport {
     PackingReport {
         step: packing.step,
         material: packing.material,
+        law: packing.law,
         solid_fraction: packing.solid_fraction(),
         size_spread: packing.size_spread(),
         stress: view.stress,

@@ -45,6 +45,7 @@ impl Way {
             stress_ratio: r.axial_stress_ratio().map(Measured::exact),
             size_spread: Some(r.size_spread),
             material: Some(r.material),
+            contact_law: Some(r.law),
             ..Conditions::at(r.pressure())
         };
         let observation = Observation {

@@ -5,6 +5,7 @@ use super::elastic_stiffness::{ElasticStiffness, Elasticity};
 use super::fabric::Fabric;
 use super::strain_ratios::StrainRatios;
 use super::stress_decomposition::StressDecomposition;
+use crate::contact::ContactLaw;
 use crate::material::Material;
 use crate::stiffness::TransverseIsotropy;
 use crate::stress::Stress;
@@ -17,6 +18,8 @@ pub struct PackingReport {
     pub step: u64,
     /// Material of the grains.
     pub material: Material,
+    /// Contact law of the grains.
+    pub law: ContactLaw,
     /// Solid fraction φ.
     pub solid_fraction: f64,
     /// Standard deviation of the radii over their mean.

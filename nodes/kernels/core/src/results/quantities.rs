@@ -22,6 +22,8 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
         Scalar, |r| r.unbalanced_force_ratio;
     "grain_shear_modulus_pa" "G_g" "Pa" "shear modulus of the grains" Scalar, |r| r.material.shear_modulus;
     "poisson" "ν_g" "1" "Poisson ratio of the grains" Scalar, |r| r.material.poisson_ratio;
+    "contact_law" "" "" "contact law, with the parameters that do not follow from the material"
+        Scalar, |r| r.law.to_string();
     "reference_axis" "h" "1" "unit axis that eps, p4, g, G12, G13 and the ti_ moduli are about"
         Vector, |r| r.fabric.reference_axis;
     // Contacts.

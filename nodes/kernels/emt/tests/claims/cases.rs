@@ -68,6 +68,7 @@ impl Random {
             stress_ratio: Some(Measured::exact(self.with_ends(domain.stress_ratio))),
             size_spread: Some(self.with_ends(domain.size_spread.map(|s| s.min(1.0)))),
             material,
+            contact_law: None,
         };
         (Microstructure::of_values(structure), conditions)
     }

@@ -54,6 +54,13 @@ fn a_sound_observation_has_neither_errors_nor_warnings() {
 }
 
 #[test]
+fn linear_springs_have_no_estimate() {
+    let refused = fault(|o| o.conditions.contact_law = Some("linear:1e5,0.5".parse().unwrap()));
+    assert_eq!(refused, EmtError::LinearSprings);
+    assert!(!refused.is_input_error() && refused.to_string().starts_with("unknown: "), "{refused}");
+}
+
+#[test]
 fn numbers_that_are_not_finite_are_named() {
     for modulus in Modulus::ALL {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -187,6 +194,13 @@ fn each_warning_fires_outside_its_range_and_marks_the_estimate_extrapolated() {
     let mut o = sound();
     o.conditions.material = Some(other);
     warned(estimate(&o), |w| matches!(w, Warning::OtherGrains { nu: 0.3, calibrated: 0.2 }));
+    let law = |text: &str| {
+        let mut o = sound();
+        o.conditions.contact_law = Some(text.parse().unwrap());
+        estimate(&o)
+    };
+    warned(law("hertz_mindlin:1e4,1e-3,0.1"), |w| matches!(w, Warning::RollingResistance));
+    assert_eq!(law("hertz_mindlin").status, Status::Ok);
     let inside = of_structure(5.5, 5.5, 0.99, 0.0);
     assert_eq!((inside.status, inside.warnings.len()), (Status::Ok, 0));
 }

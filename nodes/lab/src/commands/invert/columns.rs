@@ -27,6 +27,7 @@ pub(crate) struct Columns {
     reference_axis: Option<[usize; 3]>,
     /// Whether the moduli have the names of the projection that `grainlab analyze` prints.
     projected: bool,
+    contact_law: Option<usize>,
     sample: Option<usize>,
     source: Option<usize>,
     step: Option<usize>,
@@ -97,6 +98,7 @@ impl Columns {
             projected: stiffness.is_some() || find("ti_c11_pa")?.is_some(),
             stiffness,
             reference_axis: axis_columns(&find)?,
+            contact_law: find("contact_law")?,
             sample: find("sample")?,
             source: find("source")?,
             step: find("step")?,
@@ -166,6 +168,9 @@ impl Columns {
                 return Err(format!("column {}: {value} is not a standard deviation", self.names[*column]));
             }
             (input.set)(&mut state, value * factor);
+        }
+        if let Some(text) = self.contact_law.map(|column| cells.get(column)).filter(|text| !text.is_empty()) {
+            state.contact_law = Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
         }
         if let Some(stiffness) = self.stiffness(cells)? {
             let medium = stiffness.transverse_isotropy_about(&self.axis(cells)?);

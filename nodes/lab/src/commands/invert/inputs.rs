@@ -112,7 +112,9 @@ pub(super) fn reference() -> String {
         let names: Vec<&str> = input.names().iter().map(|alias| alias.name).collect();
         format!("  {:<34} {}\n", names.join(", "), input.meaning())
     };
-    INPUTS.iter().map(line).collect()
+    let law =
+        "  contact_law                        hertz_mindlin, or linear:KN,RATIO, which no model can invert\n";
+    INPUTS.iter().map(line).chain([law.to_owned()]).collect()
 }
 
 /// The inputs given, with the standard deviations in force.
@@ -123,6 +125,7 @@ impl Serialize for State {
         for input in INPUTS.iter().filter(|input| input.role != Role::Truth) {
             map.serialize_entry(input.key, &(input.get)(self))?;
         }
+        map.serialize_entry("contact_law", &self.contact_law.map(|law| law.to_string()))?;
         map.serialize_entry("asymmetry", &self.asymmetry)?;
         map.serialize_entry("relative_error", &self.relative_error)?;
         map.end()

@@ -63,7 +63,7 @@ impl Printer<'_> {
         for answer in answers {
             let line = answer.line.map_or_else(String::new, |l| format!("line {l}"));
             let sample = answer.sample().map_or_else(|| line.clone(), str::to_owned);
-            let pressure = answer.state.as_ref().ok().map(|s| format!("{}", s.pressure.value / 1e3));
+            let pressure = answer.state.as_ref().ok().map(|s| kilopascals(s.pressure.value));
             let results = answer.inferences(self.ways);
             for (result, way) in results.iter().zip(self.ways) {
                 let asked = way.gamma.map_or("-", grainlab_emt::StrainRatioSource::name).to_owned();
@@ -78,4 +78,10 @@ impl Printer<'_> {
         }
         t.without_empty_columns().text() + &warnings
     }
+}
+
+/// A pressure, Pa, in kPa to six digits.
+fn kilopascals(pressure: f64) -> String {
+    let rounded = format!("{:.5e}", pressure / 1e3);
+    rounded.parse::<f64>().map_or(rounded, |p| p.to_string())
 }

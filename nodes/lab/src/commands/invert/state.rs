@@ -2,6 +2,7 @@
 
 use super::way::Way;
 use grainlab_core::Material;
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::Microstructure;
 use grainlab_core::results::StrainRatios;
 use grainlab_emt::{
@@ -40,6 +41,8 @@ pub(crate) struct State {
     /// Pa.
     pub(crate) grain_shear_modulus: Option<f64>,
     pub(crate) poisson: Option<f64>,
+    /// Contact law of the grains, if a table contains it.
+    pub(crate) contact_law: Option<ContactLaw>,
     /// Number of grains, if a table contains it.
     pub(crate) grains: Option<f64>,
     /// The true microstructure, if a table contains it.
@@ -67,6 +70,7 @@ impl State {
             size_spread: None,
             grain_shear_modulus: None,
             poisson: None,
+            contact_law: None,
             truth: Microstructure::default(),
         }
     }
@@ -99,6 +103,7 @@ impl State {
         conditions.stress_ratio = self.stress_ratio;
         conditions.size_spread = self.size_spread;
         conditions.material = self.material(&way.calibration);
+        conditions.contact_law = self.contact_law;
         if way.model.uses_gamma() {
             let model = way.model.name();
             conditions.gamma =
