@@ -8,6 +8,7 @@
 //! Where the moduli are anisotropic, the shear modulus is that of the isotropic part, or the mean of the known ones.
 
 use super::equivalent::MAX_COORDINATION;
+use super::uniform_strain::own_error;
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
 use crate::domain::Domain;
@@ -78,7 +79,8 @@ impl Model for HertzMindlin {
             Warning::StickingShare { share: (shear / smooth - 1.0) / (1.5 * mindlin(&material)) }
         }));
         let structure = Microstructure::default().with(InferredQuantity::K, k);
-        Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) })
+        let discrepancy = Some(own_error(&structure));
+        Ok(PointEstimate { warnings, discrepancy, ..PointEstimate::exact(structure) })
     }
 }
 

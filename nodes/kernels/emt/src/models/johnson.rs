@@ -9,6 +9,7 @@
 //! stress ratio; small waves still find contacts that stick.
 
 use super::equivalent::MAX_COORDINATION;
+use super::uniform_strain::own_error;
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
 use crate::domain::Domain;
@@ -96,7 +97,8 @@ impl Model for Johnson {
         let structure = Microstructure::default()
             .with(InferredQuantity::K, k)
             .with(InferredQuantity::EpsStiffness, shape.eps_stiffness());
-        Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) })
+        let discrepancy = Some(own_error(&structure));
+        Ok(PointEstimate { warnings, discrepancy, ..PointEstimate::exact(structure) })
     }
 }
 

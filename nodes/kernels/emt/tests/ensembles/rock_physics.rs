@@ -50,3 +50,40 @@ fn the_share_of_contacts_that_stick_is_a_fit_and_no_property_of_the_contacts() {
         assert!((found - mean_share).abs() < 0.01 && (low < 0.0) == some_negative && high < 0.7);
     }
 }
+
+/// The constants of `models/uniform_strain.rs`, with the bias in them: the intervals are wide.
+#[test]
+fn the_error_they_state_is_that_over_the_packings_of_the_calibration() {
+    let files = ["isotropic.csv", "anisotropic.csv", "wide.csv"];
+    let taught: Vec<_> = files.into_iter().flat_map(csv::samples).collect();
+    let held_out = csv::samples("held_out.csv");
+    for model in ["hertz-mindlin", "johnson", "johnson-slip"] {
+        let found = estimates(&taught, model);
+        let k = |e: &Estimate| e.structure.k.unwrap();
+        let rms = mean(found.iter().map(|(truth, e)| (truth / k(e) - 1.0).powi(2))).sqrt();
+        let e = &found[0].1;
+        let stated =
+            e.model_covariance.unwrap()[(InferredQuantity::K as usize, InferredQuantity::K as usize)];
+        eprintln!("{model}: error of k over k {rms:.3}");
+        assert!((stated.sqrt() / k(e) - rms).abs() < 0.005, "{model}: {stated} {rms}");
+        let Some(_) = e.structure.eps_stiffness else { continue };
+        let errors = taught.iter().zip(&found);
+        let errors = errors.map(|(s, (_, e))| (e.structure.eps_stiffness.unwrap() - s.eps_stiffness).powi(2));
+        let rms = mean(errors).sqrt();
+        let at = InferredQuantity::EpsStiffness as usize;
+        let stated = e.model_covariance.unwrap()[(at, at)].sqrt();
+        eprintln!("{model}: error of eps_k {rms:.3}");
+        assert!((stated - rms).abs() < 0.01, "{model}: {stated} {rms}");
+        let inside = |s: &&CalibrationSample| {
+            let observed = s.observation(StrainRatioSource::Zero).with_relative_error(0.01);
+            let e = grainlab_emt::model(model).unwrap().infer(&observed, &Calibration::PAPER).unwrap();
+            let holds = |q, truth| {
+                let [low, high] = e.interval(q).unwrap();
+                (low..=high).contains(&truth)
+            };
+            holds(InferredQuantity::K, s.k) && holds(InferredQuantity::EpsStiffness, s.eps_stiffness)
+        };
+        let share = held_out.iter().filter(inside).count() as f64 / held_out.len() as f64;
+        assert!(share > 0.95, "{model}: {share}");
+    }
+}
