@@ -15,8 +15,9 @@
 //!   - `unequal_springs`: the same with K_N ≠ K_T, and with the overlap law linear in g or not
 //!   - `directional`: each modulus with its own coordination number
 //!   - `relaxed`: the relaxed network
+//!   - `hertz_mindlin`, `johnson`: packs with contacts in all directions alike, as in rock physics
 //! - `calibration`, `learn`: the constants of the models, and how they are learned from packings
-//! - `moments`, `eq16`, `overlap`, `medium`, `invariants`: the theory that the models share
+//! - `moments`, `eq16`, `overlap`, `medium`, `sphere_pack`, `invariants`: the theory that the models share
 //! - `propagation`, `sampling`: errors to first order; the distribution, where they are large
 //! - [`christoffel`], [`WaveModuli`]: moduli from wave speeds
 //!
@@ -55,6 +56,7 @@ mod propagation;
 mod registry;
 mod root;
 mod sampling;
+mod sphere_pack;
 mod warning;
 mod wave_moduli;
 
@@ -78,5 +80,6 @@ pub use observation::{INPUT_NAMES, INPUTS, Observation};
 pub use point_estimate::{Jacobian, Misfit, PointEstimate};
 pub use registry::{model, models, recommended};
 pub use sampling::{MonteCarlo, SamplingSettings, monte_carlo};
+pub use sphere_pack::{ContactHistory, PackShape};
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

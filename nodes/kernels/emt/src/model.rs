@@ -23,6 +23,11 @@ pub trait Model: Sync + Debug {
         true
     }
 
+    /// Whether the model uses the learned constants of a calibration, not its material alone.
+    fn uses_constants(&self) -> bool {
+        true
+    }
+
     /// The structures and states for which [`Model::predict`] is one to one.
     fn domain(&self, calibration: &Calibration) -> Domain;
 

@@ -3,7 +3,10 @@
 pub(crate) mod directional;
 pub(crate) mod effective_medium;
 mod equivalent;
+pub(crate) mod hertz_mindlin;
+pub(crate) mod johnson;
 pub(crate) mod ratio;
 pub(crate) mod relaxed;
 mod shear_ratio;
 pub(crate) mod unequal_springs;
+mod uniform_strain;

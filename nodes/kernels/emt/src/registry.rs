@@ -4,6 +4,8 @@ use crate::estimate::Status;
 use crate::model::Model;
 use crate::models::directional::Directional;
 use crate::models::effective_medium::EffectiveMedium;
+use crate::models::hertz_mindlin::HertzMindlin;
+use crate::models::johnson;
 use crate::models::ratio;
 use crate::models::relaxed::Relaxed;
 use crate::models::unequal_springs;
@@ -19,6 +21,9 @@ pub fn models() -> &'static [&'static dyn Model] {
         &unequal_springs::NONLINEAR,
         &Directional,
         &Relaxed,
+        &HertzMindlin,
+        &johnson::ROUGH,
+        &johnson::SLIP,
     ]
 }
 
@@ -34,11 +39,17 @@ pub fn model(name: &str) -> Option<&'static dyn Model> {
 const BY_ERROR: [&str; 8] =
     ["relaxed", "directional", "full", "sqrt", "ratio", "ratio-volume", "ratio-as-printed", "emt"];
 
+/// Names of the models that infer no ε, by their error of k over the same packings, 0.86 for each.
+const WITHOUT_EPS: [&str; 3] = ["johnson-slip", "johnson", "hertz-mindlin"];
+
 /// The model whose estimate is recommended: among those inside their range, the one with the smallest error
-/// over the held-out packings; among all if none is inside. `None` without an estimate.
+/// over the held-out packings; among all if none is inside. A model that infers no ε only where no other has an estimate.
+/// `None` without an estimate.
 pub fn recommended<'a>(estimates: impl IntoIterator<Item = (&'a str, Status)>) -> Option<&'a str> {
-    let rank = |name: &str| BY_ERROR.iter().position(|known| *known == name).unwrap_or(BY_ERROR.len());
-    let key = |(name, status): &(&str, Status)| (*status != Status::Ok, rank(name));
+    let place = |names: &[&str], name: &str| names.iter().position(|known| *known == name);
+    let rank = |name: &str| place(&BY_ERROR, name).unwrap_or(BY_ERROR.len());
+    let key =
+        |(name, status): &(&str, Status)| (place(&WITHOUT_EPS, name), *status != Status::Ok, rank(name));
     estimates.into_iter().min_by_key(key).map(|(name, _)| name)
 }
 
@@ -49,7 +60,7 @@ mod tests {
     #[test]
     fn every_model_has_a_place_in_the_order_of_errors() {
         let mut names: Vec<_> = models().iter().map(|m| m.name()).collect();
-        let mut ranked = BY_ERROR.to_vec();
+        let mut ranked = [&BY_ERROR[..], &WITHOUT_EPS].concat();
         names.sort_unstable();
         ranked.sort_unstable();
         assert_eq!(names, ranked);
@@ -62,6 +73,8 @@ mod tests {
         assert_eq!(recommended([("ratio", Ok), ("relaxed", Extrapolated)]), Some("ratio"));
         assert_eq!(recommended([("ratio", Extrapolated), ("relaxed", Extrapolated)]), Some("relaxed"));
         assert_eq!(recommended([("mine", Ok), ("ratio", Ok)]), Some("ratio"));
+        assert_eq!(recommended([("hertz-mindlin", Ok), ("relaxed", Extrapolated)]), Some("relaxed"));
+        assert_eq!(recommended([("hertz-mindlin", Ok), ("johnson", Extrapolated)]), Some("johnson"));
         assert_eq!(recommended([]), None);
     }
 }

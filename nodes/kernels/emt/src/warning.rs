@@ -73,6 +73,13 @@ pub enum Warning {
         /// Lowest and highest of the calibration.
         range: [f64; 2],
     },
+    /// The model has contacts in all directions alike.
+    IsotropicContacts,
+    /// Share f of the contacts that stick in a shear wave, which makes the model fit Θ and the shear modulus.
+    StickingShare {
+        /// f, dimensionless.
+        share: f64,
+    },
     /// The Poisson ratio of the grains is not that of the calibration's packings.
     OtherGrains {
         /// ν of the grains.
@@ -127,8 +134,9 @@ impl Warning {
             Warning::GammaAssumedZero
                 | Warning::StressAssumedIsotropic
                 | Warning::SizesAssumedEqual
+                | Warning::IsotropicContacts
                 | Warning::ErrorsLarge { .. }
-        )
+        ) && !matches!(self, Warning::StickingShare { share } if is_share(*share))
     }
 }
 
@@ -193,6 +201,16 @@ impl fmt::Display for Warning {
             Warning::SizesAssumedEqual => {
                 write!(f, "the spread of the grain sizes is not known: the grains were taken as equal")
             }
+            Warning::IsotropicContacts => {
+                write!(f, "the model has contacts in all directions alike: eps is unknown, not zero")
+            }
+            Warning::StickingShare { share } => {
+                let outside = if is_share(*share) { "" } else { " (outside [0, 1])" };
+                write!(
+                    f,
+                    "the shear modulus over Theta is that of contacts of which a share f = {share:.3}{outside} sticks"
+                )
+            }
             Warning::StateOutsideFit { quantity, value, range } => {
                 let [shown, low, high] = apart(*value, *range, 4);
                 write!(
@@ -238,6 +256,11 @@ impl fmt::Display for Warning {
             ),
         }
     }
+}
+
+/// Whether a number is in [0, 1], to the rounding of its computation.
+fn is_share(number: f64) -> bool {
+    (-1e-9..=1.0 + 1e-9).contains(&number)
 }
 
 /// A value outside a range, and the ends of the range, with `digits` decimals, or more if the value and the nearer end would

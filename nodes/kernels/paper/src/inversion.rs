@@ -28,7 +28,7 @@ impl Way {
             let gammas: Vec<_> = if model.uses_gamma() { ratios.map(Some).to_vec() } else { vec![None] };
             let default = model.default_calibration();
             let ours = Calibration::builtin("grainlab")
-                .filter(|c| c.name() != default.name() && model.name() != "emt");
+                .filter(|c| c.name() != default.name() && model.uses_constants());
             for calibration in std::iter::once(default).chain(ours) {
                 all.extend(gammas.iter().map(|gamma| Self { model, calibration, gamma: *gamma }));
             }

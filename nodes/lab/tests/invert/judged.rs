@@ -68,6 +68,21 @@ fn a_plot_without_a_counted_eps_is_refused_and_not_written() {
 }
 
 #[test]
+fn a_plot_leaves_out_models_that_infer_no_eps() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("plot.svg");
+    let input = said(&[(5.73, 0.016), (5.73, 0.02)]).replace("mu,", "phi,").replace("0.3,50", "0.64,50");
+    let input = input.replace("\n0.1,50", "\n0.63,50");
+    let models = "--model=ratio,hertz-mindlin";
+    let arguments = ["invert", "--table=-", "--judge", models, "--plot", plot.to_str().unwrap()];
+    let output = grainlab(&arguments, input.as_bytes());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("hertz-mindlin"), "{}", text(&output.stdout));
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    assert!(svg.contains("ratio: rms") && !svg.contains("hertz-mindlin") && !svg.contains("NaN"), "{svg}");
+}
+
+#[test]
 fn groups_come_in_the_order_of_their_first_row_and_are_judged_alone() {
     let judged =
         judge(&said(&[(5.73, 0.0), (5.63, 0.0), (5.73, 0.0), (5.63, 0.0)]), &["--model=ratio", "--by=mu"]);

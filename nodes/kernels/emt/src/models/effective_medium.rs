@@ -36,6 +36,10 @@ impl Model for EffectiveMedium {
         NAME
     }
 
+    fn uses_constants(&self) -> bool {
+        false
+    }
+
     fn domain(&self, _: &Calibration) -> Domain {
         let mut structure = [None; InferredQuantity::COUNT];
         structure[InferredQuantity::K as usize] = Some([0.1, MAX_COORDINATION]);

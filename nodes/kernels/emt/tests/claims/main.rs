@@ -9,8 +9,10 @@ mod propagation;
 mod quadrature;
 mod recovery;
 mod relaxed;
+mod rock_physics;
 mod sampling;
 mod sphere;
+mod sphere_pack;
 mod table3;
 
 /// The models of the paper, with its errata and approximations: all that use G12, G13 and γ/Δ.

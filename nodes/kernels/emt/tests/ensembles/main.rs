@@ -2,7 +2,10 @@
 //! ones.
 
 mod csv;
+mod least_squares;
 mod left_out;
+mod rock_physics;
+mod stress_and_fabric;
 
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, CalibrationSample, Moduli, Modulus, Observation, StrainRatioSource, learn};

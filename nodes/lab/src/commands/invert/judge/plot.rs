@@ -18,7 +18,9 @@ pub(super) fn svg(ways: &[Way], points: Vec<Vec<[f64; 2]>>) -> String {
         1 => way.model.name().to_owned(),
         _ => format!("{} ({})", way.model.name(), way.calibration.name()),
     };
-    let legend = ways.iter().zip(&points).enumerate().map(|(n, (way, points))| {
+    // A model that infers no anisotropy has no points.
+    let with_points = ways.iter().zip(&points).enumerate().filter(|(_, (_, points))| !points.is_empty());
+    let legend = with_points.map(|(n, (way, points))| {
         let rms = (points.iter().map(|[t, f]| (f - t).powi(2)).sum::<f64>() / points.len() as f64).sqrt();
         Entry::Colour(n, format!("{}: rms {rms:.4}", name(way)))
     });

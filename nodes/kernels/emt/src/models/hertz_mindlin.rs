@@ -1,0 +1,114 @@
+//! The isotropic pack of rock physics: Hertz contacts, of which a share f sticks (Mindlin) and the others slip.
+//!
+//! K = [k²φ²G²p/(18π²(1−ν)²)]^⅓ and G/K = (3/5)(1 + 3f(1−ν)/(2−ν)): Walton's rough (f = 1) and smooth (f = 0) spheres, and the
+//! practice between them (Bachrach & Avseth, Geophysics 73, E197 (2008); Mavko, Mukerji & Dvorkin, The Rock Physics
+//! Handbook, 5.4). Θ gives k, and the shear modulus over it f, which stands for all that makes real packs softer in shear.
+//! Without Θ it is C33 − 4/3 G13, or C11 − 4/3 G12, as from one P and one S wave. The contacts have no anisotropy.
+//!
+//! Where the moduli are anisotropic, the shear modulus is that of the isotropic part, or the mean of the known ones.
+
+use super::equivalent::MAX_COORDINATION;
+use super::uniform_strain::own_error;
+use crate::calibration::Calibration;
+use crate::conditions::Conditions;
+use crate::domain::Domain;
+use crate::error::EmtError;
+use crate::invariants::Invariants;
+use crate::model::Model;
+use crate::moduli::{Moduli, Modulus};
+use crate::observation::Observation;
+use crate::point_estimate::PointEstimate;
+use crate::sphere_pack::{PackShape, mindlin};
+use crate::warning::Warning;
+use grainlab_core::results::{InferredQuantity, Microstructure};
+
+/// Hertz–Mindlin with a share of contacts that stick: model `hertz-mindlin`. It uses only the material of the calibration,
+/// where that of the grains is not known.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HertzMindlin;
+
+const NAME: &str = "hertz-mindlin";
+
+impl Model for HertzMindlin {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn uses_gamma(&self) -> bool {
+        false
+    }
+
+    fn uses_constants(&self) -> bool {
+        false
+    }
+
+    fn domain(&self, _: &Calibration) -> Domain {
+        let mut structure = [None; InferredQuantity::COUNT];
+        structure[InferredQuantity::K as usize] = Some([0.1, MAX_COORDINATION]);
+        Domain { needs_solid_fraction: true, ..Domain::new(NAME, structure) }
+    }
+
+    /// With f = 1: small waves do not make contacts slip.
+    fn predict(
+        &self,
+        structure: &Microstructure,
+        conditions: &Conditions,
+        calibration: &Calibration,
+    ) -> Result<Moduli, EmtError> {
+        let found = self.domain(calibration).validate(structure, conditions)?;
+        let material = conditions.material.unwrap_or(*calibration.material());
+        let phi = conditions.solid_fraction.map_or(f64::NAN, |phi| phi.value);
+        let shape = PackShape::new(0.0, mindlin(&material))?;
+        let unit = shape.unit(found[InferredQuantity::K as usize], phi, &material, conditions.pressure.value);
+        let moduli = Moduli::of_medium(&shape.stiffness()).values();
+        Ok(Moduli::of_values(moduli.map(|m| m.map(|m| m * unit))))
+    }
+
+    fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError> {
+        let conditions = &observation.conditions;
+        let missing = EmtError::Missing { model: NAME, missing: "the solid fraction" };
+        let phi = conditions.solid_fraction.ok_or(missing)?.value;
+        let material = conditions.material.unwrap_or(*calibration.material());
+        let Known { bulk, shear } = Known::of(&observation.moduli)?;
+        let shape = PackShape::new(0.0, mindlin(&material))?;
+        // Θ of the isotropic pack is a ninth of the unit.
+        let k = shape.coordination(9.0 * bulk, phi, &material, observation.pressure());
+        let mut warnings = vec![Warning::IsotropicContacts];
+        warnings.extend(shear.map(|shear| {
+            let smooth = 0.6 * bulk;
+            Warning::StickingShare { share: (shear / smooth - 1.0) / (1.5 * mindlin(&material)) }
+        }));
+        let structure = Microstructure::default().with(InferredQuantity::K, k);
+        let discrepancy = Some(own_error(&structure));
+        Ok(PointEstimate { warnings, discrepancy, ..PointEstimate::exact(structure) })
+    }
+}
+
+/// Bulk and shear modulus of the medium as if it were isotropic, Pa.
+struct Known {
+    bulk: f64,
+    shear: Option<f64>,
+}
+
+impl Known {
+    fn of(moduli: &Moduli) -> Result<Self, EmtError> {
+        let get = |m| moduli.get(m);
+        let one_direction = |p, s| Some(Self { bulk: get(p)? - 4.0 / 3.0 * get(s)?, shear: get(s) });
+        let shear = Invariants::of(moduli).map(|i| i.ln_shear.exp()).or_else(|| {
+            // Of the three planes, e3 lies in two.
+            match (get(Modulus::G12), get(Modulus::G13)) {
+                (Some(g12), Some(g13)) => Some((g12 + 2.0 * g13) / 3.0),
+                (one, other) => one.or(other),
+            }
+        });
+        let known = get(Modulus::Theta)
+            .map(|bulk| Self { bulk, shear })
+            .or_else(|| one_direction(Modulus::C33, Modulus::G13))
+            .or_else(|| one_direction(Modulus::C11, Modulus::G12))
+            .ok_or(EmtError::missing(NAME, Modulus::Theta))?;
+        if known.bulk <= 0.0 {
+            return Err(EmtError::Unstable { modulus: Modulus::Theta.name(), value: known.bulk });
+        }
+        Ok(known)
+    }
+}
