@@ -5,6 +5,8 @@ use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::estimate::{Estimate, assemble};
+use crate::estimate_likelihood::OfEstimate;
+use crate::likelihood::Likelihood;
 use crate::moduli::Moduli;
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
@@ -63,5 +65,21 @@ pub trait Model: Sync + Debug {
             point,
             jacobian,
         )
+    }
+
+    /// The range of the structures for which [`Model::likelihood`] is stated.
+    fn prior_domain(&self, calibration: &Calibration) -> Domain {
+        self.domain(calibration)
+    }
+
+    /// The probability of the observed moduli. By default that of the error of the inferred unknowns, where there are as many
+    /// moduli as unknowns.
+    fn likelihood<'a>(
+        &'a self,
+        observation: &Observation,
+        calibration: &'a Calibration,
+    ) -> Result<Box<dyn Likelihood + 'a>, EmtError> {
+        let estimate = self.infer(observation, calibration)?;
+        Ok(Box::new(OfEstimate::new(&estimate, &observation.checked()?)?))
     }
 }

@@ -106,6 +106,17 @@ pub enum Warning {
         /// Its relative standard deviation.
         relative: f64,
     },
+    /// The data contradict the prior.
+    PriorConflict {
+        /// The quantity.
+        quantity: InferredQuantity,
+        /// Its value by the data alone.
+        value: f64,
+        /// Mean of the prior.
+        prior: f64,
+        /// Their difference in standard deviations.
+        sigma: f64,
+    },
     /// The data contradict each other, or the model.
     Conflict {
         /// Sum of squares weighted by the errors of data and model.
@@ -126,6 +137,7 @@ impl Warning {
                 | Warning::StressAssumedIsotropic
                 | Warning::SizesAssumedEqual
                 | Warning::ErrorsLarge { .. }
+                | Warning::PriorConflict { .. }
         )
     }
 }
@@ -225,6 +237,10 @@ impl fmt::Display for Warning {
                 f,
                 "{modulus} is known to {:.0} % only: intervals from linear error propagation are too narrow, use sampling",
                 100.0 * relative
+            ),
+            Warning::PriorConflict { quantity, value, prior, sigma } => write!(
+                f,
+                "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma from {prior:.4}, the mean of its prior"
             ),
             Warning::Conflict { chi_square, degrees_of_freedom, worst: (modulus, sigma) } => write!(
                 f,

@@ -3,6 +3,7 @@
 
 mod csv;
 mod left_out;
+mod ranks;
 
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, CalibrationSample, Moduli, Modulus, Observation, StrainRatioSource, learn};
