@@ -11,7 +11,7 @@ use crate::moduli::Moduli;
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
 use crate::propagation::numerical_jacobian;
-use grainlab_core::results::Microstructure;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use std::fmt::Debug;
 
 /// A theory that relates microstructure to moduli. A new one is a file in `models` with this trait and a line in
@@ -65,6 +65,12 @@ pub trait Model: Sync + Debug {
             point,
             jacobian,
         )
+    }
+
+    /// The quantities that it infers.
+    fn quantities(&self, calibration: &Calibration) -> Vec<InferredQuantity> {
+        let domain = self.domain(calibration);
+        InferredQuantity::ALL.into_iter().filter(|q| domain.structure[*q as usize].is_some()).collect()
     }
 
     /// The range of the structures for which [`Model::likelihood`] is stated.

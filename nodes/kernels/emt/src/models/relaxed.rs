@@ -105,6 +105,11 @@ impl Model for Relaxed {
         Ok(point_estimate(&fit, &data, network, &state))
     }
 
+    fn quantities(&self, _: &Calibration) -> Vec<InferredQuantity> {
+        use InferredQuantity::{Eps, EpsStiffness, K, Z};
+        vec![K, Z, Eps, EpsStiffness]
+    }
+
     fn prior_domain(&self, calibration: &Calibration) -> Domain {
         let mut domain = self.domain(calibration);
         let Some(network) = calibration.network() else { return domain };

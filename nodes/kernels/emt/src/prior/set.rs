@@ -17,6 +17,16 @@ impl Prior {
         self
     }
 
+    /// The same of these quantities alone.
+    #[must_use]
+    pub fn only(&self, quantities: &[InferredQuantity]) -> Self {
+        let mut kept = self.clone();
+        for quantity in InferredQuantity::ALL.into_iter().filter(|q| !quantities.contains(q)) {
+            kept.0[quantity as usize] = None;
+        }
+        kept
+    }
+
     /// The density of a quantity; `None` if it has none.
     pub fn get(&self, quantity: InferredQuantity) -> Option<&Density> {
         self.0[quantity as usize].as_ref()

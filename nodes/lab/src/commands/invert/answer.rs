@@ -1,7 +1,9 @@
 //! The results of the models for one state.
 
 use super::columns::BadRow;
+use super::evidence::OfModel;
 use super::explain::Explained;
+use super::predictive::Predictive;
 use super::sampled::Sampled;
 use super::state::State;
 use super::way::Way;
@@ -41,6 +43,10 @@ pub(super) struct More {
     pub(super) explained: Option<Vec<Explained>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) sampled: Option<Vec<Sampled>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) predictive: Option<Vec<Predictive>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) evidence: Option<Vec<OfModel>>,
 }
 
 impl Answer {
