@@ -3,12 +3,19 @@
 //! The posterior has seen each modulus, so that its predictive probabilities are too near to ½: small ones count, large ones say
 //! nothing. A modulus predicted from the others has not been seen, and its probability is uniform where the model holds.
 
-use super::points::Posterior;
+use super::halton;
+use super::points::{Posterior, point};
+use super::proposal::Proposal;
+use super::target::At;
+use crate::likelihood::Predicted;
 use crate::moduli::Modulus;
 use crate::normal;
 
 /// Probability below which an observation counts as unlike what the model knows.
 const UNLIKELY: f64 = 1e-3;
+
+/// Number of points of the integration without a modulus.
+const POINTS: u64 = 4096;
 
 /// Effective number of points below which a modulus left out is not predicted.
 const FEWEST: f64 = 30.0;
@@ -54,11 +61,11 @@ impl Posterior<'_> {
     /// The observation against its prediction.
     pub fn check(&self) -> Check {
         let one = |(modulus, observed): (Modulus, f64)| {
-            let above = self.expected(|p| normal::below(-p.at.predicted.sigma(modulus)));
+            let sides = |sign: f64| self.expected(|p| normal::below(sign * p.at.predicted.sigma(modulus)));
             ModulusCheck {
                 modulus,
                 observed,
-                predictive: two_sided(above),
+                predictive: two_sided([1.0, -1.0].map(sides)),
                 left_out: self.left_out(modulus).map(two_sided),
             }
         };
@@ -68,31 +75,34 @@ impl Posterior<'_> {
         Check { moduli, chi_square }
     }
 
-    /// Probability of a larger value of one modulus, given the others.
-    fn left_out(&self, modulus: Modulus) -> Option<f64> {
+    /// Probabilities of a smaller and of a larger value of one modulus, given the others.
+    fn left_out(&self, modulus: Modulus) -> Option<[f64; 2]> {
         if self.observed().len() < 2 {
             return None;
         }
-        let without: Vec<(f64, f64)> = self
-            .points
-            .iter()
-            .map(|p| {
-                let (ln, sigma) = p.at.predicted.given_others(modulus);
-                (p.ln_weight - ln, sigma)
-            })
-            .collect();
+        // The others may determine far less: points of their own.
+        let given_others = |predicted: &Predicted| predicted.given_others(modulus);
+        let ln = |at: &At| at.ln() - given_others(&at.predicted).0;
+        let proposal = Proposal::about(&self.target, ln).ok()?;
+        let weighted = |index: u64| {
+            let found = point(&self.target, &proposal, 0, &halton::point(index, &[0.5; 6]))?;
+            let (ln, sigma) = given_others(&found.at.predicted);
+            Some((found.ln_weight - ln, sigma))
+        };
+        let without: Vec<(f64, f64)> = (0..POINTS).filter_map(weighted).collect();
         let highest = without.iter().map(|(ln, _)| *ln).fold(f64::NEG_INFINITY, f64::max);
-        let (mut sum, mut squares, mut above) = (0.0, 0.0, 0.0);
+        let (mut sum, mut squares, mut sides) = (0.0, 0.0, [0.0; 2]);
         for (ln, sigma) in without {
             let w = (ln - highest).exp();
             sum += w;
             squares += w * w;
-            above += w * normal::below(-sigma);
+            sides[0] += w * normal::below(sigma);
+            sides[1] += w * normal::below(-sigma);
         }
-        (sum * sum / squares >= FEWEST).then_some(above / sum)
+        (sum * sum / squares >= FEWEST).then_some(sides.map(|side| side / sum))
     }
 }
 
-fn two_sided(above: f64) -> f64 {
-    (2.0 * above.min(1.0 - above)).clamp(0.0, 1.0)
+fn two_sided([below, above]: [f64; 2]) -> f64 {
+    (2.0 * below.min(above)).min(1.0)
 }

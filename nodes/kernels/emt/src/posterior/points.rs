@@ -70,7 +70,7 @@ impl<'a> Posterior<'a> {
     ) -> Result<Self, EmtError> {
         let prior = prior.completed(&model.prior_domain(calibration))?;
         let target = Target::new(model.name(), model.likelihood(observation, calibration)?, &prior)?;
-        let proposal = Proposal::about(&target)?;
+        let proposal = Proposal::about(&target, At::ln)?;
         let mut random = Random::new(settings.seed);
         let each = settings.points.div_ceil(REPLICATES);
         let mut points = Vec::with_capacity(settings.points);

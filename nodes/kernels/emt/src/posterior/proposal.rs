@@ -1,6 +1,6 @@
 //! The distribution from which points are proposed: a mixture of two normal ones about the posterior.
 
-use super::target::Target;
+use super::target::{At, Target};
 use crate::error::EmtError;
 use crate::normal::{self, LN_SQRT_TAU};
 use nalgebra::{DMatrix, DVector};
@@ -25,15 +25,15 @@ pub(super) struct Proposal {
 }
 
 impl Proposal {
-    /// About the target, found on grids over the range of its priors.
-    pub(super) fn about(target: &Target<'_>) -> Result<Self, EmtError> {
+    /// About the density with this logarithm, found on grids over the range of the priors.
+    pub(super) fn about(target: &Target<'_>, ln: impl Fn(&At) -> f64) -> Result<Self, EmtError> {
         let n = target.unknowns.len();
         let nodes: usize = [65, 65, 25, 13][n.min(3)];
         let whole: Vec<[f64; 2]> = target.unknowns.iter().map(|d| d.effective_range()).collect();
         let mut range = whole.clone();
         let mut found = None;
         for _ in 0..PASSES {
-            let Some((mean, covariance)) = moments(target, &range, nodes) else { break };
+            let Some((mean, covariance)) = moments(target, &ln, &range, nodes) else { break };
             let next: Vec<[f64; 2]> = (0..n)
                 .map(|i| {
                     let half = REACH * covariance[(i, i)].sqrt();
@@ -81,8 +81,13 @@ impl Proposal {
     }
 }
 
-/// Mean and covariance of the target over the cells of a grid; `None` where it is 0 in all of them.
-fn moments(target: &Target<'_>, range: &[[f64; 2]], nodes: usize) -> Option<(DVector<f64>, DMatrix<f64>)> {
+/// Mean and covariance of the density over the cells of a grid; `None` where it is 0 in all of them.
+fn moments(
+    target: &Target<'_>,
+    ln: &impl Fn(&At) -> f64,
+    range: &[[f64; 2]],
+    nodes: usize,
+) -> Option<(DVector<f64>, DMatrix<f64>)> {
     let n = range.len();
     let cell = DVector::from_iterator(n, range.iter().map(|[low, high]| (high - low) / nodes as f64));
     let point = |mut index: usize| {
@@ -94,8 +99,8 @@ fn moments(target: &Target<'_>, range: &[[f64; 2]], nodes: usize) -> Option<(DVe
     };
     let of = |index: usize| {
         let x = point(index);
-        let ln = target.at(x.as_slice())?.ln();
-        Some((x, ln))
+        let value = ln(&target.at(x.as_slice())?);
+        Some((x, value))
     };
     let all: Vec<_> = (0..nodes.pow(n as u32)).filter_map(of).collect();
     let highest = all.iter().map(|(_, ln)| *ln).reduce(f64::max)?;

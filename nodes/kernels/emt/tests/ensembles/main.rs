@@ -3,6 +3,7 @@
 
 mod csv;
 mod left_out;
+mod predictive;
 mod ranks;
 
 use grainlab_core::results::InferredQuantity;

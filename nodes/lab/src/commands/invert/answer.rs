@@ -150,9 +150,9 @@ impl Answer {
     }
 }
 
-/// Whether a model lacked an input.
+/// Whether a model lacked an input, or an error to weigh a prior against.
 fn is_lacking(error: &EmtError) -> bool {
-    matches!(error, EmtError::Missing { .. } | EmtError::NotCalibrated { .. })
+    matches!(error, EmtError::Missing { .. } | EmtError::NotCalibrated { .. } | EmtError::NoLikelihood { .. })
 }
 
 /// Quantities of the model that the data do not determine.
