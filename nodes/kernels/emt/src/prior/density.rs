@@ -7,6 +7,12 @@ use crate::normal;
 /// ln of the smallest probability between the limits of a prior.
 const LEAST: f64 = -690.0;
 
+/// Smallest standard deviation over the mean (or 1, if that is larger) that differs from rounding.
+const NARROWEST: f64 = 1e-13;
+
+/// Magnitude above which no number is meant.
+const LARGEST: f64 = 1e100;
+
 /// A normal density, a uniform one, or a normal one between two limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Density {
@@ -27,7 +33,7 @@ impl Density {
     /// A uniform density between two finite limits.
     pub fn uniform(low: f64, high: f64) -> Result<Self, PriorError> {
         ordered([low, high])?;
-        if !(low.is_finite() && high.is_finite()) {
+        if !(is_usual(low) && is_usual(high)) {
             return Err(PriorError::NotFinite);
         }
         Ok(Self { normal: None, range: [low, high], ln_mass: (high - low).ln() })
@@ -35,15 +41,17 @@ impl Density {
 
     /// A normal density between two limits, which may be infinite; mean and standard deviation are those without limits.
     pub fn truncated(mean: f64, stddev: f64, range: [f64; 2]) -> Result<Self, PriorError> {
-        if !(mean.is_finite() && stddev.is_finite()) {
+        let limits_are_usual = range.iter().all(|limit| limit.is_infinite() || is_usual(*limit));
+        if !(is_usual(mean) && is_usual(stddev) && limits_are_usual) {
             return Err(PriorError::NotFinite);
         }
-        if stddev <= 0.0 {
+        ordered(range)?;
+        if stddev < NARROWEST * mean.abs().max(1.0) {
             return Err(PriorError::ZeroWidth { stddev });
         }
-        ordered(range)?;
         let ln_mass = integrated(mean, stddev, range).ln_mass;
-        if ln_mass < LEAST {
+        // Also where it is not a number.
+        if ln_mass.is_nan() || ln_mass < LEAST {
             return Err(PriorError::Empty { mean, stddev, low: range[0], high: range[1] });
         }
         Ok(Self { normal: Some([mean, stddev]), range, ln_mass })
@@ -95,7 +103,7 @@ impl Density {
             Some([mean, stddev]) if low.is_infinite() && high.is_infinite() => [mean, stddev * stddev],
             Some([mean, stddev]) => {
                 let found = integrated(mean, stddev, self.range);
-                [found.mean, found.variance]
+                [found.mean.clamp(low, high), found.variance]
             }
         }
     }
@@ -142,6 +150,11 @@ impl Density {
         let found = integrated(at, spread.sqrt(), self.range);
         Tilted { ln_mass: ln_overlap + found.ln_mass - self.ln_mass, ..found }
     }
+}
+
+/// Whether a number is finite, and its square, too.
+fn is_usual(number: f64) -> bool {
+    number.abs() < LARGEST
 }
 
 fn ordered([low, high]: [f64; 2]) -> Result<(), PriorError> {

@@ -3,8 +3,8 @@
 /// Why a prior is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PriorError {
-    /// A number is not finite.
-    #[error("every number of it must be finite; leave a limit out to have none")]
+    /// A number is not finite, or above 1e100.
+    #[error("every number of it must be finite and below 1e100; leave a limit out to have none")]
     NotFinite,
     /// The standard deviation is not positive.
     #[error(
