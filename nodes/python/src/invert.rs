@@ -1,9 +1,12 @@
 //! From moduli to microstructure.
 
-use crate::error;
+use crate::{error, posterior};
 use grainlab_core::Material;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Conditions, Estimate, Measured, Moduli, Modulus, Observation, Status, StrainRatio};
+use grainlab_emt::{
+    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Posterior,
+    PosteriorSettings, Prior, Status, StrainRatio,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -17,7 +20,8 @@ pub(crate) fn models() -> Vec<&'static str> {
 /// Infers coordination and anisotropy from moduli.
 #[pyfunction]
 #[pyo3(signature = (*, pressure, g12=None, g13=None, theta=None, c11=None, c33=None, c13=None, phi=None, gamma=None,
-    stress_ratio=None, size_spread=None, error=0.01, shear_modulus=None, poisson_ratio=None, model="relaxed"))]
+    stress_ratio=None, size_spread=None, error=0.01, shear_modulus=None, poisson_ratio=None, model="relaxed", prior=None,
+    draws=None, seed=0))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn invert<'py>(
     py: Python<'py>,
@@ -36,6 +40,9 @@ pub(crate) fn invert<'py>(
     shear_modulus: Option<f64>,
     poisson_ratio: Option<f64>,
     model: &str,
+    prior: Option<&str>,
+    draws: Option<usize>,
+    seed: u64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let known = grainlab_emt::model(model).ok_or_else(|| {
         PyValueError::new_err(format!("model is {model:?}; it must be one of: {}", models().join(", ")))
@@ -61,8 +68,36 @@ pub(crate) fn invert<'py>(
         ..*own
     });
     let observation = Observation::new(moduli, conditions).with_relative_error(error);
-    let estimate = py.detach(|| known.infer(&observation, calibration)).map_err(error::physics)?;
-    described(py, &estimate)
+    let prior = prior.map(|text| prior_of(known, calibration, text)).transpose()?;
+    let computed = || {
+        let mut estimate = known.infer(&observation, calibration)?;
+        if let Some(prior) = &prior {
+            estimate = estimate.with_prior(prior)?;
+        }
+        let Some(each) = draws else { return Ok((estimate, None)) };
+        let settings = PosteriorSettings { seed, ..PosteriorSettings::default() };
+        let prior = prior.as_ref().cloned().unwrap_or_default();
+        let posterior = Posterior::new(known, &observation, calibration, &prior, settings)?;
+        Ok((estimate, Some(posterior.draws(posterior::CHAINS * each)?)))
+    };
+    let (estimate, drawn) = py.detach(computed).map_err(|e: EmtError| error::physics(e))?;
+    let found = described(py, &estimate)?;
+    if let Some(drawn) = drawn {
+        found.set_item("draws", posterior::groups(py, &drawn)?)?;
+    }
+    Ok(found)
+}
+
+/// A prior of quantities that the model infers.
+fn prior_of(model: &dyn Model, calibration: &Calibration, text: &str) -> PyResult<Prior> {
+    let invalid = |e: String| PyValueError::new_err(format!("prior: {e}"));
+    let prior = Prior::parse(text).map_err(|e| invalid(e.to_string()))?;
+    let known = model.quantities(calibration);
+    if let Some(other) = prior.quantities().find(|q| !known.contains(q)) {
+        return Err(invalid(format!("[{other}]: model {} does not infer it", model.name())));
+    }
+    prior.completed(&model.prior_domain(calibration)).map_err(|e| invalid(e.to_string()))?;
+    Ok(prior)
 }
 
 /// By key: value, `KEY_sigma` and `KEY_interval`; the model, its status and warnings.

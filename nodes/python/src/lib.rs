@@ -3,6 +3,7 @@
 //! - `packing`: a packing and its arrays; `arrays`: views of Rust memory as numpy arrays
 //! - `recording`: recordings, their packings and messages; `files`: packings from files of other programs
 //! - `measure`, `invert`, `simulate`: the kernels, with the interpreter lock released
+//! - `posterior`: draws from a posterior
 //! - `values`: messages and quantities as Python objects; `error`: exceptions
 //!
 //! The Python half is in `python/grainlab`, the types for type checkers in `python/grainlab/_grainlab.pyi`.
@@ -16,6 +17,7 @@ mod files;
 mod invert;
 mod measure;
 mod packing;
+mod posterior;
 mod recording;
 mod simulate;
 mod values;

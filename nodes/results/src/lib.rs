@@ -5,6 +5,7 @@
 //! - [`state_warnings()`]: warnings about a packing; [`ProbeView`], [`ScanView`]: details of a strain probe
 //! - [`Printed`], [`Printer`]: results one after the other; [`inference_text`]: results of models as text
 //! - [`read_back`]: the results in a recording; [`continuity`]: the messages that it lacks
+//! - [`posterior_draws`]: draws from a posterior as files
 //! - [`Summary`]: a launched run; [`summary_text`]: all of it as text; [`brief`]: at most 20 lines
 
 mod acoustic;
@@ -15,6 +16,7 @@ mod inference;
 pub mod inference_text;
 mod measured_packing;
 mod packing_text;
+pub mod posterior_draws;
 mod printer;
 mod probe;
 mod probed;

@@ -1,4 +1,4 @@
-//! Scenes, calibrations and parameter files.
+//! Scenes, calibrations, priors and parameter files.
 
 use fuzzing::{Counting, Target};
 use grainlab_node_kit::{Names, ParameterSpec, Parameters, RosArgs};
@@ -43,6 +43,22 @@ fn a_calibration_gives_constants_or_an_error() {
     let seeds: Vec<&str> = seeds.iter().map(String::as_str).collect();
     run("calibration", &seeds, &["name", "=", "[", "]", "[["], |text| {
         drop(grainlab_emt::Calibration::parse(text))
+    });
+}
+
+#[test]
+fn a_prior_gives_densities_or_an_error() {
+    let seeds = [
+        "[z]\ndistribution = \"truncated-normal\"\nmean = 5.2\nstddev = 0.3\nlow = 4.5\n",
+        "[eps]\ndistribution = \"uniform\"\nlow = -0.1\nhigh = 0.2\n[k]\ndistribution = \"normal\"\nmean = 5\nstddev = 1e-3\n",
+    ];
+    run("prior", &seeds, &["mean", "stddev", "=", "1e308", "-1e-308", "nan"], |text| {
+        let Ok(prior) = grainlab_emt::Prior::parse(text) else { return };
+        assert_eq!(grainlab_emt::Prior::parse(&prior.to_toml()), Ok(prior.clone()));
+        for density in prior.quantities().filter_map(|q| prior.get(q)) {
+            let [low, high] = density.range();
+            assert!((low..=high).contains(&density.mean()) && density.stddev() >= 0.0, "{density:?}");
+        }
     });
 }
 

@@ -184,6 +184,36 @@ pub enum EmtError {
         /// Name of the calibration.
         calibration: String,
     },
+    /// A prior leaves nothing of the domain of a model.
+    #[error(
+        "the prior of {quantity} leaves no probability within [{low}, {high}], the domain of model {model}: widen or move it"
+    )]
+    PriorOutsideDomain {
+        /// Name of the model.
+        model: &'static str,
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// Lowest of the domain.
+        low: f64,
+        /// Highest of the domain.
+        high: f64,
+    },
+    /// The model states no likelihood of the moduli.
+    #[error("model {model} states no likelihood of these moduli: {reason}")]
+    NoLikelihood {
+        /// Name of the model.
+        model: &'static str,
+        /// Why, and what to do.
+        reason: &'static str,
+    },
+    /// The posterior cannot be sampled.
+    #[error("the posterior of model {model} cannot be sampled: {reason}")]
+    NotSampled {
+        /// Name of the model.
+        model: &'static str,
+        /// Why, and what to do.
+        reason: &'static str,
+    },
     /// Two microstructures explain the observation almost equally well.
     #[error(
         "coordination numbers {first:.3} and {second:.3} explain the moduli almost equally well: give more, or more accurate, \
@@ -209,7 +239,9 @@ impl EmtError {
             | EmtError::StressRatio { .. }
             | EmtError::PoissonRatio { .. }
             | EmtError::Missing { .. }
-            | EmtError::NotCalibrated { .. } => true,
+            | EmtError::NotCalibrated { .. }
+            | EmtError::PriorOutsideDomain { .. }
+            | EmtError::NoLikelihood { .. } => true,
             EmtError::LinearSprings
             | EmtError::Unstable { .. }
             | EmtError::OutsideDomain { .. }
@@ -219,6 +251,7 @@ impl EmtError {
             | EmtError::ShearTooStiff { .. }
             | EmtError::NoCoordination { .. }
             | EmtError::TooFar { .. }
+            | EmtError::NotSampled { .. }
             | EmtError::Ambiguous { .. } => false,
         }
     }

@@ -7,15 +7,20 @@ use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::observation::{INPUTS, InputCovariance, Observation};
 use crate::point_estimate::{Jacobian, Misfit, PointEstimate};
+use crate::prior::Prior;
+use crate::update::{Updated, updated};
 use crate::warning::Warning;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 /// Level of the intervals of an [`Estimate`].
 pub const CREDIBLE_LEVEL: f64 = 0.95;
 
 /// Half width, in standard deviations, of the central interval of a normal distribution at [`CREDIBLE_LEVEL`].
 pub(crate) const HALF_WIDTH: f64 = 1.959_963_984_540_054;
+
+/// Distance of a prior from the data, in standard deviations of both, that chance exceeds once in a thousand times.
+const PRIOR_CONFLICT: f64 = 3.3;
 
 /// Whether an estimate lies in the range of its model and calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +48,8 @@ pub struct Estimate {
     pub data_covariance: Option<MicrostructureCovariance>,
     /// Covariance of the model's own error, learned from the packings of the calibration; `None` if it was not learned.
     pub model_covariance: Option<MicrostructureCovariance>,
+    /// Covariance from the width of the prior; `None` without a prior.
+    pub prior_covariance: Option<MicrostructureCovariance>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,
     /// Whether model and calibration were used inside their range.
@@ -52,15 +59,47 @@ pub struct Estimate {
     inputs: Option<InputCovariance>,
     /// The independent quantities of the model; the others follow from them.
     unknowns: [bool; InferredQuantity::COUNT],
+    /// Limits of the prior of each quantity.
+    limits: [[f64; 2]; InferredQuantity::COUNT],
 }
 
 impl Estimate {
-    /// Covariance of the estimate: the sum of those of data and model that are known; `None` if neither is.
+    /// Covariance of the estimate: the sum of those of data, model and prior that are known; `None` if none is.
     pub fn covariance(&self) -> Option<MicrostructureCovariance> {
-        match (self.data_covariance, self.model_covariance) {
-            (None, None) => None,
-            (data, model) => Some(data.unwrap_or_default() + model.unwrap_or_default()),
+        let known = [self.data_covariance, self.model_covariance, self.prior_covariance];
+        known.into_iter().flatten().reduce(|a, b| a + b)
+    }
+
+    /// The estimate with this prior of its quantities, all of which have a normal distribution before: exact for normal priors,
+    /// and with the moments of the limited distribution for others. Quantities that the data do not determine stay so.
+    pub fn with_prior(&self, prior: &Prior) -> Result<Self, EmtError> {
+        let none = EmtError::NoLikelihood {
+            model: self.model,
+            reason: "neither the moduli nor the model have an error to weigh a prior against; give --error, or a calibration \
+                     that has the error of the model",
+        };
+        let before = self.covariance().filter(|c| c.amax() > 0.0).ok_or(none)?;
+        let values = SVector::from(self.structure.values().map(|v| v.unwrap_or(0.0)));
+        let Updated { shift, covariance, kept } = updated(&values, &before, prior);
+        let part = |c: Option<MicrostructureCovariance>| c.map(|c| kept * c * kept.transpose());
+        let mut with = self.clone();
+        with.structure = Microstructure::of_values(std::array::from_fn(|i| {
+            self.structure.values()[i].map(|value| value + shift[i])
+        }));
+        with.jacobian = kept * self.jacobian;
+        (with.data_covariance, with.model_covariance) =
+            (part(self.data_covariance), part(self.model_covariance));
+        with.prior_covariance = Some(covariance - kept * before * kept.transpose());
+        for quantity in prior.quantities().filter(|q| self.structure.get(*q).is_some()) {
+            let Some(density) = prior.get(quantity) else { continue };
+            let (i, [mean, variance]) = (quantity as usize, density.moments());
+            with.limits[i] = density.range();
+            let sigma = (values[i] - mean).abs() / (before[(i, i)] + variance).sqrt();
+            if sigma > PRIOR_CONFLICT {
+                with.warnings.push(Warning::PriorConflict { quantity, value: values[i], prior: mean, sigma });
+            }
         }
+        Ok(with)
     }
 
     /// The unknowns of the model that the data do not determine.
@@ -76,11 +115,12 @@ impl Estimate {
         Some(self.covariance()?[(i, i)].max(0.0).sqrt())
     }
 
-    /// Central interval of a quantity at [`CREDIBLE_LEVEL`], low and high, for normal errors.
+    /// Central interval of a quantity at [`CREDIBLE_LEVEL`], low and high, for normal errors, within the limits of its prior.
     pub fn interval(&self, quantity: InferredQuantity) -> Option<[f64; 2]> {
         let middle = self.structure.get(quantity)?;
         let half = HALF_WIDTH * self.stddev(quantity)?;
-        Some([middle - half, middle + half])
+        let [low, high] = self.limits[quantity as usize];
+        Some([(middle - half).max(low), (middle + half).min(high)])
     }
 
     /// Condition number: ratio of the largest to the smallest singular value of the Jacobian of the model's unknowns,
@@ -152,11 +192,13 @@ pub(crate) fn assemble(
         jacobian,
         data_covariance,
         model_covariance,
+        prior_covariance: None,
         misfit,
         status: if extrapolated { Status::Extrapolated } else { Status::Ok },
         warnings,
         inputs,
         unknowns: domain.structure.map(|range| range.is_some()),
+        limits: [[f64::NEG_INFINITY, f64::INFINITY]; InferredQuantity::COUNT],
     })
 }
 

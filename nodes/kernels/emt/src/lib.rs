@@ -18,6 +18,9 @@
 //!   - `hertz_mindlin`, `johnson`: packs with contacts in all directions alike, as in rock physics
 //! - `calibration`, `learn`: the constants of the models, and how they are learned from packings
 //! - `moments`, `eq16`, `overlap`, `medium`, `sphere_pack`, `invariants`: the theory that the models share
+//! - `likelihood`, `estimate_likelihood`: the probability of moduli, as a model states it
+//! - `posterior`: draws, evidence, predictive checks and ranks
+//! - `prior`, `update`: prior knowledge, and estimates with it
 //! - `propagation`, `sampling`: errors to first order; the distribution, where they are large
 //! - [`christoffel`], [`WaveModuli`]: moduli from wave speeds
 //!
@@ -42,21 +45,27 @@ mod domain;
 mod eq16;
 mod error;
 mod estimate;
+mod estimate_likelihood;
 mod invariants;
 mod learn;
+mod likelihood;
 mod medium;
 mod model;
 mod models;
 mod moduli;
 mod moments;
+mod normal;
 mod observation;
 mod overlap;
 mod point_estimate;
+mod posterior;
+mod prior;
 mod propagation;
 mod registry;
 mod root;
 mod sampling;
 mod sphere_pack;
+mod update;
 mod warning;
 mod wave_moduli;
 
@@ -71,6 +80,7 @@ pub use error::EmtError;
 pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
 pub use invariants::Invariants;
 pub use learn::{CalibrationSample, learn};
+pub use likelihood::{Likelihood, Predicted};
 pub use medium::{Medium, MediumModuli};
 pub use model::Model;
 pub use models::relaxed::Relaxed;
@@ -78,6 +88,11 @@ pub use moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 pub use moments::Moments;
 pub use observation::{INPUT_NAMES, INPUTS, Observation};
 pub use point_estimate::{Jacobian, Misfit, PointEstimate};
+pub use posterior::{
+    Check, Draw, Draws, Evidence, ModulusCheck, Posterior, PosteriorSettings, RankHistogram, SimulatedRanks,
+    SimulationSettings, simulated_ranks,
+};
+pub use prior::{Density, Prior, PriorError};
 pub use registry::{model, models, recommended};
 pub use sampling::{MonteCarlo, SamplingSettings, monte_carlo};
 pub use sphere_pack::{ContactHistory, PackShape};

@@ -5,11 +5,13 @@ use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::estimate::{Estimate, assemble};
+use crate::estimate_likelihood::OfEstimate;
+use crate::likelihood::Likelihood;
 use crate::moduli::Moduli;
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
 use crate::propagation::numerical_jacobian;
-use grainlab_core::results::Microstructure;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use std::fmt::Debug;
 
 /// A theory that relates microstructure to moduli. A new one is a file in `models` with this trait and a line in
@@ -68,5 +70,27 @@ pub trait Model: Sync + Debug {
             point,
             jacobian,
         )
+    }
+
+    /// The quantities that it infers.
+    fn quantities(&self, calibration: &Calibration) -> Vec<InferredQuantity> {
+        let domain = self.domain(calibration);
+        InferredQuantity::ALL.into_iter().filter(|q| domain.structure[*q as usize].is_some()).collect()
+    }
+
+    /// The range of the structures for which [`Model::likelihood`] is stated.
+    fn prior_domain(&self, calibration: &Calibration) -> Domain {
+        self.domain(calibration)
+    }
+
+    /// The probability of the observed moduli. By default that of the error of the inferred unknowns, where there are as many
+    /// moduli as unknowns.
+    fn likelihood<'a>(
+        &'a self,
+        observation: &Observation,
+        calibration: &'a Calibration,
+    ) -> Result<Box<dyn Likelihood + 'a>, EmtError> {
+        let estimate = self.infer(observation, calibration)?;
+        Ok(Box::new(OfEstimate::new(&estimate, &observation.checked()?)?))
     }
 }

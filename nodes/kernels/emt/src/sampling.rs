@@ -10,12 +10,10 @@ use crate::error::EmtError;
 use crate::estimate::CREDIBLE_LEVEL;
 use crate::model::Model;
 use crate::moduli::MODULI;
+use crate::normal::Random;
 use crate::observation::Observation;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{SMatrix, SVector};
-use rand_pcg::Pcg64Mcg;
-use rand_pcg::rand_core::{Rng, SeedableRng};
-use std::f64::consts::TAU;
 
 /// How to sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,13 +106,13 @@ pub fn monte_carlo(
     let of_data = root(&observation.covariance.unwrap_or(covariance));
     let of_model = root(&estimate.model_covariance.unwrap_or_default());
 
-    let mut normal = Normal::new(settings.seed);
+    let mut random = Random::new(settings.seed);
     let mut solved: Vec<SVector<f64, { InferredQuantity::COUNT }>> = Vec::with_capacity(settings.draws);
     let mut first_fault = None;
     for _ in 0..settings.draws {
         // All numbers are drawn before the inversion can fail, so that no draw depends on the outcome of another.
-        let drawn = draw(&observation, &of_data, &mut normal);
-        let left_out = of_model * normal.vector();
+        let drawn = draw(&observation, &of_data, &mut random);
+        let left_out = of_model * random.normal();
         match solve(model, &drawn, calibration, &estimate.structure) {
             Ok(found) => solved.push(found + left_out),
             Err(fault) => first_fault = first_fault.or(Some(fault)),
@@ -153,14 +151,14 @@ pub fn monte_carlo(
 fn draw(
     observation: &Observation,
     of_data: &SMatrix<f64, MODULI, MODULI>,
-    normal: &mut Normal,
+    random: &mut Random,
 ) -> Observation {
     let mut drawn = observation.clone();
-    let errors = of_data * normal.vector();
+    let errors = of_data * random.normal();
     for (modulus, value) in observation.moduli.known() {
         drawn.moduli = drawn.moduli.with(modulus, value + errors[modulus as usize]);
     }
-    let [pressure, gamma, phi, ratio] = normal.vector::<4>().into();
+    let [pressure, gamma, phi, ratio] = random.normal::<4>().into();
     let conditions = &mut drawn.conditions;
     conditions.pressure.value += pressure * conditions.pressure.stddev;
     conditions.gamma.value += gamma * conditions.gamma.stddev;
@@ -214,38 +212,4 @@ fn root<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
         root.set_column(j, &column);
     }
     root
-}
-
-/// Independent numbers of mean 0 and variance 1.
-struct Normal(Pcg64Mcg);
-
-impl Normal {
-    fn new(seed: u64) -> Self {
-        Self(Pcg64Mcg::seed_from_u64(seed))
-    }
-
-    fn vector<const N: usize>(&mut self) -> SVector<f64, N> {
-        let mut v = SVector::zeros();
-        for pair in 0..N.div_ceil(2) {
-            let (first, second) = self.pair();
-            v[2 * pair] = first;
-            if 2 * pair + 1 < N {
-                v[2 * pair + 1] = second;
-            }
-        }
-        v
-    }
-
-    /// Two of them, by Box and Muller's method.
-    fn pair(&mut self) -> (f64, f64) {
-        // In (0, 1], where the logarithm is finite.
-        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-        let (sin, cos) = (TAU * self.uniform()).sin_cos();
-        (radius * cos, radius * sin)
-    }
-
-    /// In [0, 1), 53 bits.
-    fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
-    }
 }

@@ -115,6 +115,17 @@ pub enum Warning {
         /// Its relative standard deviation.
         relative: f64,
     },
+    /// The data contradict the prior.
+    PriorConflict {
+        /// The quantity.
+        quantity: InferredQuantity,
+        /// Its value by the data alone.
+        value: f64,
+        /// Mean of the prior.
+        prior: f64,
+        /// Their difference in standard deviations.
+        sigma: f64,
+    },
     /// The data contradict each other, or the model.
     Conflict {
         /// Sum of squares weighted by the errors of data and model.
@@ -136,6 +147,7 @@ impl Warning {
                 | Warning::SizesAssumedEqual
                 | Warning::IsotropicContacts
                 | Warning::ErrorsLarge { .. }
+                | Warning::PriorConflict { .. }
         ) && !matches!(self, Warning::StickingShare { share } if is_share(*share))
     }
 }
@@ -248,6 +260,10 @@ impl fmt::Display for Warning {
                 f,
                 "{modulus} is known to {:.0} % only: intervals from linear error propagation are too narrow, use sampling",
                 100.0 * relative
+            ),
+            Warning::PriorConflict { quantity, value, prior, sigma } => write!(
+                f,
+                "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma from {prior:.4}, the mean of its prior"
             ),
             Warning::Conflict { chi_square, degrees_of_freedom, worst: (modulus, sigma) } => write!(
                 f,

@@ -4,7 +4,9 @@
 //! - [`inputs`]: the inputs of a state; [`lines`], [`columns`], [`rows`]: a table, read in pieces, each row a
 //!   state
 //! - [`table`], [`mod@print`]: results in order, as text
-//! - [`explain`]: contributions of the data to the uncertainty; [`sampled`]: the posterior by sampling
+//! - [`explain`]: contributions of the data to the uncertainty; [`sampled`]: estimates of sampled data
+//! - [`prior`]: priors; [`drawn`], [`evidence`], [`predictive`]: draws from the posterior, marginal likelihoods, and the data
+//!   against their prediction; [`rank_test`]: ranks of simulated structures
 //! - [`speeds`]: the moduli of measured wave speeds
 //! - [`judge`]: results against the truth in a table
 //! - [`calibrations`]: by name
@@ -12,11 +14,16 @@
 mod answer;
 mod calibrations;
 mod columns;
+mod drawn;
+mod evidence;
 mod explain;
 mod inputs;
 mod judge;
 mod lines;
+mod predictive;
 mod print;
+mod prior;
+mod rank_test;
 mod rows;
 mod sampled;
 mod speeds;
@@ -42,6 +49,14 @@ Examples:
   Wave speeds of a laboratory, by angle to the axis in degrees and mode (p, sv, sh), or by direction and polarization:
     printf 'angle_deg,mode,speed,speed_sigma\n0,p,439,4\n90,p,426,4\n45,p,430,4\n0,sv,268,3\n90,sh,265,3\n' |
       grainlab invert --speeds - --density 1498 --pressure 50e3 --stress-ratio 0 --size-spread 0
+  Prior knowledge, and draws that ArviZ (arviz.from_json), corner and pandas read:
+    grainlab invert --print-prior > prior.toml
+    grainlab invert --g12 74.2e6 --g13 81.8e6 --theta 137e6 --pressure 50e3 --stress-ratio 0 --size-spread 0 --error 0.01 \\
+      --model relaxed --prior prior.toml --draws draws.json
+  Probabilities of models that state an error of the same moduli:
+    grainlab invert --g12 74.2e6 --g13 81.8e6 --theta 137e6 --pressure 50e3 --error 0.01 --calibration grainlab --evidence
+  Whether the posterior is right where the model is: ranks of 2,000 simulated structures
+    grainlab invert --rank-test 2000 --pressure 50e3 --stress-ratio 0 --size-spread 0 --error 0.01 --model relaxed
   Many states, or the output of an analysis:
     grainlab invert --table states.csv --format csv
     grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --gamma contact --format csv
@@ -70,7 +85,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PA", conflicts_with = "table")]
     theta: Option<f64>,
     /// Confining pressure, Pa, positive in compression
-    #[arg(long, value_name = "PA", required_unless_present = "table", conflicts_with = "table")]
+    #[arg(long, value_name = "PA", required_unless_present_any = ["table", "print_prior"], conflicts_with = "table")]
     pressure: Option<f64>,
     /// Ratio of deviatoric to volumetric strain about the axis [default: unknown, taken as 0]
     #[arg(long, value_name = "G", conflicts_with = "table")]
@@ -142,11 +157,39 @@ pub(crate) struct Args {
     /// for which linear error propagation is inaccurate; 20000 suffices
     #[arg(long, value_name = "N", conflicts_with = "table", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
     samples: Option<u32>,
-    /// Seed of the samples: the same one gives the same numbers
-    #[arg(long, value_name = "SEED", requires = "samples", default_value_t = 0)]
+    /// Priors of k, k_hat, z, eps and eps_stiffness, or of some of them, in the form of --print-prior; a quantity without one has
+    /// that of --print-prior
+    #[arg(long, value_name = "FILE.toml")]
+    prior: Option<PathBuf>,
+    /// Print the prior of a model (default: relaxed) as a file for --prior, and do nothing else
+    #[arg(long)]
+    print_prior: bool,
+    /// Write independent draws from the posterior of one model: .csv, or .json for arviz.from_json; with ln likelihood (of each
+    /// modulus given the others), ln prior, predicted and observed moduli
+    #[arg(long, value_name = "FILE", conflicts_with = "table")]
+    draws: Option<PathBuf>,
+    /// Number of draws of each chain
+    #[arg(long, value_name = "N", requires = "draws", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
+    draws_per_chain: u32,
+    /// Number of chains: parts of the draws, all independent
+    #[arg(long, value_name = "N", requires = "draws", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64))]
+    chains: u32,
+    /// Print the marginal likelihood of each model that states an error of the moduli, and the probability of each among those
+    /// of the same moduli
+    #[arg(long, conflicts_with = "table")]
+    evidence: bool,
+    /// Prior odds of models [default: 1 each]
+    #[arg(long, value_name = "MODEL=ODDS", value_delimiter = ',', requires = "evidence")]
+    prior_odds: Vec<evidence::Odds>,
+    /// Draw so many structures from the prior, simulate their moduli with the scatter of the model and --error, infer them, and
+    /// print whether the ranks of the true values among draws are uniform
+    #[arg(long, value_name = "N", conflicts_with_all = ["table", "samples", "draws", "evidence", "explain", "speeds"], value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
+    rank_test: Option<u32>,
+    /// Seed of samples, draws and simulations: the same one gives the same numbers
+    #[arg(long, value_name = "SEED", conflicts_with = "table", default_value_t = 0)]
     seed: u64,
-    /// Print the contribution of each datum to the uncertainty of each unknown, and the parts of the
-    /// uncertainty due to the data and to the model
+    /// Print the contribution of each datum to the uncertainty of each unknown, the parts of the uncertainty due to the data and
+    /// to the model, and the probability of the moduli under the posterior of each model that states one
     #[arg(long, conflicts_with = "table")]
     explain: bool,
     /// How to print the result
@@ -156,7 +199,15 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let ways = ways(&args.model, &args.calibration, args.gamma)?;
+    let mut ways = ways(&args.models(), &args.calibration, args.gamma)?;
+    if let Some(path) = &args.prior {
+        prior::apply(path, &mut ways)?;
+    }
+    if args.print_prior {
+        let texts = ways.iter().map(prior::text).collect::<Result<Vec<_>, _>>()?;
+        print(&texts.join("\n"))?;
+        return Ok(Exit::Done);
+    }
     let defaults = args.defaults()?;
     let printer = Printer { ways: &ways };
     if let Some(path) = &args.table {
@@ -174,7 +225,16 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             return Err(Failure::usage(format!("{flag} is for --table")));
         }
     }
-    let answer = Answer::of(args.state(defaults)?, None, &ways);
+    let state = args.state(defaults)?;
+    if let Some(simulations) = args.rank_test {
+        return rank_test::run(&state, &ways, simulations, args.seed, args.format);
+    }
+    if let Some(path) = &args.draws {
+        let (chains, per_chain) = (args.chains as usize, args.draws_per_chain as usize);
+        drawn::write(&state, &ways, drawn::Number { chains, per_chain, seed: args.seed }, path)?;
+    }
+    let evidence = args.evidence.then(|| evidence::of_ways(&state, &ways, &args.prior_odds, args.seed));
+    let answer = Answer::of(state, None, &ways);
     for fault in answer.faults(&ways) {
         say!("grainlab: {fault}");
     }
@@ -183,11 +243,20 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         sampled: answer.state.as_ref().ok().zip(args.samples).map(|(state, draws)| {
             sampled::sampled(state, &answer.outcomes, &ways, draws as usize, args.seed)
         }),
+        evidence: evidence.transpose()?,
+        predictive: answer
+            .state
+            .as_ref()
+            .ok()
+            .filter(|_| args.explain)
+            .map(|state| predictive::of_ways(state, &ways)),
     };
     print(&match args.format {
         Format::Json => printer.json(&answer, more)?,
-        Format::Csv if args.explain || args.samples.is_some() => {
-            return Err(Failure::usage("--explain and --samples are printed as a table or as JSON"));
+        Format::Csv if args.explain || args.samples.is_some() || args.evidence => {
+            return Err(Failure::usage(
+                "--explain, --samples and --evidence are printed as a table or as JSON",
+            ));
         }
         Format::Csv => Printer::csv_header() + &printer.csv(&answer),
         Format::Table => printer.state(&answer, &more),
@@ -196,6 +265,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 impl Args {
+    /// The names of the models: for a prior, the recommended one.
+    fn models(&self) -> Vec<String> {
+        let of_prior = self.print_prior && self.model.is_empty();
+        if of_prior { vec!["relaxed".to_owned()] } else { self.model.clone() }
+    }
+
     /// Inputs common to all states.
     fn defaults(&self) -> Result<Defaults, Failure> {
         let positive = |v: f64| v > 0.0 && v.is_finite();

@@ -1,6 +1,7 @@
 //! `grainlab invert` from the command line.
 
 mod judged;
+mod posterior;
 mod single;
 mod tables;
 

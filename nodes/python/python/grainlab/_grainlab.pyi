@@ -218,9 +218,16 @@ def invert(
     shear_modulus: float | None = None,
     poisson_ratio: float | None = None,
     model: str = "relaxed",
+    prior: str | None = None,
+    draws: int | None = None,
+    seed: int = 0,
 ) -> dict[str, Any]:
     """Coordination and anisotropy from moduli and pressure, Pa, each modulus with this relative error. ``k``, ``z``, ``eps`` and
-    others with ``_sigma`` and the 95 % ``_interval``; None is undetermined. Raises PhysicsError for moduli without a solution."""
+    others with ``_sigma`` and the 95 % ``_interval``; None is undetermined. Raises PhysicsError for moduli without a solution.
+
+    ``prior`` is the text of a prior file, as ``grainlab invert --print-prior`` prints it. With ``draws``, the key of this name has
+    so many independent draws from the posterior in each of four chains, the same for the same seed:
+    ``arviz.from_dict(**found["draws"])``. Its log_likelihood is that of each modulus given the others, for moduli in MPa."""
 
 def simulate(
     scene: str,

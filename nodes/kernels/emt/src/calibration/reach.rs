@@ -86,6 +86,13 @@ impl Reach {
         })
     }
 
+    /// The range of ε with estimates: half a width wider at each end.
+    pub(crate) fn eps_with_estimates(&self) -> [f64; 2] {
+        let [low, high] = self.eps;
+        let wider = UNKNOWN * (high - low).max(0.1);
+        [low - wider, high + wider]
+    }
+
     /// The inferred structure, if it is outside; ε `None` is inside.
     pub(crate) fn outside_structure(&self, z: f64, eps: Option<f64>) -> Vec<Outside> {
         let of_eps = eps.and_then(|eps| beyond("eps", eps, self.eps, |v| v, 0.1));

@@ -10,6 +10,7 @@
 //! The constants are learned from packings ([`crate::Calibration`]); only the form of the laws is derived.
 
 mod fit;
+mod network_likelihood;
 mod scan;
 mod state;
 
@@ -17,6 +18,7 @@ use crate::calibration::{Calibration, Outside, Reach, RelaxationCalibration};
 use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;
+use crate::likelihood::Likelihood;
 use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
@@ -24,6 +26,7 @@ use crate::point_estimate::{Misfit, PointEstimate};
 use crate::warning::Warning;
 use fit::{Data, Fit};
 use grainlab_core::results::{InferredQuantity, Microstructure};
+use network_likelihood::NetworkLikelihood;
 use state::{State, too_far};
 
 /// The relaxed network: model `relaxed`.
@@ -100,6 +103,28 @@ impl Model for Relaxed {
             return Err(too_far(far, calibration.name()));
         }
         Ok(point_estimate(&fit, &data, network, &state))
+    }
+
+    fn quantities(&self, _: &Calibration) -> Vec<InferredQuantity> {
+        use InferredQuantity::{Eps, EpsStiffness, K, Z};
+        vec![K, Z, Eps, EpsStiffness]
+    }
+
+    fn prior_domain(&self, calibration: &Calibration) -> Domain {
+        let mut domain = self.domain(calibration);
+        let Some(network) = calibration.network() else { return domain };
+        domain.structure[InferredQuantity::Z as usize] = Some(network.domain());
+        domain.structure[InferredQuantity::Eps as usize] = Some(network.reach.eps_with_estimates());
+        domain
+    }
+
+    fn likelihood<'a>(
+        &'a self,
+        observation: &Observation,
+        calibration: &'a Calibration,
+    ) -> Result<Box<dyn Likelihood + 'a>, EmtError> {
+        let observation = observation.checked()?;
+        Ok(Box::new(NetworkLikelihood::new(&observation, network(calibration)?, calibration)?))
     }
 }
 

@@ -5,6 +5,8 @@ mod faults;
 mod forward;
 mod hard;
 mod inversion;
+mod posterior;
+mod prior;
 mod propagation;
 mod quadrature;
 mod recovery;

@@ -10,21 +10,21 @@ const QUANTITIES: [InferredQuantity; 4] =
     [InferredQuantity::Z, InferredQuantity::K, InferredQuantity::Eps, InferredQuantity::EpsStiffness];
 
 /// Every packing of the three files of the calibration.
-struct Packings {
+pub(crate) struct Packings {
     isotropic: Vec<CalibrationSample>,
     anisotropic: Vec<CalibrationSample>,
-    others: Vec<CalibrationSample>,
+    pub(crate) others: Vec<CalibrationSample>,
 }
 
 impl Packings {
-    fn read() -> Self {
+    pub(crate) fn read() -> Self {
         let [isotropic, anisotropic, others] =
             ["isotropic.csv", "anisotropic.csv", "wide.csv"].map(csv::samples);
         Self { isotropic, anisotropic, others }
     }
 
     /// The calibration from those kept.
-    fn calibration(&self, keep: impl Fn(&CalibrationSample) -> bool) -> Calibration {
+    pub(crate) fn calibration(&self, keep: impl Fn(&CalibrationSample) -> bool) -> Calibration {
         let kept = |all: &[CalibrationSample]| all.iter().filter(|s| keep(s)).cloned().collect::<Vec<_>>();
         let [isotropic, anisotropic, others] =
             [&self.isotropic, &self.anisotropic, &self.others].map(|all| kept(all));
@@ -39,7 +39,7 @@ impl Packings {
     }
 }
 
-fn truth(s: &CalibrationSample, quantity: InferredQuantity) -> f64 {
+pub(crate) fn truth(s: &CalibrationSample, quantity: InferredQuantity) -> f64 {
     match quantity {
         InferredQuantity::K | InferredQuantity::KHat => s.k,
         InferredQuantity::Z => s.z,

@@ -4,6 +4,8 @@
 mod csv;
 mod least_squares;
 mod left_out;
+mod predictive;
+mod ranks;
 mod rock_physics;
 mod stress_and_fabric;
 

@@ -1,7 +1,9 @@
 //! The results of the models for one state.
 
 use super::columns::BadRow;
+use super::evidence::OfModel;
 use super::explain::Explained;
+use super::predictive::Predictive;
 use super::sampled::Sampled;
 use super::state::State;
 use super::way::Way;
@@ -41,6 +43,10 @@ pub(super) struct More {
     pub(super) explained: Option<Vec<Explained>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) sampled: Option<Vec<Sampled>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) predictive: Option<Vec<Predictive>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) evidence: Option<Vec<OfModel>>,
 }
 
 impl Answer {
@@ -144,9 +150,9 @@ impl Answer {
     }
 }
 
-/// Whether a model lacked an input.
+/// Whether a model lacked an input, or an error to weigh a prior against.
 fn is_lacking(error: &EmtError) -> bool {
-    matches!(error, EmtError::Missing { .. } | EmtError::NotCalibrated { .. })
+    matches!(error, EmtError::Missing { .. } | EmtError::NotCalibrated { .. } | EmtError::NoLikelihood { .. })
 }
 
 /// Quantities of the model that the data do not determine.

@@ -19,6 +19,9 @@ pub(super) struct Explained {
     /// Its parts: from the errors of the data, and from the model.
     sigma_data: Option<f64>,
     sigma_model: Option<f64>,
+    /// From the width of the prior.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sigma_prior: Option<f64>,
     /// Contribution of each input to the variance from the errors of the data, as fractions.
     information: BTreeMap<&'static str, f64>,
     condition_number: Option<f64>,
@@ -46,6 +49,7 @@ fn of_estimate(estimate: &Estimate, way: &Way) -> Vec<Explained> {
             sigma: estimate.stddev(quantity),
             sigma_data: part(estimate.data_covariance),
             sigma_model: part(estimate.model_covariance),
+            sigma_prior: part(estimate.prior_covariance),
             information: INPUT_NAMES.into_iter().zip(shares).filter(|(_, s)| *s != 0.0).collect(),
             condition_number,
         }
@@ -57,11 +61,12 @@ fn of_estimate(estimate: &Estimate, way: &Way) -> Vec<Explained> {
 pub(super) fn people(explained: &[Explained]) -> String {
     let has_a_say = |name: &&&str| explained.iter().any(|e| e.information.contains_key(**name));
     let inputs: Vec<&str> = INPUT_NAMES.iter().filter(has_a_say).copied().collect();
-    let columns = ["model", "inferred", "value", "sigma", "from data", "from model"];
+    let columns = ["model", "inferred", "value", "sigma", "from data", "from model", "from prior"];
     let mut t = Table::new(columns.into_iter().chain(inputs.iter().copied()).chain(["condition"]));
     for e in explained {
         let digits = if e.quantity.starts_with("eps") { 4 } else { 3 };
-        let numbers = [e.value, e.sigma, e.sigma_data, e.sigma_model].map(|v| fixed(v, digits));
+        let numbers =
+            [e.value, e.sigma, e.sigma_data, e.sigma_model, e.sigma_prior].map(|v| fixed(v, digits));
         let share = |name: &&str| {
             let share = e.information.get(*name).map(|s| format!("{:.0} %", 100.0 * s));
             share.unwrap_or_else(|| "-".to_owned())

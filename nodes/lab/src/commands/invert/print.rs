@@ -2,7 +2,7 @@
 
 use super::answer::{Answer, More};
 use super::way::Way;
-use super::{explain, sampled};
+use super::{evidence, explain, predictive, sampled};
 use grainlab_console::{CsvText, Failure, Table, exact, json};
 use grainlab_results::{Inference, inference_text};
 
@@ -53,7 +53,9 @@ impl Printer<'_> {
     pub(super) fn state(&self, answer: &Answer, more: &More) -> String {
         let mut text = inference_text::table(&answer.inferences(self.ways));
         text += &more.explained.as_deref().map_or_else(String::new, explain::people);
-        text + &more.sampled.as_deref().map_or_else(String::new, sampled::people)
+        text += &more.predictive.as_deref().map_or_else(String::new, predictive::people);
+        text += &more.sampled.as_deref().map_or_else(String::new, sampled::people);
+        text + &more.evidence.as_deref().map_or_else(String::new, evidence::people)
     }
 
     /// Many states, warnings below.

@@ -92,7 +92,11 @@ impl State {
 
     /// The estimate of the model of this way.
     pub(super) fn infer(&self, way: &Way) -> Result<Estimate, EmtError> {
-        way.model.infer(&self.observation(way)?, &way.calibration)
+        let estimate = way.model.infer(&self.observation(way)?, &way.calibration)?;
+        match &way.prior {
+            Some(prior) => estimate.with_prior(prior),
+            None => Ok(estimate),
+        }
     }
 
     /// The observation for this way.

@@ -2,7 +2,7 @@
 
 use super::calibrations::Choice;
 use grainlab_console::Failure;
-use grainlab_emt::{Calibration, Model, StrainRatioSource};
+use grainlab_emt::{Calibration, Model, Prior, StrainRatioSource};
 use std::sync::Arc;
 
 /// The γ/Δ of the models that use one.
@@ -29,6 +29,8 @@ pub(super) struct Way {
     pub(super) calibration: Arc<Calibration>,
     /// `None`: the one given, else that of the paper's models.
     pub(super) gamma: Option<StrainRatioSource>,
+    /// Of the quantities in the file of the user; `None`: none.
+    pub(super) prior: Option<Arc<Prior>>,
 }
 
 /// Every model, or those of these names, with every calibration and every γ/Δ set.
@@ -60,7 +62,8 @@ pub(super) fn ways(
         let gammas = if model.uses_gamma() { gammas } else { &[None] };
         for choice in &choices {
             let calibration = choice.of(model);
-            let with = |gamma: &_| Way { model, calibration: Arc::clone(&calibration), gamma: *gamma };
+            let with =
+                |gamma: &_| Way { model, calibration: Arc::clone(&calibration), gamma: *gamma, prior: None };
             ways.extend(gammas.iter().map(with));
         }
     }

@@ -19,9 +19,9 @@ type Moduli = SVector<f64, MODULI>;
 /// out; if all six were measured and their relation holds exactly, Θ is left out. Rows of moduli left out or not known
 /// have residual 0 and variance 1.
 pub(super) struct Data {
-    value: Moduli,
-    covariance: Square,
-    is_used: [bool; MODULI],
+    pub(super) value: Moduli,
+    pub(super) covariance: Square,
+    pub(super) is_used: [bool; MODULI],
     pub(super) used: usize,
 }
 
@@ -47,7 +47,7 @@ impl Data {
         }
     }
 
-    fn masked<const N: usize>(&self, mut m: SMatrix<f64, MODULI, N>) -> SMatrix<f64, MODULI, N> {
+    pub(super) fn masked<const N: usize>(&self, mut m: SMatrix<f64, MODULI, N>) -> SMatrix<f64, MODULI, N> {
         for (i, used) in self.is_used.iter().enumerate() {
             if !used {
                 m.fill_row(i, 0.0);

@@ -1,0 +1,127 @@
+//! The probability of moduli for a network of given z and ε: the laws, with the scatter of packings and the errors of the data.
+//! k and the ε weighted by stiffness follow, with the scatter that is left when the moduli are known.
+
+use super::NAME;
+use super::fit::Data;
+use super::state::State;
+use crate::calibration::{Calibration, Outside, RelaxationCalibration};
+use crate::conditions::Conditions;
+use crate::error::EmtError;
+use crate::invariants::INVARIANTS;
+use crate::likelihood::{FOLLOWING, Likelihood, Predicted, UNIT};
+use crate::moduli::{MODULI, Modulus};
+use crate::observation::Observation;
+use grainlab_core::results::InferredQuantity;
+use nalgebra::{SMatrix, SVector, Vector2};
+
+/// See the text of the module.
+pub(super) struct NetworkLikelihood<'a> {
+    network: &'a RelaxationCalibration,
+    state: State,
+    /// The states one standard deviation above and below, for each uncertain input.
+    uncertain: Vec<[State; 2]>,
+    data: Data,
+    moduli: Vec<Modulus>,
+    observed: Vec<f64>,
+}
+
+impl<'a> NetworkLikelihood<'a> {
+    /// Of an observation that was checked.
+    pub(super) fn new(
+        observation: &Observation,
+        network: &'a RelaxationCalibration,
+        calibration: &Calibration,
+    ) -> Result<Self, EmtError> {
+        let conditions = &observation.conditions;
+        let of = |conditions: &Conditions| State::of(conditions, observation.grains, network, calibration);
+        let state = of(conditions);
+        state.within_reach(calibration.name())?;
+        let data = Data::of(observation, &state);
+        if data.used == 0 {
+            return Err(EmtError::Missing { model: NAME, missing: "any modulus" });
+        }
+        let mut uncertain = Vec::new();
+        if conditions.pressure.stddev > 0.0 {
+            uncertain.push([1.0, -1.0].map(|sign| {
+                let mut moved = *conditions;
+                moved.pressure.value *= (sign * conditions.pressure.stddev / conditions.pressure.value).exp();
+                of(&moved)
+            }));
+        }
+        if let Some(ratio) = conditions.stress_ratio.filter(|ratio| ratio.stddev > 0.0) {
+            uncertain.push([1.0, -1.0].map(|sign| {
+                let mut moved = *conditions;
+                if let Some(moved) = &mut moved.stress_ratio {
+                    moved.value += sign * ratio.stddev;
+                }
+                of(&moved)
+            }));
+        }
+        let moduli: Vec<_> = Modulus::ALL.into_iter().filter(|m| data.is_used[*m as usize]).collect();
+        let observed = moduli.iter().map(|m| data.value[*m as usize] * state.unit).collect();
+        Ok(Self { network, state, uncertain, data, moduli, observed })
+    }
+}
+
+impl Likelihood for NetworkLikelihood<'_> {
+    fn unknowns(&self) -> &[InferredQuantity] {
+        &[InferredQuantity::Z, InferredQuantity::Eps]
+    }
+
+    fn following(&self) -> &[InferredQuantity] {
+        &[InferredQuantity::EpsStiffness, InferredQuantity::K]
+    }
+
+    fn moduli(&self) -> &[Modulus] {
+        &self.moduli
+    }
+
+    fn observed(&self) -> Vec<f64> {
+        self.observed.clone()
+    }
+
+    fn at(&self, unknowns: &[f64]) -> Option<Predicted> {
+        let &[z, eps] = unknowns else { return None };
+        let Self { network, state, data, .. } = self;
+        let [low, high] = network.domain();
+        if !(low..=high).contains(&z) {
+            return None;
+        }
+        let invariants = state.invariants(network, z, eps);
+        let stable = |m: &Modulus| invariants.moduli()[*m as usize] > 0.0;
+        // As `predict`: where the network would have no stiffness, no packing is.
+        if !Modulus::ALL.iter().all(stable) {
+            return None;
+        }
+        let growth: f64 = network.reach.outside_structure(z, Some(eps)).iter().map(Outside::growth).product();
+        let scatter = network.scatter_at(z, &state.variance_factors) * growth;
+        let slopes = data.masked(invariants.slopes());
+        let mut covariance = slopes * scatter.fixed_view::<INVARIANTS, INVARIANTS>(0, 0) * slopes.transpose()
+            + data.covariance;
+        for [above, below] in &self.uncertain {
+            let moduli =
+                |s: &State| SVector::<f64, MODULI>::from(s.invariants(network, z, eps).moduli()) * s.unit;
+            let direction = data.masked(moduli(above) - moduli(below)) / (2.0 * state.unit);
+            covariance += direction * direction.transpose();
+        }
+        let residual = data.masked(data.value - SVector::from(invariants.moduli()));
+        let scale = state.unit / UNIT;
+        covariance *= scale * scale;
+        for (i, used) in data.is_used.iter().enumerate() {
+            if !used {
+                covariance[(i, i)] = 1.0;
+            }
+        }
+        let mut predicted = Predicted::new(residual * scale, covariance, self.moduli.len())?;
+        let with_moduli: SMatrix<f64, FOLLOWING, MODULI> =
+            scatter.fixed_view::<FOLLOWING, INVARIANTS>(INVARIANTS, 0) * slopes.transpose() * scale;
+        let laws = &state.laws;
+        let law = Vector2::new(network.eps_stiffness.value(z, eps, laws), network.rattlers.value(z, laws));
+        predicted.following = (
+            law + with_moduli * predicted.weighted(),
+            scatter.fixed_view::<FOLLOWING, FOLLOWING>(INVARIANTS, INVARIANTS)
+                - with_moduli * predicted.inverse() * with_moduli.transpose(),
+        );
+        Some(predicted)
+    }
+}

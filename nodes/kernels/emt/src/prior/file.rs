@@ -1,0 +1,123 @@
+//! Prior files (TOML): a section for each quantity.
+
+use super::density::Density;
+use super::error::PriorError;
+use super::set::Prior;
+use grainlab_core::results::InferredQuantity;
+use serde::Deserialize;
+use std::fmt::Write;
+
+/// The whole file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    k: Option<Section>,
+    k_hat: Option<Section>,
+    z: Option<Section>,
+    eps: Option<Section>,
+    eps_stiffness: Option<Section>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Section {
+    distribution: Kind,
+    mean: Option<f64>,
+    stddev: Option<f64>,
+    low: Option<f64>,
+    high: Option<f64>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Normal,
+    Uniform,
+    TruncatedNormal,
+}
+
+impl Prior {
+    /// Reads the text of a prior file.
+    pub fn parse(text: &str) -> Result<Self, PriorError> {
+        let file: File = toml::from_str(text).map_err(|e| PriorError::Text(e.to_string()))?;
+        let sections = [file.k, file.k_hat, file.z, file.eps, file.eps_stiffness];
+        let mut prior = Self::default();
+        for (quantity, section) in InferredQuantity::ALL.into_iter().zip(sections) {
+            let Some(section) = section else { continue };
+            let density = section
+                .density()
+                .map_err(|fault| PriorError::Section { quantity: quantity.name(), fault })?;
+            prior = prior.with(quantity, density);
+        }
+        if prior.quantities().next().is_none() {
+            let known = InferredQuantity::ALL.map(|q| format!("[{q}]")).join(", ");
+            return Err(PriorError::Text(format!("it has no section; there are {known}")));
+        }
+        Ok(prior)
+    }
+
+    /// The text of a prior file, as [`Prior::parse`] reads it.
+    pub fn to_toml(&self) -> String {
+        let mut text = String::new();
+        for quantity in self.quantities() {
+            let Some(density) = self.get(quantity) else { continue };
+            let _ = writeln!(text, "[{quantity}]");
+            let [low, high] = density.range();
+            let limited = low.is_finite() || high.is_finite();
+            let _ = match density.of_normal() {
+                None => writeln!(text, "distribution = \"uniform\""),
+                Some([mean, stddev]) => {
+                    let kind = if limited { "truncated-normal" } else { "normal" };
+                    writeln!(text, "distribution = \"{kind}\"\nmean = {mean:?}\nstddev = {stddev:?}")
+                }
+            };
+            for (key, limit) in [("low", low), ("high", high)] {
+                if limit.is_finite() {
+                    let _ = writeln!(text, "{key} = {limit:?}");
+                }
+            }
+            text.push('\n');
+        }
+        text.truncate(text.trim_end().len());
+        text + "\n"
+    }
+}
+
+impl Section {
+    fn density(&self) -> Result<Density, String> {
+        let &Self { distribution, mean, stddev, low, high } = self;
+        let given = [("mean", mean), ("stddev", stddev), ("low", low), ("high", high)];
+        if let Some((key, value)) = given.iter().find(|(_, v)| v.is_some_and(|v| !v.is_finite())) {
+            return Err(format!("{key} = {} must be finite", value.unwrap_or(f64::NAN)));
+        }
+        let need = |key: &str, value: Option<f64>, of: &str| {
+            value.ok_or_else(|| format!("{key} is missing: a {of} distribution needs it"))
+        };
+        let refuse = |key: &str, value: Option<f64>, of: &str, instead: &str| match value {
+            Some(_) => Err(format!("a {of} distribution has no {key}; {instead}")),
+            None => Ok(()),
+        };
+        const TRUNCATED: &str = "use \"truncated-normal\"";
+        match distribution {
+            Kind::Normal => {
+                refuse("low", low, "normal", TRUNCATED)?;
+                refuse("high", high, "normal", TRUNCATED)?;
+                Density::normal(need("mean", mean, "normal")?, need("stddev", stddev, "normal")?)
+            }
+            Kind::Uniform => {
+                refuse("mean", mean, "uniform", TRUNCATED)?;
+                refuse("stddev", stddev, "uniform", TRUNCATED)?;
+                Density::uniform(need("low", low, "uniform")?, need("high", high, "uniform")?)
+            }
+            Kind::TruncatedNormal => {
+                const NAME: &str = "truncated-normal";
+                if low.is_none() && high.is_none() {
+                    return Err("low or high is missing: without both use \"normal\"".to_owned());
+                }
+                let range = [low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)];
+                Density::truncated(need("mean", mean, NAME)?, need("stddev", stddev, NAME)?, range)
+            }
+        }
+        .map_err(|e| e.to_string())
+    }
+}

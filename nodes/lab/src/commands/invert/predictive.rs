@@ -1,0 +1,98 @@
+//! The observed moduli against what each model predicts with its posterior.
+
+use super::state::State;
+use super::way::Way;
+use grainlab_console::{Table, fixed};
+use grainlab_emt::{Check, EmtError, Posterior, PosteriorSettings};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Number of points of the integration: probabilities above 1e-3 are accurate to a few percent of them.
+const POINTS: usize = 16_384;
+
+/// One model.
+#[derive(Debug, Serialize)]
+pub(super) struct Predictive {
+    model: &'static str,
+    calibration: String,
+    /// Probability of a chi-square as large as the observed one, under the posterior of all moduli.
+    chi_square: f64,
+    /// Whether the observation is unlike what the model knows.
+    unlikely: bool,
+    moduli: Vec<OfModulus>,
+}
+
+#[derive(Debug, Serialize)]
+struct OfModulus {
+    modulus: &'static str,
+    observed_pa: f64,
+    /// Two-sided, under the posterior of all moduli.
+    predictive: f64,
+    /// Two-sided, under the posterior of the other moduli.
+    left_out: Option<f64>,
+}
+
+/// Of the models that state a likelihood.
+pub(super) fn of_ways(state: &State, ways: &[Way]) -> Vec<Predictive> {
+    ways.par_iter().filter_map(|way| Some(view(way, &check(state, way).ok()?))).collect()
+}
+
+fn check(state: &State, way: &Way) -> Result<Check, EmtError> {
+    let settings = PosteriorSettings { points: POINTS, seed: 0 };
+    let prior = way.prior.as_deref().cloned().unwrap_or_default();
+    let observation = state.observation(way)?;
+    Ok(Posterior::new(way.model, &observation, &way.calibration, &prior, settings)?.check())
+}
+
+fn view(way: &Way, check: &Check) -> Predictive {
+    let one = |m: &grainlab_emt::ModulusCheck| OfModulus {
+        modulus: m.modulus.name(),
+        observed_pa: m.observed,
+        predictive: m.predictive,
+        left_out: m.left_out,
+    };
+    Predictive {
+        model: way.model.name(),
+        calibration: way.calibration.name().to_owned(),
+        chi_square: check.chi_square,
+        unlikely: check.is_unlikely(),
+        moduli: check.moduli.iter().map(one).collect(),
+    }
+}
+
+/// As a text table, with a warning where the observation is unlike what a model knows.
+pub(super) fn people(all: &[Predictive]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut t = Table::new(["model", "modulus", "observed/MPa", "p predicted", "p left out"]);
+    let mut notes = String::new();
+    for p in all {
+        for m in &p.moduli {
+            let numbers = [
+                fixed(Some(m.observed_pa / 1e6), 2),
+                probability(Some(m.predictive)),
+                probability(m.left_out),
+            ];
+            t.row([p.model, m.modulus].map(str::to_owned).into_iter().chain(numbers));
+        }
+        let text = format!("{}: chi-square of all moduli: p = {}", p.model, probability(Some(p.chi_square)));
+        notes += &format!("  {text}\n");
+        if p.unlikely {
+            notes += &format!(
+                "  warning: {}: moduli as far from the prediction as these are improbable: the sample is unlike the packings of \
+                 the calibration, or the errors are larger than given\n",
+                p.model
+            );
+        }
+    }
+    notes += "  p: probability of a modulus as extreme as the observed one, with the posterior of all moduli, and of the others\n";
+    format!("\n{}{notes}", t.text())
+}
+
+fn probability(p: Option<f64>) -> String {
+    match p {
+        Some(p) if p < 1e-3 => format!("{p:.0e}"),
+        p => fixed(p, 3),
+    }
+}

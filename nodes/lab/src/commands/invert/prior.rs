@@ -1,0 +1,58 @@
+//! Priors from files, and the one that a model has.
+
+use super::way::Way;
+use grainlab_console::{Failure, say};
+use grainlab_emt::Prior;
+use grainlab_recordings::input;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Gives the prior of a file to every way whose model infers one of its quantities. An error if no model infers one of them, or
+/// if the prior excludes the domain of a model.
+pub(super) fn apply(path: &Path, ways: &mut [Way]) -> Result<(), Failure> {
+    let name = path.display();
+    let text = input::text(path, input::SETTINGS).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
+    let prior = Prior::parse(&text).map_err(|e| Failure::usage(format!("{name}: {e}")))?;
+    for quantity in prior.quantities() {
+        let without = |way: &&Way| !way.model.quantities(&way.calibration).contains(&quantity);
+        let mut models: Vec<&str> = ways.iter().filter(without).map(|way| way.model.name()).collect();
+        models.dedup();
+        if !models.is_empty() && ways.iter().all(|way| without(&way)) {
+            let models = models.join(", ");
+            return Err(Failure::usage(format!("{name}: [{quantity}]: no model infers it ({models})")));
+        }
+        if !models.is_empty() {
+            say!("grainlab: {name}: [{quantity}] is not used by {}", models.join(", "));
+        }
+    }
+    for way in ways {
+        let own = prior.only(&way.model.quantities(&way.calibration));
+        let domain = way.model.prior_domain(&way.calibration);
+        own.completed(&domain).map_err(|e| Failure::usage(format!("{name}: {e}")))?;
+        way.prior = (own != Prior::default()).then(|| Arc::new(own));
+    }
+    Ok(())
+}
+
+/// The whole prior of a way as a file.
+pub(super) fn text(way: &Way) -> Result<String, Failure> {
+    let domain = way.model.prior_domain(&way.calibration);
+    let own = way.prior.as_deref().cloned().unwrap_or_default();
+    let prior = own.completed(&domain).map_err(Failure::usage)?;
+    let mut text = format!(
+        "# The prior of model {}, calibration {}: grainlab invert --prior FILE\n# distribution = \"normal\" (mean, stddev), \
+         \"uniform\" (low, high) or \"truncated-normal\" (mean, stddev, low and high or one of them)\n",
+        way.model.name(),
+        way.calibration.name()
+    );
+    let follows = way.model.quantities(&way.calibration);
+    let follows: Vec<&str> =
+        follows.into_iter().filter(|q| domain.structure[*q as usize].is_none()).map(|q| q.name()).collect();
+    if !follows.is_empty() {
+        text += &format!(
+            "# {} follow from these; a section of theirs multiplies what the calibration says of them.\n",
+            follows.join(" and ")
+        );
+    }
+    Ok(text + "\n" + &prior.to_toml())
+}

@@ -1,0 +1,36 @@
+"""Priors, and draws from the posterior."""
+
+import numpy as np
+import pytest
+
+import grainlab
+
+STATE = dict(
+    g12=74.224e6, g13=81.816e6, theta=136.988e6, pressure=50e3, stress_ratio=0, size_spread=0, shear_modulus=35.3e9,
+    poisson_ratio=0.212,
+)
+
+
+def test_draws_have_the_moments_of_the_estimate_and_a_seed_repeats_them():
+    found = grainlab.invert(**STATE, draws=500, seed=3)
+    draws = found["draws"]
+    for key in ["k", "z", "eps", "eps_stiffness"]:
+        values = draws["posterior"][key]
+        assert values.shape == (4, 500)
+        assert abs(values.mean() - found[key]) < 0.3 * found[f"{key}_sigma"]
+    assert draws["coords"]["modulus"] == ["G12", "G13", "Theta"]
+    assert draws["log_likelihood"]["moduli"].shape == draws["posterior_predictive"]["moduli"].shape == (4, 500, 3)
+    again = grainlab.invert(**STATE, draws=500, seed=3)["draws"]
+    assert np.array_equal(again["posterior"]["z"], draws["posterior"]["z"])
+
+
+def test_a_narrow_prior_is_the_estimate_and_wrong_ones_raise():
+    prior = '[z]\ndistribution = "normal"\nmean = 4.8\nstddev = 1e-6\n'
+    assert abs(grainlab.invert(**STATE, prior=prior)["z"] - 4.8) < 1e-5
+    for text, match in [
+        ("[z]\n", "distribution"),
+        ('[z]\ndistribution = "uniform"\nlow = 8\nhigh = 9\n', "domain"),
+        ('[k_hat]\ndistribution = "uniform"\nlow = 4\nhigh = 5\n', "does not infer"),
+    ]:
+        with pytest.raises(ValueError, match=match):
+            grainlab.invert(**STATE, prior=text)
