@@ -124,7 +124,7 @@ impl Model for Relaxed {
         calibration: &'a Calibration,
     ) -> Result<Box<dyn Likelihood + 'a>, EmtError> {
         let observation = observation.checked()?;
-        Ok(Box::new(NetworkLikelihood::new(&observation, network(calibration)?, calibration)?))
+        Ok(Box::new(NetworkLikelihood::new(NAME, &observation, network(calibration)?, calibration)?))
     }
 }
 

@@ -1,7 +1,6 @@
 //! The probability of moduli for a network of given z and ε: the laws, with the scatter of packings and the errors of the data.
 //! k and the ε weighted by stiffness follow, with the scatter that is left when the moduli are known.
 
-use super::NAME;
 use super::fit::Data;
 use super::state::State;
 use crate::calibration::{Calibration, Outside, RelaxationCalibration};
@@ -26,8 +25,9 @@ pub(super) struct NetworkLikelihood<'a> {
 }
 
 impl<'a> NetworkLikelihood<'a> {
-    /// Of an observation that was checked.
+    /// Of an observation that was checked; the name of the model is for the error of one without moduli.
     pub(super) fn new(
+        model: &'static str,
         observation: &Observation,
         network: &'a RelaxationCalibration,
         calibration: &Calibration,
@@ -38,7 +38,7 @@ impl<'a> NetworkLikelihood<'a> {
         state.within_reach(calibration.name())?;
         let data = Data::of(observation, &state);
         if data.used == 0 {
-            return Err(EmtError::Missing { model: NAME, missing: "any modulus" });
+            return Err(EmtError::Missing { model, missing: "any modulus" });
         }
         let mut uncertain = Vec::new();
         if conditions.pressure.stddev > 0.0 {
