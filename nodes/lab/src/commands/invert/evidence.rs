@@ -66,7 +66,7 @@ pub(super) fn of_ways(
         // Of one model with several calibrations each is a model of its own.
         let same = ways.iter().zip(&found).filter_map(|(w, o)| {
             let (d, e) = o.as_ref().ok()?;
-            (d.as_slice() == data).then_some((weight(w), e.ln))
+            are_same(d, data).then_some((weight(w), e.ln))
         });
         let same: Vec<(f64, f64)> = same.collect();
         let probability = evidence
@@ -84,6 +84,13 @@ pub(super) fn of_ways(
         }
     };
     Ok(ways.iter().zip(&found).map(one).collect())
+}
+
+/// Whether two models explain the same data. A model may have scaled the values, which rounds them.
+fn are_same(one: &[(Modulus, f64)], other: &[(Modulus, f64)]) -> bool {
+    const ROUNDING: f64 = 1e-9;
+    one.len() == other.len()
+        && one.iter().zip(other).all(|((m, a), (n, b))| m == n && (a - b).abs() <= ROUNDING * a.abs())
 }
 
 fn of_way(state: &State, way: &Way, seed: u64) -> Result<Found, EmtError> {
@@ -118,4 +125,18 @@ pub(super) fn people(models: &[OfModel]) -> String {
     format!(
         "\n{table}{notes}  of densities of moduli in MPa, with the priors of --print-prior for each model\n"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moduli_that_a_model_has_rounded_are_the_same_data_and_others_are_not() {
+        let data = [(Modulus::G12, 104.2e6), (Modulus::Theta, 136e6)];
+        assert!(are_same(&data, &[(Modulus::G12, 104.2e6 / 3.1 * 3.1), (Modulus::Theta, 136e6)]));
+        assert!(!are_same(&data, &[(Modulus::G12, 104.2e6), (Modulus::Theta, 136.1e6)]));
+        assert!(!are_same(&data, &[(Modulus::G13, 104.2e6), (Modulus::Theta, 136e6)]));
+        assert!(!are_same(&data, &data[..1]));
+    }
 }
