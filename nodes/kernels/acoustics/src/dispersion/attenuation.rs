@@ -2,8 +2,8 @@
 //!
 //! Two causes are computed, and never mixed:
 //!
-//! - dissipation by the dashpots of the contacts, of the damped modes ([`damped_modes`]): 1/Q ∝ ζ ω at long waves
-//! - scattering by disorder, without dissipation ([`scattering`](fn@scattering)): 1/Q ∝ ω³ at long waves
+//! - dissipation by the dashpots of the contacts, of the damped modes ([`ContactLoss`]): 1/Q ∝ ζ ω at long waves
+//! - scattering by disorder, without dissipation ([`Scattering`]): 1/Q grows with ω³ or faster
 //!
 //! While both are small, 1/Q of a wave is their sum. Friction at sliding contacts, viscous pore fluids and the material of
 //! the grains are not included.
@@ -41,7 +41,7 @@ pub struct AttenuationSettings {
 
 impl Default for AttenuationSettings {
     fn default() -> Self {
-        Self { wavelengths: vec![160.0, 80.0, 40.0, 20.0, 14.0, 10.0], damping: 0.05 }
+        Self { wavelengths: vec![160.0, 80.0, 40.0, 20.0, 14.0, 10.0, 7.0], damping: 0.3 }
     }
 }
 
