@@ -31,7 +31,7 @@ pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
     text += &indented(&moduli(a, report.stiffness().map(|s| &s.tensor)).without_empty_columns().text());
     if let Some(shift) = a.mode_shift() {
         text += &format!(
-            "  modes of the packing itself, quasi-P and quasi-S: speeds up to {} from these\n",
+            "  speeds of the packing's own modes, quasi-P and quasi-S, are up to {} from those along the ideal polarizations\n",
             percent(shift)
         );
     }

@@ -41,7 +41,7 @@ mod tests {
             over_square: limit + bend * wavenumber.powi(2),
             error: 1e-6,
         };
-        [0.1, 0.2, 0.3].map(at).to_vec()
+        [0.1, 0.2, 0.3].map(at).into()
     }
 
     #[test]

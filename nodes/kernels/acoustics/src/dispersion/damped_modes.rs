@@ -4,7 +4,7 @@
 //! C, 1/Q = u*C u/(ω u*M u) with the undamped mode u. The quadratic problem is projected on a few motions: the undamped
 //! modes, and K⁻¹ r with the residuals r of the projected solutions, which are the largest part of what is missing. Each
 //! round reduces it by the larger of ωc/k of a contact and (ω/ω')², where ω' is the next mode. Quadratic eigenproblems of
-//! damped packings: Hu, Makse, Valenza and Johnson, Geophysics 81, 1 (2016).
+//! damped packings: Hu, Makse, Valenza and Johnson, arXiv:1410.5484; Kruyt, J. Mech. Mater. Struct. 7, 347 (2012).
 
 use crate::dispersion::bloch::Bloch;
 use crate::dispersion::error::SolveError;
@@ -73,8 +73,11 @@ pub(super) fn damped_modes(
             }
         }
         let loss = |lambda: C| -2.0 * lambda.re / lambda.im;
-        let change = |wave: usize| (loss(found[wave].0) / before[wave] - 1.0).abs();
-        let settled = (0..count).all(|wave| change(wave) <= CONVERGED || loss(found[wave].0) == 0.0);
+        let change = |wave: usize| match loss(found[wave].0) {
+            0.0 => 0.0,
+            now => (now / before[wave] - 1.0).abs(),
+        };
+        let settled = (0..count).all(|wave| change(wave) <= CONVERGED);
         if settled || round + 1 == ROUNDS {
             let mode = |wave: usize| {
                 let lambda = found[wave].0;

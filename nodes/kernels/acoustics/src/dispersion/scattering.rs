@@ -56,7 +56,8 @@ pub struct Scattering {
 }
 
 impl Scattering {
-    /// Whether the sample is large enough for the loss to be that of the material.
+    /// Whether the sample is large enough for the loss to be that of the material. Just above the limit resolved values tend
+    /// to be too high, because lower ones are not resolved.
     pub fn is_resolved(&self) -> bool {
         self.modes_in_width >= RESOLVED
     }

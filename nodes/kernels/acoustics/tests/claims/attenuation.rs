@@ -186,7 +186,7 @@ fn loss_by_dashpots_is_proportional_to_them_and_to_frequency() {
             "{mode:?}"
         );
     }
-    assert!(of(0.0).iter().all(|mode| mode.loss.abs() < 1e-12));
+    assert!(of(0.0).iter().all(|mode| mode.loss == 0.0 && mode.stddev == 0.0));
 }
 
 /// Coherent velocity in the engine after a plane wave with `waves` periods in `copies` of `packing` along e3, over its
@@ -268,7 +268,7 @@ fn a_wave_in_the_engine_with_dashpots_decays_as_its_damped_mode() {
         let fall = |k: usize| (damped[k][0] / free[k][0]).ln();
         let rate = -(fall(last) - fall(first)) / (damped[last][1] - damped[first][1]);
         let loss = 2.0 * rate / contact.omega;
-        assert!((loss / contact.loss - 1.0).abs() < 0.02, "{loss:e} {contact:?}");
+        assert!((loss / contact.loss - 1.0).abs() < 0.01, "{loss:e} {contact:?}");
     }
 }
 
@@ -303,9 +303,9 @@ fn a_short_wave_in_the_engine_loses_coherence_as_in_the_frozen_network_at_any_sm
     let (weak, interval) = in_the_engine(&packing, 3, 4, 1e-9, 0.0, sampling);
     let (strong, _) = in_the_engine(&packing, 3, 4, 1e-7, 0.0, sampling);
     let apart = weak.iter().zip(&strong).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(apart < 5e-3, "{apart:e}");
+    assert!(apart < 1e-3, "{apart:e}");
     let [decay, omega] = tone(&weak[10..], 8, interval);
-    assert!((omega / frozen.omega - 1.0).abs() < 0.03, "{omega:e} {frozen:?}");
+    assert!((omega / frozen.omega - 1.0).abs() < 0.02, "{omega:e} {frozen:?}");
     assert!(
         (2.0 * decay / omega - frozen.loss).abs() < 2.0 * frozen.stddev,
         "{decay:e} {omega:e} {frozen:?}"
