@@ -3,7 +3,10 @@
 //! The packing is repeated to infinity, so that waves of any length and direction fit. At each wave vector q the three
 //! acoustic modes are computed; ω²/q² is proportional to 1 − b q² and extrapolated to long waves
 //! ([`crate::DispersionCurve::fit`]). Amplitudes are infinitesimal: contacts neither open nor slide.
+//!
+//! [`attenuation`](fn@attenuation): 1/Q of the same waves by the dashpots of the contacts, and by scattering.
 
+mod acoustic_tensor;
 mod alignment;
 mod attenuation;
 mod bloch;
@@ -15,6 +18,7 @@ mod error;
 mod joint_diagonal;
 #[cfg(test)]
 mod lattice_sample;
+mod mean_diameter;
 mod modes;
 mod scattering;
 mod settings;
@@ -24,6 +28,7 @@ mod waves;
 
 pub(crate) use alignment::Alignment;
 pub use attenuation::{Attenuation, AttenuationPoint, AttenuationSettings, ContactLoss, attenuation};
+pub(crate) use mean_diameter::mean_diameter;
 pub use scattering::{RESOLVED, Scattering};
 pub use settings::Settings;
 
@@ -32,11 +37,12 @@ use crate::curve::{DispersionCurve, DispersionPoint};
 use crate::error::AcousticsError;
 use crate::ray::Ray;
 use crate::warning::Warning;
+use acoustic_tensor::AcousticTensor;
 use alignment::{aligned, completed, nearest_of};
 use bloch::Bloch;
 use christoffel_modes::long_wave_polarizations;
 use error::SolveError;
-use grainlab_core::{Mat3, Packing, Vec3};
+use grainlab_core::{Packing, Vec3};
 use modes::modes;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -59,10 +65,6 @@ pub fn curves(
     settings.validated()?;
     let backbone = Backbone::new(packing)?;
     Ok(curves_of(&backbone, mean_diameter(packing), rays, Alignment::InPlane, settings)?.curves)
-}
-
-pub(crate) fn mean_diameter(packing: &Packing) -> f64 {
-    2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64
 }
 
 /// Curves of rays, along given polarizations and of the modes.
@@ -121,15 +123,6 @@ fn curves_of(
     let mut all = RayCurves::default();
     curves?.into_iter().for_each(|curves| all.extend(curves));
     Ok(all)
-}
-
-/// The acoustic tensor A at one wave number.
-struct AcousticTensor {
-    wavenumber: f64,
-    /// A/q², m²/s².
-    over_square: Mat3,
-    /// Relative error of ω².
-    error: f64,
 }
 
 fn curves_along(

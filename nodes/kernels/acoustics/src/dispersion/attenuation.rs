@@ -8,12 +8,14 @@
 //! While both are small, 1/Q of a wave is their sum. Friction at sliding contacts, viscous pore fluids and the material of
 //! the grains are not included.
 
-use super::damped_modes::damped_modes;
-use super::dashpots::dashpots;
-use super::modes::modes;
-use super::scattering::{Scattering, scattering};
-use super::{Bloch, completed, mean_diameter};
 use crate::backbone::Backbone;
+use crate::dispersion::alignment::completed;
+use crate::dispersion::bloch::Bloch;
+use crate::dispersion::damped_modes::damped_modes;
+use crate::dispersion::dashpots::dashpots;
+use crate::dispersion::mean_diameter::mean_diameter;
+use crate::dispersion::modes::modes;
+use crate::dispersion::scattering::{Scattering, scattering};
 use crate::error::AcousticsError;
 use crate::ray::Ray;
 use grainlab_core::{Packing, Vec3};

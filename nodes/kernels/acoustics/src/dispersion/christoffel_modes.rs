@@ -4,7 +4,7 @@
 //! this symmetry both are the same. A packing is never exactly transversely isotropic: its polarizations are turned a
 //! little, and the speeds of its modes are further apart than their projections.
 
-use super::AcousticTensor;
+use crate::dispersion::acoustic_tensor::AcousticTensor;
 use grainlab_core::{Mat3, Vec3};
 use nalgebra::{DMatrix, SymmetricEigen};
 
