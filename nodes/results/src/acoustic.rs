@@ -1,5 +1,6 @@
 //! Wave speeds of one packing, and the moduli of the medium with these speeds.
 
+use crate::attenuation::AttenuationReport;
 use crate::quantities::entries;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::*};
@@ -18,6 +19,10 @@ pub struct AcousticReport {
     pub(crate) bulk_density: f64,
     /// The medium with these speeds.
     pub medium: WaveModuli,
+    /// The speeds of the packing's own modes along the same rays; empty where they are not measured.
+    pub modes: Vec<MeasuredWave>,
+    /// Attenuation, if it was computed.
+    pub attenuation: Option<AttenuationReport>,
 }
 
 /// Every quantity of an [`AcousticReport`]. Moduli that the speeds do not determine are null.
@@ -58,7 +63,17 @@ impl AcousticReport {
         let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
         let conditions = Conditions::at(reading.pressure);
         let medium = WaveModuli::of_speeds(&reading.measured(), density, reading.axis, conditions);
-        Self { reading, bulk_density: packing.solid_fraction() * packing.material.density, medium }
+        let bulk_density = packing.solid_fraction() * packing.material.density;
+        Self { reading, bulk_density, medium, modes: Vec::new(), attenuation: None }
+    }
+
+    /// Largest relative difference between the speed of a mode and that along its polarization in a medium isotropic about
+    /// the axis.
+    pub(crate) fn mode_shift(&self) -> Option<f64> {
+        let same = self.modes.len() == self.reading.speeds.len() && !self.modes.is_empty();
+        let shift =
+            |(mode, speed): (&MeasuredWave, &MeasuredWave)| (mode.wave.speed / speed.wave.speed - 1.0).abs();
+        same.then(|| self.modes.iter().zip(&self.reading.speeds).map(shift).fold(0.0, f64::max))
     }
 
     pub(crate) fn method(&self) -> Option<&'static str> {
@@ -111,6 +126,9 @@ impl Serialize for AcousticReport {
         entries(&mut map, ACOUSTIC, self)?;
         let speeds: Vec<SpeedView> = self.reading.speeds.iter().map(SpeedView::from).collect();
         map.serialize_entry("speeds", &speeds)?;
+        let modes: Vec<SpeedView> = self.modes.iter().map(SpeedView::from).collect();
+        map.serialize_entry("modes", &modes)?;
+        map.serialize_entry("attenuation", &self.attenuation)?;
         map.serialize_entry("warnings", &self.warnings())?;
         map.end()
     }

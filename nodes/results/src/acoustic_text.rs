@@ -29,6 +29,15 @@ pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
         text += &format!("  moduli about ({x:.3}, {y:.3}, {z:.3}), since no axis was given\n");
     }
     text += &indented(&moduli(a, report.stiffness().map(|s| &s.tensor)).without_empty_columns().text());
+    if let Some(shift) = a.mode_shift() {
+        text += &format!(
+            "  speeds of the packing's own modes, quasi-P and quasi-S, are up to {} from those along the ideal polarizations\n",
+            percent(shift)
+        );
+    }
+    if let Some(attenuation) = &a.attenuation {
+        text += &indented(&attenuation.text());
+    }
     a.warnings().iter().for_each(|w| text += &format!("  note: {w}\n"));
     text
 }

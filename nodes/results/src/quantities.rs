@@ -111,6 +111,9 @@ mod tests {
     use crate::measured_packing::ORIGIN;
     use grainlab_core::results::QUANTITIES;
 
+    /// What one value per packing cannot hold.
+    const WAVE_ARRAYS: &str = include_str!("wave_arrays.md");
+
     /// The reference in the repository equals that of the tables. If it differs, the test writes it and fails
     /// once.
     #[test]
@@ -121,7 +124,7 @@ mod tests {
              of CSV, as `grainlab invert --table` and `grainlab calibrate` read them. Values that are undefined or not known are\n\
              null in JSON and empty in CSV. The tests of the crate `grainlab_results` write this page from the tables in\n\
              `nodes/kernels/core/src/results/quantities.rs` and `nodes/results/src/`.\n\n## Origin\n\n{}\n## Packing\n\n{}\n\
-             ## Waves, by `grainlab probe`\n\nIn JSON under `acoustic`.\n\n{}",
+             ## Waves, by `grainlab probe`\n\nIn JSON under `acoustic`.\n\n{}\n{WAVE_ARRAYS}",
             markdown(ORIGIN),
             markdown(QUANTITIES),
             markdown(ACOUSTIC),

@@ -3,19 +3,33 @@
 //! The packing is repeated to infinity, so that waves of any length and direction fit. At each wave vector q the three
 //! acoustic modes are computed; ω²/q² is proportional to 1 − b q² and extrapolated to long waves
 //! ([`crate::DispersionCurve::fit`]). Amplitudes are infinitesimal: contacts neither open nor slide.
+//!
+//! [`attenuation`](fn@attenuation): 1/Q of the same waves by the dashpots of the contacts, and by scattering.
 
+mod acoustic_tensor;
 mod alignment;
+mod attenuation;
 mod bloch;
+mod christoffel_modes;
+mod coherence;
+mod damped_modes;
+mod dashpots;
 mod error;
+mod joint_diagonal;
 #[cfg(test)]
 mod lattice_sample;
+mod mean_diameter;
 mod modes;
+mod scattering;
 mod settings;
 mod solve;
 mod subspace;
 mod waves;
 
 pub(crate) use alignment::Alignment;
+pub use attenuation::{Attenuation, AttenuationPoint, AttenuationSettings, ContactLoss, attenuation};
+pub(crate) use mean_diameter::mean_diameter;
+pub use scattering::{RESOLVED, Scattering};
 pub use settings::Settings;
 
 use crate::backbone::Backbone;
@@ -23,10 +37,12 @@ use crate::curve::{DispersionCurve, DispersionPoint};
 use crate::error::AcousticsError;
 use crate::ray::Ray;
 use crate::warning::Warning;
-use alignment::{aligned, completed};
+use acoustic_tensor::AcousticTensor;
+use alignment::{aligned, completed, nearest_of};
 use bloch::Bloch;
+use christoffel_modes::long_wave_polarizations;
 use error::SolveError;
-use grainlab_core::{Mat3, Packing, Vec3};
+use grainlab_core::{Packing, Vec3};
 use modes::modes;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -48,11 +64,16 @@ pub fn curves(
 ) -> Result<Vec<DispersionCurve>, AcousticsError> {
     settings.validated()?;
     let backbone = Backbone::new(packing)?;
-    curves_of(&backbone, mean_diameter(packing), rays, Alignment::InPlane, settings)
+    Ok(curves_of(&backbone, mean_diameter(packing), rays, Alignment::InPlane, settings)?.curves)
 }
 
-pub(crate) fn mean_diameter(packing: &Packing) -> f64 {
-    2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64
+/// Curves of rays, along given polarizations and of the modes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct RayCurves {
+    /// Of all polarizations of all rays, in that order.
+    pub(crate) curves: Vec<DispersionCurve>,
+    /// In the same order, along the polarization of the mode nearest to each ([`christoffel_modes`]).
+    pub(crate) modes: Vec<DispersionCurve>,
 }
 
 /// The curves of all rays. Rays whose modes are not found are left out with a warning. If all are, the first
@@ -63,13 +84,13 @@ pub(crate) fn all_curves(
     rays: &[Ray],
     alignment: Alignment,
     settings: &Settings,
-) -> Result<(Vec<DispersionCurve>, Vec<Warning>), AcousticsError> {
+) -> Result<(RayCurves, Vec<Warning>), AcousticsError> {
     let found: Vec<_> =
         rays.par_iter().map(|ray| curves_along(backbone, diameter, ray, alignment, settings)).collect();
-    let (mut curves, mut warnings, mut first_error) = (Vec::new(), Vec::new(), None);
+    let (mut all, mut warnings, mut first_error) = (RayCurves::default(), Vec::new(), None);
     for found in found {
         match found {
-            Ok(found) => curves.extend(found),
+            Ok(found) => all.extend(found),
             Err(error @ (AcousticsError::NotConverged { .. } | AcousticsError::NoSignal { .. })) => {
                 first_error = first_error.or_else(|| Some(error.clone()));
                 warnings.push(Warning::LeftOut(error));
@@ -78,8 +99,15 @@ pub(crate) fn all_curves(
         }
     }
     match first_error {
-        Some(error) if curves.is_empty() => Err(error),
-        _ => Ok((curves, warnings)),
+        Some(error) if all.curves.is_empty() => Err(error),
+        _ => Ok((all, warnings)),
+    }
+}
+
+impl RayCurves {
+    fn extend(&mut self, other: Self) {
+        self.curves.extend(other.curves);
+        self.modes.extend(other.modes);
     }
 }
 
@@ -89,19 +117,12 @@ fn curves_of(
     rays: &[Ray],
     alignment: Alignment,
     settings: &Settings,
-) -> Result<Vec<DispersionCurve>, AcousticsError> {
+) -> Result<RayCurves, AcousticsError> {
     let curves: Result<Vec<_>, _> =
         rays.par_iter().map(|ray| curves_along(backbone, diameter, ray, alignment, settings)).collect();
-    Ok(curves?.into_iter().flatten().collect())
-}
-
-/// The acoustic tensor A at one wave number.
-struct AcousticTensor {
-    wavenumber: f64,
-    /// A/q², m²/s².
-    over_square: Mat3,
-    /// Relative error of ω².
-    error: f64,
+    let mut all = RayCurves::default();
+    curves?.into_iter().for_each(|curves| all.extend(curves));
+    Ok(all)
 }
 
 fn curves_along(
@@ -110,18 +131,19 @@ fn curves_along(
     ray: &Ray,
     alignment: Alignment,
     settings: &Settings,
-) -> Result<Vec<DispersionCurve>, AcousticsError> {
+) -> Result<RayCurves, AcousticsError> {
     let mut wavelengths = settings.wavelengths.clone();
     wavelengths.sort_by(|a, b| b.total_cmp(a));
     let completed = completed(&ray.polarizations);
     // All three modes are computed, so that they cannot be confused. If some have no stiffness, only those of
     // the ray are.
     let tensors = acoustic_tensors(backbone, ray, &completed, diameter, &wavelengths, settings);
-    let tensors = match tensors {
+    let (tensors, computed) = match tensors {
         Err(_) if ray.polarizations.len() < completed.len() => {
-            acoustic_tensors(backbone, ray, &ray.polarizations, diameter, &wavelengths, settings)?
+            let own = &ray.polarizations;
+            (acoustic_tensors(backbone, ray, own, diameter, &wavelengths, settings)?, own)
         }
-        tensors => tensors?,
+        tensors => (tensors?, &completed),
     };
     let curve = |polarization: Vec3| {
         let points = tensors.iter().map(|a| {
@@ -137,7 +159,12 @@ fn curves_along(
             }
         })
     };
-    aligned(&ray.polarizations, alignment, &tensors[0].over_square).into_iter().map(curve).collect()
+    let given = aligned(&ray.polarizations, alignment, &tensors[0].over_square);
+    let modes = nearest_of(&ray.polarizations, long_wave_polarizations(&tensors, computed));
+    Ok(RayCurves {
+        curves: given.into_iter().map(curve).collect::<Result<_, _>>()?,
+        modes: modes.into_iter().map(curve).collect::<Result<_, _>>()?,
+    })
 }
 
 fn acoustic_tensors(

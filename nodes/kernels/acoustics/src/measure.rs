@@ -21,11 +21,19 @@ const NOISY: f64 = 0.1;
 /// Place of the noise of speeds, different from the places of all other noise.
 const SPEEDS: u64 = u64::MAX;
 
+/// Place of the seed of the noise of the modes' speeds.
+const MODES: u64 = u64::MAX - 1;
+
 /// What was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// The speeds of long waves.
     pub waves: Vec<MeasuredWave>,
+    /// The same waves along the polarizations of the packing's own modes, quasi-P and quasi-S, which an instrument measures
+    /// (dispersion only). [`Measurement::waves`] are projections on the polarizations of a medium isotropic about the axis:
+    /// their squares average over azimuths to the moduli of the transversely isotropic projection, those of the modes do
+    /// not.
+    pub modes: Vec<MeasuredWave>,
     /// Density of the mass that moves with them.
     pub effective_density: EffectiveDensity,
     /// Density to use with the speeds, kg/m³.
@@ -56,18 +64,24 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     let seed = seed_at(settings.instrument.seed, &[packing.step]);
     let instrument = &Instrument { seed, ..settings.instrument };
     let lattice = || survey.lattice_rays(&packing.cell, &about, settings.modes);
-    let (curves, traces, mut warnings) = match &settings.method {
+    let (curves, modes, traces, mut warnings) = match &settings.method {
         MethodSettings::Dispersion(of) => {
             of.validated()?;
             let rays = survey.rays(&about, settings.modes);
             let diameter = dispersion::mean_diameter(packing);
             let alignment = if axis.is_some() { Alignment::InPlane } else { Alignment::Free };
-            let (curves, mut warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
+            let (found, mut warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
             warnings.extend(StiffnessMethod::FrozenNetwork.leaves_out(&packing.law).map(Warning::Springs));
-            (curves, Vec::new(), warnings)
+            (found.curves, found.modes, Vec::new(), warnings)
         }
-        MethodSettings::StandingWave(of) => standing_wave::curves(packing, &lattice(), of, instrument)?,
-        MethodSettings::TimeOfFlight(of) => time_of_flight::curves(packing, &lattice(), of, instrument)?,
+        MethodSettings::StandingWave(of) => {
+            let (curves, traces, warnings) = standing_wave::curves(packing, &lattice(), of, instrument)?;
+            (curves, Vec::new(), traces, warnings)
+        }
+        MethodSettings::TimeOfFlight(of) => {
+            let (curves, traces, warnings) = time_of_flight::curves(packing, &lattice(), of, instrument)?;
+            (curves, Vec::new(), traces, warnings)
+        }
     };
     let (method, amplitude) = match &settings.method {
         MethodSettings::Dispersion(_) => (WaveMethod::Dispersion, 0.0),
@@ -88,6 +102,9 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     };
     let waves: Vec<MeasuredWave> = curves.iter().map(wave).collect();
     let mut waves = with_speed_noise(&waves, instrument.speed_noise, instrument.seed);
+    let modes: Vec<MeasuredWave> = modes.iter().map(wave).collect();
+    let mut modes = with_speed_noise(&modes, instrument.speed_noise, seed_at(instrument.seed, &[MODES]));
+    modes.retain(is_speed);
     warnings.extend(waves.iter().filter(|w| !is_speed(w)).map(|w| {
         let (direction, polarization) = (w.wave.direction.into(), w.wave.polarization.into());
         let reason = "the noise of speeds is as large as the speed".to_owned();
@@ -101,7 +118,17 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     let density_stddev = effective_density.spread().hypot(density - backbone.effective_density(most).mean());
     // A smaller one is rounding.
     let density_stddev = if density_stddev > 1e-9 * density { density_stddev } else { 0.0 };
-    Ok(Measurement { waves, effective_density, density, density_stddev, axis, curves, traces, warnings })
+    Ok(Measurement {
+        waves,
+        modes,
+        effective_density,
+        density,
+        density_stddev,
+        axis,
+        curves,
+        traces,
+        warnings,
+    })
 }
 
 /// The same speeds with an additional independent relative error of standard deviation `noise`, included in

@@ -13,7 +13,7 @@
 mod free_vibration;
 mod measurement;
 mod settings;
-mod tone;
+pub(crate) mod tone;
 
 pub use settings::{MIN_COPIES, Settings};
 

@@ -34,13 +34,16 @@ pub(super) fn aligned(polarizations: &[Vec3], alignment: Alignment, tensor: &Mat
         }
     }
     let modes = frame * SymmetricEigen::new(inside).eigenvectors;
-    // Each polarization takes the nearest of the remaining modes.
-    let mut left: Vec<Vec3> = modes.column_iter().map(|c| c.into_owned()).collect();
-    let mut nearest_mode = |polarization: &Vec3| {
-        let along = |k: &usize| left[*k].dot(polarization).abs();
-        let most = (0..left.len()).max_by(|a, b| along(a).total_cmp(&along(b)));
-        let mode = left.swap_remove(most.unwrap_or_default());
-        if mode.dot(polarization) < 0.0 { -mode } else { mode }
+    nearest_of(&all, modes.column_iter().map(|c| c.into_owned()).collect())
+}
+
+/// For each polarization the nearest of the `modes` that no one before it has taken, with its sign.
+pub(super) fn nearest_of(polarizations: &[Vec3], mut modes: Vec<Vec3>) -> Vec<Vec3> {
+    let mut nearest = |polarization: &Vec3| {
+        let along = |k: &usize| modes[*k].dot(polarization).abs();
+        let most = (0..modes.len()).max_by(|a, b| along(a).total_cmp(&along(b)))?;
+        let mode = modes.swap_remove(most);
+        Some(if mode.dot(polarization) < 0.0 { -mode } else { mode })
     };
-    polarizations.iter().map(&mut nearest_mode).collect()
+    polarizations.iter().filter_map(&mut nearest).collect()
 }

@@ -1,4 +1,4 @@
-//! K y = M x by conjugate gradients, compiled for each instruction set. No operation is contracted or reordered, so
+//! K y = f by conjugate gradients, compiled for each instruction set. No operation is contracted or reordered, so
 //! that all instruction sets give the same bits.
 
 use crate::dispersion::bloch::Bloch;
@@ -6,13 +6,14 @@ use crate::dispersion::error::SolveError;
 use crate::dispersion::waves::{Amplitude, Block, Row, WAVES, products};
 use pulp::WithSimd;
 
-/// Solves K y = M x for each wave, starting at y = x/ω²: conjugate gradients with a block Jacobi preconditioner.
+/// Solves K y = f for each wave: conjugate gradients with a block Jacobi preconditioner.
 #[derive(Debug)]
 pub(crate) struct Solve<'a> {
     pub(crate) bloch: &'a Bloch<'a>,
-    pub(crate) x: &'a Block,
-    /// ω² of each wave.
-    pub(crate) squares: &'a [f64; WAVES],
+    /// f.
+    pub(crate) load: Block,
+    /// The first y.
+    pub(crate) start: Block,
     /// Residual over the load.
     pub(crate) tolerance: f64,
     /// Iterations left.
@@ -28,17 +29,29 @@ impl WithSimd for Solve<'_> {
     }
 }
 
-impl Solve<'_> {
-    #[inline(always)]
-    fn run(self) -> Result<Block, SolveError> {
-        let Self { bloch, x, squares, tolerance, budget } = self;
-        let zero = || vec![Amplitude::STILL; x.len()];
-        let (mut y, mut rest, mut image) = (x.clone(), zero(), zero());
+impl<'a> Solve<'a> {
+    /// K y = M x, starting at y = x/ω², with the ω² of each wave.
+    pub(crate) fn inverse_iteration(
+        bloch: &'a Bloch<'a>,
+        x: &Block,
+        squares: &[f64; WAVES],
+        tolerance: f64,
+        budget: &'a mut u32,
+    ) -> Self {
+        let (mut start, mut load) = (x.clone(), vec![Amplitude::STILL; x.len()]);
         let softness = Row::of(squares.map(|s| if s > 0.0 { 1.0 / s } else { 0.0 }));
-        for row in y.iter_mut().flat_map(|y| y.re.iter_mut().chain(&mut y.im)) {
+        for row in start.iter_mut().flat_map(|y| y.re.iter_mut().chain(&mut y.im)) {
             *row = softness * *row;
         }
-        bloch.apply_mass(x, &mut rest);
+        bloch.apply_mass(x, &mut load);
+        Self { bloch, load, start, tolerance, budget }
+    }
+
+    #[inline(always)]
+    fn run(self) -> Result<Block, SolveError> {
+        let Self { bloch, load, start, tolerance, budget } = self;
+        let zero = || vec![Amplitude::STILL; load.len()];
+        let (mut y, mut rest, mut image) = (start, load.clone(), zero());
         let loads = products(&rest, &rest);
         bloch.apply(&y, &mut image);
         advance(Row::of([-1.0; WAVES]), &image, &mut rest);

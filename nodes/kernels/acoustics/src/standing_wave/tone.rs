@@ -22,6 +22,8 @@ pub(crate) struct Tone {
     pub(crate) stddev: f64,
     /// γ, 1/s.
     pub(crate) decay: f64,
+    /// Its standard deviation with correlated residuals, 1/s.
+    pub(crate) decay_stddev: f64,
 }
 
 impl Tone {
@@ -138,9 +140,10 @@ impl Fit {
         let covariance = self.normal(samples, times).0.try_inverse()?;
         let left: Vec<f64> = samples.iter().zip(times).map(|(y, t)| y - self.at(*t)).collect();
         let freedom = (samples.len() as f64 - 4.0).max(1.0);
-        let variance = covariance[(0, 0)] * self.error / freedom * correlation_factor(&left);
-        let stddev = self.omega * variance.sqrt();
-        stddev.is_finite().then_some(Tone { omega: self.omega, stddev, decay: self.decay })
+        let noise = self.error / freedom * correlation_factor(&left);
+        let stddev = |k: usize| self.omega * (covariance[(k, k)] * noise).sqrt();
+        let tone = Tone { omega: self.omega, stddev: stddev(0), decay: self.decay, decay_stddev: stddev(1) };
+        tone.stddev.is_finite().then_some(tone)
     }
 }
 

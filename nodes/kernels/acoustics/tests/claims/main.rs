@@ -1,9 +1,11 @@
 //! Tests of the virtual acoustic measurement.
 
+mod attenuation;
 mod chain;
 mod crystals;
 mod dispersion;
 mod instrument;
+mod modes;
 mod picks;
 mod sample;
 mod standing_wave;

@@ -2,17 +2,20 @@
 
 use crate::commands::packings::Measure;
 use grainlab_acoustic_probe::{Measured, Settings, messages};
-use grainlab_acoustics::AcousticsError;
+use grainlab_acoustics::dispersion::AttenuationSettings;
+use grainlab_acoustics::{AcousticsError, measure_attenuation};
 use grainlab_micromechanics::analyze;
 use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_recordings::import::Imported;
-use grainlab_results::{AcousticReport, MeasuredPacking, Probed};
+use grainlab_results::{AcousticReport, AttenuationReport, MeasuredPacking, Probed};
 
 /// Settings of the measurement.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
     pub(super) settings: Settings,
+    /// Settings of the attenuation, if it is computed.
+    pub(super) attenuation: Option<AttenuationSettings>,
 }
 
 /// The result for one packing.
@@ -44,7 +47,13 @@ impl Measure for Probe {
         };
         let messages = messages(&imported.header, packing, &found).map_err(|e| named(&e))?;
         let reading = WaveSpeedsReading::try_from(&messages.wave_speeds).map_err(|e| named(&e))?;
-        let acoustic = Some(AcousticReport::new(packing, reading));
+        let mut acoustic = AcousticReport::new(packing, reading);
+        acoustic.modes = found.modes;
+        if let Some(settings) = &self.attenuation {
+            let curves = measure_attenuation(packing, &self.settings.0, settings).map_err(|e| named(&e))?;
+            acoustic.attenuation = Some(AttenuationReport::new(packing, settings, curves));
+        }
+        let acoustic = Some(acoustic);
         Ok(Found { probed: Probed { packing: measured, acoustic }, messages: Some(messages) })
     }
 }
