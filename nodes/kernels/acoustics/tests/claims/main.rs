@@ -7,5 +7,6 @@ mod instrument;
 mod picks;
 mod sample;
 mod standing_wave;
+mod stated_errors;
 mod supercell;
 mod time_of_flight;
