@@ -25,6 +25,7 @@ mod agreement;
 mod axis;
 mod axis_error;
 mod chance;
+mod departure;
 mod determined;
 mod error;
 mod fit;

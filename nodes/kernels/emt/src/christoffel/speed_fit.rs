@@ -4,7 +4,7 @@ use super::agreement::{self, Agreement, AnisotropyScatter, SpeedConflict};
 use super::error::ChristoffelError;
 use super::ray::{self, Ray};
 use super::weights::{errors, weights};
-use super::{determined, fit, prior_scatter};
+use super::{departure, determined, fit, prior_scatter};
 use crate::conditions::{Conditions, Measured};
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
@@ -128,6 +128,11 @@ pub fn moduli_of_sample(
             let scatter = 2.0 * with_it.added;
             let allowed = agreement::OWN_SCATTER.max(UNUSUAL * 2.0 * with_it.usual);
             (fit, error) = (with_it.fit, with_it.unit);
+            if let (Some(unit), Some(axis)) = (error, axis) {
+                let axis = axis.normalize();
+                fit.covariance =
+                    departure::covariance(speeds, &axis, &fit, errors, with_it.added) / unit.powi(2);
+            }
             match agreement {
                 Agreement::Beyond(_) if scatter <= allowed => {
                     anisotropy_scatter = Some(AnisotropyScatter { scatter });
