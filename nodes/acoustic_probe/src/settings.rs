@@ -81,6 +81,7 @@ fn method(parameters: &Parameters) -> Result<MethodSettings, SettingsError> {
                 wavelengths,
                 tolerance: parameters.get("tolerance"),
                 max_iterations: count(parameters, "max_iterations"),
+                ..Default::default()
             }));
         }
         "standing_wave" => {

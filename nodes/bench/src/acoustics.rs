@@ -2,6 +2,7 @@
 
 mod args;
 mod curves;
+mod judge;
 mod measure;
 mod noise;
 mod plot;
@@ -18,6 +19,9 @@ use grainlab_node_kit::Exit;
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if !args.noise.is_empty() {
         return noise::run(args);
+    }
+    if args.judge {
+        return judge::run(args);
     }
     let mut packings = args.packing.iter().map(|path| load(Some(path))).collect::<Result<Vec<_>, _>>()?;
     if packings.is_empty() {

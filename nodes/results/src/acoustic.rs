@@ -41,7 +41,7 @@ pub static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { AcousticReport:
     "g13_pa" "G13" "Pa" "C44 about the axis" Scalar, |a| a.medium.modulus(Modulus::G13);
     "g13_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::G13);
     "theta_pa" "Θ" "Pa" "bulk modulus, if all other moduli are known" Scalar, |a| a.theta();
-    "theta_sigma_pa" "" "Pa" "its standard deviation" Aside, |a| a.medium.stddev(Modulus::Theta);
+    "theta_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.theta().and(a.medium.stddev(Modulus::Theta));
     "ti_c11_pa" "C11" "Pa" "P modulus across the axis" Scalar, |a| a.medium.modulus(Modulus::C11);
     "c11_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::C11);
     "ti_c33_pa" "C33" "Pa" "P modulus along the axis" Scalar, |a| a.medium.modulus(Modulus::C33);
@@ -62,7 +62,13 @@ impl AcousticReport {
     pub fn new(packing: &Packing, reading: WaveSpeedsReading) -> Self {
         let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
         let conditions = Conditions::at(reading.pressure);
-        let medium = WaveModuli::of_speeds(&reading.measured(), density, reading.axis, conditions);
+        let medium = WaveModuli::of_speeds(
+            &reading.measured(),
+            density,
+            reading.axis,
+            conditions,
+            Some(packing.grains() as f64),
+        );
         let bulk_density = packing.solid_fraction() * packing.material.density;
         Self { reading, bulk_density, medium, modes: Vec::new(), attenuation: None }
     }
@@ -177,19 +183,19 @@ mod tests {
         residual: 0.0,
     };
 
-    /// A gas of one grain: only its density is used.
+    /// A gas: only its density and its number of grains are used.
     fn packing() -> Packing {
         use grainlab_core::{Cell, Mat3, Material};
         Packing {
             step: 12,
             time: 0.0,
-            cell: Cell::cube(2e-4).unwrap(),
+            cell: Cell::cube(2e-3).unwrap(),
             deformation: Mat3::identity(),
-            ids: vec![0],
-            radii: vec![1e-4],
-            positions: vec![Vec3::zeros()],
-            velocities: vec![Vec3::zeros()],
-            spins: vec![Vec3::zeros()],
+            ids: (0..1000).collect(),
+            radii: vec![1e-4; 1000],
+            positions: vec![Vec3::zeros(); 1000],
+            velocities: vec![Vec3::zeros(); 1000],
+            spins: vec![Vec3::zeros(); 1000],
             contacts: Vec::new(),
             material: Material::GLASS,
             law: Default::default(),

@@ -15,6 +15,8 @@ Examples:
     grainlab bench acoustics --packing recordings/runs/s2-1-1 --out acoustics
   A full set of speeds by dispersion:
     grainlab bench acoustics --survey complete --method dispersion
+  Whether stated errors hold, over the packings of many runs:
+    grainlab bench acoustics --judge --method dispersion,standing_wave --packing recordings/runs/s2-1-1
   Microstructure from speeds with errors of 0 to 3 %, and from moduli of the network (every packing of every file):
     grainlab bench acoustics --survey complete --noise 0,0.001,0.003,0.01,0.03 --packing recordings/runs/s2-1-1";
 
@@ -42,6 +44,10 @@ pub struct Args {
     /// with the counted one
     #[arg(long, value_name = "REL", value_delimiter = ',', value_parser = noise, conflicts_with_all = ["method", "out"])]
     pub(super) noise: Vec<f64>,
+    /// Instead: compare the errors of all speeds of every packing of every file with those stated, one row a method,
+    /// with the default settings
+    #[arg(long, conflicts_with_all = ["noise", "out"])]
+    pub(super) judge: bool,
     /// Draws of the noise per packing
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(super) draws: u32,

@@ -38,7 +38,8 @@ pub(super) fn svg(packing: &Packing) -> Result<String, Failure> {
 fn seen(packing: &Packing, rays: &[Ray]) -> Vec<Vec<DispersionPoint>> {
     let at = |wavelength: f64| {
         let wavelengths = vec![wavelength, LONG, 2.0 * LONG];
-        let settings = dispersion::Settings { wavelengths, tolerance: 1e-4, ..Default::default() };
+        let settings =
+            dispersion::Settings { wavelengths, tolerance: 1e-4, doublings: 0, ..Default::default() };
         dispersion::curves(packing, rays, &settings).ok()
     };
     let all: Vec<Vec<DispersionCurve>> = SHOWN.into_iter().filter_map(at).collect();
@@ -78,7 +79,7 @@ fn draw(
     Figure {
         title: "Dispersion of a packing: how much slower shorter waves are".into(),
         subtitle:
-            "full: modes of the frozen network; hollow: standing waves of moving grains; lines: b q^2, taken from 160 to 320 diameters"
+            "full: modes of the frozen network; hollow: standing waves of moving grains; lines: b q^2, taken from 320 to 1280 diameters"
                 .into(),
         x: Axis::log("wavelength, mean grain diameters"),
         y: Axis::log("1 - v^2/v0^2"),

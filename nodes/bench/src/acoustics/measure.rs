@@ -16,14 +16,7 @@ use std::time::Instant;
 
 /// One row per method and value.
 pub(super) fn rows(packing: &Packing, args: &Args) -> Result<Vec<Row>, Failure> {
-    let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
-    let springs = Springs::with_friction(packing.friction);
-    let analysis = grainlab_micromechanics::analyze(
-        packing,
-        &grainlab_micromechanics::Settings { springs, ..Default::default() },
-    )
-    .map_err(|e| invalid(&e))?;
-    let stiffness = analysis.report.elasticity.into_stiffness().map_err(|e| invalid(&e))?.tensor;
+    let stiffness = stiffness(packing)?;
     let mut rows = Vec::new();
     for method in args.methods() {
         for (value, way) in ways(*method, args) {
@@ -32,6 +25,15 @@ pub(super) fn rows(packing: &Packing, args: &Args) -> Result<Vec<Row>, Failure> 
         }
     }
     Ok(rows)
+}
+
+/// The stiffness of the frozen network.
+pub(super) fn stiffness(packing: &Packing) -> Result<Stiffness, Failure> {
+    let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
+    let springs = Springs::with_friction(packing.friction);
+    let settings = grainlab_micromechanics::Settings { springs, ..Default::default() };
+    let analysis = grainlab_micromechanics::analyze(packing, &settings).map_err(|e| invalid(&e))?;
+    Ok(analysis.report.elasticity.into_stiffness().map_err(|e| invalid(&e))?.tensor)
 }
 
 fn ways(method: Method, args: &Args) -> Vec<(Option<f64>, MethodSettings)> {

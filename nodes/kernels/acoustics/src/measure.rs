@@ -83,6 +83,13 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
             (curves, Vec::new(), traces, warnings)
         }
     };
+    let mut curves = curves;
+    let [least, most] = frequencies(&curves);
+    let effective_density = backbone.effective_density(least);
+    for curve in &mut curves {
+        let drift = drift(curve, &backbone, &effective_density);
+        curve.stddev = curve.stddev.hypot(0.5 * drift * curve.speed);
+    }
     let (method, amplitude) = match &settings.method {
         MethodSettings::Dispersion(_) => (WaveMethod::Dispersion, 0.0),
         MethodSettings::StandingWave(of) => (WaveMethod::StandingWave, of.amplitude),
@@ -112,8 +119,6 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     }));
     waves.retain(is_speed);
     warnings.extend(noisy(&waves));
-    let [least, most] = frequencies(&curves);
-    let effective_density = backbone.effective_density(least);
     let density = effective_density.mean();
     let density_stddev = effective_density.spread().hypot(density - backbone.effective_density(most).mean());
     // A smaller one is rounding.
@@ -147,6 +152,17 @@ pub fn with_speed_noise(waves: &[MeasuredWave], noise: f64, seed: u64) -> Vec<Me
 fn frequencies(curves: &[DispersionCurve]) -> [f64; 2] {
     let all = || curves.iter().flat_map(|c| &c.points).map(|p| p.speed * p.wavenumber);
     [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)]
+}
+
+/// Relative difference between `density` and that of the mass which follows the polarization at the frequencies of the
+/// curve: motions of a few grains whose own frequency is near follow some of its waves only.
+fn drift(curve: &DispersionCurve, backbone: &Backbone, density: &EffectiveDensity) -> f64 {
+    let of = |d: &EffectiveDensity| curve.polarization.dot(&(d.density * curve.polarization));
+    let whole = of(density);
+    let differences = frequencies(std::slice::from_ref(curve))
+        .into_iter()
+        .map(|f| (of(&backbone.effective_density(f)) - whole).abs() / whole);
+    differences.fold(0.0, f64::max)
 }
 
 fn is_speed(measured: &MeasuredWave) -> bool {

@@ -37,8 +37,8 @@ use grainlab_core::Packing;
 ///
 /// The standard deviation of a curve's speed includes the differences of ρv² from n·C·n of the unstressed frozen
 /// network: terms of the order of the pressure; sin² of the angle between the polarization sent and that of the
-/// packing's mode, from the transverse motion of the longest wave; and a fifth of the dispersion of the longest wave,
-/// for departures from a smooth dispersion law.
+/// packing's mode, from the transverse motion of the longest wave; an eighth of the dispersion of the longest wave,
+/// for departures from a smooth dispersion law; and half of the mean scatter of all curves of the packing.
 #[allow(clippy::type_complexity)]
 pub fn curves(
     packing: &Packing,

@@ -54,6 +54,18 @@ pub enum Warning {
     /// The waves are those of a network that lacks springs of the contact law.
     #[error("waves of the contact network: {0}")]
     Springs(LeftOut),
+    /// The waves are too short for an extrapolation to long ones.
+    #[error(
+        "the waves along {} are too short: the last term of their series is {ratio:.1} times the one before at the shortest, \
+         and the stated errors may be too small; use longer waves",
+        in_brackets(direction)
+    )]
+    TooShort {
+        /// Direction of propagation.
+        direction: [f64; 3],
+        /// Last term of v² over the one before at the shortest wave.
+        ratio: f64,
+    },
     /// A mode was left out.
     #[error("left out: {0}")]
     LeftOut(AcousticsError),

@@ -16,16 +16,17 @@ pub struct WaveModuli {
 
 impl WaveModuli {
     /// From the waves in a sample of this density, kg/m³, in the state `conditions`; `named` is the axis of
-    /// symmetry, if known.
+    /// symmetry, and `grains` the number of grains of the sample, if known.
     pub fn of_speeds(
         speeds: &[WaveSpeed],
         density: Measured,
         named: Option<Vec3>,
         conditions: Conditions,
+        grains: Option<f64>,
     ) -> Self {
         let inferred = || christoffel::find_axis(speeds).ok().map(|found| found.axis);
         let axis = named.or_else(inferred).unwrap_or_else(Vec3::z);
-        Self { axis, fitted: christoffel::moduli_from_speeds(speeds, density, Some(axis), conditions) }
+        Self { axis, fitted: christoffel::moduli_of_sample(speeds, density, Some(axis), conditions, grains) }
     }
 
     /// One of the moduli, Pa; `None` where the speeds do not determine it.

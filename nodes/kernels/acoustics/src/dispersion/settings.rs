@@ -16,11 +16,19 @@ pub struct Settings {
     pub tolerance: f64,
     /// Maximum number of conjugate gradient iterations per wave vector.
     pub max_iterations: u32,
+    /// How often all wavelengths are doubled along a ray whose speeds have no convergent series at those set, at most
+    /// 8. Packings near isostaticity need longer waves.
+    pub doublings: u32,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { wavelengths: vec![160.0, 240.0, 320.0], tolerance: 1e-5, max_iterations: 20_000 }
+        Self {
+            wavelengths: vec![320.0, 640.0, 1280.0],
+            tolerance: 1e-5,
+            max_iterations: 20_000,
+            doublings: 5,
+        }
     }
 }
 
@@ -43,6 +51,8 @@ impl Settings {
         let (t, n) = (self.tolerance, self.max_iterations);
         range("tolerance", t, (1e-12..=1e-2).contains(&t), "between 1e-12 and 1e-2")?;
         range("max_iterations", f64::from(n), n > 0, "1 or more")?;
+        let d = self.doublings;
+        range("doublings", f64::from(d), d <= 8, "at most 8")?;
         Ok(self)
     }
 }

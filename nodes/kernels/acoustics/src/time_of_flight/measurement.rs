@@ -29,6 +29,10 @@ const FIRST_WAVELENGTH: f64 = 20.0;
 const TYPICAL_SPEED: f64 = 0.75;
 const FIRST_RECEIVERS: (u32, f64, f64) = (3, 0.75, 2.0);
 
+/// Greatest speed over that of a wave in which every grain follows the mean deformation; more than 1 for noise and for
+/// large amplitudes, which stiffen contacts.
+const FASTEST: f64 = 2.0;
+
 /// Relative change of the trace at half the amplitude above which the response is nonlinear.
 const NONLINEAR: f64 = 1e-2;
 
@@ -79,8 +83,17 @@ impl TimeOfFlight<'_> {
             traces.push(trace);
         }
         let mut curve = phase_velocity::curve(&traces, &arrivals, settings.cycles, settings.pick, diameter)?;
+        // No long wave is faster than one in which every grain follows the mean deformation.
+        let affine = self.sample.affine_speed(&self.path.direction, &self.path.polarization);
+        if curve.speed > FASTEST * affine {
+            let reason = "the picked feature is faster than any long wave; the burst is lost to scattering, use longer waves";
+            return Err(self.path.no_signal("arrival", reason));
+        }
+        // Contact forces change rho v^2 of moving grains by the order of the pressure.
+        let modulus = self.sample.density() * curve.speed.powi(2);
+        curve.stddev = curve.stddev.hypot(0.5 * self.sample.pressure() / modulus * curve.speed);
         let warnings = self.nonlinearity(settings, speed, &bursts, &responses, &mut curve)?;
-        Ok(PathResult { curve, traces, warnings })
+        Ok(PathResult { curve, traces, warnings, scatter: 0.0 })
     }
 
     /// The speed of a first burst, m/s, from which frequencies and receivers follow.

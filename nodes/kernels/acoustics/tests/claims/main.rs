@@ -9,5 +9,6 @@ mod modes;
 mod picks;
 mod sample;
 mod standing_wave;
+mod stated_errors;
 mod supercell;
 mod time_of_flight;

@@ -23,6 +23,8 @@ pub(super) struct Fit {
     pub(super) shares: Vec<f64>,
     /// Per speed: its leverage on the fit, from 0 to 1.
     pub(super) leverages: Vec<f64>,
+    /// Per speed: change of the specific moduli by its relative error, m²/s².
+    pub(super) gains: Vec<Column>,
     /// Covariance of the specific moduli for relative errors of 1 at weight 1, m⁴/s⁴.
     pub(super) covariance: Square,
     /// Changes of the specific moduli, m²/s², that the speeds do not determine: one scale along each undetermined
@@ -75,11 +77,13 @@ fn finish(problem: &Problem<'_>, point: &Point, mut open: Vec<Column>, weights: 
         open.push(scale * Column::ith(2, 1.0));
     }
     let leverage = |((_, row), weight): (&(f64, Column), &f64)| weight * row.dot(&(relative * row));
+    let gain = |((_, row), weight): (&(f64, Column), &f64)| scale * (relative * row) * *weight;
     Fit {
         specific: point.specific,
         residuals: point.rows.iter().map(|(residual, _)| *residual).collect(),
         shares: point.shares.clone(),
         leverages: point.rows.iter().zip(weights).map(leverage).collect(),
+        gains: point.rows.iter().zip(weights).map(gain).collect(),
         covariance: scale * relative * scale,
         open,
         scale: problem.scale,

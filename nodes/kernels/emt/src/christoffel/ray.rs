@@ -115,6 +115,16 @@ impl Ray {
         Ok((ray, if is_turned { 1.0 } else { nearest }))
     }
 
+    /// sin² of the angle between direction and axis.
+    pub(super) fn sin_squared(&self) -> f64 {
+        self.sin * self.sin
+    }
+
+    /// Whether it is polarized across the plane of direction and axis.
+    pub(super) fn is_horizontal(&self) -> bool {
+        self.horizontal
+    }
+
     /// The same ray as one of two S modes that may be turned from those of the medium.
     pub(super) fn mixed(self) -> Self {
         Self { mixed: true, named: true, ..self }

@@ -4,7 +4,7 @@ use super::agreement::{self, Agreement, AnisotropyScatter, SpeedConflict};
 use super::error::ChristoffelError;
 use super::ray::{self, Ray};
 use super::weights::{errors, weights};
-use super::{determined, fit};
+use super::{departure, determined, fit, prior_scatter};
 use crate::conditions::{Conditions, Measured};
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
@@ -12,6 +12,19 @@ use grainlab_core::{Vec3, WaveSpeed};
 
 /// Relative precision of the error that is added for the scatter of the sample.
 const OWN_ERROR_PRECISION: f64 = 1e-4;
+
+/// Scatter over the usual one of a sample beyond which the speeds are in conflict.
+const UNUSUAL: f64 = 3.0;
+
+/// A fit with the scatter of the sample as an error of each speed.
+pub(super) struct ScatteredFit {
+    /// Root mean square of the relative error added, and that before the speeds were measured.
+    pub(super) added: f64,
+    pub(super) usual: f64,
+    pub(super) fit: fit::Fit,
+    /// Error of a speed of weight 1.
+    pub(super) unit: Option<f64>,
+}
 
 /// Moduli from wave speeds, and how well the speeds agree.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +92,18 @@ pub fn moduli_from_speeds(
     axis: Option<Vec3>,
     conditions: Conditions,
 ) -> Result<SpeedFit, ChristoffelError> {
+    moduli_of_sample(speeds, density, axis, conditions, None)
+}
+
+/// The same for a sample of so many `grains`, 1 or more, if their number is known: the scatter that samples of this size and stiffness
+/// have is then part of the errors of the moduli, also where the speeds are too few to show it.
+pub fn moduli_of_sample(
+    speeds: &[WaveSpeed],
+    density: Measured,
+    axis: Option<Vec3>,
+    conditions: Conditions,
+    grains: Option<f64>,
+) -> Result<SpeedFit, ChristoffelError> {
     let rays = rays(speeds, axis)?;
     check_density(density)?;
     let errors = errors(rays.iter().map(|r| r.error));
@@ -97,6 +122,25 @@ pub fn moduli_from_speeds(
     });
     let (mut fit, mut error, mut anisotropy_scatter, mut conflict) = (fit, unit, None, None);
     match (agreement, &errors) {
+        (Agreement::Beyond(_) | Agreement::Within, Some(errors)) if grains.is_some() => {
+            let grains = grains.unwrap_or(1.0).max(1.0);
+            let with_it = prior_scatter::with_prior(&rays, errors, &fit, grains)?;
+            let scatter = 2.0 * with_it.added;
+            let allowed = agreement::OWN_SCATTER.max(UNUSUAL * 2.0 * with_it.usual);
+            (fit, error) = (with_it.fit, with_it.unit);
+            if let (Some(unit), Some(axis)) = (error, axis) {
+                let axis = axis.normalize();
+                fit.covariance =
+                    departure::covariance(speeds, &axis, &fit, errors, with_it.added) / unit.powi(2);
+            }
+            match agreement {
+                Agreement::Beyond(_) if scatter <= allowed => {
+                    anisotropy_scatter = Some(AnisotropyScatter { scatter });
+                }
+                Agreement::Beyond(found) => conflict = Some(found),
+                _ => {}
+            }
+        }
         (Agreement::Beyond(found), Some(errors)) => {
             let (added, with_it, unit) = with_own_error(&rays, errors, &fit)?;
             let scatter = 2.0 * added;

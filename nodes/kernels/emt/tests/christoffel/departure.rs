@@ -181,3 +181,58 @@ fn a_speed_that_is_known_far_better_than_the_sample_scatters_does_not_outweigh_t
         }
     }
 }
+
+/// Exact speeds along `n`, polarized in the plane of `n` and e3 as its modes are, and across it.
+fn aligned(packing: &Stiffness, n: &Vec3) -> [WaveSpeed; 3] {
+    let across = Vec3::z().cross(n).try_normalize(1e-9).unwrap_or_else(Vec3::y);
+    let other = across.cross(n);
+    let gamma = packing.christoffel(n);
+    let of = |a: &Vec3, b: &Vec3| a.dot(&(gamma * b));
+    let plane = nalgebra::Matrix2::new(of(n, n), of(n, &other), of(n, &other), of(&other, &other));
+    let turn = plane.symmetric_eigen().eigenvectors;
+    [n * turn[(0, 0)] + other * turn[(1, 0)], n * turn[(0, 1)] + other * turn[(1, 1)], across].map(|p| {
+        let speed = (of(&p, &p) / DENSITY).sqrt();
+        WaveSpeed { direction: *n, polarization: p, speed, stddev: Some(1e-5 * speed) }
+    })
+}
+
+/// Deviations of the moduli of two packings of 2,000 grains in 36 orientations about e3, and the errors stated for C13.
+fn turned(directions: &[Vec3]) -> (Vec<f64>, Vec<f64>) {
+    let (mut all, mut stated) = (Vec::new(), Vec::new());
+    for stiffness in [ANISOTROPIC, ISOTROPIC] {
+        for turn in 0..18 {
+            let turn = nalgebra::Rotation3::from_axis_angle(&Vec3::z_axis(), f64::from(turn) * 0.35);
+            let packing = packing(&stiffness).rotated(turn.matrix());
+            let speeds: Vec<WaveSpeed> = directions.iter().flat_map(|n| aligned(&packing, n)).collect();
+            let (density, axis) = (Measured::exact(DENSITY), Some(Vec3::z()));
+            let conditions = Conditions::at(50e3);
+            let fitted =
+                christoffel::moduli_of_sample(&speeds, density, axis, conditions, Some(2000.0)).unwrap();
+            assert_eq!((fitted.conflict, fitted.undetermined.len()), (None, 0));
+            all.extend(deviations(&fitted, &packing).into_iter().map(|(_, sigma)| sigma));
+            let c13 = Modulus::C13 as usize;
+            stated.push(fitted.observation.covariance.unwrap()[(c13, c13)].sqrt());
+        }
+    }
+    (all, stated)
+}
+
+#[test]
+fn three_rays_have_errors_that_hold_and_rays_that_average_over_azimuths_have_far_smaller_ones() {
+    let at = |theta: f64, azimuth: f64| {
+        Vec3::new(theta.sin() * azimuth.cos(), theta.sin() * azimuth.sin(), theta.cos())
+    };
+    let (right, half) = (std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_4);
+    let (few, few_stated) = turned(&[at(0.0, 0.0), at(right, 0.0), at(half, 0.0)]);
+    let across = (0..3).map(|k| at(right, f64::from(k) * std::f64::consts::PI / 3.0));
+    let between = (0..5).map(|k| at(half, f64::from(k) * std::f64::consts::TAU / 5.0));
+    let complete: Vec<Vec3> = std::iter::once(Vec3::z()).chain(across).chain(between).collect();
+    let (many, many_stated) = turned(&complete);
+    for sigmas in [few, many] {
+        let rms = (sigmas.iter().map(|s| s * s).sum::<f64>() / sigmas.len() as f64).sqrt();
+        let worst = sigmas.iter().fold(0.0f64, |most, s| most.max(s.abs()));
+        assert!((0.2..1.5).contains(&rms) && worst < 4.0, "{rms} {worst}");
+    }
+    let sum = |stated: Vec<f64>| stated.iter().sum::<f64>();
+    assert!(sum(many_stated) < 0.3 * sum(few_stated));
+}

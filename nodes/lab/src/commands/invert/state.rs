@@ -136,13 +136,15 @@ impl State {
     }
 
     /// Whether Θ follows from the other moduli: with an error of its own, it would count as an additional
-    /// measurement.
+    /// measurement, unless all others have theirs.
     fn theta_follows(&self) -> bool {
         let mut others = Modulus::ALL.into_iter().filter(|m| *m != Modulus::Theta);
+        let own_error = self.sigma[Modulus::Theta as usize].is_some();
+        let others_have_errors = others.clone().all(|m| self.sigma[m as usize].is_some());
         let errors_known = self.relative_error.is_some() || self.sigma.iter().any(Option::is_some);
         self.projected
             && errors_known
-            && self.sigma[Modulus::Theta as usize].is_none()
+            && (!own_error || others_have_errors)
             && others.all(|m| self.moduli.get(m).is_some())
     }
 
@@ -220,6 +222,19 @@ mod tests {
             [4.0 * 3.6, 4.0 * 1.4, 4.0 * 1.4, 4.0].map(|part: f64| (part / 9.0).powi(2)).iter().sum::<f64>();
         assert!((variance(&medium(true)) / follows - 1.0).abs() < 1e-12);
         assert!((variance(&medium(false)) / (0.01 * 1840.0 / 9.0f64).powi(2) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_stated_error_of_theta_is_no_additional_measurement_where_all_others_have_theirs() {
+        let way = &ways(&["relaxed".to_owned()], &["default".to_owned()], None).unwrap()[0];
+        let observed = |stated: f64| {
+            let mut state = medium(true);
+            for (modulus, value) in state.moduli.known().collect::<Vec<_>>() {
+                state.set_sigma(modulus, if modulus == Modulus::Theta { stated } else { 0.01 * value });
+            }
+            state.observation(way).unwrap().checked().unwrap()
+        };
+        assert_eq!(observed(1.0), observed(50.0));
     }
 
     #[test]
