@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""LAMMPS, LIGGGHTS, YADE and grainlab on one packing with one setting, in turns; each code times its stepping loop.
+"""LAMMPS, LIGGGHTS, YADE, DIRT and grainlab on one packing with one setting, in turns; each code times its stepping loop.
 
 Every repetition runs every code once, so that other load on the machine affects all codes; ratios are taken within a
 repetition. Codes that are not installed are reported and left out. README.md has their installation and the meaning of
@@ -17,6 +17,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 
 from peers.comparison import Comparison, processor, say  # noqa: E402
+from peers.dirt import Dirt  # noqa: E402
 from peers.grainlab import Grainlab  # noqa: E402
 from peers.lammps import Lammps  # noqa: E402
 from peers.liggghts import Liggghts  # noqa: E402
@@ -57,6 +58,7 @@ def compare(options: argparse.Namespace, directory: Path) -> int:
     comparison.find("LAMMPS", lambda: Lammps.find(options.lammps, directory))
     comparison.find("LIGGGHTS", lambda: Liggghts.find(options.liggghts, directory))
     comparison.find("YADE", lambda: Yade.find(options.yade, directory))
+    comparison.find("DIRT", lambda: Dirt.find(options.dirt, directory))
     comparison.run(options.sizes, options.threads, options.only)
 
     result = json.dumps(comparison.result(), indent=1)
@@ -119,6 +121,7 @@ def arguments() -> argparse.Namespace:
     add("--lammps", type=Path, help="lmp (default: beside this Python, else on PATH)")
     add("--liggghts", type=Path, help="liggghts (default: on PATH)")
     add("--yade", type=Path, help="yade (default: on PATH)")
+    add("--dirt", type=Path, metavar="FOLDER", help="build DIRT in this folder, or use the one built there (default: without it)")
     add("--format", choices=["table", "json"], default="table", help="format of standard output (default table)")
     add("--out", type=Path, help="a file for the JSON, independent of the format")
     return parser.parse_args()

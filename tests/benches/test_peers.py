@@ -17,9 +17,10 @@ sys.dont_write_bytecode = True
 from compare_peers import PACKING  # noqa: E402
 from peers.checks import checks  # noqa: E402
 from peers.comparison import replicas_of  # noqa: E402
+from peers import dirt  # noqa: E402
 from peers.lammps import last_loop, state  # noqa: E402
 from peers.liggghts import cpu_seconds  # noqa: E402
-from peers.measurement import Case, Measurement  # noqa: E402
+from peers.measurement import Case, Job, Measurement  # noqa: E402
 from peers.packing import Packing, PackingError, State  # noqa: E402
 from peers.process import RunFailed, run  # noqa: E402
 from peers.report import Group  # noqa: E402
@@ -97,6 +98,39 @@ class WhatCodesPrint(InTemporaryFolder):
         clock.write_text(line.format(100, 10))
         with self.assertRaisesRegex(RunFailed, "before and after"):
             cpu_seconds(clock)
+
+
+    def test_the_loop_of_dirt_says_one_line_with_two_states(self):
+        line = 'dirt: {"grains": 2, "steps": 5, "wall_s": 1, "cpu_s": 2, "rebuilds": 0, "start": {"pressure": 1e5, '
+        line += '"coordination": 5.1}, "end": {"pressure": 9e4, "coordination": 5.2}}\n'
+        found = dirt.measurement("banner\n" + line)
+        self.assertEqual((found.grains, found.cpu_s, found.rebuilds), (2, 2, 0))
+        self.assertEqual((found.start, found.end), (State(1e5, 5.1), State(9e4, 5.2)))
+        with self.assertRaisesRegex(RunFailed, "no result"):
+            dirt.measurement("banner\n")
+
+
+class Dirt(InTemporaryFolder):
+    def job(self) -> Job:
+        packing = Packing((0, 0, 0), (6.0, 5.0, 4.0), 0.5, 2.0, [(0.1, 1.0, 1.0), (4.2, 1.0, 1.0)])
+        return Job(packing, self.folder / "x", 2, 1, 100, self.folder, 1.0, Setting())
+
+    def test_gets_every_copy_of_every_grain_and_the_setting_of_all_codes(self):
+        rows = dirt.table(self.job()).splitlines()
+        self.assertEqual((rows[0], len(rows)), ("x,y,z,radius", 1 + 16))
+        self.assertIn("6.1,1.0,1.0,0.5", rows)
+        text = dirt.configuration(self.job())
+        for line in ("y_high = 10.0", 'boundary_z = "periodic"', "steps = 111", "friction = 0.1", "dt = 3e-08"):
+            self.assertIn(line + "\n", text)
+
+    def test_members_of_soil_core_are_made_public_and_another_version_is_refused(self):
+        known = "    pub(crate) natoms: u64,\n    pub(crate) nlocal: u32,\n    pub(crate) nghost: u32,\n"
+        known += "    natoms: u64, nlocal: u32,\n    pub(crate) fn try_register<T>(\n"
+        public = dirt.opened(known)
+        self.assertEqual(public.count("    pub n"), 3)
+        self.assertIn("    pub fn try_register<T>", public)
+        with self.assertRaisesRegex(RunFailed, "not the known 0.1.4"):
+            dirt.opened(known.replace("nghost", "ghosts"))
 
 
 class AChild(InTemporaryFolder):
@@ -182,7 +216,7 @@ if "--help" not in sys.argv and "--version" not in sys.argv:
     def test_names_what_is_not_installed_and_goes_on_without(self):
         done = self.command("--grainlab", str(self.folder / "grainlab"), "--format", "json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        for peer in ("LAMMPS", "LIGGGHTS", "YADE"):
+        for peer in ("LAMMPS", "LIGGGHTS", "YADE", "DIRT"):
             self.assertRegex(done.stderr, f"NOT RUN: {peer}: .*To have it: ")
         result = json.loads(done.stdout)
         self.assertEqual(result["rows"][0]["wall_particle_steps_per_second"]["median"], 2e7)

@@ -1,11 +1,12 @@
 //! `grainlab bench accuracy`: cost and error of each numerical setting.
 
-mod front;
-mod knobs;
-mod measure;
+pub(crate) mod front;
+pub(crate) mod integration;
+pub(crate) mod knobs;
+pub(crate) mod measure;
 mod plot;
-mod report;
-mod row;
+pub(crate) mod report;
+pub(crate) mod row;
 mod runs;
 mod statistics;
 mod table;
@@ -18,6 +19,7 @@ use grainlab_console::{Failure, Format, json, print, say};
 use grainlab_node_kit::Exit;
 use grainlab_scene::Scene;
 use knobs::{Knob, Servoed, Setting, converged};
+use report::Report;
 use row::Sample;
 use runs::Job;
 use std::path::PathBuf;
@@ -68,33 +70,27 @@ pub struct Args {
     format: Format,
 }
 
+/// What to vary on which scene.
+pub(crate) struct Plan<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) knobs: &'a [Knob],
+    /// Number of seeds, 2 or more.
+    pub(crate) seeds: u32,
+    /// Fewer values per knob and a less accurate reference.
+    pub(crate) quick: bool,
+    pub(crate) threads: usize,
+}
+
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let scene = scene(args)?;
-    let count = args.seeds.unwrap_or(if args.quick { 2 } else { 8 });
-    let seeds: Vec<u64> = (0..u64::from(count)).map(|n| scene.seed.wrapping_add(n)).collect();
     folder::ready(args.out.as_deref())?;
-    let knobs = if args.knobs.is_empty() { Knob::value_variants() } else { &args.knobs };
-    let threads = args.threads as usize;
-    let unlimited = vec![u64::MAX; seeds.len()];
-    let first = every_seed(&[(&scene, &unlimited)], &seeds, threads, "default");
-    let first = first.into_iter().next().unwrap_or_default();
-    let limits: Vec<u64> =
-        first.iter().map(|r| r.as_ref().map_or(u64::MAX, |o| PATIENCE * o.steps)).collect();
-    let careful = converged(&scene, args.quick);
-    let settings = settings(knobs, &scene, servoed(&first), args.quick);
-    // The default once more, so that it is timed together with the others.
-    let mut jobs = vec![(&careful, &unlimited), (&scene, &limits)];
-    jobs.extend(settings.iter().filter(|s| !s.default).map(|s| (&s.scene, &limits)));
-    let mut results = every_seed(&jobs, &seeds, threads, "settings").into_iter();
-    let (reference, default) = (results.next().unwrap_or_default(), results.next().unwrap_or_default());
-    let sample = |s: Setting| {
-        let sample = if s.default { default.clone() } else { results.next().unwrap_or_default() };
-        (s, sample)
-    };
-    let samples: Vec<(Setting, Sample)> = settings.into_iter().map(sample).collect();
-    let Some(report) = report::report(&scene, seeds, (&careful, &reference), &default, &samples) else {
-        return Err(no_reference(&reference, &default));
-    };
+    let report = measured(&Plan {
+        scene: &scene,
+        knobs: if args.knobs.is_empty() { Knob::value_variants() } else { &args.knobs },
+        seeds: args.seeds.unwrap_or(if args.quick { 2 } else { 8 }),
+        quick: args.quick,
+        threads: args.threads as usize,
+    })?;
     if let Some(folder) = &args.out {
         folder::write(folder, "accuracy.json", &json(&report)?)?;
         folder::write(folder, "accuracy.svg", &plot::figure(&report).svg(Theme::Light))?;
@@ -107,12 +103,46 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-fn scene(args: &Args) -> Result<Scene, Failure> {
-    let scene = match &args.scene {
-        Some(name) => grainlab_console::scenes::load(name, &[], None)?.scene,
-        None => Scene::parse(PRESS).map_err(Failure::failed)?,
+/// Runs every setting of the plan, and compares it with the converged run.
+pub(crate) fn measured(plan: &Plan<'_>) -> Result<Report, Failure> {
+    let Plan { scene, quick, threads, .. } = *plan;
+    let seeds = seeds(scene, plan.seeds);
+    let unlimited = vec![u64::MAX; seeds.len()];
+    let first = every_seed(&[(scene, &unlimited)], &seeds, threads, "default");
+    let first = first.into_iter().next().unwrap_or_default();
+    let limits: Vec<u64> =
+        first.iter().map(|r| r.as_ref().map_or(u64::MAX, |o| PATIENCE * o.steps)).collect();
+    let careful = converged(scene, quick);
+    let settings = settings(plan.knobs, scene, servoed(&first), quick);
+    // The default once more, so that it is timed together with the others.
+    let mut jobs = vec![(&careful, &unlimited), (scene, &limits)];
+    jobs.extend(settings.iter().filter(|s| !s.default).map(|s| (&s.scene, &limits)));
+    let mut results = every_seed(&jobs, &seeds, threads, "settings").into_iter();
+    let (reference, default) = (results.next().unwrap_or_default(), results.next().unwrap_or_default());
+    let sample = |s: Setting| {
+        let sample = if s.default { default.clone() } else { results.next().unwrap_or_default() };
+        (s, sample)
     };
-    Ok(scene)
+    let samples: Vec<(Setting, Sample)> = settings.into_iter().map(sample).collect();
+    report::report(scene, seeds, (&careful, &reference), &default, &samples)
+        .ok_or_else(|| no_reference(&reference, &default))
+}
+
+/// The path of 200 grains that is run by default.
+pub(crate) fn press() -> Result<Scene, Failure> {
+    Scene::parse(PRESS).map_err(Failure::failed)
+}
+
+/// Counted up from that of the scene.
+fn seeds(scene: &Scene, count: u32) -> Vec<u64> {
+    (0..u64::from(count)).map(|n| scene.seed.wrapping_add(n)).collect()
+}
+
+fn scene(args: &Args) -> Result<Scene, Failure> {
+    match &args.scene {
+        Some(name) => Ok(grainlab_console::scenes::load(name, &[], None)?.scene),
+        None => press(),
+    }
 }
 
 fn settings(knobs: &[Knob], scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setting> {

@@ -8,12 +8,14 @@ mod noise;
 mod plot;
 mod report;
 
-pub(crate) use args::Args;
+pub(crate) use args::{Args, Method};
+pub(crate) use report::Row;
 
 use super::folder;
 use super::packing::load;
 use grainlab_console::plot::Theme;
 use grainlab_console::{Failure, Format, json, print};
+use grainlab_core::Packing;
 use grainlab_node_kit::Exit;
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -44,4 +46,14 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         Format::Table => report::text(&report),
     })?;
     Ok(Exit::Done)
+}
+
+/// Rows of one packing along three rays, by these methods.
+pub(crate) fn measured(
+    packing: &Packing,
+    methods: &[Method],
+    tolerances: &[f64],
+    copies: &[u32],
+) -> Result<Vec<Row>, Failure> {
+    measure::rows(packing, &Args::of(methods, tolerances, copies))
 }

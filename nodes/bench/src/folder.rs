@@ -1,6 +1,6 @@
 //! The folder of a report.
 
-use grainlab_console::{Failure, say};
+use grainlab_console::{Failure, say, write_whole};
 use std::path::Path;
 
 /// Creates the folder: before long computations, not after.
@@ -12,7 +12,7 @@ pub(super) fn ready(folder: Option<&Path>) -> Result<(), Failure> {
 /// Writes one of its files and reports its path on stderr.
 pub(super) fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
     let path = folder.join(name);
-    std::fs::write(&path, text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    write_whole(&path, text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
     say!("grainlab: {} written", path.display());
     Ok(())
 }

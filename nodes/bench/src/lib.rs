@@ -3,6 +3,7 @@
 //! A bench is one file with an `Args` and a `run`, and a variant of [`Command`].
 //!
 //! - `accuracy`, `acoustics`, `dem`, `faults`, `lockstep`, `stiffness`: the benches
+//! - `overview`: time against error of all of them
 //! - `packing`: the packings to measure; `cpu_time`: the clocks; `numbers`, `folder`: reports
 
 mod accuracy;
@@ -13,6 +14,7 @@ mod faults;
 mod folder;
 mod lockstep;
 mod numbers;
+mod overview;
 mod packing;
 mod stiffness;
 
@@ -34,6 +36,8 @@ pub enum Command {
     Faults(faults::Args),
     /// One exchange of the lockstep between two processes, with a recorder, compared with bare ros2-client.
     Lockstep(lockstep::Args),
+    /// Time against error of every method of the laboratory, in one table and one figure.
+    Overview(overview::Args),
     /// The stiffness of a packing: time against error of every method and tolerance.
     Stiffness(stiffness::Args),
 }
@@ -49,6 +53,7 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Dem(args) => dem::run(args),
         Command::Faults(args) => faults::run(args),
         Command::Lockstep(args) => lockstep::run(args),
+        Command::Overview(args) => overview::run(args),
         Command::Stiffness(args) => stiffness::run(args),
     }
 }

@@ -5,7 +5,8 @@ mod measure;
 mod plot;
 mod report;
 
-pub(crate) use args::Args;
+pub(crate) use args::{Args, Method};
+pub(crate) use report::Row;
 
 use super::folder;
 use super::packing::{copies, load, repeated};
@@ -41,6 +42,16 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         Format::Table => report::text(&report),
     })?;
     Ok(Exit::Done)
+}
+
+/// Rows of one packing: affine motion, conjugate gradients at each tolerance, a factorisation, probes at each strain.
+pub(crate) fn measured(
+    packing: &Packing,
+    tolerances: &[f64],
+    amplitudes: &[f64],
+    repetitions: u32,
+) -> Result<Vec<Row>, Failure> {
+    measure::rows(packing, false, &Args::of(tolerances, amplitudes, repetitions))
 }
 
 /// Copies of the packing along each axis. Contacts are computed from the overlaps.

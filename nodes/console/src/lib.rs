@@ -2,6 +2,7 @@
 //!
 //! - [`Failure`], [`worse`]: the end of a command
 //! - [`Format`], [`Table`], [`print()`], [`say!`]: its output
+//! - [`write_whole`]: files that are written whole or not at all
 //! - [`count()`]: counts with their noun; [`duration()`]: times; [`Pace`]: rates and the time left
 //! - [`Dataset`]: typed columns, as CSV and Parquet
 //! - [`plot`]: plots as SVG; [`html`]: elements of HTML pages
@@ -19,6 +20,7 @@ mod pace;
 pub mod plot;
 pub mod scenes;
 mod start;
+mod whole_file;
 
 pub use count::count;
 pub use dataset::{Cell, Dataset};
@@ -26,3 +28,4 @@ pub use duration::duration;
 pub use failure::{Failure, worse};
 pub use output::{CsvText, Format, Table, exact, fixed, json, print, print_more, say_line};
 pub use pace::Pace;
+pub use whole_file::write_whole;

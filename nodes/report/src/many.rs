@@ -83,12 +83,13 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         let scene = run.scene_name();
         let end = match run.summary.exit {
             None => "not known".to_owned(),
-            Some(0) if run.summary.warnings.is_empty() && run.missing.is_empty() => "complete".to_owned(),
+            Some(0) if run.is_incomplete() => "damaged".to_owned(),
+            Some(0) if run.summary.warnings.is_empty() => "complete".to_owned(),
             Some(0) => "complete, with warnings".to_owned(),
             Some(code) => format!("exit code {code}"),
         };
         let seed = run.seed().map(|s| s.to_string()).unwrap_or_default();
-        let class = if run.summary.exit == Some(0) { "" } else { " class=\"bad\"" };
+        let class = if run.summary.exit == Some(0) && !run.is_incomplete() { "" } else { " class=\"bad\"" };
         rows += &format!(
             "<tr><th scope=\"row\"><a href=\"{}\">{}</a></th><td>{}</td><td class=\"n\">{seed}</td><td{class}>{end}</td>",
             escaped(link),

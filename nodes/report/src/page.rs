@@ -103,10 +103,11 @@ impl Run {
         }
     }
 
-    /// How the run ended, in one line.
+    /// How the run ended, in one line, which begins with the damage if there is any.
     fn verdict(&self) -> String {
         let s = &self.summary;
         let (class, mut words) = match s.exit {
+            Some(0) if self.is_incomplete() => ("bad", "Damaged: the run was complete once".to_owned()),
             None => ("bad", "The end of the run is not known".to_owned()),
             Some(0) if s.warnings.is_empty() => ("good", "Complete".to_owned()),
             Some(0) => {

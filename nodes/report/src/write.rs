@@ -1,6 +1,7 @@
 //! The file of a report.
 
 use crate::run::Run;
+use grainlab_console::write_whole;
 use grainlab_viewer::PictureError;
 use std::path::{Path, PathBuf};
 
@@ -29,17 +30,7 @@ pub enum ReportError {
 /// # Errors
 /// If it cannot be written.
 pub fn write_page(path: &Path, text: &str) -> Result<(), ReportError> {
-    let failed = |source| ReportError::Write { path: path.to_owned(), source };
-    if path.metadata().is_ok_and(|found| !found.is_file()) {
-        return std::fs::write(path, text).map_err(failed);
-    }
-    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let partial = target.with_extension("html.part");
-    let written = std::fs::write(&partial, text).and_then(|()| std::fs::rename(&partial, &target));
-    written.map_err(|source| {
-        let _ = std::fs::remove_file(&partial);
-        failed(source)
-    })
+    write_whole(path, text).map_err(|source| ReportError::Write { path: path.to_owned(), source })
 }
 
 /// Writes the report of a run beside its recording, and returns its path.
@@ -50,20 +41,4 @@ pub fn write_report(directory: &Path) -> Result<PathBuf, ReportError> {
     let path = directory.join(FILE);
     write_page(&path, &Run::read(directory).html()?)?;
     Ok(path)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[cfg(unix)]
-    #[test]
-    fn a_link_stays_a_link_and_its_file_gets_the_page() {
-        let folder = tempfile::tempdir().unwrap();
-        let [file, link] = ["page.html", "link.html"].map(|name| folder.path().join(name));
-        std::fs::write(&file, "old").unwrap();
-        std::os::unix::fs::symlink(&file, &link).unwrap();
-        write_page(&link, "new").unwrap();
-        assert!(link.is_symlink() && std::fs::read_to_string(&file).unwrap() == "new");
-    }
 }

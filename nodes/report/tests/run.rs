@@ -181,6 +181,11 @@ fn a_recording_that_was_cut_off_is_shown_as_far_as_it_goes() {
     std::fs::write(&file, &bytes[..bytes.len() * 2 / 3]).unwrap();
     let page = Run::read(folder.path()).html().unwrap();
     assert!(page.contains("Missing or not readable"), "the damage is named");
+    std::fs::write(folder.path().join("summary.json"), "{\"exit\": 0}").unwrap();
+    let run = Run::read(folder.path());
+    let page = run.html().unwrap();
+    assert!(page.contains(">Damaged: ") && !page.contains(">Complete"), "the page begins with the damage");
+    assert!(overview(&[(run, "r.html".to_owned())]).contains("<td class=\"bad\">damaged</td>"));
 }
 
 #[test]

@@ -1,14 +1,20 @@
 //! A launched run in at most 20 lines: preparation, measurements, estimates, and the directory.
 
+mod shown;
+mod states;
+
+pub use shown::moduli;
+
 use crate::acoustic_text;
 use crate::inference::{Inference, Origin, by_origin};
 use crate::read_back::InvertedPacking;
 use crate::summary::Summary;
-use grainlab_console::{Table, count, fixed};
+use grainlab_console::{count, fixed};
 use grainlab_core::Vec3;
 use grainlab_core::results::PackingReport;
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
+use shown::eps;
 use std::path::Path;
 
 /// The model of the paper (its Eqs. 21 and 22, corrected).
@@ -20,9 +26,6 @@ const MOST_GROUPS: usize = 3;
 /// Notes on a packing that are shown.
 const MOST_NOTES: usize = 1;
 
-/// Rows of the table of states; with more states, the last ones have rows.
-const MOST_ROWS: usize = 10;
-
 /// The result of a run as text. `program` is the name of the binary on the command line.
 pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
     let mut lines: Vec<String> =
@@ -30,7 +33,7 @@ pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
     match s.states.as_slice() {
         [] => lines.push(row("Prepared", "no packing at the end of a phase")),
         [state] => lines.extend(one(state)),
-        states => lines.extend(several(states)),
+        several => lines.extend(states::lines(several)),
     }
     lines.push(row("Run", &pace(s)));
     let folder = quoted(&directory.display().to_string());
@@ -152,18 +155,6 @@ fn counted(r: &PackingReport) -> String {
     )
 }
 
-/// The counted anisotropy; `None` without contacts.
-fn eps(r: &PackingReport) -> Option<f64> {
-    (r.contacts.contacts > 0).then_some(r.fabric.contact_anisotropy)
-}
-
-/// G12, G13 and Theta, MPa.
-pub fn moduli(r: &PackingReport) -> [Option<f64>; 3] {
-    let Some(stiffness) = r.stiffness() else { return [None; 3] };
-    let t = stiffness.tensor.transverse_isotropy_about(&r.fabric.reference_axis);
-    [t.g12, t.g13, stiffness.tensor.bulk_voigt()].map(|m| Some(m / 1e6))
-}
-
 fn measured(r: &PackingReport) -> String {
     let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 2));
     format!("G12 {g12} MPa, G13 {g13} MPa, Theta {theta} MPa")
@@ -204,59 +195,6 @@ fn estimate(
         let sigma = sigma.map(|s| format!("{s:.digits$}"));
         Some((name, format!("{value:.digits$}"), sigma, format!("{:+.digits$}", value - truth)))
     })
-}
-
-fn several(states: &[InvertedPacking]) -> Vec<String> {
-    let mut t = Table::new([
-        "step",
-        "p/kPa",
-        "k",
-        "z",
-        "eps",
-        "G12/MPa",
-        "G13/MPa",
-        "Theta/MPa",
-        "inferred k",
-        "z",
-        "eps",
-        "by",
-        "status",
-        "from",
-    ]);
-    let origins = states.iter().map(|s| by_origin(&s.results).len()).max().unwrap_or(0).max(1);
-    let left_out = states.len().saturating_sub(MOST_ROWS / origins);
-    for state in &states[left_out..] {
-        let r = &state.packing.report;
-        let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 1));
-        let packing = [
-            state.packing.step.to_string(),
-            format!("{:.2}", r.pressure() / 1e3),
-            format!("{:.3}", r.contacts.coordination),
-            format!("{:.3}", r.contacts.mechanical_coordination),
-            fixed(eps(r), 4),
-            g12,
-            g13,
-            theta,
-        ];
-        let groups = by_origin(&state.results);
-        let mut found = groups.iter().filter_map(|(_, results)| Inference::recommended(results));
-        t.row(packing.into_iter().chain(inferred(found.next())));
-        found.for_each(|b| t.row((0..8).map(|_| String::new()).chain(inferred(Some(b)))));
-    }
-    let mut lines: Vec<String> = t.without_empty_columns().text().lines().map(str::to_owned).collect();
-    if left_out > 0 {
-        lines.push(format!("and {} before these: summary.json has all", count(left_out, "packing")));
-    }
-    lines
-}
-
-/// The recommended estimate, and the topic of its data.
-fn inferred(best: Option<&Inference>) -> [String; 6] {
-    let Some(b) = best else { return [const { String::new() }; 6] };
-    let from = b.source.clone().unwrap_or_default();
-    let values = [fixed(b.values.k, 3), fixed(b.values.z, 3), fixed(b.values.eps, 4)];
-    let [k, z, eps] = values;
-    [k, z, eps, b.model.clone(), b.status.to_owned(), from]
 }
 
 fn pace(s: &Summary) -> String {

@@ -3,7 +3,8 @@
 use super::knobs::Servoed;
 use super::statistics::Observables;
 use crate::cpu_time::thread_seconds;
-use grainlab_core::{ComponentControl, ServoLaw};
+use grainlab_core::{ComponentControl, Packing, ServoLaw};
+use grainlab_dem::EnergyBalance;
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 
@@ -18,6 +19,8 @@ pub(crate) struct Outcome {
     pub(crate) steps: u64,
     /// The last request under stress control.
     pub(crate) servoed: Option<Servoed>,
+    /// The energy balance after the gas, if the scene asks for it.
+    pub(crate) energy: Option<EnergyBalance>,
 }
 
 /// Runs the scene to its end and measures the packing. A run that is not finished after `limit` solver steps
@@ -25,8 +28,28 @@ pub(crate) struct Outcome {
 pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
     let clock = || thread_seconds().map_err(|e| e.to_string());
     let begin = clock()?;
+    let run = finished(scene, limit)?;
+    let seconds = clock()? - begin;
+    let Finished { simulation, servoed, energy } = run;
+    let (observables, steps) = (observe(&simulation)?, simulation.engine().steps());
+    Ok(Outcome { observables, seconds, steps, servoed, energy })
+}
+
+/// The packing at the end of the path.
+pub(crate) fn prepared(scene: &Scene) -> Result<Packing, String> {
+    Ok(finished(scene, u64::MAX)?.simulation.packing())
+}
+
+/// A run at its end.
+struct Finished {
+    simulation: Simulation,
+    servoed: Option<Servoed>,
+    energy: Option<EnergyBalance>,
+}
+
+fn finished(scene: &Scene, limit: u64) -> Result<Finished, String> {
     let mut run = Simulation::new(scene.clone()).map_err(|e| e.to_string())?;
-    let mut servoed = None;
+    let (mut servoed, mut energy) = (None, None);
     while let Some(r) = run.request() {
         if r.step > limit {
             return Err(format!(
@@ -47,10 +70,10 @@ pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
             servoed = Some(Servoed { tangent, interval: r.control_interval });
         }
         let answer = grainlab_servo::control(&r.servo_input()).map_err(|e| e.to_string())?;
-        run.advance(&answer.rate).map_err(|e| e.to_string())?;
+        let outcome = run.advance(&answer.rate).map_err(|e| e.to_string())?;
+        energy = outcome.energy.or(energy);
     }
-    let seconds = clock()? - begin;
-    Ok(Outcome { observables: observe(&run)?, seconds, steps: run.engine().steps(), servoed })
+    Ok(Finished { simulation: run, servoed, energy })
 }
 
 fn observe(run: &Simulation) -> Result<Observables<f64>, String> {

@@ -3,6 +3,7 @@
 use super::knobs::{Knob, Setting, Value, inertial_number};
 use super::measure::Outcome;
 use super::statistics::{Estimate, Observables};
+use crate::numbers::median;
 use serde::Serialize;
 
 /// The outcome of one setting at each seed.
@@ -20,6 +21,8 @@ pub(crate) struct Row {
     /// Mean CPU time of a run, s.
     pub(crate) seconds: Option<f64>,
     pub(crate) seconds_standard_error: Option<f64>,
+    /// Median CPU time of a run, s.
+    pub(crate) median_seconds: Option<f64>,
     /// Mean number of solver steps.
     pub(crate) steps: Option<f64>,
     pub(crate) combined: Option<f64>,
@@ -58,6 +61,7 @@ impl Row {
             inertial_number: inertial_number(&setting.scene),
             seconds: seconds.map(|s| s.mean),
             seconds_standard_error: seconds.map(|s| s.standard_error),
+            median_seconds: Some(median(finished(sample, |o| o.seconds))).filter(|s| s.is_finite()),
             steps: Estimate::of(&finished(sample, |o| o.steps as f64)).map(|s| s.mean),
             combined: None,
             error: of(error, |e| e.mean),

@@ -60,6 +60,21 @@ pub struct Args {
 }
 
 impl Args {
+    /// These methods along three rays.
+    pub(super) fn of(methods: &[Method], tolerances: &[f64], copies: &[u32]) -> Self {
+        Self {
+            packing: Vec::new(),
+            method: methods.to_vec(),
+            survey: Rays::Three,
+            tolerances: tolerances.to_vec(),
+            copies: copies.to_vec(),
+            noise: Vec::new(),
+            draws: 1,
+            out: None,
+            format: Format::Table,
+        }
+    }
+
     pub(super) fn methods(&self) -> &[Method] {
         if self.method.is_empty() { Method::value_variants() } else { &self.method }
     }
@@ -88,7 +103,7 @@ impl From<Rays> for Survey {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 #[value(rename_all = "snake_case")]
-pub(super) enum Method {
+pub(crate) enum Method {
     /// Modes of the frozen network.
     Dispersion,
     /// Free vibration of the packing.
@@ -102,7 +117,7 @@ pub(super) enum Method {
 }
 
 impl Method {
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Dispersion => "dispersion",
             Self::StandingWave => "standing_wave",

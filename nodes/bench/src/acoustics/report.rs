@@ -24,27 +24,27 @@ const NOTES: [&str; 3] = [
 
 /// One method on one packing.
 #[derive(Debug, Serialize)]
-pub(super) struct Row {
-    pub(super) method: Method,
+pub(crate) struct Row {
+    pub(crate) method: Method,
     /// The varied value.
-    pub(super) value: Option<f64>,
-    pub(super) grains: usize,
-    pub(super) speeds: usize,
-    pub(super) seconds: f64,
-    pub(super) wall_seconds: f64,
-    pub(super) error: Error,
+    pub(crate) value: Option<f64>,
+    pub(crate) grains: usize,
+    pub(crate) speeds: usize,
+    pub(crate) seconds: f64,
+    pub(crate) wall_seconds: f64,
+    pub(crate) error: Error,
     /// Why there is no result, or the warnings of the measurement.
-    pub(super) failure: Option<String>,
+    pub(crate) failure: Option<String>,
 }
 
 /// Relative errors of ρ v².
 #[derive(Debug, Default, Serialize)]
-pub(super) struct Error {
-    pub(super) rms: Option<f64>,
-    pub(super) largest: Option<f64>,
-    pub(super) stated: Option<f64>,
-    pub(super) worst_sigmas: Option<f64>,
-    pub(super) moduli: Option<f64>,
+pub(crate) struct Error {
+    pub(crate) rms: Option<f64>,
+    pub(crate) largest: Option<f64>,
+    pub(crate) stated: Option<f64>,
+    pub(crate) worst_sigmas: Option<f64>,
+    pub(crate) moduli: Option<f64>,
 }
 
 pub(super) fn report(rows: Vec<Row>) -> Report {

@@ -61,6 +61,23 @@ pub struct Args {
 }
 
 impl Args {
+    /// Every method on a packing of any size.
+    pub(super) fn of(tolerances: &[f64], amplitudes: &[f64], repetitions: u32) -> Self {
+        Self {
+            packing: Vec::new(),
+            grains: Vec::new(),
+            tolerances: tolerances.to_vec(),
+            amplitudes: amplitudes.to_vec(),
+            all: false,
+            frictionless: false,
+            direct_up_to: u64::MAX,
+            probe_up_to: u64::MAX,
+            repetitions,
+            out: None,
+            format: Format::Table,
+        }
+    }
+
     pub(super) fn amplitudes(&self) -> Vec<f64> {
         if self.all { vec![1e-4, 1e-5, 1e-6, 1e-7, 1e-8] } else { self.amplitudes.clone() }
     }
@@ -69,7 +86,7 @@ impl Args {
 /// A method for the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Method {
+pub(crate) enum Method {
     /// Every grain moves with the strain.
     Affine,
     /// The same with a uniform spin of all grains.
@@ -83,7 +100,7 @@ pub(super) enum Method {
 }
 
 impl Method {
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Affine => "affine",
             Self::MeanSpin => "mean_spin",

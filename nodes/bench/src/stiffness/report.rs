@@ -25,28 +25,28 @@ const NOTES: [&str; 3] = [
 
 /// One method on one packing.
 #[derive(Debug, Serialize)]
-pub(super) struct Row {
-    pub(super) method: Method,
+pub(crate) struct Row {
+    pub(crate) method: Method,
     /// Relative residual of a solve, strain of a probe.
-    pub(super) value: Option<f64>,
-    pub(super) grains: usize,
+    pub(crate) value: Option<f64>,
+    pub(crate) grains: usize,
     /// Whether the packing is a repetition of a smaller one.
-    pub(super) replicated: bool,
-    pub(super) coordination: f64,
-    pub(super) seconds: f64,
+    pub(crate) replicated: bool,
+    pub(crate) coordination: f64,
+    pub(crate) seconds: f64,
     /// Iterations of the solve, or solver steps of the probe.
-    pub(super) iterations: Option<u32>,
-    pub(super) error: Error,
+    pub(crate) iterations: Option<u32>,
+    pub(crate) error: Error,
     /// Why there is no result.
-    pub(super) failure: Option<String>,
+    pub(crate) failure: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
-pub(super) struct Error {
+pub(crate) struct Error {
     /// Largest entry of the difference over C11.
-    pub(super) stiffness: Option<f64>,
+    pub(crate) stiffness: Option<f64>,
     /// The reference of the error.
-    pub(super) against: &'static str,
+    pub(crate) against: &'static str,
 }
 
 /// seconds ∝ N^exponent.

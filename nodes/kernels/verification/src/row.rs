@@ -41,6 +41,18 @@ pub enum Measure {
     Absolute,
 }
 
+impl Measure {
+    /// Its name in data.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Relative => "relative",
+            Self::OfLargest => "of_largest",
+            Self::OfSum => "of_sum",
+            Self::Absolute => "absolute",
+        }
+    }
+}
+
 /// What follows from a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -56,6 +68,16 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// Its name in data.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Explained => "explained",
+            Self::NotComparable => "not_comparable",
+            Self::Failed => "failed",
+        }
+    }
+
     /// The word in the table.
     pub fn word(self) -> &'static str {
         match self {

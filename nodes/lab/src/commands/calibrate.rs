@@ -6,7 +6,7 @@
 mod packings;
 mod report;
 
-use grainlab_console::{Failure, print, say};
+use grainlab_console::{Failure, print, say, write_whole};
 use grainlab_emt::learn;
 use grainlab_node_kit::Exit;
 use packings::Naming;
@@ -78,7 +78,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     match &args.out {
         Some(path) if path.as_os_str() == "-" => print(&toml)?,
         Some(path) => {
-            std::fs::write(path, toml).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+            write_whole(path, toml).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
             print(&report::text(&calibration, [&isotropic, &anisotropic, &other]))?;
             say!("grainlab: {} is written; use it with --calibration {0}", path.display());
         }

@@ -22,7 +22,7 @@ pub(crate) struct Args {
     /// Run directories, or recordings
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<PathBuf>,
-    /// File of the page [default: report.html in the folder of the run; of many runs, runs.html here]
+    /// File of the page [default: report.html in the folder of the run, RECORDING.html beside a recording; of many runs, runs.html here]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::failed("there is no run to report"));
     }
     write_page(&output, &overview(&all)).map_err(Failure::failed)?;
-    print(&format!("{}: {}, each with {FILE}\n", output.display(), count(all.len(), "run")))?;
+    print(&format!("{}: {}, each with its page\n", output.display(), count(all.len(), "run")))?;
     Ok(exit)
 }
 
@@ -84,9 +84,14 @@ fn write(run: &Run, path: &Path) -> Result<(), Failure> {
     write_page(path, &page).map_err(Failure::failed)
 }
 
-/// The page of a run beside its recording.
+/// The page of a run: in its folder, or beside its recording and named after it, since a folder may have several.
 fn beside(run: &Path) -> PathBuf {
-    if run.is_dir() { run.join(FILE) } else { run.with_file_name(FILE) }
+    if run.is_dir() {
+        return run.join(FILE);
+    }
+    let mut name = run.file_name().unwrap_or_default().to_owned();
+    name.push(".html");
+    run.with_file_name(name)
 }
 
 /// The path of a page from the folder of another, for a link.
@@ -113,6 +118,15 @@ fn percent(part: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn recordings_of_one_folder_have_a_page_each() {
+        let folder = tempfile::tempdir().unwrap();
+        let of = |name: &str| beside(&folder.path().join(name));
+        assert_eq!(of("a.mcap"), folder.path().join("a.mcap.html"));
+        assert_ne!(of("a.mcap"), of("b.mcap"));
+        assert_eq!(beside(folder.path()), folder.path().join("report.html"));
+    }
 
     #[test]
     fn a_link_leads_from_one_page_to_the_other() {

@@ -1,7 +1,7 @@
 //! `grainlab view`: packings in three dimensions, as a page or as a picture; a running laboratory as a page.
 
 use super::packings::import;
-use grainlab_console::{Failure, count, print};
+use grainlab_console::{Failure, count, print, write_whole};
 use grainlab_node_kit::{Exit, RosArgs};
 use grainlab_recordings::import::{Imported, each};
 use grainlab_report::write_page;
@@ -202,7 +202,7 @@ fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
         Failure::failed(format!("{}: no state {}: there are {count}", file.display(), args.state))
     })?;
     let bytes = Picture::with_legend(&view, args.color.into(), size).png().map_err(Failure::failed)?;
-    std::fs::write(png, bytes).map_err(|e| Failure::failed(format!("{}: {e}", png.display())))?;
+    write_whole(png, bytes).map_err(|e| Failure::failed(format!("{}: {e}", png.display())))?;
     print(&format!("{}\n", png.display()))?;
     Ok(exit)
 }

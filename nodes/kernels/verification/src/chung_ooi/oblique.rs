@@ -35,7 +35,7 @@ impl Quantity {
         match self {
             Self::Restitution => ("tangential restitution", ""),
             Self::Spin => ("spin", "rad/s"),
-            Self::Angle => ("rebound angle", "degrees"),
+            Self::Angle => ("rebound angle", "deg"),
         }
     }
 

@@ -89,10 +89,10 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         }
     })
     .map_err(Failure::failed)?;
-    if let Some(failure) = failure {
+    if let Some(failure) = failure.or_else(|| writer.finish().err()) {
+        writer.remove();
         return Err(failure);
     }
-    writer.finish()?;
     print(&format!(
         "{} written to {}\n",
         grainlab_console::count(writer.packings, "packing"),
@@ -129,11 +129,21 @@ impl<'a> Writer<'a> {
     fn append(&mut self, part: &FilePart) -> Result<(), Failure> {
         let path = self.folder.join(&part.name);
         let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", path.display()));
-        let file = match self.made.insert(part.name.clone()) {
-            true => File::create_new(&path),
-            false => File::options().append(true).open(&path),
+        let mut file = if self.made.contains(&part.name) {
+            File::options().append(true).open(&path).map_err(failed)?
+        } else {
+            let file = File::create_new(&path).map_err(failed)?;
+            self.made.insert(part.name.clone());
+            file
         };
-        file.and_then(|mut file| file.write_all(&part.content)).map_err(failed)
+        file.write_all(&part.content).map_err(failed)
+    }
+
+    /// Removes what was written: part of an export cannot be told from the whole, and would keep it from being repeated.
+    fn remove(&self) {
+        for name in &self.made {
+            let _ = std::fs::remove_file(self.folder.join(name));
+        }
     }
 }
 
@@ -165,5 +175,22 @@ mod tests {
         let dump = std::fs::read_to_string(out.join("packings.dump")).unwrap();
         assert_eq!(dump, lammps_dump(&packing));
         assert!(run(&args(path, out, Format::Lammps)).unwrap_err().to_string().contains("packings.dump"));
+    }
+
+    #[test]
+    fn an_export_that_fails_leaves_the_files_of_others_and_none_of_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("two.csv");
+        std::fs::write(&path, GRAINS).unwrap();
+        std::fs::write(folder.path().join("two.json"), SIDECAR).unwrap();
+        let out = folder.path().join("out");
+        std::fs::create_dir(&out).unwrap();
+        // The second file of the export is there already.
+        std::fs::write(out.join("packing_1.json"), "of another").unwrap();
+        let error = run(&args(path, out.clone(), Format::Csv)).unwrap_err();
+        assert!(error.to_string().contains("packing_1.json"), "{error}");
+        let left: Vec<_> = std::fs::read_dir(&out).unwrap().map(|f| f.unwrap().file_name()).collect();
+        assert_eq!(left, ["packing_1.json"]);
+        assert_eq!(std::fs::read_to_string(out.join("packing_1.json")).unwrap(), "of another");
     }
 }

@@ -11,7 +11,7 @@ use super::rows::Rows;
 use super::state::State;
 use super::table::Tally;
 use super::way::Way;
-use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
+use grainlab_console::{Failure, Format, Table, exact, fixed, json, print, write_whole};
 use grainlab_core::results::InferredQuantity;
 use grainlab_node_kit::Exit;
 use score::Score;
@@ -98,7 +98,7 @@ pub(super) fn run(
         )));
     }
     if let Some(path) = plot {
-        std::fs::write(path, plot::svg(ways, points))
+        write_whole(path, plot::svg(ways, points))
             .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
     }
     tally.end(rows.name())

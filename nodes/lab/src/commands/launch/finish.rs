@@ -3,7 +3,7 @@
 use super::output::Output;
 use grainlab_console::scenes::SceneText;
 use grainlab_console::{Failure, worse};
-use grainlab_console::{Format, json, print};
+use grainlab_console::{Format, json, print, write_whole};
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::Run;
 use grainlab_launcher::{Received, Supervised};
@@ -93,7 +93,10 @@ pub(super) fn finish(
             all + &brief::text(&summary, &from_here(directory), &program())
         }
     });
-    for failure in [write_whole(&path, &text), printed].into_iter().filter_map(Result::err) {
+    let written = write_whole(&path, &text).map_err(|e| {
+        Failure::failed(format!("{}: {e}; the result was printed, and is in the recording", path.display()))
+    });
+    for failure in [written, printed].into_iter().filter_map(Result::err) {
         grainlab_console::say!("grainlab: {failure}");
         // With a full disk the exit stays that of the data loss.
         exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
@@ -126,16 +129,3 @@ fn from_here(path: &Path) -> PathBuf {
 fn program() -> String {
     std::env::args().next().unwrap_or_else(|| "grainlab".to_owned())
 }
-
-/// Writes a file atomically.
-fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
-    let partial = path.with_extension("json.part");
-    let written = std::fs::write(&partial, text).and_then(|()| std::fs::rename(&partial, path));
-    written.map_err(|e| {
-        let _ = std::fs::remove_file(&partial);
-        Failure::failed(format!("{}: {e}; the result was printed, and is in the recording", path.display()))
-    })
-}
-
-#[cfg(test)]
-mod tests;

@@ -1,7 +1,7 @@
 //! The comparisons as a table.
 
 use grainlab_console::{Table, count, exact};
-use grainlab_verification::{Measure, Row, Verdict};
+use grainlab_verification::{Row, Verdict};
 use serde::Serialize;
 
 /// A comparison with what follows from it.
@@ -22,47 +22,85 @@ impl<'a> Judged<'a> {
     }
 }
 
-/// The table, the notes of all that does not pass, and a summary.
+/// A block for each suite, and a summary: at most 100 columns.
 pub(super) fn text(rows: &[Row]) -> String {
-    let mut table = Table::new([
-        "comparison",
-        "source",
-        "points",
-        "theirs",
-        "ours",
-        "difference",
-        "tolerance",
-        "verdict",
-    ]);
     let mut notes: Vec<&str> = Vec::new();
-    for row in rows {
-        let verdict = row.verdict();
-        let mut word = verdict.word().to_owned();
-        if verdict != Verdict::Passed && !row.note.is_empty() {
-            let known = notes.iter().position(|n| *n == row.note);
-            let number = known.unwrap_or_else(|| {
-                notes.push(&row.note);
-                notes.len() - 1
-            });
-            word += &format!(" [{}]", number + 1);
+    let mut text =
+        columns(["comparison", "theirs", "ours", "off by", "allowed", "verdict"].map(str::to_owned));
+    for group in rows.chunk_by(|a, b| a.suite == b.suite) {
+        let mut sources: Vec<&str> = group.iter().map(|r| short(&r.source)).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        text += "\n";
+        text += &wrapped(&format!("{}: ", group[0].suite), "  ", &sources.join(", "), WIDTH);
+        let new = notes.len();
+        for row in group {
+            text += &line(row, &mut notes);
         }
-        let worst = row.worst();
-        table.row([
-            format!("{}: {}", row.suite, row.name),
-            short(&row.source).to_owned(),
-            row.points.len().to_string(),
-            worst.map_or_else(dash, |p| with_unit(p.theirs, row.unit)),
-            worst.map_or_else(dash, |p| with_unit(p.ours, row.unit)),
-            row.difference().map_or_else(dash, |d| amount(d, row)),
-            row.difference().map_or_else(dash, |_| amount(row.tolerance, row)),
-            word,
-        ]);
+        for (n, note) in notes.iter().enumerate().skip(new) {
+            text += &wrapped(&format!("  [{}] ", n + 1), "      ", note, WIDTH);
+        }
     }
-    let mut text = table.text();
-    for (n, note) in notes.iter().enumerate() {
-        text += &format!("[{}] {note}\n", n + 1);
+    text + "\n" + &summary(rows)
+}
+
+/// Columns of a terminal that the table needs.
+const WIDTH: usize = 100;
+
+/// Columns of the name of a comparison; longer ones take several lines.
+const NAME: usize = 36;
+
+/// One comparison. A note that is new is added to `notes`.
+fn line<'a>(row: &'a Row, notes: &mut Vec<&'a str>) -> String {
+    let verdict = row.verdict();
+    let mut word = verdict.word().to_owned();
+    if verdict != Verdict::Passed && !row.note.is_empty() {
+        let known = notes.iter().position(|n| *n == row.note);
+        let number = known.unwrap_or_else(|| {
+            notes.push(&row.note);
+            notes.len() - 1
+        });
+        word += &format!(" [{}]", number + 1);
     }
-    text + &summary(rows)
+    let Some(worst) = row.worst() else {
+        return wrapped("  ", "    ", &format!("{}: {word}", row.name), WIDTH);
+    };
+    let unit = if row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
+    let difference = row.difference().map_or_else(dash, amount);
+    columns([
+        row.name.clone(),
+        number(worst.theirs),
+        number(worst.ours) + &unit,
+        difference,
+        limit(row.tolerance),
+        word,
+    ])
+}
+
+/// A line of the table; of a name that is too long, the rest is below.
+fn columns([name, theirs, ours, difference, tolerance, verdict]: [String; 6]) -> String {
+    // The unit stands behind the aligned number.
+    let (ours, unit) = ours.split_once(' ').unwrap_or((&ours, ""));
+    let name = wrapped("  ", "    ", &name, NAME + 2);
+    let (first, rest) = name.split_once('\n').unwrap_or((&name, ""));
+    let first =
+        format!("{first:<38} {theirs:>11} {ours:>11} {unit:<5} {difference:>7} {tolerance:>7}  {verdict}");
+    format!("{}\n{rest}", first.trim_end())
+}
+
+/// Words in lines of at most `width` columns, the first after `begin`, the others after `next`.
+fn wrapped(begin: &str, next: &str, words: &str, width: usize) -> String {
+    let (mut text, mut line) = (String::new(), begin.to_owned());
+    let mut empty = true;
+    for word in words.split_whitespace() {
+        if !empty && line.chars().count() + 1 + word.chars().count() > width {
+            text += &format!("{line}\n");
+            (line, empty) = (next.to_owned(), true);
+        }
+        line += &if empty { word.to_owned() } else { format!(" {word}") };
+        empty = false;
+    }
+    text + line.trim_end() + "\n"
 }
 
 /// How many comparisons there are of each verdict.
@@ -109,11 +147,11 @@ pub(super) fn csv(rows: &[Row]) -> String {
             exact(worst.map(|p| p.ours)),
             exact(worst.and_then(|p| p.explained)),
             row.unit.to_owned(),
-            format!("{:?}", row.measure),
+            row.measure.name().to_owned(),
             exact(row.difference()),
             exact(row.unexplained()),
             exact(Some(row.tolerance)),
-            row.verdict().word().to_owned(),
+            row.verdict().name().to_owned(),
             row.note.clone(),
         ]);
     }
@@ -129,35 +167,31 @@ fn short(source: &str) -> &str {
     source.split([',', '(', ':']).next().unwrap_or(source).trim_end()
 }
 
+/// Five significant digits.
 fn number(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 || (1e-3..1e5).contains(&size) {
-        // Six significant digits.
-        let digits = if value == 0.0 { 0 } else { (5 - size.log10().floor() as i32).max(0) as usize };
+        let digits = if value == 0.0 { 0 } else { (4 - size.log10().floor() as i32).max(0) as usize };
         format!("{value:.digits$}")
     } else {
-        format!("{value:.5e}")
+        format!("{value:.4e}")
     }
 }
 
-fn with_unit(value: f64, unit: &str) -> String {
-    if unit.is_empty() { number(value) } else { format!("{} {unit}", number(value)) }
+/// A difference, in the unit of the row or a pure number.
+fn amount(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
 }
 
-/// A difference: in the unit of the row, or a pure number.
-fn amount(value: f64, row: &Row) -> String {
-    let text = if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") };
-    if row.measure == Measure::Absolute && !row.unit.is_empty() {
-        format!("{text} {}", row.unit)
-    } else {
-        text
-    }
+/// A tolerance, which has one digit or two.
+fn limit(value: f64) -> String {
+    amount(value).replace(".0e", "e")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_verification::Point;
+    use grainlab_verification::{Measure, Point};
 
     #[test]
     fn the_table_shows_the_worst_point_and_numbers_the_notes_of_what_does_not_pass() {
@@ -171,18 +205,45 @@ mod tests {
         ];
         let text = text(&rows);
         let lines: Vec<&str> = text.lines().collect();
-        assert!(lines[1].starts_with("suite: same") && lines[1].ends_with("passed"), "{text}");
-        assert!(lines[1].contains("Somebody ") && !lines[1].contains("table 1"), "{text}");
-        assert!(lines[1].contains("1.00100 N") && lines[1].contains("1.0e-3  "), "{text}");
-        assert!(lines[2].ends_with("explained [1]") && lines[3].ends_with("not comparable [2]"), "{text}");
+        assert_eq!(lines[2], "suite: Somebody", "{text}");
+        assert!(lines[3].starts_with("  same ") && lines[3].ends_with("passed"), "{text}");
+        assert!(lines[3].contains("1.0010 N") && lines[3].contains(" 1e-3 "), "{text}");
+        assert!(lines[4].ends_with("explained [1]"), "{text}");
         assert_eq!(
-            lines[4..],
+            lines[5..],
             [
-                "[1] Another law.",
-                "[2] There are none.",
+                "  walls: not comparable [2]",
+                "  [1] Another law.",
+                "  [2] There are none.",
+                "",
                 "3 comparisons: 1 passed, 1 explained, 1 not comparable, 0 failed"
             ]
         );
-        assert!(csv(&rows).lines().nth(2).unwrap().contains("explained,Another law."));
+        let csv = csv(&rows);
+        assert!(csv.lines().nth(2).unwrap().contains("explained,Another law."), "{csv}");
+        assert!(
+            csv.lines().nth(3).unwrap().contains(",relative,") && csv.contains(",not_comparable,"),
+            "{csv}"
+        );
+    }
+
+    #[test]
+    fn long_names_sources_and_notes_take_several_lines_of_at_most_100_columns() {
+        let words = "a note of many words ".repeat(20);
+        let points = vec![Point::explained(0.0, -1.234_567e-12, -1.234_567e12, -1.234_567e12)];
+        let name = "500 smooth spheres, 36 moduli, with the term of the normal forces";
+        let row = Row::new("a-suite", name, words.clone(), "rad/s", Measure::Relative, 1.9e-2, points);
+        let text = text(&[row.with_note(words)]);
+        assert!(text.lines().all(|l| l.chars().count() <= 100), "{text}");
+        let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        for part in [
+            "500 smooth spheres, 36 moduli,",
+            "the normal forces",
+            "-1.2346e12 rad/s",
+            "1.9e-2",
+            "explained [1]",
+        ] {
+            assert!(flat.contains(part), "{part} is missing:\n{text}");
+        }
     }
 }
