@@ -9,6 +9,9 @@ use serde::Serialize;
 /// Number of points of the integration: an error of some 1e-3 in the logarithm.
 pub(super) const POINTS: usize = 65_536;
 
+/// Relative difference of observed moduli that is rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// Prior odds of a model: `NAME=WEIGHT`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Odds {
@@ -66,7 +69,7 @@ pub(super) fn of_ways(
         // Of one model with several calibrations each is a model of its own.
         let same = ways.iter().zip(&found).filter_map(|(w, o)| {
             let (d, e) = o.as_ref().ok()?;
-            (d.as_slice() == data).then_some((weight(w), e.ln))
+            are_same(d, data).then_some((weight(w), e.ln))
         });
         let same: Vec<(f64, f64)> = same.collect();
         let probability = evidence
@@ -84,6 +87,13 @@ pub(super) fn of_ways(
         }
     };
     Ok(ways.iter().zip(&found).map(one).collect())
+}
+
+/// Whether they are the same moduli with the same values, but for rounding.
+fn are_same(a: &[(Modulus, f64)], b: &[(Modulus, f64)]) -> bool {
+    let is_same =
+        |((m, v), (n, w)): (&(Modulus, f64), &(Modulus, f64))| m == n && (v - w).abs() <= ROUNDING * v.abs();
+    a.len() == b.len() && a.iter().zip(b).all(is_same)
 }
 
 fn of_way(state: &State, way: &Way, seed: u64) -> Result<Found, EmtError> {
