@@ -87,7 +87,7 @@ mod tests {
             observed: vec![(Modulus::G12, 1.5e6), (Modulus::Theta, 2.5e6)],
             draws: [4.0, 4.5, 5.0, 5.5].map(draw).to_vec(),
             acceptance: 0.5,
-            exceeded: 0,
+            raised: 0,
         }
     }
 

@@ -51,10 +51,10 @@ Examples:
       grainlab invert --speeds - --density 1498 --pressure 50e3 --stress-ratio 0 --size-spread 0
   Prior knowledge, and draws that ArviZ (arviz.from_json), corner and pandas read:
     grainlab invert --print-prior > prior.toml
-    grainlab invert --g12 74.2e6 --g13 81.8e6 --theta 137e6 --pressure 50e3 --stress-ratio 0 --size-spread 0 --error 0.01 \\
+    grainlab invert --g12 104.2e6 --g13 112.4e6 --theta 136e6 --pressure 50e3 --stress-ratio 0 --size-spread 0 --error 0.01 \\
       --model relaxed --prior prior.toml --draws draws.json
   Probabilities of models that state an error of the same moduli:
-    grainlab invert --g12 74.2e6 --g13 81.8e6 --theta 137e6 --pressure 50e3 --error 0.01 --calibration grainlab --evidence
+    grainlab invert --g12 104.2e6 --g13 112.4e6 --theta 136e6 --pressure 50e3 --error 0.01 --calibration grainlab --evidence
   Whether the posterior is right where the model is: ranks of 2,000 simulated structures
     grainlab invert --rank-test 2000 --pressure 50e3 --stress-ratio 0 --size-spread 0 --error 0.01 --model relaxed
   Many states, or the output of an analysis:

@@ -151,6 +151,16 @@ fn probabilities_are_of_models_with_the_same_moduli_and_follow_the_prior_odds() 
     assert!((ratio - (even[1][0] - even[0][0])).abs() < 1e-9, "{even:?}");
     let odd = probabilities(&[&flags[..], &["--prior-odds=ratio=3"]].concat());
     assert!((odd[1][1] / odd[0][1] / (even[1][1] / even[0][1]) - 3.0).abs() < 1e-6, "{odd:?}");
+    // Whatever the digits of the moduli.
+    for theta in ["136e6", "136.1e6", "137.3e6"] {
+        let state =
+            ["invert", "--g12=104.2e6", "--g13=112.4e6", "--pressure=50e3", "--error=0.01", "--format=json"];
+        let output = grainlab(&[&state[..], &flags, &["--theta", theta]].concat(), b"");
+        let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let known =
+            answer["evidence"].as_array().unwrap().iter().filter(|m| m["probability"].is_number()).count();
+        assert_eq!(known, 3, "{theta}");
+    }
     // With C11, C33 and C13 the models do not use the same moduli.
     let more = ["--c11=226.698e6", "--c33=264.817e6", "--c13=89.544e6"];
     let answer = json(&[&flags[..], &more].concat());

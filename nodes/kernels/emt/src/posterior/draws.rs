@@ -38,8 +38,8 @@ pub struct Draws {
     pub draws: Vec<Draw>,
     /// Share of the proposals that were accepted.
     pub acceptance: f64,
-    /// Number of proposals whose weight exceeded the envelope: 0 for exact draws.
-    pub exceeded: usize,
+    /// How often a proposal exceeded the envelope, which was raised then, and all draws made anew.
+    pub raised: usize,
 }
 
 impl Posterior<'_> {
@@ -48,7 +48,8 @@ impl Posterior<'_> {
         let observed = self.observed();
         // Other numbers than those of the integration.
         let mut random = Random::new(self.seed ^ 0x9e37_79b9_7f4a_7c15);
-        let (mut draws, mut proposed, mut exceeded) = (Vec::with_capacity(count), 0, 0);
+        let (mut draws, mut proposed, mut raised) = (Vec::with_capacity(count), 0, 0);
+        let mut envelope = self.highest + MARGIN;
         while draws.len() < count {
             if proposed >= MOST_PROPOSALS * (draws.len() + 100) {
                 return Err(EmtError::NotSampled {
@@ -61,9 +62,12 @@ impl Posterior<'_> {
             let uniform: [f64; 6] = std::array::from_fn(|_| random.uniform());
             let accept = random.uniform();
             let Some(found) = point(&self.target, &self.proposal, 0, &uniform) else { continue };
-            let over_envelope = found.ln_weight - self.highest - MARGIN;
-            exceeded += usize::from(over_envelope > 0.0);
-            if accept.ln() > over_envelope {
+            if found.ln_weight > envelope {
+                (envelope, raised) = (found.ln_weight + MARGIN, raised + 1);
+                (draws, proposed) = (Vec::with_capacity(count), 0);
+                continue;
+            }
+            if accept.ln() > found.ln_weight - envelope {
                 continue;
             }
             let normal = random.normal();
@@ -87,6 +91,6 @@ impl Posterior<'_> {
             });
         }
         let acceptance = count as f64 / proposed.max(1) as f64;
-        Ok(Draws { quantities: self.quantities(), observed, draws, acceptance, exceeded })
+        Ok(Draws { quantities: self.quantities(), observed, draws, acceptance, raised })
     }
 }

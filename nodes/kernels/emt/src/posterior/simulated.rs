@@ -41,7 +41,7 @@ pub struct SimulationSettings {
     pub seed: u64,
 }
 
-/// Ranks of one or more simulations.
+/// Ranks of one simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedRanks {
     /// The share of draws below the true value of each quantity.

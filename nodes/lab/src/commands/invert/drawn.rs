@@ -38,11 +38,10 @@ pub(super) fn write(state: &State, ways: &[Way], number: Number, path: &Path) ->
     };
     std::fs::write(path, text).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
     say!(
-        "grainlab: {name}: {} independent draws of model {}, {:.0} % of the proposals accepted, {} above the envelope",
+        "grainlab: {name}: {} independent draws of model {}, {:.0} % of the proposals accepted",
         draws.draws.len(),
         way.model.name(),
-        100.0 * draws.acceptance,
-        draws.exceeded
+        100.0 * draws.acceptance
     );
     Ok(())
 }
@@ -62,7 +61,7 @@ fn attributes(way: &Way, draws: &Draws, seed: u64) -> Map<String, Value> {
         ("calibration", json!(way.calibration.name())),
         ("sampler", json!("rejection: independent draws")),
         ("acceptance", json!(draws.acceptance)),
-        ("above_envelope", json!(draws.exceeded)),
+        ("envelope_raised", json!(draws.raised)),
         ("seed", json!(seed)),
     ];
     attributes.map(|(key, value)| (key.to_owned(), value)).into_iter().collect()
