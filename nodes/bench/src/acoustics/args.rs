@@ -69,6 +69,7 @@ impl Args {
             tolerances: tolerances.to_vec(),
             copies: copies.to_vec(),
             noise: Vec::new(),
+            judge: false,
             draws: 1,
             out: None,
             format: Format::Table,
