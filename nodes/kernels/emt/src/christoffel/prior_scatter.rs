@@ -8,7 +8,6 @@
 
 use super::error::ChristoffelError;
 use super::ray::{Column, Ray};
-use super::speed_fit::ScatteredFit;
 use super::{fit, weights};
 
 /// Number of grains at which the laws below were fitted.
@@ -29,6 +28,16 @@ const PRECISION: f64 = 1e-4;
 
 /// Least and greatest scatter over that of the laws.
 const RANGE: [f64; 2] = [0.05, 50.0];
+
+/// A fit with the scatter of the sample as an error of each speed.
+pub(super) struct ScatteredFit {
+    /// Root mean square of the relative error added, and that before the speeds were measured.
+    pub(super) added: f64,
+    pub(super) usual: f64,
+    pub(super) fit: fit::Fit,
+    /// Error of a speed of weight 1.
+    pub(super) unit: Option<f64>,
+}
 
 /// Relative standard deviation of each speed that is due to the sample.
 ///

@@ -16,16 +16,6 @@ const OWN_ERROR_PRECISION: f64 = 1e-4;
 /// Scatter over the usual one of a sample beyond which the speeds are in conflict.
 const UNUSUAL: f64 = 3.0;
 
-/// A fit with the scatter of the sample as an error of each speed.
-pub(super) struct ScatteredFit {
-    /// Root mean square of the relative error added, and that before the speeds were measured.
-    pub(super) added: f64,
-    pub(super) usual: f64,
-    pub(super) fit: fit::Fit,
-    /// Error of a speed of weight 1.
-    pub(super) unit: Option<f64>,
-}
-
 /// Moduli from wave speeds, and how well the speeds agree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeedFit {
