@@ -15,7 +15,8 @@ pub(crate) struct Integration {
     pub(crate) share: f64,
     /// Median CPU time of a run without the energy balance, s.
     pub(crate) seconds: f64,
-    /// Median over the seeds of the energy created, over the largest other term of the balance.
+    /// The energy created, over the largest other term of the balance; root mean square over the seeds. It is a sum of both
+    /// signs, so that one run may have far less by chance.
     pub(crate) error: f64,
     /// Runs that succeeded.
     pub(crate) runs: usize,
@@ -51,7 +52,8 @@ pub(crate) fn integration(
             return Err(Failure::new(Exit::PhysicsInvalid, format!("time step {share}: {reason}")));
         }
         let runs = errors.len();
-        Ok(Integration { share: *share, seconds: median(seconds), error: median(errors), runs })
+        let error = (errors.iter().map(|e| e * e).sum::<f64>() / runs as f64).sqrt();
+        Ok(Integration { share: *share, seconds: median(seconds), error, runs })
     };
     shares.iter().zip(samples.chunks(2)).map(of).collect()
 }

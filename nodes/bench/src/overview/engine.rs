@@ -15,7 +15,7 @@ const KNOBS: [Knob; 3] = [Knob::StrainRate, Knob::ControlPeriod, Knob::Grains];
 
 pub(super) fn rows(quick: bool, threads: usize) -> Result<Vec<Row>, Failure> {
     let scene = press()?;
-    let (shares, seeds, runs) = if quick { (&QUICK_SHARES[..], 1, 3) } else { (&SHARES[..], 3, 5) };
+    let (shares, seeds, runs) = if quick { (&QUICK_SHARES[..], 2, 3) } else { (&SHARES[..], 5, 5) };
     let energy = integration(&scene, shares, seeds, threads)?;
     let mut rows: Vec<Row> = energy
         .iter()

@@ -22,7 +22,7 @@ pub(super) fn rows(quick: bool) -> Result<Vec<Row>, Failure> {
 fn of(found: &stiffness::Row, repetitions: u32) -> Option<Row> {
     let probe = found.method == stiffness::Method::Probe;
     let setting = found.value.map_or_else(String::new, |v| format!("{v:e}"));
-    let setting = if probe { format!("strain {setting}") } else { setting };
+    let setting = if probe { format!("{setting} strain") } else { setting };
     Some(Row::new(
         Family::Stiffness,
         (found.method.name().replace('_', " "), setting),

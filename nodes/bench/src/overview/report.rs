@@ -34,7 +34,7 @@ pub(super) fn text(report: &Report) -> String {
             row.method.clone(),
             if row.setting.is_empty() { "-".to_owned() } else { row.setting.clone() },
             time(row.seconds),
-            format!("{bound}{:.1e}", row.error),
+            format!("{bound}{}", error(row.error)),
             if row.on_front { "*" } else { "" }.to_owned(),
         ]);
     }
@@ -90,6 +90,11 @@ pub(super) fn csv(report: &Report) -> String {
         ]);
     }
     t.csv()
+}
+
+/// Two digits.
+fn error(value: f64) -> String {
+    if (0.1..1e3).contains(&value) { format!("{value:.1}") } else { format!("{value:.1e}") }
 }
 
 /// Two digits and a unit.

@@ -59,7 +59,9 @@ impl Family {
             Self::InversionEps => "contact anisotropy, rms",
             Self::InversionZ => "coordination without rattlers, rms",
             Self::Stiffness => "largest entry, over C11",
-            Self::EngineEnergy => "energy created by the time step, over the largest term of the balance",
+            Self::EngineEnergy => {
+                "energy created by the time step, over the largest term of the balance, rms of the seeds"
+            }
             Self::EnginePacking => {
                 "k, eps, phi, G12 and Theta of the packing, over their scatter from seed to seed, rms"
             }
