@@ -207,7 +207,7 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[2], "suite: Somebody", "{text}");
         assert!(lines[3].starts_with("  same ") && lines[3].ends_with("passed"), "{text}");
-        assert!(lines[3].contains("1.0010 N") && lines[3].contains(" 1e-3 "), "{text}");
+        assert!(lines[3].contains("1.0010 N") && lines[3].contains(" 1.0e-3    1e-2 "), "{text}");
         assert!(lines[4].ends_with("explained [1]"), "{text}");
         assert_eq!(
             lines[5..],
