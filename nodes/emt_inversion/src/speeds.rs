@@ -10,10 +10,6 @@ use grainlab_msgs::boundary::WaveSpeedsReading;
 /// Sine of the angle between the axis used and the one stated beyond which there is a note: 6°.
 const APART: f64 = 0.1;
 
-/// Number of grains of a simulated sample, which the message does not have: that of the packings from which the law of the
-/// scatter was learned.
-const SIMULATED: f64 = 2000.0;
-
 /// The moduli that the speeds determine about the axis set, with the errors of speeds and density, or else
 /// that of the settings. γ/Δ is unknown to an instrument.
 pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Result<Observed, Unobservable> {
@@ -44,9 +40,7 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
         }),
         contact_law: reading.contact_law,
     };
-    // An instrument of a laboratory has a sample of very many grains.
-    let grains = reading.source_step.map(|_| SIMULATED);
-    let fitted = christoffel::moduli_of_sample(&speeds, density, Some(axis), conditions, grains)?;
+    let fitted = christoffel::moduli_from_speeds(&speeds, density, Some(axis), conditions)?;
     notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));
     notes.extend(reading.warnings.iter().map(|warning| format!("the instrument reports: {warning}")));
     let other = other_axis(&fitted, &speeds, density, &axis);
