@@ -29,6 +29,8 @@ pub struct WaveSpeedsReading {
     pub stamp: Time,
     /// Step of the packing probed; `None` if it is not from a simulation.
     pub source_step: Option<u64>,
+    /// Number of grains of the sample.
+    pub grains: Option<u32>,
     /// Density of the mass that moves with the wave, kg/m³, more than 0.
     pub density: f64,
     /// Its standard deviation, kg/m³.
@@ -71,6 +73,7 @@ pub fn wave_speeds_message(
     let message = msg::WaveSpeeds {
         header,
         source_step: found.source_step.unwrap_or(0),
+        grains: found.grains.unwrap_or(0),
         density: found.density,
         density_stddev: found.density_stddev.unwrap_or(0.0),
         pressure: found.pressure,
@@ -112,6 +115,7 @@ impl TryFrom<&msg::WaveSpeeds> for WaveSpeedsReading {
         Ok(Self {
             stamp: m.header.stamp,
             source_step: Some(m.source_step).filter(|step| *step > 0),
+            grains: Some(m.grains).filter(|grains| *grains > 0),
             density: CHECK.positive("density", m.density)?,
             density_stddev: CHECK.known("density_stddev", m.density_stddev)?,
             pressure: CHECK.not_negative("pressure", m.pressure)?,

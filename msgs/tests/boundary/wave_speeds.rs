@@ -30,6 +30,7 @@ fn sent() -> msg::WaveSpeeds {
     msg::WaveSpeeds {
         header: header(),
         source_step: 7,
+        grains: 500,
         density: 1550.0,
         density_stddev: 8.0,
         pressure: 5e4,
@@ -54,7 +55,7 @@ fn an_inversion_reads_the_speeds_that_were_sent() {
     assert_eq!((r.density, r.density_stddev, r.pressure), (1550.0, Some(8.0), 5e4));
     assert_eq!((r.solid_fraction, r.grain_shear_modulus, r.grain_poisson_ratio), (Some(0.64), 29e9, 0.2));
     assert_eq!((r.stress_ratio, r.size_spread), (Some(-0.1), Some(0.2)));
-    assert_eq!(r.contact_law, Some("linear:1e5,0.5".parse().unwrap()));
+    assert_eq!((r.contact_law, r.grains), (Some("linear:1e5,0.5".parse().unwrap()), Some(500)));
     let compression =
         WaveSpeed { direction: Vec3::z(), polarization: Vec3::z(), speed: 500.0, stddev: Some(1.5) };
     let shear = WaveSpeed { polarization: Vec3::x(), speed: 300.0, stddev: None, ..compression };
@@ -81,6 +82,7 @@ fn what_was_read_is_sent_as_it_came_and_nothing_goes_out_that_would_be_refused()
 fn zeros_of_an_instrument_are_unknown() {
     let message = msg::WaveSpeeds {
         source_step: 0,
+        grains: 0,
         density_stddev: 0.0,
         solid_fraction: 0.0,
         stress_ratio: vec![],
@@ -93,7 +95,7 @@ fn zeros_of_an_instrument_are_unknown() {
     };
     let r = WaveSpeedsReading::try_from(&message).unwrap();
     assert_eq!((r.source_step, r.density_stddev, r.solid_fraction, r.axis), (None, None, None, None));
-    assert_eq!(r.contact_law, None);
+    assert_eq!((r.contact_law, r.grains), (None, None));
     assert!(r.speeds.is_empty());
 }
 

@@ -84,6 +84,7 @@ pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Resu
     let reading = WaveSpeedsReading {
         stamp: header.stamp,
         source_step,
+        grains: u32::try_from(packing.grains()).ok(),
         density: found.density,
         density_stddev: Some(found.density_stddev).filter(|s| *s > 0.0),
         pressure: stress.mean(),

@@ -4,7 +4,7 @@ use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
 use grainlab_core::{Material, Vec3, WaveSpeed};
 use grainlab_emt::christoffel::{self, AxisError, SpeedFit};
-use grainlab_emt::{Conditions, Measured, Misfit, Modulus, StrainRatio};
+use grainlab_emt::{Conditions, Measured, Misfit, Modulus, Observation, StrainRatio};
 use grainlab_msgs::boundary::WaveSpeedsReading;
 
 /// Sine of the angle between the axis used and the one stated beyond which there is a note: 6°.
@@ -40,7 +40,8 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
         }),
         contact_law: reading.contact_law,
     };
-    let fitted = christoffel::moduli_from_speeds(&speeds, density, Some(axis), conditions)?;
+    let grains = reading.grains.map(f64::from);
+    let fitted = christoffel::moduli_of_sample(&speeds, density, Some(axis), conditions, grains)?;
     notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));
     notes.extend(reading.warnings.iter().map(|warning| format!("the instrument reports: {warning}")));
     let other = other_axis(&fitted, &speeds, density, &axis);
@@ -52,6 +53,7 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
         Some(_) => fitted.observation,
         None => with_error(fitted.observation, settings.modulus_error),
     };
+    let observation = Observation { grains: reading.grains, ..observation };
     Ok(Observed { observation, misfit: misfit.filter(|m| m.degrees_of_freedom > 0), in_conflict, notes })
 }
 

@@ -221,6 +221,7 @@ mod tests {
         WaveSpeedsReading {
             stamp: grainlab_msgs::stamp(0.0),
             source_step: Some(12),
+            grains: None,
             density,
             density_stddev: Some(3.0),
             pressure: 5e4,

@@ -13,6 +13,8 @@ pub struct WaveSpeeds {
     pub header: Header,
     /// step of the Packing probed, 0 = not from a simulation
     pub source_step: u64,
+    /// 0 = unknown
+    pub grains: u32,
     /// kg/m3, of the mass that moves with the wave
     pub density: f64,
     /// kg/m3, 0 = unknown
@@ -45,10 +47,11 @@ impl Message for WaveSpeeds {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "WaveSpeeds";
     const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeeds";
-    const HASH: &'static str = "RIHS01_f5ce689f7781ec7588580a1a302d8eafa61e13175307c5a726b966cd2ad54fe6";
+    const HASH: &'static str = "RIHS01_0e926029c19fb7b42444c201cc9bf4f02cad25db9cac6f039c64851df0d98907";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
         "source_step" => (9, 0, ""),
+        "grains" => (7, 0, ""),
         "density" => (11, 0, ""),
         "density_stddev" => (11, 0, ""),
         "pressure" => (11, 0, ""),

@@ -65,6 +65,10 @@ const UNSEEN: f64 = 1e-3;
 const CHANGE: f64 = 0.3;
 const REACHED: f64 = 3e-4;
 
+/// Doublings of the wavelengths at once: near the frequency of a loosely held grain the modes are costly, and far below it
+/// they are not.
+const AT_ONCE: u32 = 3;
+
 /// The curves of all polarizations of all rays, in that order.
 ///
 /// If a ray has three polarizations, the first two span its plane with the axis and are rotated in it to those of the
@@ -156,8 +160,8 @@ fn curves_along(
         polarization: ray.polarizations.first().copied().unwrap_or_default().into(),
         reason: "its speeds have no positive limit at long waves; use longer waves".to_owned(),
     };
-    for doubling in 0.. {
-        let last = doubling >= settings.doublings;
+    for doubling in (0..).step_by(AT_ONCE as usize) {
+        let last = doubling + AT_ONCE > settings.doublings;
         let found = modes_along(backbone, diameter, ray, alignment, &wavelengths, settings);
         let too_short = match &found {
             Ok(found) => found.as_ref().is_none_or(|(e, _)| e.is_too_short(settings.tolerance)),
@@ -173,7 +177,7 @@ fn curves_along(
             let [curves, modes] = [series, modes].map(|s| s.curves(ray.direction, unseen));
             return Ok((RayCurves { curves, modes }, warning));
         }
-        wavelengths.iter_mut().for_each(|w| *w *= 2.0);
+        wavelengths.iter_mut().for_each(|w| *w *= f64::from(1 << AT_ONCE));
     }
     Err(no_limit())
 }

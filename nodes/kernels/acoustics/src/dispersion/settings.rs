@@ -16,8 +16,8 @@ pub struct Settings {
     pub tolerance: f64,
     /// Maximum number of conjugate gradient iterations per wave vector.
     pub max_iterations: u32,
-    /// How often all wavelengths are doubled along a ray whose speeds have no convergent series at those set, at most
-    /// 8. Packings near isostaticity need longer waves.
+    /// How often all wavelengths are doubled, three times at once, along a ray whose speeds have no convergent series at those
+    /// set, at most 9. Packings near isostaticity need longer waves.
     pub doublings: u32,
 }
 
@@ -27,7 +27,7 @@ impl Default for Settings {
             wavelengths: vec![320.0, 640.0, 1280.0],
             tolerance: 1e-5,
             max_iterations: 20_000,
-            doublings: 5,
+            doublings: 6,
         }
     }
 }
@@ -52,7 +52,7 @@ impl Settings {
         range("tolerance", t, (1e-12..=1e-2).contains(&t), "between 1e-12 and 1e-2")?;
         range("max_iterations", f64::from(n), n > 0, "1 or more")?;
         let d = self.doublings;
-        range("doublings", f64::from(d), d <= 8, "at most 8")?;
+        range("doublings", f64::from(d), d <= 9, "at most 9")?;
         Ok(self)
     }
 }
