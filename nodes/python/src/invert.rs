@@ -72,7 +72,7 @@ pub(crate) fn invert<'py>(
     let computed = || {
         let mut estimate = known.infer(&observation, calibration)?;
         if let Some(prior) = &prior {
-            estimate = estimate.with_prior(prior)?;
+            estimate = estimate.with_prior(prior)?.within(&known.prior_domain(calibration))?;
         }
         let Some(each) = draws else { return Ok((estimate, None)) };
         let settings = PosteriorSettings { seed, ..PosteriorSettings::default() };

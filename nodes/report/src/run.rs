@@ -107,6 +107,12 @@ impl Run {
             }
             Err(error) => self.missing.push(format!("Nothing against time: {error}")),
         }
+        // Some damage is found only where the messages are.
+        for warning in recording.warnings().iter().map(ToString::to_string) {
+            if !self.missing.contains(&warning) && !self.summary.warnings.contains(&warning) {
+                self.missing.push(warning);
+            }
+        }
         if self.timeline.unreadable > 0 {
             self.missing.push(format!(
                 "{} could not be read",

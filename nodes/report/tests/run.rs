@@ -189,6 +189,19 @@ fn a_recording_that_was_cut_off_is_shown_as_far_as_it_goes() {
 }
 
 #[test]
+fn a_chunk_that_is_damaged_without_truncation_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path());
+    assert!(!Run::read(folder.path()).html().unwrap().contains("is left out"));
+    let file = folder.path().join("r_0.mcap");
+    let mut bytes = std::fs::read(&file).unwrap();
+    let at = bytes.len() / 3;
+    bytes[at..at + 64].fill(0xa5);
+    std::fs::write(&file, &bytes).unwrap();
+    assert!(Run::read(folder.path()).html().unwrap().contains("is left out"), "the damaged chunk is named");
+}
+
+#[test]
 fn a_page_is_written_whole_or_not_at_all() {
     let folder = tempfile::tempdir().unwrap();
     let path = write_report(folder.path()).unwrap();

@@ -198,6 +198,21 @@ pub enum EmtError {
         /// Highest of the domain.
         high: f64,
     },
+    /// With the priors, the structure is outside the domain of the model.
+    #[error(
+        "with its priors, {quantity} = {value:.4} is outside [{low:.4}, {high:.4}], the domain of the model: the priors contradict the moduli; \
+         widen or move them"
+    )]
+    PriorContradicts {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// Lowest of the domain.
+        low: f64,
+        /// Highest of the domain.
+        high: f64,
+    },
     /// The model states no likelihood of the moduli.
     #[error("model {model} states no likelihood of these moduli: {reason}")]
     NoLikelihood {
@@ -241,6 +256,7 @@ impl EmtError {
             | EmtError::Missing { .. }
             | EmtError::NotCalibrated { .. }
             | EmtError::PriorOutsideDomain { .. }
+            | EmtError::PriorContradicts { .. }
             | EmtError::NoLikelihood { .. } => true,
             EmtError::LinearSprings
             | EmtError::Unstable { .. }

@@ -90,8 +90,12 @@ impl Estimate {
         (with.data_covariance, with.model_covariance) =
             (part(self.data_covariance), part(self.model_covariance));
         with.prior_covariance = Some(covariance - kept * before * kept.transpose());
-        for quantity in prior.quantities().filter(|q| self.structure.get(*q).is_some()) {
+        for quantity in prior.quantities() {
             let Some(density) = prior.get(quantity) else { continue };
+            if self.structure.get(quantity).is_none() {
+                with.warnings.push(Warning::PriorUnused { quantity });
+                continue;
+            }
             let (i, [mean, variance]) = (quantity as usize, density.moments());
             with.limits[i] = density.range();
             let sigma = (values[i] - mean).abs() / (before[(i, i)] + variance).sqrt();
@@ -100,6 +104,20 @@ impl Estimate {
             }
         }
         Ok(with)
+    }
+
+    /// The same, if its structure is within the domain, that of [`crate::Model::prior_domain`]: priors of quantities that
+    /// follow from others may have moved those out of it.
+    pub fn within(self, domain: &Domain) -> Result<Self, EmtError> {
+        for quantity in InferredQuantity::ALL {
+            let range = domain.structure[quantity as usize];
+            if let (Some(value), Some([low, high])) = (self.structure.get(quantity), range)
+                && !(low..=high).contains(&value)
+            {
+                return Err(EmtError::PriorContradicts { quantity: quantity.name(), value, low, high });
+            }
+        }
+        Ok(self)
     }
 
     /// The unknowns of the model that the data do not determine.

@@ -126,6 +126,11 @@ pub enum Warning {
         /// Their difference in standard deviations.
         sigma: f64,
     },
+    /// The data do not determine a quantity, so that its prior has no effect.
+    PriorUnused {
+        /// The quantity.
+        quantity: InferredQuantity,
+    },
     /// The data contradict each other, or the model.
     Conflict {
         /// Sum of squares weighted by the errors of data and model.
@@ -148,6 +153,7 @@ impl Warning {
                 | Warning::IsotropicContacts
                 | Warning::ErrorsLarge { .. }
                 | Warning::PriorConflict { .. }
+                | Warning::PriorUnused { .. }
         ) && !matches!(self, Warning::StickingShare { share } if is_share(*share))
     }
 }
@@ -264,6 +270,10 @@ impl fmt::Display for Warning {
             Warning::PriorConflict { quantity, value, prior, sigma } => write!(
                 f,
                 "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma from {prior:.4}, the mean of its prior"
+            ),
+            Warning::PriorUnused { quantity } => write!(
+                f,
+                "the data do not determine {quantity}, and its prior is not used; draws from the posterior use it"
             ),
             Warning::Conflict { chi_square, degrees_of_freedom, worst: (modulus, sigma) } => write!(
                 f,

@@ -155,14 +155,14 @@ pub(crate) struct Args {
     plot: Option<PathBuf>,
     /// Also sample the distribution of the estimates by this number of draws of the data: for large errors,
     /// for which linear error propagation is inaccurate; 20000 suffices
-    #[arg(long, value_name = "N", conflicts_with = "table", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+    #[arg(long, value_name = "N", conflicts_with_all = ["table", "prior"], value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
     samples: Option<u32>,
     /// Priors of k, k_hat, z, eps and eps_stiffness, or of some of them, in the form of --print-prior; a quantity without one has
     /// that of --print-prior
     #[arg(long, value_name = "FILE.toml")]
     prior: Option<PathBuf>,
     /// Print the prior of a model (default: relaxed) as a file for --prior, and do nothing else
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["table", "draws", "evidence", "samples", "explain", "prior"])]
     print_prior: bool,
     /// Write independent draws from the posterior of one model: .csv, or .json for arviz.from_json; with ln likelihood (of each
     /// modulus given the others), ln prior, predicted and observed moduli

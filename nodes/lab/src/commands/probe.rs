@@ -67,6 +67,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let options = args.import.options()?;
     let settings = args.flags.settings()?;
     let attenuation = args.attenuation.settings()?;
+    if attenuation.is_some() && args.format == Format::Csv {
+        return Err(Failure::usage(
+            "--attenuation has arrays, which --format csv has no columns for: use json or table",
+        ));
+    }
     let printer = Printer::new(args.format, args.columns.clone())?;
     let recorded = [topics::WAVE_SPEEDS, topics::WAVEFORM];
     let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "probe")).transpose()?;

@@ -118,6 +118,10 @@ impl Model for Relaxed {
         domain
     }
 
+    fn states_likelihood(&self) -> bool {
+        true
+    }
+
     fn likelihood<'a>(
         &'a self,
         observation: &Observation,

@@ -2,8 +2,8 @@
 
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, Conditions, Density, EmtError, Estimate, Measured, Model, Moduli, Observation, Prior,
-    PriorError, Relaxed, Warning,
+    Calibration, Conditions, Density, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation,
+    Prior, PriorError, Relaxed, Warning,
 };
 
 fn ours() -> &'static Calibration {
@@ -81,6 +81,40 @@ fn intervals_end_at_the_limits_of_the_prior_and_a_contradiction_is_a_warning() {
     let with = without.with_prior(&far).unwrap();
     let is_conflict = |w: &Warning| matches!(w, Warning::PriorConflict { quantity: InferredQuantity::Z, .. });
     assert!(with.warnings.iter().any(is_conflict) && !without.warnings.iter().any(is_conflict));
+}
+
+#[test]
+fn a_prior_that_moves_the_structure_out_of_the_domain_is_refused() {
+    let domain = Relaxed.prior_domain(ours());
+    for (quantity, density) in [
+        (InferredQuantity::K, Density::normal(-5.0, 0.01).unwrap()),
+        (InferredQuantity::K, Density::uniform(20.0, 100.0).unwrap()),
+        (InferredQuantity::EpsStiffness, Density::uniform(2.0, 3.0).unwrap()),
+    ] {
+        let with = estimate().with_prior(&Prior::default().with(quantity, density)).unwrap();
+        let refused = with.within(&domain).unwrap_err();
+        assert!(
+            matches!(refused, EmtError::PriorContradicts { .. }) && refused.is_input_error(),
+            "{refused}"
+        );
+    }
+    let near = Prior::default().with(InferredQuantity::K, Density::normal(5.0, 0.1).unwrap());
+    assert!(estimate().with_prior(&near).unwrap().within(&domain).is_ok());
+}
+
+#[test]
+fn a_prior_of_what_the_data_do_not_determine_is_said_to_be_unused() {
+    let one = Observation {
+        moduli: Moduli::NONE.with(Modulus::G12, observation().moduli.get(Modulus::G12).unwrap()),
+        covariance: None,
+        ..observation()
+    };
+    let estimate = Relaxed.infer(&one.with_relative_error(0.01), ours()).unwrap();
+    assert_eq!(estimate.structure.eps, None);
+    let prior = Prior::default().with(InferredQuantity::Eps, Density::normal(0.08, 1e-3).unwrap());
+    let with = estimate.with_prior(&prior).unwrap();
+    let unused = Warning::PriorUnused { quantity: InferredQuantity::Eps };
+    assert!(with.warnings.contains(&unused) && with.structure == estimate.structure, "{:?}", with.warnings);
 }
 
 #[test]

@@ -36,7 +36,7 @@ pub(super) fn write(state: &State, ways: &[Way], number: Number, path: &Path) ->
         "csv" => posterior_draws::csv(&draws, chains),
         _ => json(&posterior_draws::inference_data(&draws, chains, attributes(way, &draws, seed)))?,
     };
-    std::fs::write(path, text).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
+    grainlab_console::write_whole(path, text).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
     say!(
         "grainlab: {name}: {} independent draws of model {}, {:.0} % of the proposals accepted",
         draws.draws.len(),
@@ -50,6 +50,8 @@ fn drawn(state: &State, way: &Way, count: usize, seed: u64) -> Result<Draws, Emt
     let prior = way.prior.as_deref().cloned().unwrap_or_default();
     let settings = PosteriorSettings { seed, ..PosteriorSettings::default() };
     let observation = state.observation(way)?;
+    // What has no estimate has no posterior worth drawing from: it is far outside the packings of the calibration.
+    way.model.infer(&observation, &way.calibration)?;
     Posterior::new(way.model, &observation, &way.calibration, &prior, settings)?.draws(count)
 }
 

@@ -34,6 +34,13 @@ pub(super) fn run(
     let [way] = ways else {
         return Err(Failure::usage("--rank-test is for one model and one calibration: add --model relaxed"));
     };
+    if !way.model.states_likelihood() {
+        return Err(Failure::usage(format!(
+            "--rank-test: model {} states the error of its estimate, which changes with the structure, and no likelihood: ranks \
+             among its draws are not uniform; use --model relaxed",
+            way.model.name()
+        )));
+    }
     let conditions = state.observation(way).map_err(Failure::usage)?.conditions;
     let settings = SimulationSettings {
         conditions,

@@ -94,7 +94,7 @@ impl State {
     pub(super) fn infer(&self, way: &Way) -> Result<Estimate, EmtError> {
         let estimate = way.model.infer(&self.observation(way)?, &way.calibration)?;
         match &way.prior {
-            Some(prior) => estimate.with_prior(prior),
+            Some(prior) => estimate.with_prior(prior)?.within(&way.model.prior_domain(&way.calibration)),
             None => Ok(estimate),
         }
     }
