@@ -32,7 +32,7 @@ enum Command {
     Launch(launch::Args),
     /// Run many scenes: each a recorded run in a folder of its own, on this machine or a cluster.
     Campaign(campaign::Args),
-    /// Report runs: a page with results, plots and packings; for many runs one row a run.
+    /// Report runs: a page with results, plots and packings; for many runs one row per run.
     Report(report::Args),
     /// Show packings in three dimensions, as a page or PNG, or with --live a running laboratory.
     View(view::Args),

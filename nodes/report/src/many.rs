@@ -1,4 +1,4 @@
-//! The page of many runs: one row a run, sortable, with outliers marked.
+//! The page of many runs: one row per run, sortable, with outliers marked.
 
 use crate::figure::number;
 use crate::inferred::COUNTED;

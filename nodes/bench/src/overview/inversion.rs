@@ -105,7 +105,7 @@ fn of(
             format!("{} of {}", errors.len(), states.len())
         };
         rms.is_finite().then(|| {
-            let reference = "counted in 384 packings that taught no model";
+            let reference = "counted in 384 states of packings that no model was learned from";
             Row::new(family, (model.name(), setting), (seconds, passes), (rms, reference))
         })
     };

@@ -9,7 +9,7 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab report recordings/runs/demo-1-1                 the page of a run: report.html in its folder
   grainlab report recordings/runs/demo-1-1 -o demo.html
-  grainlab report recordings/runs/*                        a page for each, and runs.html with one row a run
+  grainlab report recordings/runs/*                        a page for each, and runs.html with one row per run
   grainlab report recordings/campaigns/friction/members/*";
 
 /// Page of many runs, beside the present folder's other files.
