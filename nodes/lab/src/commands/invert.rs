@@ -162,7 +162,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.toml")]
     prior: Option<PathBuf>,
     /// Print the prior of a model (default: relaxed) as a file for --prior, and do nothing else
-    #[arg(long, conflicts_with_all = ["table", "draws", "evidence", "samples", "explain", "prior"])]
+    #[arg(long, conflicts_with_all = ["table", "draws", "evidence", "samples", "explain"])]
     print_prior: bool,
     /// Write independent draws from the posterior of one model: .csv, or .json for arviz.from_json; with ln likelihood (of each
     /// modulus given the others), ln prior, predicted and observed moduli
