@@ -46,7 +46,7 @@ pub struct Args {
     pub(super) noise: Vec<f64>,
     /// Instead: compare the errors of all speeds of every packing of every file with those stated, one row a method,
     /// with the default settings
-    #[arg(long, conflicts_with_all = ["noise", "out"])]
+    #[arg(long, conflicts_with_all = ["noise", "out", "draws", "tolerances", "copies"])]
     pub(super) judge: bool,
     /// Draws of the noise per packing
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
