@@ -18,19 +18,20 @@ pub(crate) struct Counted {
     pub(crate) meaning: &'static str,
     /// Decimal places.
     pub(crate) digits: usize,
-    pub(crate) counted: fn(&PackingReport) -> f64,
+    /// `None` without contacts.
+    pub(crate) counted: fn(&PackingReport) -> Option<f64>,
     pub(crate) inferred: fn(&Inference) -> Option<f64>,
     pub(crate) sigma: fn(&Inference) -> Option<f64>,
     interval: fn(&Inference) -> Option<[f64; 2]>,
 }
 
-/// k, z and ε.
-pub(crate) const COUNTED: [Counted; 3] = [
+/// k, z, ε, and ε weighted by contact stiffness.
+pub(crate) const COUNTED: [Counted; 4] = [
     Counted {
         symbol: "k",
         meaning: "coordination number",
         digits: 3,
-        counted: |r| r.contacts.coordination,
+        counted: |r| Some(r.contacts.coordination),
         inferred: |e| e.values.k,
         sigma: |e| e.sigma.k,
         interval: |e| e.interval.bounds.k,
@@ -39,7 +40,7 @@ pub(crate) const COUNTED: [Counted; 3] = [
         symbol: "z",
         meaning: "coordination without rattlers",
         digits: 3,
-        counted: |r| r.contacts.mechanical_coordination,
+        counted: |r| Some(r.contacts.mechanical_coordination),
         inferred: |e| e.values.z,
         sigma: |e| e.sigma.z,
         interval: |e| e.interval.bounds.z,
@@ -48,10 +49,19 @@ pub(crate) const COUNTED: [Counted; 3] = [
         symbol: "ε",
         meaning: "contact anisotropy",
         digits: 4,
-        counted: |r| r.fabric.contact_anisotropy,
+        counted: |r| Some(r.fabric.contact_anisotropy),
         inferred: |e| e.values.eps,
         sigma: |e| e.sigma.eps,
         interval: |e| e.interval.bounds.eps,
+    },
+    Counted {
+        symbol: "ε_k",
+        meaning: "the same, weighted by stiffness",
+        digits: 4,
+        counted: PackingReport::stiffness_anisotropy,
+        inferred: |e| e.values.eps_stiffness,
+        sigma: |e| e.sigma.eps_stiffness,
+        interval: |e| e.interval.bounds.eps_stiffness,
     },
 ];
 
@@ -65,7 +75,7 @@ fn name(e: &Inference) -> String {
 
 impl Counted {
     fn figure(&self, state: &InvertedPacking) -> Option<String> {
-        let counted = (self.counted)(&state.packing.report);
+        let counted = (self.counted)(&state.packing.report)?;
         let digits = self.digits;
         let mut csv = String::from("model,status,inferred,low,high,counted\n");
         let mut bars = Vec::new();
@@ -94,7 +104,8 @@ impl Counted {
         let id = match self.symbol {
             "k" => "inferred-k",
             "z" => "inferred-z",
-            _ => "inferred-eps",
+            "ε" => "inferred-eps",
+            _ => "inferred-eps-k",
         };
         (!bars.is_empty()).then(|| {
             let svg = Bars { title, from_zero: false, bars, reference }.svg();
@@ -113,8 +124,8 @@ impl Run {
             paragraph("Nothing was inferred.")
         } else {
             paragraph(&format!(
-                "Inferred from moduli, pressure and solid fraction, and from wave speeds if there are some; the contacts were not seen. \
-                 Bars are intervals of {:.0} %, which assume the errors of the data that the inversion was given; the vertical line is the \
+                "Inferred from moduli, or from wave speeds if there are some, with the stress and the sizes and material of the grains; the contacts \
+                 were not seen. Bars are intervals of {:.0} %, which assume the errors of the data that the inversion was given; the vertical line is the \
                  count. The model that is recommended comes first. Orange: a model outside of its range.",
                 100.0 * level
             ))
@@ -133,7 +144,7 @@ impl Run {
         } else {
             format!("<details><summary>Notes of the models</summary><ul>{warnings}</ul></details>\n")
         };
-        format!("{about}<div class=\"grid three\">\n{figures}</div>\n{warnings}")
+        format!("{about}<div class=\"grid\">\n{figures}</div>\n{warnings}")
     }
 
     /// The measured states, one a row.
@@ -145,12 +156,14 @@ impl Run {
             "k",
             "z",
             "ε",
+            "ε_k",
             "G12, MPa",
             "G13, MPa",
             "Θ, MPa",
             "inferred k",
             "z",
             "ε",
+            "ε_k",
             "by",
         ];
         let row = |s: &InvertedPacking| {
@@ -166,7 +179,7 @@ impl Run {
                 Cell::number(format!("{:.2}", r.pressure() / 1e3)),
                 Cell::number(format!("{:.4}", r.solid_fraction)),
             ];
-            cells.extend(COUNTED.map(|c| Cell::number(format!("{:.*}", c.digits, (c.counted)(r)))));
+            cells.extend(COUNTED.map(|c| Cell::number(fixed((c.counted)(r), c.digits))));
             cells.extend(moduli(r).map(|m| Cell::number(fixed(m, 2))));
             cells.extend(COUNTED.map(|c| {
                 let sigma = best

@@ -25,11 +25,11 @@ fn modulus(run: &Run, n: usize) -> Option<f64> {
 /// Error of a quantity inferred from the last state.
 fn error(run: &Run, n: usize) -> Option<f64> {
     let state = run.last()?;
-    Some((COUNTED[n].inferred)(recommended(state)?)? - (COUNTED[n].counted)(&state.packing.report))
+    Some((COUNTED[n].inferred)(recommended(state)?)? - (COUNTED[n].counted)(&state.packing.report)?)
 }
 
 /// Numbers that are compared between runs of one scene.
-const COLUMNS: [Column; 14] = [
+const COLUMNS: [Column; 16] = [
     Column { name: "p, kPa", digits: 2, value: |r| Some(r.last()?.packing.report.pressure() / 1e3) },
     Column { name: "φ", digits: 4, value: |r| Some(r.last()?.packing.report.solid_fraction) },
     Column { name: "k", digits: 3, value: |r| Some(r.last()?.packing.report.contacts.coordination) },
@@ -39,12 +39,14 @@ const COLUMNS: [Column; 14] = [
         value: |r| Some(r.last()?.packing.report.contacts.mechanical_coordination),
     },
     Column { name: "ε", digits: 4, value: |r| Some(r.last()?.packing.report.fabric.contact_anisotropy) },
+    Column { name: "ε_k", digits: 4, value: |r| r.last()?.packing.report.stiffness_anisotropy() },
     Column { name: "G12, MPa", digits: 2, value: |r| modulus(r, 0) },
     Column { name: "G13, MPa", digits: 2, value: |r| modulus(r, 1) },
     Column { name: "Θ, MPa", digits: 2, value: |r| modulus(r, 2) },
     Column { name: "error of k", digits: 3, value: |r| error(r, 0) },
     Column { name: "of z", digits: 3, value: |r| error(r, 1) },
     Column { name: "of ε", digits: 4, value: |r| error(r, 2) },
+    Column { name: "of ε_k", digits: 4, value: |r| error(r, 3) },
     Column { name: "unbalanced", digits: 9, value: |r| r.last()?.packing.report.unbalanced_force_ratio },
     Column { name: "wall, s", digits: 1, value: |r| r.summary.wall_seconds },
     Column {

@@ -2,6 +2,7 @@
 
 use crate::inferred::COUNTED;
 use crate::run::{Run, recommended};
+use grainlab_console::fixed;
 use grainlab_console::html::{escaped, section};
 use grainlab_console::plot::page_style;
 use grainlab_results::brief::{ended, moduli};
@@ -144,16 +145,18 @@ fn cards(state: &InvertedPacking) -> String {
             |v| {
                 let sigma =
                     best.and_then(|b| (c.sigma)(b)).map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
-                format!("inferred {v:.digits$}{sigma} <span class=\"error\">{:+.digits$}</span>", v - counted)
+                let error = counted.map_or_else(String::new, |c| {
+                    format!(" <span class=\"error\">{:+.digits$}</span>", v - c)
+                });
+                format!("inferred {v:.digits$}{sigma}{error}")
             },
         );
-        text += &card(c.symbol, &format!("{counted:.digits$}"), c.meaning, &inferred);
+        text += &card(c.symbol, &fixed(counted, digits), c.meaning, &inferred);
     }
-    let names = [("G12", "shear across the axis"), ("G13", "shear along the axis"), ("Θ", "bulk modulus")];
-    for ((name, meaning), value) in names.into_iter().zip(moduli(r)) {
-        let value = value.map_or_else(|| "–".to_owned(), |v| format!("{v:.2}"));
-        text += &card(name, &format!("{value} <small>MPa</small>"), meaning, "");
-    }
+    let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 2));
+    let shear = format!("{g12}, {g13} <small>MPa</small>");
+    text += &card("G12, G13", &shear, "shear across and along the axis", "");
+    text += &card("Θ", &format!("{theta} <small>MPa</small>"), "bulk modulus", "");
     let unbalanced = r.unbalanced_force_ratio.map_or_else(|| "–".to_owned(), |u| format!("{u:.1e}"));
     let ratio = r.stress_ratio().map_or_else(String::new, |q| format!("q/p {q:.1e}"));
     text += &card("p", &format!("{:.2} <small>kPa</small>", r.pressure() / 1e3), "pressure", &ratio);

@@ -55,7 +55,7 @@ pub struct Quantities<T> {
     /// Contact anisotropy.
     pub eps: T,
     /// Contact anisotropy weighted by contact stiffness.
-    pub(crate) eps_stiffness: T,
+    pub eps_stiffness: T,
 }
 
 impl<T> Quantities<T> {
