@@ -2,9 +2,12 @@
 
 use crate::observed::{Observed, Unobservable};
 use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Status, StrainRatio};
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Misfit, Model, Status, StrainRatio};
 use grainlab_msgs::boundary::EstimateReading;
 use grainlab_msgs::msg;
+
+/// Columns of `information`: the first inputs of an inversion.
+const COLUMNS: usize = 10;
 
 /// The message of an estimate. An invalid estimate is sent as a failure with the reason.
 pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
@@ -27,9 +30,9 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let structure = &estimate.structure;
     let [k, k_hat, z, eps, eps_stiffness] = structure.values().map(|v| v.into_iter().collect());
     let status = match estimate.status {
-        _ if structure.values().iter().all(Option::is_none) => msg::Estimate::STATUS_UNDETERMINED,
+        Status::Unknown => msg::Estimate::STATUS_UNDETERMINED,
         Status::Ok if !observed.in_conflict => msg::Estimate::STATUS_OK,
-        Status::Ok | Status::Extrapolated => msg::Estimate::STATUS_EXTRAPOLATED,
+        Status::Ok | Status::Extrapolated | Status::Contradictory => msg::Estimate::STATUS_EXTRAPOLATED,
     };
     let misfit = both(observed.misfit, estimate.misfit);
     let covariance = known_covariance(estimate.covariance());
@@ -55,7 +58,7 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
         chi_square: misfit.chi_square,
         degrees_of_freedom: misfit.degrees_of_freedom as u32,
         condition_number: estimate.condition_number().into_iter().collect(),
-        information: std::array::from_fn(|i| shares[i / INPUTS].map_or(0.0, |s| s[i % INPUTS])),
+        information: std::array::from_fn(|i| shares[i / COLUMNS].map_or(0.0, |s| s[i % COLUMNS])),
         warnings: observed
             .notes
             .iter()

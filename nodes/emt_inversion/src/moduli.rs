@@ -38,6 +38,7 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
         size_spread: reading.size_spread,
         material: Some(reading.material),
         contact_law: reading.contact_law,
+        ..Conditions::at(reading.pressure)
     };
     // The covariance of the message refers to the moduli about the axis stated.
     let covariance = reading.covariance.filter(|_| as_stated).map(|c| Mat3::from_row_slice(&c));

@@ -39,6 +39,7 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
             ..Material::GLASS
         }),
         contact_law: reading.contact_law,
+        ..Conditions::at(reading.pressure)
     };
     let grains = reading.grains.map(f64::from);
     let fitted = christoffel::moduli_of_sample(&speeds, density, Some(axis), conditions, grains)?;

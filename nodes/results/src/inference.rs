@@ -103,12 +103,13 @@ pub fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
 impl Inference {
     /// The recommended one among the results of all models from the same data.
     pub fn recommended<'a>(results: &[&'a Self]) -> Option<&'a Self> {
-        let status = |r: &Self| match r.status {
-            "ok" => Some(Status::Ok),
-            "extrapolated" => Some(Status::Extrapolated),
-            _ => None,
+        let named = |r: &Self| {
+            [Status::Ok, Status::Extrapolated, Status::Contradictory]
+                .into_iter()
+                .find(|s| s.name() == r.status)
         };
-        let name = recommended(results.iter().filter_map(|r| Some((r.model.as_str(), status(r)?))))?;
+        let status = |r: &Self| named(r).unwrap_or(Status::Unknown);
+        let name = recommended(results.iter().map(|r| (r.model.as_str(), status(r))))?;
         results.iter().find(|r| r.model == name).copied()
     }
 
@@ -193,10 +194,7 @@ impl Inference {
             chi_square: estimate.misfit.map(|m| m.chi_square),
             degrees_of_freedom: Some(estimate.misfit.map_or(0, |m| m.degrees_of_freedom)),
             condition_number: estimate.condition_number(),
-            status: match estimate.status {
-                Status::Ok => "ok",
-                Status::Extrapolated => "extrapolated",
-            },
+            status: estimate.status.name(),
             gamma_over_delta: estimate.gamma.map(|g| g.value),
             gamma_over_delta_source: estimate.gamma.map(|g| g.source.name().to_owned()),
             warnings: estimate.warnings.iter().map(ToString::to_string).collect(),

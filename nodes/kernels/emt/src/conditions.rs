@@ -126,8 +126,14 @@ pub struct Conditions {
     pub size_spread: Option<f64>,
     /// Material of the grains; `None` takes that of the calibration.
     pub material: Option<Material>,
+    /// Standard deviation of the shear modulus of the grains, Pa; 0 takes it as exact.
+    pub shear_modulus_stddev: f64,
+    /// Standard deviation of the Poisson ratio of the grains; 0 takes it as exact.
+    pub poisson_ratio_stddev: f64,
     /// Contact law of the grains; `None` takes Hertz–Mindlin contacts.
     pub contact_law: Option<ContactLaw>,
+    /// Whether the moduli are those of contacts without tangential springs: no model has an estimate for them.
+    pub smooth: bool,
 }
 
 impl Conditions {
@@ -140,7 +146,10 @@ impl Conditions {
             stress_ratio: None,
             size_spread: None,
             material: None,
+            shear_modulus_stddev: 0.0,
+            poisson_ratio_stddev: 0.0,
             contact_law: None,
+            smooth: false,
         }
     }
 
@@ -149,8 +158,13 @@ impl Conditions {
         let finite = |quantity: &'static str, value: f64| {
             if value.is_finite() { Ok(()) } else { Err(EmtError::NotFinite { quantity, value }) }
         };
-        if let Some(SpringLaw::Linear(_)) = self.contact_law.map(|law| law.springs) {
-            return Err(EmtError::LinearSprings);
+        if let Some(springs) = self.contact_law.map(|law| law.springs)
+            && springs != SpringLaw::HertzMindlin
+        {
+            return Err(EmtError::OtherContactLaw { law: springs.name() });
+        }
+        if self.smooth {
+            return Err(EmtError::SmoothGrains);
         }
         finite("pressure", self.pressure.value)?;
         if self.pressure.value <= 0.0 {
@@ -162,6 +176,8 @@ impl Conditions {
             ("stddev of gamma/Delta", Some(self.gamma.stddev)),
             ("stddev of the solid fraction", phi.map(|p| p.stddev)),
             ("stddev of the stress ratio", ratio.map(|r| r.stddev)),
+            ("stddev of the shear modulus of the grains", Some(self.shear_modulus_stddev)),
+            ("stddev of the Poisson ratio of the grains", Some(self.poisson_ratio_stddev)),
             ("size spread", self.size_spread),
         ] {
             let Some(value) = value else { continue };

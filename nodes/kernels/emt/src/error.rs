@@ -55,12 +55,21 @@ pub enum EmtError {
         /// The value found.
         ratio: f64,
     },
-    /// Contacts that are no Hertz contacts.
+    /// Contacts that are not Hertz–Mindlin contacts.
     #[error(
-        "unknown: the contacts are linear springs, whose stiffness does not follow from the material of the grains; every \
-         model is for Hertz-Mindlin contacts"
+        "unknown: the contact law is {law}; every model is for Hertz-Mindlin contacts, whose stiffness follows from the material \
+         of the grains"
     )]
-    LinearSprings,
+    OtherContactLaw {
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// Moduli of contacts without tangential springs.
+    #[error(
+        "unknown: the moduli are those of smooth grains, whose contacts have no tangential springs; every model is for \
+         contacts that have them"
+    )]
+    SmoothGrains,
     /// An invalid Poisson ratio of the grains.
     #[error("the Poisson ratio of the grains, {nu}, is outside [0, 1/2]")]
     PoissonRatio {
@@ -258,7 +267,8 @@ impl EmtError {
             | EmtError::PriorOutsideDomain { .. }
             | EmtError::PriorContradicts { .. }
             | EmtError::NoLikelihood { .. } => true,
-            EmtError::LinearSprings
+            EmtError::OtherContactLaw { .. }
+            | EmtError::SmoothGrains
             | EmtError::Unstable { .. }
             | EmtError::OutsideDomain { .. }
             | EmtError::GammaOutOfRange { .. }

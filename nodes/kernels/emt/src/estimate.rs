@@ -22,13 +22,46 @@ pub(crate) const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 /// Distance of a prior from the data, in standard deviations of both, that chance exceeds once in a thousand times.
 const PRIOR_CONFLICT: f64 = 3.3;
 
-/// Whether an estimate lies in the range of its model and calibration.
+/// How far an estimate can be relied on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// Inside.
+    /// Model and calibration were used inside their range, and the data agree with each other and with the model.
     Ok,
-    /// Outside; see the warnings.
+    /// Model or calibration were used outside their range; see the warnings.
     Extrapolated,
+    /// The data contradict each other or the model; see the warnings. Takes precedence over both others.
+    Contradictory,
+    /// There is no estimate, or one that determines nothing.
+    Unknown,
+}
+
+impl Status {
+    /// Its name in texts, files and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Status::Ok => "ok",
+            Status::Extrapolated => "extrapolated",
+            Status::Contradictory => "contradictory",
+            Status::Unknown => "unknown",
+        }
+    }
+
+    /// That of a result of a model.
+    pub fn of(result: &Result<Estimate, EmtError>) -> Self {
+        result.as_ref().map_or(Status::Unknown, |estimate| estimate.status)
+    }
+
+    fn of_estimate(structure: &Microstructure, domain: &Domain, warnings: &[Warning]) -> Self {
+        if structure.values().iter().all(Option::is_none) {
+            Status::Unknown
+        } else if warnings.iter().any(Warning::is_contradiction) {
+            Status::Contradictory
+        } else if warnings.iter().any(Warning::is_extrapolation) || !domain.contains(structure) {
+            Status::Extrapolated
+        } else {
+            Status::Ok
+        }
+    }
 }
 
 /// What one model infers from one observation.
@@ -201,7 +234,7 @@ pub(crate) fn assemble(
         }
     }
     warnings.extend(checks::common(observation, &structure, calibration, uses_gamma, domain.compares_state));
-    let extrapolated = warnings.iter().any(Warning::is_extrapolation) || !domain.contains(&structure);
+    let status = Status::of_estimate(&structure, domain, &warnings);
     Ok(Estimate {
         model,
         calibration: calibration.name().to_owned(),
@@ -212,7 +245,7 @@ pub(crate) fn assemble(
         model_covariance,
         prior_covariance: None,
         misfit,
-        status: if extrapolated { Status::Extrapolated } else { Status::Ok },
+        status,
         warnings,
         inputs,
         unknowns: domain.structure.map(|range| range.is_some()),

@@ -6,14 +6,29 @@ use crate::moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 use grainlab_core::{Mat3, Stiffness};
 use nalgebra::{SMatrix, SymmetricEigen};
 
-/// Number of inputs of an inversion: the moduli, the pressure, γ/Δ, the solid fraction and the stress ratio q/p.
-pub const INPUTS: usize = MODULI + 4;
+/// Number of inputs of an inversion: the moduli, the pressure, γ/Δ, the solid fraction, the stress ratio q/p, the spread of
+/// the sizes, and the shear modulus and Poisson ratio of the grains.
+pub const INPUTS: usize = MODULI + 7;
 
 /// Names of the inputs, in the order of the columns of a Jacobian.
-pub const INPUT_NAMES: [&str; INPUTS] =
-    ["G12", "G13", "Theta", "C11", "C33", "C13", "pressure", "gamma/Delta", "solid fraction", "q/p"];
+pub const INPUT_NAMES: [&str; INPUTS] = [
+    "G12",
+    "G13",
+    "Theta",
+    "C11",
+    "C33",
+    "C13",
+    "pressure",
+    "gamma/Delta",
+    "solid fraction",
+    "q/p",
+    "size spread",
+    "grain shear modulus",
+    "grain Poisson ratio",
+];
 
-/// Covariance of the relative errors of moduli, pressure and solid fraction and of the errors of γ/Δ and q/p.
+/// Covariance of the relative errors of moduli, pressure, solid fraction and shear modulus of the grains, and of the errors of
+/// γ/Δ, q/p, the spread of the sizes and the Poisson ratio.
 pub(crate) type InputCovariance = SMatrix<f64, INPUTS, INPUTS>;
 
 /// The known moduli of one transversely isotropic packing, and the state in which they were measured.
@@ -139,11 +154,14 @@ impl Observation {
         relative[(MODULI + 2, MODULI + 2)] =
             c.solid_fraction.map_or(0.0, |phi| (phi.stddev / phi.value).powi(2));
         relative[(MODULI + 3, MODULI + 3)] = c.stress_ratio.map_or(0.0, |ratio| ratio.stddev.powi(2));
+        relative[(MODULI + 5, MODULI + 5)] =
+            c.material.map_or(0.0, |m| (c.shear_modulus_stddev / m.shear_modulus).powi(2));
+        relative[(MODULI + 6, MODULI + 6)] = c.poisson_ratio_stddev.powi(2);
         Some(relative)
     }
 
-    /// The same with one input changed by the relative amount `by`, γ/Δ and q/p by the absolute one. `None` if the input is not
-    /// known.
+    /// The same with one input changed by the relative amount `by`, γ/Δ, q/p, the spread of the sizes and the Poisson ratio by
+    /// the absolute one. `None` if the input is not known.
     pub(crate) fn moved(&self, input: usize, by: f64) -> Option<Self> {
         let mut moved = self.clone();
         match input {
@@ -155,7 +173,10 @@ impl Observation {
             6 => moved.conditions.pressure.value *= 1.0 + by,
             7 => moved.conditions.gamma.value += by,
             8 => moved.conditions.solid_fraction.as_mut()?.value *= 1.0 + by,
-            _ => moved.conditions.stress_ratio.as_mut()?.value += by,
+            9 => moved.conditions.stress_ratio.as_mut()?.value += by,
+            10 => *moved.conditions.size_spread.as_mut()? += by,
+            11 => moved.conditions.material.as_mut()?.shear_modulus *= 1.0 + by,
+            _ => moved.conditions.material.as_mut()?.poisson_ratio += by,
         }
         Some(moved)
     }

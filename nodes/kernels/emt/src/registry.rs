@@ -42,15 +42,28 @@ const BY_ERROR: [&str; 8] =
 /// Names of the models that infer no ε, by their error of k over the same packings, 0.86 for each.
 const WITHOUT_EPS: [&str; 3] = ["johnson-slip", "johnson", "hertz-mindlin"];
 
-/// The model whose estimate is recommended: among those inside their range, the one with the smallest error
-/// over the held-out packings; among all if none is inside. A model that infers no ε only where no other has an estimate.
-/// `None` without an estimate.
-pub fn recommended<'a>(estimates: impl IntoIterator<Item = (&'a str, Status)>) -> Option<&'a str> {
+/// The model that is recommended.
+const RECOMMENDED: &str = "relaxed";
+
+/// The model whose estimate is recommended, of all models that were asked, those without an estimate as [`Status::Unknown`].
+/// Where `relaxed` was asked it is that one or none: another model is no substitute where `relaxed` has no answer. Among others,
+/// the one with the smallest error over the held-out packings of those inside their range, else of those that do not contradict
+/// the data; one that infers no ε only where no other has an estimate.
+pub fn recommended<'a>(asked: impl IntoIterator<Item = (&'a str, Status)>) -> Option<&'a str> {
     let place = |names: &[&str], name: &str| names.iter().position(|known| *known == name);
     let rank = |name: &str| place(&BY_ERROR, name).unwrap_or(BY_ERROR.len());
-    let key =
-        |(name, status): &(&str, Status)| (place(&WITHOUT_EPS, name), *status != Status::Ok, rank(name));
-    estimates.into_iter().min_by_key(key).map(|(name, _)| name)
+    let trust = |status| match status {
+        Status::Ok => 0,
+        Status::Extrapolated => 1,
+        Status::Contradictory | Status::Unknown => 2,
+    };
+    let answers = |(_, status): &(&str, Status)| *status != Status::Unknown;
+    let asked: Vec<(&'a str, Status)> = asked.into_iter().collect();
+    if let Some(recommended) = asked.iter().find(|(name, _)| *name == RECOMMENDED) {
+        return answers(recommended).then_some(recommended.0);
+    }
+    let key = |(name, status): &(&str, Status)| (place(&WITHOUT_EPS, name), trust(*status), rank(name));
+    asked.into_iter().filter(answers).min_by_key(key).map(|(name, _)| name)
 }
 
 #[cfg(test)]
@@ -67,14 +80,23 @@ mod tests {
     }
 
     #[test]
-    fn a_model_inside_its_range_is_recommended_before_a_better_one_outside() {
-        use Status::{Extrapolated, Ok};
+    fn without_an_estimate_of_the_recommended_model_no_other_stands_in_for_it() {
+        use Status::{Contradictory, Extrapolated, Ok, Unknown};
         assert_eq!(recommended([("ratio", Ok), ("relaxed", Ok), ("emt", Ok)]), Some("relaxed"));
-        assert_eq!(recommended([("ratio", Ok), ("relaxed", Extrapolated)]), Some("ratio"));
-        assert_eq!(recommended([("ratio", Extrapolated), ("relaxed", Extrapolated)]), Some("relaxed"));
+        assert_eq!(recommended([("ratio", Ok), ("relaxed", Extrapolated)]), Some("relaxed"));
+        assert_eq!(recommended([("relaxed", Contradictory), ("ratio", Ok)]), Some("relaxed"));
+        assert_eq!(recommended([("ratio", Ok), ("relaxed", Unknown), ("directional", Ok)]), None);
+    }
+
+    #[test]
+    fn of_other_models_the_best_inside_its_range_is_recommended() {
+        use Status::{Extrapolated, Ok, Unknown};
+        assert_eq!(recommended([("ratio", Ok), ("directional", Extrapolated)]), Some("ratio"));
         assert_eq!(recommended([("mine", Ok), ("ratio", Ok)]), Some("ratio"));
-        assert_eq!(recommended([("hertz-mindlin", Ok), ("relaxed", Extrapolated)]), Some("relaxed"));
+        assert_eq!(recommended([("directional", Unknown), ("emt", Ok)]), Some("emt"));
+        assert_eq!(recommended([("hertz-mindlin", Ok), ("ratio", Extrapolated)]), Some("ratio"));
         assert_eq!(recommended([("hertz-mindlin", Ok), ("johnson", Extrapolated)]), Some("johnson"));
+        assert_eq!(recommended([("emt", Unknown), ("ratio", Unknown)]), None);
         assert_eq!(recommended([]), None);
     }
 }

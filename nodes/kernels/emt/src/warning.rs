@@ -64,6 +64,8 @@ pub enum Warning {
     StressAssumedIsotropic,
     /// The sizes of the grains are not known; they were taken as equal.
     SizesAssumedEqual,
+    /// The contact law is not known; Hertz–Mindlin contacts were assumed.
+    ContactLawAssumed,
     /// A quantity of the state is outside the packings of the calibration.
     StateOutsideFit {
         /// Its name.
@@ -143,6 +145,11 @@ pub enum Warning {
 }
 
 impl Warning {
+    /// Whether the data contradict each other or the model.
+    pub fn is_contradiction(&self) -> bool {
+        matches!(self, Warning::NotOneMedium | Warning::Imbalance { .. } | Warning::Conflict { .. })
+    }
+
     /// Whether the model or the calibration is used outside its range.
     pub fn is_extrapolation(&self) -> bool {
         !matches!(
@@ -150,6 +157,7 @@ impl Warning {
             Warning::GammaAssumedZero
                 | Warning::StressAssumedIsotropic
                 | Warning::SizesAssumedEqual
+                | Warning::ContactLawAssumed
                 | Warning::IsotropicContacts
                 | Warning::ErrorsLarge { .. }
                 | Warning::PriorConflict { .. }
@@ -218,6 +226,9 @@ impl fmt::Display for Warning {
             }
             Warning::SizesAssumedEqual => {
                 write!(f, "the spread of the grain sizes is not known: the grains were taken as equal")
+            }
+            Warning::ContactLawAssumed => {
+                write!(f, "the contact law is not known: the contacts were taken as Hertz-Mindlin contacts")
             }
             Warning::IsotropicContacts => {
                 write!(f, "the model has contacts in all directions alike: eps is unknown, not zero")

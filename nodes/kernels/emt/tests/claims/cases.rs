@@ -68,7 +68,7 @@ impl Random {
             stress_ratio: Some(Measured::exact(self.with_ends(domain.stress_ratio))),
             size_spread: Some(self.with_ends(domain.size_spread.map(|s| s.min(1.0)))),
             material,
-            contact_law: None,
+            ..Conditions::at(1e5)
         };
         (Microstructure::of_values(structure), conditions)
     }

@@ -56,7 +56,7 @@ fn a_sound_observation_has_neither_errors_nor_warnings() {
 #[test]
 fn linear_springs_have_no_estimate() {
     let refused = fault(|o| o.conditions.contact_law = Some("linear:1e5,0.5".parse().unwrap()));
-    assert_eq!(refused, EmtError::LinearSprings);
+    assert_eq!(refused, EmtError::OtherContactLaw { law: "linear" });
     assert!(!refused.is_input_error() && refused.to_string().starts_with("unknown: "), "{refused}");
 }
 

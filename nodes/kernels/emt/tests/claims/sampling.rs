@@ -27,7 +27,7 @@ fn observed(model: &dyn Model, calibration: &Calibration, relative: f64) -> Opti
         stress_ratio: Some(Measured { value: 0.0, stddev: relative }),
         size_spread: Some(0.0),
         material: None,
-        contact_law: None,
+        ..Conditions::at(1e5)
     };
     match model.predict(&structure, &conditions, calibration) {
         Err(EmtError::NotCalibrated { .. }) => None,
