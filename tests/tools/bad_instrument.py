@@ -3,8 +3,9 @@
 
    bad_instrument.py        with the ROS_DOMAIN_ID of the inversion
 
-good: sent and received before; nameless: the same without an axis; refused: the number of messages that the inversion reports as
-refused, after six invalid ones; again: received after them.
+good: sent and received before; nameless: the same without an axis; other: of an instrument that joins when these are answered;
+bad: invalid ones, each with the answer; refused: the number of messages that the inversion reports as refused, after these and two that
+no reader can decode; again: received after them.
 """
 import json
 import sys
@@ -46,9 +47,14 @@ def bad():
     nan.speeds[2].speed = float("nan")
     negative.density = -1498.0
     twice.axis = lab.Vector3(0.0, 0.0, 2.0)
-    unknown = lab.measurement()
+    unknown, timeless = lab.measurement(), lab.measurement()
     unknown.speeds[0].method = 250
-    return [nan, negative, twice, unknown]
+    timeless.header.stamp.nanosec = 2**32 - 1
+    samples = [nan, negative, twice, unknown, timeless]
+    for number, sample in enumerate(samples):
+        sample.name = f"bad {number}"
+        sample.header.stamp.sec = number
+    return samples
 
 
 def send_as(kind, sample):
@@ -79,15 +85,22 @@ diagnostics = lab.DataReader(
 latest = [0]
 
 sent = lab.measurement()
-result = {"good": {"sent": asdict(sent), "received": asdict(peer.infer(sent))}}
+received = asdict(peer.infer(sent))
+result = {"good": {"sent": asdict(sent), "received": received}}
 nameless = lab.measurement()
 nameless.axis = lab.Vector3()
-result["nameless"] = {"sent": asdict(nameless), "received": asdict(peer.infer(nameless))}
-for sample in bad():
-    peer.writer.write(sample)
+received = asdict(peer.infer(nameless))
+result["nameless"] = {"sent": asdict(nameless), "received": received}
+other = lab.measurement()
+other.name = "other beads"
+for speed in other.speeds:
+    speed.speed *= 1.15
+received = asdict(lab.Instrument().infer(other))
+result["other"] = {"sent": asdict(other), "received": received}
+result["bad"] = [{"name": sample.name, "received": asdict(peer.answer(sample))} for sample in bad()]
 kept = [send_as(Torn, Torn(header=sent.header)), send_as(Endless, Endless())]
 end = time.monotonic() + 20.0
-while refused() < 6 and time.monotonic() < end:
+while refused() < 7 and time.monotonic() < end:
     time.sleep(0.05)
 result["refused"] = refused()
 result["again"] = asdict(peer.infer(sent))

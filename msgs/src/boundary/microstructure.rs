@@ -1,16 +1,12 @@
 //! `Microstructure`: the inferred microstructure.
 
-use super::check::Check;
 use super::error::BoundaryError;
 use super::estimate::EstimateReading;
-use crate::builtin_interfaces::Time;
 use crate::msg::Microstructure;
 
 /// The checked estimates from one set of data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MicrostructureReading {
-    /// Stamp of the data.
-    pub stamp: Time,
     /// Name of the sample or the measurement; empty: none.
     pub name: String,
     /// Step of the packing of the data.
@@ -25,9 +21,8 @@ impl TryFrom<&Microstructure> for MicrostructureReading {
     type Error = BoundaryError;
 
     fn try_from(m: &Microstructure) -> Result<Self, BoundaryError> {
-        Check("Microstructure").header(&m.header)?;
+        // The stamp only repeats that of the data, which may be refused for it.
         Ok(Self {
-            stamp: m.header.stamp,
             name: m.name.clone(),
             source_step: m.source_step,
             source: m.source.clone(),

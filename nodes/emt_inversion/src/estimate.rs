@@ -63,15 +63,8 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
             .iter()
             .cloned()
             .chain(estimate.warnings.iter().map(ToString::to_string))
-            .chain(undetermined(estimate))
             .collect(),
     }
-}
-
-/// Quantities of the model that the data do not determine, if they determine any.
-fn undetermined(estimate: &Estimate) -> Option<String> {
-    let names: Vec<&str> = estimate.undetermined().map(InferredQuantity::name).collect();
-    (!names.is_empty()).then(|| format!("the data do not determine {}", names.join(", ")))
 }
 
 /// Misfit of the speeds about the moduli and of the moduli about the structure: squares and degrees of

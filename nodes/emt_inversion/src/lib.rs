@@ -17,8 +17,9 @@ mod settings_error;
 mod speeds;
 
 pub use calibration::CalibrationChoice;
-pub use message::{microstructure_message, microstructure_of_speeds};
+pub use message::{Answer, microstructure_message, microstructure_of_speeds};
 pub use models::Models;
 pub use node::EmtInversion;
 pub use settings::{Axis, Settings, parameters};
 pub use settings_error::SettingsError;
+pub use speeds::notes_on_fit;

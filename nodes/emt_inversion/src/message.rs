@@ -9,26 +9,27 @@ use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Topic, msg, topics};
 
-/// The microstructure inferred from one set of moduli: one estimate per model, in the order of
-/// [`grainlab_emt::models`]. Header and step are copied. The result depends only on the two arguments.
-/// Invalid moduli are refused.
-pub fn microstructure_message(
-    moduli: &msg::Moduli,
-    settings: &Settings,
-) -> Result<msg::Microstructure, BoundaryError> {
-    let observed = of_moduli(&ModuliReading::try_from(moduli)?, settings);
-    let of = About { header: &moduli.header, name: &moduli.name, source_step: moduli.source_step };
-    Ok(microstructure(of, &topics::MODULI, &observed, settings))
+/// The answer to one set of data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// One estimate per model, in the order of [`grainlab_emt::models`]; header, name and step are those of the data.
+    pub message: msg::Microstructure,
+    /// Why the data were refused; every estimate is then unknown, with this reason.
+    pub refused: Option<BoundaryError>,
+}
+
+/// The microstructure inferred from one set of moduli. The result depends only on the two arguments.
+pub fn microstructure_message(moduli: &msg::Moduli, settings: &Settings) -> Answer {
+    let about = About { header: &moduli.header, name: &moduli.name, source_step: moduli.source_step };
+    let reading = ModuliReading::try_from(moduli);
+    answer(about, &topics::MODULI, reading.map(|reading| of_moduli(&reading, settings)), settings)
 }
 
 /// The same for one set of wave speeds.
-pub fn microstructure_of_speeds(
-    speeds: &msg::WaveSpeeds,
-    settings: &Settings,
-) -> Result<msg::Microstructure, BoundaryError> {
-    let observed = of_speeds(&WaveSpeedsReading::try_from(speeds)?, settings);
-    let of = About { header: &speeds.header, name: &speeds.name, source_step: speeds.source_step };
-    Ok(microstructure(of, &topics::WAVE_SPEEDS, &observed, settings))
+pub fn microstructure_of_speeds(speeds: &msg::WaveSpeeds, settings: &Settings) -> Answer {
+    let about = About { header: &speeds.header, name: &speeds.name, source_step: speeds.source_step };
+    let reading = WaveSpeedsReading::try_from(speeds);
+    answer(about, &topics::WAVE_SPEEDS, reading.map(|reading| of_speeds(&reading, settings)), settings)
 }
 
 /// What an answer copies from the data.
@@ -38,15 +39,19 @@ struct About<'a> {
     source_step: u64,
 }
 
-fn microstructure(
-    of: About<'_>,
+fn answer(
+    about: About<'_>,
     source: &Topic,
-    observed: &Result<Observed, Unobservable>,
+    observed: Result<Result<Observed, Unobservable>, BoundaryError>,
     settings: &Settings,
-) -> msg::Microstructure {
+) -> Answer {
+    let (observed, refused) = match observed {
+        Ok(observed) => (observed, None),
+        Err(error) => (Err(Unobservable::Refused(error.clone())), Some(error)),
+    };
     let estimates = settings.models.iter().map(|model| {
         let calibration = settings.calibration.calibration_for(model);
-        let observed = match observed {
+        let observed = match &observed {
             Ok(observed) => observed,
             Err(nothing) => return unobserved(model, calibration.name(), nothing),
         };
@@ -55,13 +60,14 @@ fn microstructure(
             Err(error) => failure(model, calibration.name(), observed, &error),
         }
     });
-    msg::Microstructure {
-        header: of.header.clone(),
-        name: of.name.to_owned(),
-        source_step: of.source_step,
+    let message = msg::Microstructure {
+        header: about.header.clone(),
+        name: about.name.to_owned(),
+        source_step: about.source_step,
         // The name in the contract, not the resolved one: the bytes must not depend on a namespace or a
         // remap.
         source: source.name.to_owned(),
         estimates: estimates.collect(),
-    }
+    };
+    Answer { message, refused }
 }

@@ -1,7 +1,6 @@
 //! The node.
 
-use crate::{Settings, microstructure_message, microstructure_of_speeds};
-use grainlab_msgs::boundary::BoundaryError;
+use crate::{Answer, Settings, microstructure_message, microstructure_of_speeds};
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, WaveSpeeds};
 use grainlab_msgs::{Message, Topic, topics};
 use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, Subscription};
@@ -17,7 +16,7 @@ const BACKLOG: u32 = 64;
 #[derive(Debug)]
 struct Source<T> {
     messages: Subscription<T>,
-    invert: fn(&T, &Settings) -> Result<Microstructure, BoundaryError>,
+    invert: fn(&T, &Settings) -> Answer,
 }
 
 /// Counts of the data so far.
@@ -57,12 +56,12 @@ impl<T: Message> Source<T> {
     fn subscribe(
         bus: &mut dyn Bus,
         topic: &Topic,
-        invert: fn(&T, &Settings) -> Result<Microstructure, BoundaryError>,
+        invert: fn(&T, &Settings) -> Answer,
     ) -> Result<Self, BusError> {
         Ok(Self { messages: Subscription::subscribe(bus, topic, Demand::reliable(BACKLOG))?, invert })
     }
 
-    /// Inverts all received data.
+    /// Answers all received data, also those that are refused.
     fn answer(
         &self,
         bus: &mut dyn Bus,
@@ -71,17 +70,16 @@ impl<T: Message> Source<T> {
         tally: &mut Tally,
     ) -> Result<(), BusError> {
         while let Some((data, info)) = self.messages.take_valid(bus)? {
-            match (self.invert)(&data, settings) {
-                Ok(message) => match microstructure.publish_about(bus, &message, info.origin()) {
-                    Ok(_) => tally.count(&message),
-                    // This reader is hundreds of results behind and counts as failed; the node continues.
-                    Err(full @ BusError::Full { .. }) => tally.complain(full.to_string()),
-                    Err(error) => return Err(error),
-                },
-                Err(error) => {
+            let Answer { message, refused } = (self.invert)(&data, settings);
+            match (microstructure.publish_about(bus, &message, info.origin()), refused) {
+                (Ok(_), None) => tally.count(&message),
+                (Ok(_), Some(error)) => {
                     bus.count_refused(self.messages.id());
                     tally.complain(error.to_string());
                 }
+                // This reader is hundreds of results behind and counts as failed; the node continues.
+                (Err(full @ BusError::Full { .. }), _) => tally.complain(full.to_string()),
+                (Err(error), _) => return Err(error),
             }
         }
         Ok(())

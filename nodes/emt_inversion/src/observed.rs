@@ -2,6 +2,7 @@
 
 use grainlab_emt::christoffel::{AxisError, ChristoffelError};
 use grainlab_emt::{Misfit, Modulus, Observation};
+use grainlab_msgs::boundary::BoundaryError;
 
 /// Moduli with their state, and details of how they were obtained.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +20,9 @@ pub(crate) struct Observed {
 /// Why data have no moduli about the axis set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Unobservable {
+    /// The message is invalid.
+    #[error(transparent)]
+    Refused(#[from] BoundaryError),
     /// The axis is to be that of the data, and the data have none.
     #[error("the axis is to be that of the data, and these data have none: set the parameter axis")]
     NoAxis,

@@ -105,7 +105,8 @@ fn other_axis(fitted: &SpeedFit, speeds: &[WaveSpeed], density: Measured, taken:
     })
 }
 
-fn notes_on(fitted: &SpeedFit, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
+/// What a reader should know about the moduli that were fitted to `speeds` speeds; `name` names each speed.
+pub fn notes_on_fit(fitted: &SpeedFit, speeds: usize, name: impl Fn(usize) -> String) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(departure) = &fitted.anisotropy_scatter {
         notes.push(format!(
@@ -115,10 +116,10 @@ fn notes_on(fitted: &SpeedFit, speeds: usize, named: Option<Vec3>, taken: &Vec3)
         ));
     }
     if let Some(conflict) = &fitted.conflict {
-        let (worst, sigma) = (conflict.worst, conflict.sigma);
+        let (worst, sigma) = (name(conflict.worst), conflict.sigma);
         let (chi_square, freedom) = (fitted.chi_square.unwrap_or_default(), fitted.degrees_of_freedom);
         notes.push(format!(
-            "the wave speeds contradict each other: chi-square {chi_square:.1} for {freedom} degrees of freedom, speeds[{worst}] \
+            "the wave speeds contradict each other: chi-square {chi_square:.1} for {freedom} degrees of freedom, {worst} \
              is {sigma:.1} sigma from the prediction by the others"
         ));
     }
@@ -132,6 +133,11 @@ fn notes_on(fitted: &SpeedFit, speeds: usize, named: Option<Vec3>, taken: &Vec3)
             fitted.assumed
         ));
     }
+    notes
+}
+
+fn notes_on(fitted: &SpeedFit, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
+    let mut notes = notes_on_fit(fitted, speeds, |at| format!("speeds[{at}]"));
     if let Some(named) = named.filter(|n| n.cross(taken).norm() > APART) {
         notes.push(format!(
             "the axis taken is ({:.3}, {:.3}, {:.3}), and the data name ({:.3}, {:.3}, {:.3}): set the parameter axis to \

@@ -5,7 +5,7 @@ use grainlab_core::Material;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Posterior,
-    PosteriorSettings, Prior, Status, StrainRatio,
+    PosteriorSettings, Prior, StrainRatio,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -20,8 +20,8 @@ pub(crate) fn models() -> Vec<&'static str> {
 /// Infers coordination and anisotropy from moduli.
 #[pyfunction]
 #[pyo3(signature = (*, pressure, g12=None, g13=None, theta=None, c11=None, c33=None, c13=None, phi=None, gamma=None,
-    stress_ratio=None, size_spread=None, error=0.01, shear_modulus=None, poisson_ratio=None, model="relaxed", prior=None,
-    draws=None, seed=0))]
+    stress_ratio=None, size_spread=None, error=0.01, shear_modulus=None, poisson_ratio=None, pressure_sigma=0.0,
+    stress_ratio_sigma=0.0, shear_modulus_sigma=0.0, poisson_ratio_sigma=0.0, model="relaxed", prior=None, draws=None, seed=0))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn invert<'py>(
     py: Python<'py>,
@@ -39,6 +39,10 @@ pub(crate) fn invert<'py>(
     error: f64,
     shear_modulus: Option<f64>,
     poisson_ratio: Option<f64>,
+    pressure_sigma: f64,
+    stress_ratio_sigma: f64,
+    shear_modulus_sigma: f64,
+    poisson_ratio_sigma: f64,
     model: &str,
     prior: Option<&str>,
     draws: Option<usize>,
@@ -57,16 +61,24 @@ pub(crate) fn invert<'py>(
     let moduli = moduli.fold(Moduli::NONE, |all, (m, value)| value.map_or(all, |v| all.with(m, v)));
     let calibration = known.default_calibration();
     let mut conditions = Conditions::at(pressure);
+    if stress_ratio.is_none() && stress_ratio_sigma != 0.0 {
+        return Err(PyValueError::new_err("stress_ratio_sigma is given without stress_ratio"));
+    }
+    conditions.pressure.stddev = pressure_sigma;
     conditions.solid_fraction = phi.map(Measured::exact);
-    conditions.stress_ratio = stress_ratio.map(Measured::exact);
+    conditions.stress_ratio = stress_ratio.map(|value| Measured { value, stddev: stress_ratio_sigma });
+    (conditions.shear_modulus_stddev, conditions.poisson_ratio_stddev) =
+        (shear_modulus_sigma, poisson_ratio_sigma);
     conditions.size_spread = size_spread;
     conditions.gamma = gamma.map_or(StrainRatio::ZERO, StrainRatio::given);
     let own = calibration.material();
-    conditions.material = (shear_modulus.is_some() || poisson_ratio.is_some()).then(|| Material {
-        shear_modulus: shear_modulus.unwrap_or(own.shear_modulus),
-        poisson_ratio: poisson_ratio.unwrap_or(own.poisson_ratio),
-        ..*own
-    });
+    let has_error = shear_modulus_sigma != 0.0 || poisson_ratio_sigma != 0.0;
+    conditions.material =
+        (shear_modulus.is_some() || poisson_ratio.is_some() || has_error).then(|| Material {
+            shear_modulus: shear_modulus.unwrap_or(own.shear_modulus),
+            poisson_ratio: poisson_ratio.unwrap_or(own.poisson_ratio),
+            ..*own
+        });
     let observation = Observation::new(moduli, conditions).with_relative_error(error);
     let prior = prior.map(|text| prior_of(known, calibration, text)).transpose()?;
     let computed = || {
@@ -114,7 +126,7 @@ fn described<'py>(py: Python<'py>, estimate: &Estimate) -> PyResult<Bound<'py, P
             estimate.interval(quantity).map(|[low, high]| (low, high)),
         )?;
     }
-    dict.set_item("inside_range", estimate.status == Status::Ok)?;
+    dict.set_item("status", estimate.status.name())?;
     let warnings: Vec<String> = estimate.warnings.iter().map(ToString::to_string).collect();
     dict.set_item("warnings", warnings)?;
     Ok(dict)

@@ -34,6 +34,17 @@ def test_the_inversion_of_measured_moduli_finds_the_coordination(golden):
     low, high = found["z_interval"]
     assert low < r["z"] < high and abs(found["z"] - r["z"]) < 0.1
     assert found["model"] == "relaxed" and found["z_sigma"] > 0
+    assert found["status"] in ("ok", "extrapolated", "contradictory")
+
+
+def test_stated_errors_of_the_state_widen_the_answer(golden):
+    r = grainlab.analyze(golden)
+    given = dict(g12=r["g12_pa"], g13=r["g13_pa"], theta=r["theta_pa"], pressure=r["pressure_pa"], stress_ratio=0.0, size_spread=0.0)
+    exact = grainlab.invert(**given)["z_sigma"]
+    assert grainlab.invert(**given, pressure_sigma=0.1 * r["pressure_pa"])["z_sigma"] > 1.05 * exact
+    assert grainlab.invert(**given, shear_modulus_sigma=3e9)["z_sigma"] > 1.05 * exact
+    with pytest.raises(ValueError, match="without stress_ratio"):
+        grainlab.invert(pressure=1e5, g12=1e8, stress_ratio_sigma=0.1)
 
 
 def test_wrong_input_raises(golden):

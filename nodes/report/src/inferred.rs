@@ -126,7 +126,7 @@ impl Run {
             paragraph(&format!(
                 "Inferred from moduli, or from wave speeds if there are some, with the stress and the sizes and material of the grains; the contacts \
                  were not seen. Bars are intervals of {:.0} %, which assume the errors of the data that the inversion was given; the vertical line is the \
-                 count. The model that is recommended comes first. Orange: a model outside of its range.",
+                 count. The model that is recommended comes first. Orange: its status is not ok; the notes have the reason.",
                 100.0 * level
             ))
         };
@@ -187,7 +187,10 @@ impl Run {
                     .map_or_else(String::new, |s| format!(" ± {s:.*}", c.digits));
                 Cell::number(fixed(best.and_then(|b| (c.inferred)(b)), c.digits) + &sigma)
             }));
-            cells.push(Cell::text(best.map_or_else(String::new, |b| format!("{} ({})", b.model, b.status))));
+            let unknown = if s.results.is_empty() { "" } else { "unknown" };
+            cells.push(Cell::text(
+                best.map_or_else(|| unknown.to_owned(), |b| format!("{} ({})", b.model, b.status)),
+            ));
             cells
         };
         let rows: Vec<Vec<Cell>> = self.states.iter().map(row).collect();

@@ -148,7 +148,9 @@ fn cards(state: &InvertedPacking) -> String {
                 let error = counted.map_or_else(String::new, |c| {
                     format!(" <span class=\"error\">{:+.digits$}</span>", v - c)
                 });
-                format!("inferred {v:.digits$}{sigma}{error}")
+                let status = best.map_or("ok", |b| b.status);
+                let status = if status == "ok" { String::new() } else { format!(" ({status})") };
+                format!("inferred {v:.digits$}{sigma}{error}{status}")
             },
         );
         text += &card(c.symbol, &fixed(counted, digits), c.meaning, &inferred);

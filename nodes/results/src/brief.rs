@@ -93,7 +93,10 @@ fn one(state: &InvertedPacking) -> Vec<String> {
         let source = source(origin, state, groups.len() > 1);
         match Inference::recommended(results) {
             Some(best) => lines.extend(recommended(best, &source, r)),
-            None => lines.push(row("Inferred", &format!("nothing from {source}: --verbose has the reasons"))),
+            None => {
+                let why = Inference::why_unknown(results).unwrap_or_else(|| "no model was asked".to_owned());
+                lines.push(row("Inferred", &format!("unknown from {source}: {why}")));
+            }
         }
         if groups.len() < MOST_GROUPS {
             lines.extend(by_the_paper(results, r));
@@ -109,19 +112,20 @@ fn one(state: &InvertedPacking) -> Vec<String> {
 }
 
 fn recommended(e: &Inference, source: &str, truth: &PackingReport) -> Vec<String> {
-    let title = format!("from {source} alone, by model {} ({}):", e.model, standing(e));
+    let title = format!("from {source} alone, by model {} ({}):", e.model, e.status);
     let values = estimate(e, truth).map(|(name, value, sigma, error)| {
         let sigma = sigma.unwrap_or_else(|| "?".to_owned());
         row("", &format!("{name:6}{value:6} +- {sigma:6}  error {error}"))
     });
-    std::iter::once(row("Inferred", &title)).chain(values).collect()
+    let why = e.warnings.iter().filter(|_| e.status != "ok").take(MOST_NOTES).map(|w| row("Note", w));
+    std::iter::once(row("Inferred", &title)).chain(values).chain(why).collect()
 }
 
 fn by_the_paper(results: &[&Inference], truth: &PackingReport) -> Option<String> {
     let e = results.iter().find(|r| r.model == PAPER && r.values.k.or(r.values.eps).is_some())?;
     let values = estimate(e, truth).map(|(name, value, _, error)| format!("{name} {value} (error {error})"));
     let values = values.collect::<Vec<_>>().join(", ");
-    Some(row("Paper", &format!("by its model {}: {values}, {}", e.model, standing(e))))
+    Some(row("Paper", &format!("by its model {}: {values}, {}", e.model, e.status)))
 }
 
 fn prepared(r: &PackingReport) -> String {
@@ -171,10 +175,6 @@ fn source(origin: &Origin, state: &InvertedPacking, several: bool) -> String {
         Some(node) if several => format!("{data} ({node})"),
         _ => data,
     }
-}
-
-fn standing(r: &Inference) -> &'static str {
-    if r.status == "ok" { "inside its range" } else { r.status }
 }
 
 /// Name, value, standard deviation, and error against the counted value, of each quantity of an estimate.

@@ -113,6 +113,13 @@ impl Inference {
         results.iter().find(|r| r.model == name).copied()
     }
 
+    /// Why none of the results is recommended: the reason of the model that would be.
+    pub fn why_unknown(results: &[&Self]) -> Option<String> {
+        let name = recommended(results.iter().map(|r| (r.model.as_str(), Status::Ok)))?;
+        let without = results.iter().find(|r| r.model == name)?;
+        Some(format!("model {name}: {}", without.warnings.first()?))
+    }
+
     /// A model without an estimate, and the reason.
     pub fn unknown(model: &str, calibration: &str, warnings: Vec<String>) -> Self {
         Self {
@@ -175,7 +182,8 @@ impl Inference {
             Ok(estimate) => estimate,
             Err(e) => return Self::unknown(model, calibration, vec![e.to_string()]),
         };
-        let known = estimate.covariance().is_some();
+        // A covariance of zeros contains no information.
+        let known = estimate.covariance().is_some_and(|c| c.amax() > 0.0);
         let of_model = |q: InferredQuantity| {
             let i = q as usize;
             estimate.structure.get(q).and(estimate.model_covariance).map(|c| c[(i, i)].max(0.0).sqrt())
@@ -186,11 +194,11 @@ impl Inference {
             model: estimate.model.to_owned(),
             calibration: estimate.calibration.clone(),
             values: Quantities::of(|q| estimate.structure.get(q)),
-            sigma: Quantities::of(|q| estimate.stddev(q)),
+            sigma: Quantities::of(|q| estimate.stddev(q).filter(|_| known)),
             sigma_model: Quantities::of(of_model),
             interval: Interval {
                 level: known.then_some(CREDIBLE_LEVEL),
-                bounds: Quantities::of(|q| estimate.interval(q)),
+                bounds: Quantities::of(|q| estimate.interval(q).filter(|_| known)),
             },
             chi_square: estimate.misfit.map(|m| m.chi_square),
             degrees_of_freedom: Some(estimate.misfit.map_or(0, |m| m.degrees_of_freedom)),
@@ -228,7 +236,7 @@ mod tests {
             &message,
             &grainlab_emt_inversion::Settings::default(),
         )
-        .unwrap();
+        .message;
         let reading = MicrostructureReading::try_from(&sent).unwrap();
         let at = reading.estimates.iter().position(|e| e.model == "ratio").unwrap();
         let read = Inference::of_reading("moduli", &reading.estimates[at]);

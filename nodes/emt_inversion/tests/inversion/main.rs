@@ -37,7 +37,7 @@ fn sent(stiffness: &grainlab_core::Stiffness) -> Vec<ElasticStiffness> {
 
 /// The estimate of model `ratio`, checked like by any reader.
 fn corrected(moduli: &Moduli, settings: &Settings) -> Estimate {
-    of_ratio(microstructure_message(moduli, settings).unwrap())
+    of_ratio(microstructure_message(moduli, settings).message)
 }
 
 fn of_ratio(message: Microstructure) -> Estimate {

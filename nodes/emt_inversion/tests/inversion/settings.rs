@@ -29,7 +29,7 @@ fn given(arguments: &[&str]) -> Result<Settings, SettingsError> {
 
 fn models_of(arguments: &[&str]) -> Vec<String> {
     let settings = given(arguments).unwrap();
-    microstructure_message(&s1(), &settings).unwrap().estimates.into_iter().map(|e| e.model).collect()
+    microstructure_message(&s1(), &settings).message.estimates.into_iter().map(|e| e.model).collect()
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn the_models_named_answer_each_once_and_in_the_order_of_the_list() {
 
 /// Model and calibration of every estimate.
 fn calibrations_of(arguments: &[&str]) -> Vec<(String, String)> {
-    let message = microstructure_message(&s1(), &given(arguments).unwrap()).unwrap();
+    let message = microstructure_message(&s1(), &given(arguments).unwrap()).message;
     message.estimates.into_iter().map(|e| (e.model, e.calibration)).collect()
 }
 

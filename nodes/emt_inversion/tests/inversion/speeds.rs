@@ -4,6 +4,7 @@ use crate::moduli::{s1_medium, s1_stiffness};
 use crate::{corrected, of_ratio, s1};
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt_inversion::{Axis, Settings, microstructure_of_speeds};
+use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::geometry_msgs::Vector3;
 use grainlab_msgs::msg::{Estimate, WaveSpeed, WaveSpeeds};
 use nalgebra::Rotation3;
@@ -52,12 +53,12 @@ pub(crate) fn upright() -> WaveSpeeds {
 }
 
 pub(crate) fn answer(speeds: &WaveSpeeds, settings: &Settings) -> Estimate {
-    of_ratio(microstructure_of_speeds(speeds, settings).unwrap())
+    of_ratio(microstructure_of_speeds(speeds, settings).message)
 }
 
 #[test]
 fn speeds_give_what_the_moduli_of_the_same_medium_give() {
-    let message = microstructure_of_speeds(&upright(), &Settings::default()).unwrap();
+    let message = microstructure_of_speeds(&upright(), &Settings::default()).message;
     assert_eq!(
         (&message.header, message.source_step, message.source.as_str()),
         (&s1().header, 42, "wave_speeds")
@@ -118,7 +119,7 @@ fn a_missing_speed_leaves_what_hangs_on_it_unknown_and_the_rest_known() {
     // Without the oblique wave C13, Θ, and so the coordination number are undetermined.
     let e = without(&[5]);
     assert_eq!((!e.k.is_empty(), !e.k_hat.is_empty(), !e.eps.is_empty()), (false, false, true));
-    assert!((e.eps[0] - whole.eps[0]).abs() < 1e-7 && e.status == Estimate::STATUS_OK, "{e:?}");
+    assert!((e.eps[0] - whole.eps[0]).abs() < 1e-7 && e.status == Estimate::STATUS_EXTRAPOLATED, "{e:?}");
     assert!(
         e.warnings.iter().any(|w| w == "the wave speeds do not determine Theta, C13"),
         "{:?}",
@@ -185,14 +186,65 @@ fn an_axis_that_is_not_the_one_the_instrument_names_is_mentioned() {
 }
 
 #[test]
-fn speeds_of_no_medium_fail_and_malformed_ones_are_refused_by_name() {
+fn speeds_of_no_medium_are_answered_with_the_reason() {
     // P is slower than S across the axis: C11 < G12.
     let mut swapped = upright();
     swapped.speeds[1].speed = 150.0;
     let e = answer(&swapped, &Settings::default());
     assert!(e.status == Estimate::STATUS_UNKNOWN && !e.warnings.is_empty(), "{e:?}");
-    let mut broken = upright();
-    broken.speeds[2].speed = -1.0;
-    let refused = microstructure_of_speeds(&broken, &Settings::default()).unwrap_err().to_string();
-    assert!(refused.starts_with("WaveSpeeds.speeds[2].speed = -1.0 is refused"), "{refused}");
+}
+
+#[test]
+fn what_is_refused_is_answered_too_with_its_name_its_stamp_and_the_reason() {
+    type Break = fn(&mut WaveSpeeds);
+    let faults: [(Break, &str); 9] = [
+        (|m| m.speeds[2].speed = -1.0, "WaveSpeeds.speeds[2].speed = -1.0 is refused"),
+        (|m| m.speeds[0].speed = f64::NAN, "WaveSpeeds.speeds[0].speed = NaN is refused"),
+        (|m| m.speeds[0].method = 250, "WaveSpeeds.speeds[0].method = 250 is refused"),
+        (|m| m.density = 0.0, "WaveSpeeds.density = 0.0 is refused"),
+        (|m| m.axis.z = 2.0, "WaveSpeeds.|axis| = 2.0 is refused"),
+        (|m| m.grain_shear_modulus = 0.0, "WaveSpeeds.grain_shear_modulus = 0.0 is refused"),
+        (|m| m.pressure_stddev = f64::INFINITY, "WaveSpeeds.pressure_stddev = inf is refused"),
+        (|m| m.contact_law = "hooke".into(), "WaveSpeeds.contact_law is refused"),
+        (|m| m.header.stamp.nanosec = u32::MAX, "WaveSpeeds.header.stamp.nanosec = 4294967295.0 is refused"),
+    ];
+    for (fault, reason) in faults {
+        let mut broken = WaveSpeeds { name: "beads 3".into(), ..upright() };
+        fault(&mut broken);
+        let answer = microstructure_of_speeds(&broken, &Settings::default());
+        assert!(answer.refused.unwrap().to_string().starts_with(reason), "{reason}");
+        let m = answer.message;
+        assert_eq!((&m.header, m.name.as_str(), m.source_step), (&broken.header, "beads 3", 42), "{reason}");
+        assert_eq!(m.estimates.len(), grainlab_emt::models().len());
+        for e in &m.estimates {
+            assert_eq!(e.status, Estimate::STATUS_UNKNOWN);
+            assert!(e.warnings[0].starts_with(reason), "{:?}", e.warnings);
+        }
+        assert!(MicrostructureReading::try_from(&m).is_ok(), "a reader takes the answer: {reason}");
+    }
+    let answer =
+        microstructure_of_speeds(&WaveSpeeds { name: "sand".into(), ..upright() }, &Settings::default());
+    assert_eq!((answer.refused, answer.message.name.as_str()), (None, "sand"));
+}
+
+#[test]
+fn an_error_that_the_instrument_states_of_its_pressure_or_grains_is_in_the_answer() {
+    let relaxed = |speeds: &WaveSpeeds| {
+        let message = microstructure_of_speeds(speeds, &Settings::default()).message;
+        message.estimates.into_iter().find(|e| e.model == "relaxed").unwrap()
+    };
+    let z = |e: &Estimate| e.covariance[12].sqrt();
+    let known = WaveSpeeds { stress_ratio: vec![0.0], size_spread: vec![0.0], ..upright() };
+    let exact = z(&relaxed(&known));
+    for uncertain in [
+        WaveSpeeds { pressure_stddev: 0.1 * known.pressure, ..known.clone() },
+        WaveSpeeds { grain_shear_modulus_stddev: 0.05 * known.grain_shear_modulus, ..known.clone() },
+        WaveSpeeds { stress_ratio_stddev: 0.1, ..known.clone() },
+    ] {
+        let found = z(&relaxed(&uncertain));
+        assert!(found > 1.02 * exact, "{found} {exact}");
+    }
+    // Speeds of smooth grains have no estimate.
+    let smooth = relaxed(&WaveSpeeds { smooth: true, ..known });
+    assert!(smooth.status == Estimate::STATUS_UNKNOWN && smooth.warnings[0].contains("smooth"), "{smooth:?}");
 }

@@ -7,6 +7,11 @@ use grainlab_core::results::{InferredQuantity, Microstructure};
 /// Lowest and highest value, both included.
 pub type Range = [f64; 2];
 
+/// Solid fractions of jammed packings of spheres, with a margin. The loosest of frictional spheres have .55 (Jerkins et al. 2008),
+/// those of the calibration .595 and more; the densest of equal spheres .74 (fcc), random ones of sizes of 1:3 at most .72 at the
+/// onset of jamming, and some percent more under pressure.
+const JAMMED: Range = [0.5, 0.8];
+
 /// The structures and states for which a model predicts moduli and inverts its prediction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
@@ -79,7 +84,14 @@ impl Domain {
         if self.needs_solid_fraction && conditions.solid_fraction.is_none() {
             return Err(EmtError::Missing { model: self.model, missing: "the solid fraction" });
         }
+        self.validate_solid_fraction(conditions)?;
         Ok(values)
+    }
+
+    /// Refuses a solid fraction that no jammed packing has, if the model uses it.
+    pub(crate) fn validate_solid_fraction(&self, conditions: &Conditions) -> Result<(), EmtError> {
+        let used = conditions.solid_fraction.filter(|_| self.needs_solid_fraction);
+        used.map_or(Ok(()), |phi| self.within("the solid fraction", phi.value, JAMMED))
     }
 
     /// Whether everything of `structure` that the model uses lies inside.

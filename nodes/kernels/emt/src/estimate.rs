@@ -55,12 +55,12 @@ impl Status {
         result.as_ref().map_or(Status::Unknown, |estimate| estimate.status)
     }
 
-    fn of_estimate(structure: &Microstructure, domain: &Domain, warnings: &[Warning]) -> Self {
+    fn of_estimate(structure: &Microstructure, warnings: &[Warning]) -> Self {
         if structure.values().iter().all(Option::is_none) {
             Status::Unknown
         } else if warnings.iter().any(Warning::is_contradiction) {
             Status::Contradictory
-        } else if warnings.iter().any(Warning::is_extrapolation) || !domain.contains(structure) {
+        } else if warnings.iter().any(Warning::is_extrapolation) {
             Status::Extrapolated
         } else {
             Status::Ok
@@ -257,8 +257,10 @@ pub(crate) fn assemble(
             return Err(EmtError::NotFinite { quantity: "the estimate", value: *value });
         }
     }
+    domain.validate_solid_fraction(&observation.conditions)?;
     warnings.extend(checks::common(observation, &structure, calibration, uses_gamma, domain.compares_state));
-    let status = Status::of_estimate(&structure, domain, &warnings);
+    warnings.extend(open_or_outside(&structure, domain, &warnings));
+    let status = Status::of_estimate(&structure, &warnings);
     let mut estimate = Estimate {
         model,
         calibration: calibration.name().to_owned(),
@@ -279,6 +281,29 @@ pub(crate) fn assemble(
         estimate.warnings.push(Warning::WidenedMost { input, quantity, share });
     }
     Ok(estimate)
+}
+
+/// The unknowns of the model that are open, and, unless another warning says so, that are outside its domain.
+fn open_or_outside(structure: &Microstructure, domain: &Domain, warnings: &[Warning]) -> Vec<Warning> {
+    let mut quantities = [false; InferredQuantity::COUNT];
+    let mut found = Vec::new();
+    for quantity in InferredQuantity::ALL {
+        let i = quantity as usize;
+        match (structure.get(quantity), domain.structure[i]) {
+            (None, Some(_)) => quantities[i] = true,
+            (Some(value), Some(range)) if !(range[0]..=range[1]).contains(&value) => {
+                found.push(Warning::OutsideDomain { quantity, value, range });
+            }
+            _ => {}
+        }
+    }
+    if warnings.iter().any(Warning::is_extrapolation) {
+        found.clear();
+    }
+    if quantities.contains(&true) {
+        found.push(Warning::Undetermined { quantities });
+    }
+    found
 }
 
 fn of_determined(

@@ -142,6 +142,20 @@ pub enum Warning {
         /// The quantity.
         quantity: InferredQuantity,
     },
+    /// The data do not determine these unknowns of the model, in the order of [`InferredQuantity::ALL`].
+    Undetermined {
+        /// Whether each is open.
+        quantities: [bool; InferredQuantity::COUNT],
+    },
+    /// The estimate is outside the domain of the model.
+    OutsideDomain {
+        /// The quantity.
+        quantity: InferredQuantity,
+        /// Its value.
+        value: f64,
+        /// Lowest and highest of the domain.
+        range: [f64; 2],
+    },
     /// The data contradict each other, or the model.
     Conflict {
         /// Sum of squares weighted by the errors of data and model.
@@ -270,6 +284,15 @@ impl fmt::Display for Warning {
                 "the Poisson ratio of the grains is {nu}, that of the calibration {calibrated}: moduli are scaled by the \
                  Hertz modulus alone"
             ),
+            Warning::Undetermined { quantities } => {
+                let open = InferredQuantity::ALL.into_iter().filter(|q| quantities[*q as usize]);
+                let names: Vec<&str> = open.map(InferredQuantity::name).collect();
+                write!(f, "the data do not determine {}", names.join(", "))
+            }
+            Warning::OutsideDomain { quantity, value, range } => {
+                let [shown, low, high] = apart(*value, *range, 4);
+                write!(f, "{quantity} = {shown} is outside [{low}, {high}], the domain of the model")
+            }
             Warning::NotTransverselyIsotropic { asymmetry } => write!(
                 f,
                 "{:.1} % of the stiffness is not isotropic about the axis: the sample is not, or the axis is wrong",

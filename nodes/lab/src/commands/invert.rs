@@ -2,7 +2,7 @@
 //!
 //! - [`state`]: the data of one state; [`way`]: a model, its calibration and its γ/Δ; [`answer`]: the results
 //! - [`inputs`]: the inputs of a state; [`lines`], [`columns`], [`rows`]: a table, read in pieces, each row a
-//!   state
+//!   state; [`slips`]: columns whose names are almost those of inputs
 //! - [`table`], [`mod@print`]: results in order, as text
 //! - [`explain`]: contributions of the data to the uncertainty; [`sampled`]: estimates of sampled data
 //! - [`prior`]: priors; [`drawn`], [`evidence`], [`predictive`]: draws from the posterior, marginal likelihoods, and the data
@@ -26,19 +26,21 @@ mod prior;
 mod rank_test;
 mod rows;
 mod sampled;
+mod slips;
 mod speeds;
+mod splitter;
 mod state;
 mod table;
 mod way;
 
 use answer::{Answer, More};
-pub(super) use columns::{BadRow, Defaults, Row};
+pub(super) use columns::{BadRow, Row};
 use grainlab_console::{Failure, Format, print, say};
 use grainlab_emt::{Measured, Modulus};
 use grainlab_node_kit::Exit;
 use print::Printer;
 pub(super) use rows::Rows;
-pub(super) use state::State;
+pub(super) use state::{Defaults, State};
 use std::path::PathBuf;
 use way::{GammaChoice, ways};
 
@@ -63,13 +65,18 @@ Examples:
   Errors of the models on packings with counted structure:
     grainlab invert --table tests/golden/ensembles/held_out.csv --judge --calibration grainlab --gamma all --by mu2
 
-A table has a header line and one state per line; lines that begin with # are comments, empty cells are unknown, other
-columns are ignored. The pressure and at least one modulus are required; k, z and eps are for --judge:
+A table has a header line and one state per line; lines that begin with # are comments, empty cells are unknown. Other columns
+are ignored, but one whose name is almost that of an input is refused, unless it begins with _. The pressure and at least one
+modulus are required; k, z and eps are for --judge:
   sample, or source and step         kept with the result
   c11_pa c12_pa ... c66_pa           all 36, or one half: a stiffness, projected on the medium isotropic about
   reference_axis_x _y _z             this axis, to which all other columns refer, too; default e3
 {COLUMNS}An invalid row, or one without an estimate of a model, is reported with its line number and has the status unknown in the
-results; the other rows are processed. The exit code is that of the worst row.";
+results; the other rows are processed. The exit code is that of the worst row.
+
+The status is ok, extrapolated (outside the range of the model, or not all of its unknowns), contradictory (the data contradict each
+other or the model) or unknown (no answer); the column reason has the notes of an estimate. The exit code is 4 where the recommended
+answer is contradictory or unknown, or a model refuses the moduli, and 2 where an input is missing or invalid.";
 
 /// The data to invert. All quantities in SI units.
 #[derive(Debug, clap::Args)]
@@ -87,6 +94,9 @@ pub(crate) struct Args {
     /// Confining pressure, Pa, positive in compression
     #[arg(long, value_name = "PA", required_unless_present_any = ["table", "print_prior"], conflicts_with = "table")]
     pressure: Option<f64>,
+    /// Standard deviation of the pressure, Pa
+    #[arg(long, value_name = "PA", requires = "pressure", default_value_t = 0.0)]
+    pressure_sigma: f64,
     /// Ratio of deviatoric to volumetric strain about the axis [default: unknown, taken as 0]
     #[arg(long, value_name = "G", conflicts_with = "table")]
     gamma_over_delta: Option<f64>,
@@ -102,9 +112,15 @@ pub(crate) struct Args {
     /// Shear modulus of the grains, Pa [default: that of the calibration]
     #[arg(long, value_name = "PA")]
     grain_shear_modulus: Option<f64>,
+    /// Standard deviation of the shear modulus of the grains, Pa
+    #[arg(long, value_name = "PA", default_value_t = 0.0)]
+    grain_shear_modulus_sigma: f64,
     /// Poisson ratio of the grains [default: that of the calibration]
     #[arg(long, value_name = "NU")]
     poisson: Option<f64>,
+    /// Standard deviation of the Poisson ratio of the grains
+    #[arg(long, value_name = "SIGMA", default_value_t = 0.0)]
+    poisson_sigma: f64,
     /// Wave speeds from a CSV file instead of moduli: angle_deg and mode, or direction_x.. and polarization_x..; speed in
     /// m/s, speed_sigma; - is the standard input
     #[arg(long, value_name = "FILE.csv", requires = "density", conflicts_with_all = ["table", "g12", "g13", "theta", "c11", "c33", "c13"])]
@@ -121,6 +137,9 @@ pub(crate) struct Args {
     /// Axial stress less the lateral one over pressure [default: unknown, the stress is taken as isotropic]
     #[arg(long, value_name = "Q/P", conflicts_with = "table", allow_hyphen_values = true)]
     stress_ratio: Option<f64>,
+    /// Standard deviation of the stress ratio
+    #[arg(long, value_name = "SIGMA", requires = "stress_ratio", default_value_t = 0.0)]
+    stress_ratio_sigma: f64,
     /// Standard deviation of the radii over their mean [default: unknown, the grains are taken as equal]
     #[arg(long, value_name = "SPREAD", conflicts_with = "table")]
     size_spread: Option<f64>,
@@ -261,7 +280,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         Format::Csv => Printer::csv_header() + &printer.csv(&answer),
         Format::Table => printer.state(&answer, &more),
     })?;
-    Ok(answer.exit())
+    Ok(answer.exit(&ways))
 }
 
 impl Args {
@@ -277,17 +296,29 @@ impl Args {
         in_range("grain-shear-modulus", self.grain_shear_modulus, "more than 0 and finite", positive)?;
         in_range("poisson", self.poisson, "0 to 0.5", |v| (0.0..=0.5).contains(&v))?;
         in_range("error", self.error, "0 to 1", |v| (0.0..=1.0).contains(&v))?;
+        for (flag, stddev) in [
+            ("pressure-sigma", self.pressure_sigma),
+            ("grain-shear-modulus-sigma", self.grain_shear_modulus_sigma),
+            ("poisson-sigma", self.poisson_sigma),
+            ("stress-ratio-sigma", self.stress_ratio_sigma),
+            ("density-sigma", self.density_sigma),
+        ] {
+            in_range(flag, Some(stddev), "0 or more and finite", |v| v >= 0.0 && v.is_finite())?;
+        }
         Ok(Defaults {
             relative_error: self.error,
             grain_shear_modulus: self.grain_shear_modulus,
+            grain_shear_modulus_sigma: self.grain_shear_modulus_sigma,
             poisson: self.poisson,
+            poisson_sigma: self.poisson_sigma,
         })
     }
 
     /// The state given by the flags.
     fn state(&self, defaults: Defaults) -> Result<State, Failure> {
         let pressure = self.pressure.ok_or_else(|| Failure::usage("--pressure is needed, or --table"))?;
-        let mut state = State::at(Measured::exact(pressure));
+        let pressure = Measured { value: pressure, stddev: self.pressure_sigma };
+        let mut state = State::of_defaults(pressure, &defaults);
         for (modulus, value) in [
             (Modulus::G12, self.g12),
             (Modulus::G13, self.g13),
@@ -302,11 +333,9 @@ impl Args {
         }
         state.gamma = self.gamma_over_delta.map(Measured::exact);
         state.phi = self.phi.map(Measured::exact);
-        state.stress_ratio = self.stress_ratio.map(Measured::exact);
+        state.stress_ratio =
+            self.stress_ratio.map(|value| Measured { value, stddev: self.stress_ratio_sigma });
         state.size_spread = self.size_spread;
-        state.relative_error = defaults.relative_error;
-        state.grain_shear_modulus = defaults.grain_shear_modulus;
-        state.poisson = defaults.poisson;
         if let (Some(path), Some(value)) = (&self.speeds, self.density) {
             speeds::add(&mut state, path, Measured { value, stddev: self.density_sigma })?;
         }

@@ -218,3 +218,33 @@ fn a_row_is_answered_before_the_next_one_is_there() {
     drop(stdin);
     assert_eq!(child.wait().unwrap().code(), Some(0));
 }
+
+#[test]
+fn the_reason_of_a_status_and_what_was_assumed_are_in_every_row() {
+    let input = "sample,g12_pa,g13_pa,theta_pa,p_kpa\nbare,104.2e6,112.4e6,136e6,50\nstiff,104.2e7,112.4e7,136e7,50\n";
+    let (code, rows, _) = table(input, &["--model=relaxed", "--error=0.01"]);
+    assert_eq!(code, 4);
+    assert!(rows[0]["reason"].as_str().unwrap().contains("q/p"), "{}", rows[0]);
+    for row in rows.iter().filter(|row| row["status"] != "ok") {
+        assert!(!row["reason"].as_str().unwrap().is_empty(), "{row}");
+    }
+}
+
+#[test]
+fn a_slip_in_a_header_is_refused_with_the_column_that_is_probably_meant() {
+    for (column, meant) in
+        [("g12_sigma", "g12_sigma_pa"), ("G13_PA", "g13_pa"), ("q_over_p", "axial_q_over_p")]
+    {
+        let (code, rows, err) = table(&format!("g12_pa,theta_pa,p_kpa,{column}\n1e8,1.3e8,50,1\n"), &RATIO);
+        assert_eq!((code, rows.len()), (2, 0));
+        assert!(
+            err.contains(&format!("column {column} ")) && err.contains(&format!("almost {meant}: rename")),
+            "{err}"
+        );
+    }
+    let (code, _, err) = table("g12_pa,g13_pa,theta_pa,p_kpa,c66_pa\n1e8,1e8,1.3e8,50,8e7\n", &RATIO);
+    assert!(code == 2 && err.contains("columns g12_pa and c66_pa both contain g12_pa"), "{err}");
+    let (code, rows, err) =
+        table("name,g12_pa,g13_pa,theta_pa,p_kpa,_q_over_p\nx,1e8,1e8,1.3e8,50,1\n", &RATIO);
+    assert_eq!((code, rows.len()), (0, 1), "{err}");
+}

@@ -217,13 +217,19 @@ def invert(
     error: float = 0.01,
     shear_modulus: float | None = None,
     poisson_ratio: float | None = None,
+    pressure_sigma: float = 0.0,
+    stress_ratio_sigma: float = 0.0,
+    shear_modulus_sigma: float = 0.0,
+    poisson_ratio_sigma: float = 0.0,
     model: str = "relaxed",
     prior: str | None = None,
     draws: int | None = None,
     seed: int = 0,
 ) -> dict[str, Any]:
     """Coordination and anisotropy from moduli and pressure, Pa, each modulus with this relative error. ``k``, ``z``, ``eps`` and
-    others with ``_sigma`` and the 95 % ``_interval``; None is undetermined. Raises PhysicsError for moduli without a solution.
+    others with ``_sigma`` and the 95 % ``_interval``; None is undetermined. ``status`` is ok, extrapolated or contradictory, with the
+    reason in ``warnings``. Raises PhysicsError for moduli without a solution. The standard deviations of pressure and shear modulus
+    are in Pa; 0 takes a value as exact.
 
     ``prior`` is the text of a prior file, as ``grainlab invert --print-prior`` prints it. With ``draws``, the key of this name has
     so many independent draws from the posterior in each of four chains, the same for the same seed:

@@ -54,11 +54,14 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
         {
             note(format!("step {}: inferred from {other}", state.packing.step));
         }
-        t.row(packing.into_iter().chain(inferred(first)));
+        let unknown = if groups.is_empty() { "" } else { "unknown" };
+        t.row(packing.into_iter().chain(inferred(first, unknown)));
         // The data of a further estimate stand in its first cell.
         for best in found.iter().skip(1) {
             let from = best.source.clone().unwrap_or_default();
-            t.row([from].into_iter().chain((1..8).map(|_| String::new())).chain(inferred(Some(best))));
+            t.row(
+                [from].into_iter().chain((1..8).map(|_| String::new())).chain(inferred(Some(best), unknown)),
+            );
         }
     }
     if left_out > 0 {
@@ -68,9 +71,9 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
     table.lines().map(str::to_owned).chain(notes).collect()
 }
 
-/// The recommended estimate.
-fn inferred(best: Option<&Inference>) -> [String; 4] {
-    let Some(b) = best else { return [const { String::new() }; 4] };
+/// The recommended estimate; without one, its cell has `unknown`.
+fn inferred(best: Option<&Inference>, unknown: &str) -> [String; 4] {
+    let Some(b) = best else { return ["", "", "", unknown].map(str::to_owned) };
     let by = match b.status {
         "ok" => b.model.clone(),
         status if status == OUTSIDE.1 => b.model.clone() + OUTSIDE.0,

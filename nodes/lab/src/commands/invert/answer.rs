@@ -8,8 +8,7 @@ use super::sampled::Sampled;
 use super::state::State;
 use super::way::Way;
 use grainlab_console::worse;
-use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{EmtError, Estimate};
+use grainlab_emt::{EmtError, Estimate, Status, Warning, recommended};
 use grainlab_node_kit::Exit;
 use grainlab_results::Inference;
 use serde::Serialize;
@@ -77,11 +76,12 @@ impl Answer {
     fn inference(&self, way: &Way, outcome: Option<&Result<Estimate, EmtError>>) -> Inference {
         let name = way.calibration.name();
         match (&self.state, outcome) {
-            (Ok(_), Some(outcome)) => {
+            (Ok(state), Some(outcome)) => {
                 let mut inference = Inference::of(way.model.name(), name, outcome);
-                if let Ok(estimate) = outcome {
-                    inference.warnings.extend(undetermined(estimate));
-                }
+                inference.status = status(state, outcome).name();
+                // The reason of a model without an estimate comes first, then what is wrong with the data.
+                let at = if outcome.is_ok() { 0 } else { inference.warnings.len() };
+                inference.warnings.splice(at..at, state.notes.iter().cloned());
                 inference
             }
             (Err(row), _) => Inference::unknown(way.model.name(), name, vec![row.fault.clone()]),
@@ -95,37 +95,61 @@ impl Answer {
     }
 
     /// The exit code of a command with only this result. Invalid moduli are wrong usage, moduli that no
-    /// packing has are invalid physics. A model that lacks an input is not an error, unless no model has a
-    /// result.
-    pub(super) fn exit(&self) -> Exit {
+    /// packing has are invalid physics, and so is an answer of the recommended model that contradicts them, or
+    /// none at all. A model that lacks an input is not an error, unless no model has a result.
+    pub(super) fn exit(&self, ways: &[Way]) -> Exit {
+        let Ok(state) = &self.state else { return Exit::Usage };
+        let statuses: Vec<(&str, Status)> =
+            ways.iter().zip(&self.outcomes).map(|(way, o)| (way.model.name(), status(state, o))).collect();
+        if statuses.iter().all(|(_, status)| *status == Status::Unknown) {
+            let lacking = self.outcomes.iter().all(|o| o.as_ref().err().is_some_and(is_lacking));
+            let alone = if lacking { Exit::Usage } else { Exit::PhysicsInvalid };
+            return worse(alone, self.worst_error());
+        }
+        let best = recommended(statuses.iter().copied());
+        let mut of_best = statuses.iter().filter(|(model, _)| Some(*model) == best).peekable();
+        let contradicts = of_best.peek().is_some() && of_best.all(|(_, s)| *s == Status::Contradictory);
+        worse(self.worst_error(), if contradicts { Exit::PhysicsInvalid } else { Exit::Done })
+    }
+
+    /// The exit code without regard to contradictions.
+    pub(super) fn refusal(&self) -> Exit {
         if self.state.is_err() || !self.outcomes.iter().any(Result::is_ok) && self.errors().all(is_lacking) {
             return Exit::Usage;
         }
+        self.worst_error()
+    }
+
+    fn worst_error(&self) -> Exit {
         self.errors().filter(|e| !is_lacking(e)).fold(Exit::Done, |exit, e| {
             worse(exit, if e.is_input_error() { Exit::Usage } else { Exit::PhysicsInvalid })
         })
     }
 
-    /// The errors, each once with its models; empty if [`Answer::exit`] is `Done`.
+    /// The errors and contradictions, each once with its models; empty if [`Answer::exit`] is `Done`.
     pub(super) fn faults(&self, ways: &[Way]) -> Vec<String> {
-        if let Err(row) = &self.state {
-            return vec![row.fault.clone()];
-        }
-        if self.exit() == Exit::Done {
+        let state = match &self.state {
+            Ok(state) => state,
+            Err(row) => return vec![row.fault.clone()],
+        };
+        if self.exit(ways) == Exit::Done {
             return Vec::new();
         }
-        let nothing = self.errors().all(is_lacking);
+        let nothing = self.outcomes.iter().all(|o| o.as_ref().err().is_some_and(is_lacking));
         let mut faults: Vec<(String, Vec<&str>)> = Vec::new();
         for (outcome, way) in self.outcomes.iter().zip(ways) {
-            let Err(error) = outcome else { continue };
-            if is_lacking(error) && !nothing {
-                continue;
-            }
-            let (text, model) = (error.to_string(), way.model.name());
-            match faults.iter_mut().find(|(known, _)| *known == text) {
-                Some((_, models)) if models.contains(&model) => {}
-                Some((_, models)) => models.push(model),
-                None => faults.push((text, vec![model])),
+            let texts = match outcome {
+                Err(error) if is_lacking(error) && !nothing => continue,
+                Err(error) => vec![error.to_string()],
+                Ok(estimate) => contradictions(state, estimate),
+            };
+            let model = way.model.name();
+            for text in texts {
+                match faults.iter_mut().find(|(known, _)| *known == text) {
+                    Some((_, models)) if models.contains(&model) => {}
+                    Some((_, models)) => models.push(model),
+                    None => faults.push((text, vec![model])),
+                }
             }
         }
         faults.into_iter().map(|(text, models)| format!("{}: {text}", models.join(", "))).collect()
@@ -153,8 +177,17 @@ fn is_lacking(error: &EmtError) -> bool {
     matches!(error, EmtError::Missing { .. } | EmtError::NotCalibrated { .. } | EmtError::NoLikelihood { .. })
 }
 
-/// Quantities of the model that the data do not determine.
-fn undetermined(estimate: &Estimate) -> Option<String> {
-    let names: Vec<&str> = estimate.undetermined().map(InferredQuantity::name).collect();
-    (!names.is_empty()).then(|| format!("the data do not determine {}", names.join(", ")))
+/// The status of an outcome: that of the model, unless the data themselves are in conflict.
+fn status(state: &State, outcome: &Result<Estimate, EmtError>) -> Status {
+    match Status::of(outcome) {
+        Status::Ok | Status::Extrapolated if state.in_conflict => Status::Contradictory,
+        status => status,
+    }
+}
+
+/// What contradicts what, or why nothing is determined.
+fn contradictions(state: &State, estimate: &Estimate) -> Vec<String> {
+    let of_data = state.notes.iter().filter(|_| state.in_conflict).cloned();
+    let is_reason = |w: &&Warning| w.is_contradiction() || estimate.status == Status::Unknown;
+    of_data.chain(estimate.warnings.iter().filter(is_reason).map(ToString::to_string)).collect()
 }

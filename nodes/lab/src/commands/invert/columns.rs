@@ -2,18 +2,12 @@
 
 use super::inputs::{INPUTS, Input, Role};
 use super::lines::LONGEST;
-use super::state::State;
-use csv_core::{ReadRecordResult, Terminator};
+use super::slips;
+use super::splitter::{Cells, Splitter};
+use super::state::{Defaults, State};
+use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt::{Measured, Moduli};
-
-/// Inputs common to all rows without their own.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Defaults {
-    pub(crate) relative_error: Option<f64>,
-    pub(crate) grain_shear_modulus: Option<f64>,
-    pub(crate) poisson: Option<f64>,
-}
 
 /// Positions of the inputs in a row. Other columns are ignored.
 pub(crate) struct Columns {
@@ -28,6 +22,7 @@ pub(crate) struct Columns {
     /// Whether the moduli have the names of the projection that `grainlab analyze` prints.
     projected: bool,
     contact_law: Option<usize>,
+    smooth: Option<usize>,
     sample: Option<usize>,
     source: Option<usize>,
     step: Option<usize>,
@@ -75,12 +70,16 @@ impl Columns {
                     found.push((input, column, alias.factor));
                 }
             }
-            if let (Role::Pressure, [(_, one, _), (_, other, _), ..]) = (input.role, &found[..]) {
+            if let [(_, one, _), (_, other, _), ..] = &found[..] {
                 let (one, other) = (&names[*one], &names[*other]);
-                return Err(format!("columns {one} and {other} both contain the pressure: keep one of them"));
+                return Err(format!(
+                    "columns {one} and {other} both contain {}: keep one of them",
+                    input.key
+                ));
             }
             inputs.extend(found.into_iter().next());
         }
+        no_slips(&names, by, stiffness.is_some())?;
         let has = |role: Role| inputs.iter().any(|(input, ..)| input.role == role);
         if stiffness.is_none() && !has(Role::Modulus) {
             let moduli: Vec<&str> =
@@ -99,6 +98,7 @@ impl Columns {
             stiffness,
             reference_axis: axis_columns(&find)?,
             contact_law: find("contact_law")?,
+            smooth: find("smooth")?,
             sample: find("sample")?,
             source: find("source")?,
             step: find("step")?,
@@ -148,14 +148,10 @@ impl Columns {
     }
 
     fn state(&self, cells: &Cells<'_>) -> Result<State, String> {
-        let Defaults { relative_error, grain_shear_modulus, poisson } = self.defaults;
         let mut state = State {
             sample: self.sample(cells),
             projected: self.projected,
-            relative_error,
-            grain_shear_modulus,
-            poisson,
-            ..State::at(Measured::exact(0.0))
+            ..State::of_defaults(Measured::exact(0.0), &self.defaults)
         };
         for (input, column, factor) in &self.inputs {
             let Some(value) = self.number(cells, *column)? else {
@@ -172,9 +168,20 @@ impl Columns {
         if let Some(text) = self.contact_law.map(|column| cells.get(column)).filter(|text| !text.is_empty()) {
             state.contact_law = Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
         }
+        state.smooth = match self.smooth.map_or("", |column| cells.get(column)) {
+            "" | "false" => false,
+            "true" => true,
+            other => return Err(format!("column smooth: {other:?} is not true or false")),
+        };
         if let Some(stiffness) = self.stiffness(cells)? {
             let medium = stiffness.transverse_isotropy_about(&self.axis(cells)?);
             (state.moduli, state.asymmetry) = (Moduli::of_medium(&medium), Some(medium.residual));
+        }
+        for (input, column, _) in self.inputs.iter().filter(|(input, ..)| input.role == Role::Stddev) {
+            if !cells.get(*column).is_empty() && (input.get)(&state).is_none() {
+                let name = &self.names[*column];
+                return Err(format!("column {name} is a standard deviation of a quantity that is not there"));
+            }
         }
         Ok(state)
     }
@@ -231,6 +238,41 @@ impl Columns {
     }
 }
 
+/// Refuses a column that is not read, is not to group by, and is named almost like one that is read, or is one of a part of
+/// the entries of a stiffness.
+fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), String> {
+    let entries: Vec<String> = (0..36).map(|n| format!("c{}{}_pa", n / 6 + 1, n % 6 + 1)).collect();
+    let mut read: Vec<&str> = INPUTS.iter().flat_map(|i| i.names()).map(|alias| alias.name).collect();
+    read.extend(["contact_law", "smooth", "reference_axis_x", "reference_axis_y", "reference_axis_z"]);
+    let printed: Vec<String> = QUANTITIES.iter().flat_map(|q| q.columns()).collect();
+    let labels = ["sample", "source", "step"];
+    for name in names {
+        let is_known = labels.contains(&name.as_str()) || read.contains(&name.as_str());
+        if is_known || by.contains(name) {
+            continue;
+        }
+        if entries.contains(name) && !has_stiffness {
+            return Err(format!(
+                "column {name} is an entry of a stiffness, which is read only with all 36 or with one half: rename it to _{name} to \
+                 leave it out"
+            ));
+        }
+        let Some(meant) = slips::meant(name, &read) else { continue };
+        // An analysis prints q_over_p beside axial_q_over_p: alone it is probably meant for that.
+        let is_there = |alias: &str| names.iter().any(|n| n == alias);
+        let meant_is_there = INPUTS.iter().any(|input| {
+            let aliases = input.names();
+            aliases.iter().any(|a| a.name == meant) && aliases.iter().any(|a| is_there(a.name))
+        });
+        if !(printed.contains(name) && meant_is_there) {
+            return Err(format!(
+                "column {name} is not read, and its name is almost {meant}: rename it, to _{name} if it is something else"
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// Columns reference_axis_x, _y, _z: all or none of them.
 fn axis_columns(find: &impl Fn(&str) -> Result<Option<usize>, String>) -> Result<Option<[usize; 3]>, String> {
     let [x, y, z] = ["reference_axis_x", "reference_axis_y", "reference_axis_z"].map(find);
@@ -267,58 +309,6 @@ fn group_label(cell: &str) -> String {
             rounded.to_string()
         }
         _ => cell.to_owned(),
-    }
-}
-
-/// Splits lines into cells. A cell in quotes may contain commas and doubled quotes, but no line break, so
-/// that an invalid cell affects only its line. Space around a cell is ignored.
-pub(crate) struct Splitter {
-    reader: csv_core::Reader,
-    text: Vec<u8>,
-    ends: Vec<usize>,
-}
-
-/// The cells of a line.
-struct Cells<'a> {
-    text: &'a str,
-    ends: &'a [usize],
-}
-
-impl Splitter {
-    pub(crate) fn new() -> Self {
-        let reader = csv_core::ReaderBuilder::new().terminator(Terminator::Any(b'\n')).build();
-        Self { reader, text: Vec::new(), ends: Vec::new() }
-    }
-
-    fn cells(&mut self, line: &[u8]) -> Result<Cells<'_>, &'static str> {
-        // One more place than needed, so that a full buffer is distinct from an empty one.
-        self.text.resize(self.text.len().max(line.len() + 1), 0);
-        let most = 2 + line.iter().filter(|b| **b == b',').count();
-        self.ends.resize(self.ends.len().max(most), 0);
-        self.reader.reset();
-        let (_, _, written, ended) = self.reader.read_record(line, &mut self.text, &mut self.ends);
-        let (result, _, more, last) =
-            self.reader.read_record(b"\n", &mut self.text[written..], &mut self.ends[ended..]);
-        if result != ReadRecordResult::Record {
-            return Err("a quote is not closed on its line");
-        }
-        let text = std::str::from_utf8(&self.text[..written + more]).map_err(|_| "it is not UTF-8 text")?;
-        Ok(Cells { text, ends: &self.ends[..ended + last] })
-    }
-}
-
-impl<'a> Cells<'a> {
-    fn len(&self) -> usize {
-        self.ends.len()
-    }
-
-    fn get(&self, column: usize) -> &'a str {
-        let start = column.checked_sub(1).map_or(0, |before| self.ends[before]);
-        self.text[start..self.ends[column]].trim()
-    }
-
-    fn iter(&self) -> impl Iterator<Item = &'a str> + '_ {
-        (0..self.len()).map(|column| self.get(column))
     }
 }
 
@@ -386,8 +376,8 @@ mod tests {
 
     #[test]
     fn the_projection_that_analyze_prints_is_that_of_a_stiffness() {
-        let names = "p_pa,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa,c11_pa";
-        let printed = state(names, "5e4,1,2,3,4,5,6,7").unwrap();
+        let names = "p_pa,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa";
+        let printed = state(names, "5e4,1,2,3,4,5,6").unwrap();
         assert_eq!(printed.moduli.values(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(Some));
         assert!(printed.projected && !state("p_pa,c11_pa", "5e4,7").unwrap().projected);
     }
@@ -408,6 +398,41 @@ mod tests {
             assert_eq!(state(header, "50,1").unwrap().pressure.value, 50.0 * unit, "{header}");
         }
         assert!(state("p_pa,g12_pa", ",1").unwrap_err().contains("p_pa is empty"));
+    }
+
+    fn refused(header: &str) -> String {
+        Columns::of_header(header.as_bytes(), &[], Defaults::default()).err().unwrap_or_default()
+    }
+
+    #[test]
+    fn two_columns_of_one_modulus_are_refused_unless_one_is_an_entry_of_a_whole_stiffness() {
+        let twice = refused("p_pa,g12_pa,c66_pa");
+        assert!(twice.contains("g12_pa and c66_pa both contain g12_pa"), "{twice}");
+        assert!(refused("p_pa,ti_c11_pa,c11_pa").contains("both contain"));
+        assert!(refused("p_kpa,pressure_pa,g12_pa").contains("both contain"));
+        assert_eq!(refused(&format!("p_pa,g12_pa,ti_c11_pa,{}", matrix_names().join(","))), "");
+    }
+
+    #[test]
+    fn a_column_that_is_almost_one_that_is_read_is_refused_by_both_names() {
+        for (column, meant) in
+            [("G13_PA", "g13_pa"), ("g12_sigma", "g12_sigma_pa"), ("q_over_p", "axial_q_over_p")]
+        {
+            let fault = refused(&format!("p_pa,g12_pa,{column}"));
+            assert!(fault.contains(column) && fault.contains(&format!("almost {meant}:")), "{fault}");
+            assert_eq!(refused(&format!("p_pa,g12_pa,_{column}")), "");
+        }
+        assert_eq!(refused("name,operator,mu2,p_pa,g12_pa,stddev_c11_pa"), "");
+        assert!(refused("p_pa,c11_pa,c12_pa").contains("c12_pa is an entry of a stiffness"));
+    }
+
+    #[test]
+    fn smooth_grains_of_an_analysis_and_errors_of_what_is_not_there_are_not_overlooked() {
+        assert!(state("p_pa,g12_pa,smooth", "5e4,1e8,true").unwrap().smooth);
+        assert!(!state("p_pa,g12_pa,smooth", "5e4,1e8,").unwrap().smooth);
+        assert!(state("p_pa,g12_pa,smooth", "5e4,1e8,maybe").unwrap_err().contains("not true or false"));
+        let lonely = state("p_pa,g12_pa,axial_q_over_p,axial_q_over_p_sigma", "5e4,1e8,,0.1").unwrap_err();
+        assert!(lonely.contains("column axial_q_over_p_sigma is a standard deviation"), "{lonely}");
     }
 
     #[test]
@@ -437,24 +462,5 @@ mod tests {
         ] {
             assert_eq!(group_label(cell), label, "{cell}");
         }
-    }
-
-    #[test]
-    fn quoted_cells_hold_commas_and_quotes() {
-        let mut splitter = Splitter::new();
-        for (line, expected) in [
-            ("a, b ,", &["a", "b", ""][..]),
-            ("\"x, y\",1", &["x, y", "1"]),
-            ("1,\"say \"\"no\"\"\",3", &["1", "say \"no\"", "3"]),
-            ("\"\",", &["", ""]),
-            ("1,a\"b,2", &["1", "a\"b", "2"]),
-        ] {
-            let cells = splitter.cells(line.as_bytes()).unwrap();
-            assert_eq!(cells.iter().collect::<Vec<_>>(), expected, "{line}");
-        }
-        for line in ["\"a,b", "1,\"a\"\""] {
-            assert!(splitter.cells(line.as_bytes()).is_err(), "{line}");
-        }
-        assert_eq!(splitter.cells(b"1,2").unwrap().len(), 2, "nothing is left of what was refused");
     }
 }

@@ -72,7 +72,10 @@ pub(super) static INPUTS: &[Input] = inputs! {
     "g_elastic" Datum "" |s| s.measured_gamma.elastic, |s, v| s.measured_gamma.elastic = Some(v);
     "g_contact" Datum "" |s| s.measured_gamma.contact, |s, v| s.measured_gamma.contact = Some(v);
     "grain_shear_modulus_pa" Datum "" |s| s.grain_shear_modulus, |s, v| s.grain_shear_modulus = Some(v);
+    "grain_shear_modulus_sigma_pa" Stddev "standard deviation of the shear modulus of the grains"
+        |s| Some(s.grain_shear_modulus_sigma), |s, v| s.grain_shear_modulus_sigma = v;
     "poisson" Datum "" |s| s.poisson, |s, v| s.poisson = Some(v);
+    "poisson_sigma" Stddev "standard deviation of poisson" |s| Some(s.poisson_sigma), |s, v| s.poisson_sigma = v;
     "phi" Datum "" |s| s.phi.map(|p| p.value), |s, v| s.phi = Some(Measured::exact(v));
     "phi_sigma" Stddev "standard deviation of phi"
         |s| s.phi.map(|p| p.stddev), |s, v| if let Some(phi) = &mut s.phi { phi.stddev = v };
@@ -114,7 +117,8 @@ pub(super) fn reference() -> String {
     };
     let law =
         "  contact_law                        hertz_mindlin, or linear:KN,RATIO, which no model can invert\n";
-    INPUTS.iter().map(line).chain([law.to_owned()]).collect()
+    let smooth = "  smooth                             true: the stiffness is without tangential springs, which no model can invert\n";
+    INPUTS.iter().map(line).chain([law, smooth].map(str::to_owned)).collect()
 }
 
 /// The inputs given, with the standard deviations in force.

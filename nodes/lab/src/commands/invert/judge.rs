@@ -78,7 +78,10 @@ pub(super) fn run(
                 // A missing estimate is part of the statistics. An invalid row is an error.
                 Err((number, bad)) => {
                     let answer = Answer::of_bad_row(bad, number);
-                    tally.add(answer.exit(), &answer.complaint(ways));
+                    let exit = answer.refusal();
+                    // A contradiction is an answer, which counts as any other.
+                    let complaint = if exit == Exit::Done { String::new() } else { answer.complaint(ways) };
+                    tally.add(exit, &complaint);
                 }
             }
         }

@@ -1,7 +1,9 @@
 //! The rows of a table, in pieces, distributed over several threads.
 
-use super::columns::{BadRow, Columns, Defaults, Row, Splitter};
+use super::columns::{BadRow, Columns, Row};
 use super::lines::{Lines, Piece};
+use super::splitter::Splitter;
+use super::state::Defaults;
 use grainlab_console::Failure;
 use rayon::prelude::*;
 use std::path::Path;
@@ -98,7 +100,7 @@ mod tests {
                     Err(bad) => Answer::of_bad_row(bad, number),
                 };
                 while let Ok(Some(answers)) = rows.next(answer) {
-                    answers.iter().for_each(|a| _ = (a.exit(), a.complaint(&ways), a.inferences(&ways)));
+                    answers.iter().for_each(|a| _ = (a.exit(&ways), a.complaint(&ways), a.inferences(&ways)));
                 }
             },
         }

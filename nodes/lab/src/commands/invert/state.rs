@@ -10,6 +10,18 @@ use grainlab_emt::{
     StrainRatio, StrainRatioSource,
 };
 
+/// Inputs common to all states without their own.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Defaults {
+    pub(crate) relative_error: Option<f64>,
+    pub(crate) grain_shear_modulus: Option<f64>,
+    /// Pa; 0: exact.
+    pub(crate) grain_shear_modulus_sigma: f64,
+    pub(crate) poisson: Option<f64>,
+    /// 0: exact.
+    pub(crate) poisson_sigma: f64,
+}
+
 /// One state, as given.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
@@ -40,7 +52,17 @@ pub(crate) struct State {
     pub(crate) size_spread: Option<f64>,
     /// Pa.
     pub(crate) grain_shear_modulus: Option<f64>,
+    /// Pa; 0: exact.
+    pub(crate) grain_shear_modulus_sigma: f64,
     pub(crate) poisson: Option<f64>,
+    /// 0: exact.
+    pub(crate) poisson_sigma: f64,
+    /// Whether the moduli are those without tangential springs.
+    pub(crate) smooth: bool,
+    /// Notes on the data, for every estimate.
+    pub(crate) notes: Vec<String>,
+    /// Whether the data contradict each other, as the notes say.
+    pub(crate) in_conflict: bool,
     /// Contact law of the grains, if a table contains it.
     pub(crate) contact_law: Option<ContactLaw>,
     /// Number of grains, if a table contains it.
@@ -69,9 +91,26 @@ impl State {
             stress_ratio: None,
             size_spread: None,
             grain_shear_modulus: None,
+            grain_shear_modulus_sigma: 0.0,
             poisson: None,
+            poisson_sigma: 0.0,
+            smooth: false,
+            notes: Vec::new(),
+            in_conflict: false,
             contact_law: None,
             truth: Microstructure::default(),
+        }
+    }
+
+    /// The same with what is common to all states.
+    pub(super) fn of_defaults(pressure: Measured, defaults: &Defaults) -> Self {
+        Self {
+            relative_error: defaults.relative_error,
+            grain_shear_modulus: defaults.grain_shear_modulus,
+            grain_shear_modulus_sigma: defaults.grain_shear_modulus_sigma,
+            poisson: defaults.poisson,
+            poisson_sigma: defaults.poisson_sigma,
+            ..Self::at(pressure)
         }
     }
 
@@ -107,6 +146,9 @@ impl State {
         conditions.stress_ratio = self.stress_ratio;
         conditions.size_spread = self.size_spread;
         conditions.material = self.material(&way.calibration);
+        conditions.shear_modulus_stddev = self.grain_shear_modulus_sigma;
+        conditions.poisson_ratio_stddev = self.poisson_sigma;
+        conditions.smooth = self.smooth;
         conditions.contact_law = self.contact_law;
         if way.model.uses_gamma() {
             let model = way.model.name();
@@ -165,10 +207,11 @@ impl State {
     }
 
     /// The material: values given for the grains, and those of the calibration for the rest. `None` if none
-    /// is given.
+    /// is given, nor an error of one.
     fn material(&self, calibration: &Calibration) -> Option<Material> {
         let own = calibration.material();
-        (self.grain_shear_modulus.is_some() || self.poisson.is_some()).then(|| Material {
+        let has_error = self.grain_shear_modulus_sigma > 0.0 || self.poisson_sigma > 0.0;
+        (self.grain_shear_modulus.is_some() || self.poisson.is_some() || has_error).then(|| Material {
             shear_modulus: self.grain_shear_modulus.unwrap_or(own.shear_modulus),
             poisson_ratio: self.poisson.unwrap_or(own.poisson_ratio),
             ..*own

@@ -65,7 +65,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
                 Format::Json => printer.json_element(&answer)?,
                 Format::Table => String::new(),
             };
-            let (exit, complaint) = (answer.exit(), answer.complaint(printer.ways));
+            let (exit, complaint) = (answer.exit(printer.ways), answer.complaint(printer.ways));
             // Only a text table collects all results before printing.
             Ok::<_, Failure>((text, exit, complaint, (format == Format::Table).then_some(answer)))
         })?;

@@ -1,0 +1,144 @@
+//! Columns of a table that are named almost like one that is read.
+
+/// Words for the same thing, in a column's name and in that of the input.
+const WORDS: [(&str, &str); 6] = [
+    ("stddev", "sigma"),
+    ("std", "sigma"),
+    ("sd", "sigma"),
+    ("error", "sigma"),
+    ("err", "sigma"),
+    ("stdev", "sigma"),
+];
+
+/// Names of the flags and of Python for what a table calls otherwise.
+const SYNONYMS: [(&str, &str); 6] = [
+    ("stress_ratio", "axial_q_over_p"),
+    ("stress_ratio_sigma", "axial_q_over_p_sigma"),
+    ("solid_fraction", "phi"),
+    ("poisson_ratio", "poisson"),
+    ("poisson_ratio_sigma", "poisson_sigma"),
+    ("sigma", "speed_sigma"),
+];
+
+const UNITS: [&str; 4] = ["pa", "kpa", "mpa", "gpa"];
+
+/// Shortest name in which one letter may be wrong: below it, other names are as near.
+const LONG: usize = 5;
+
+/// The name that a column probably means: the same but for case, separators, its unit, a word for standard deviation, its first
+/// word, or one letter. `None` for unlike names, and for those that begin with `_`.
+pub(super) fn meant<'a>(column: &str, known: &[&'a str]) -> Option<&'a str> {
+    if column.starts_with('_') {
+        return None;
+    }
+    let words = |name: &str| -> Vec<String> {
+        let lower = name.to_lowercase();
+        let words = lower.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty());
+        words.map(|w| WORDS.iter().find(|(from, _)| *from == w).map_or(w, |(_, to)| to).to_owned()).collect()
+    };
+    let bare = |words: &[String]| -> Vec<String> {
+        words.iter().filter(|w| !UNITS.contains(&w.as_str())).cloned().collect()
+    };
+    let written = words(column);
+    let whole = written.join("_");
+    if let Some((_, meant)) = SYNONYMS.iter().find(|(synonym, _)| *synonym == whole) {
+        return known.iter().copied().find(|name| name == meant);
+    }
+    let alike = |name: &&str| {
+        let of_name = words(name);
+        let (short, full) = (bare(&written), bare(&of_name));
+        let without_first = full.get(1..).filter(|rest| rest.len() > 1 && rest[0] != "sigma");
+        let (a, b) = (written.concat(), of_name.concat());
+        !short.is_empty() && (short == full || short.concat() == full.concat())
+            || without_first == Some(&short[..])
+            || a.len() >= LONG && b.len() >= LONG && one_letter_apart(&a, &b)
+    };
+    known.iter().copied().find(alike)
+}
+
+/// Whether one letter is added, missing or another, or two are exchanged.
+fn one_letter_apart(a: &str, b: &str) -> bool {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    let same = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
+    let (a, b) = (&a[same..], &b[same..]);
+    match (a, b) {
+        ([], []) => false,
+        ([_, rest @ ..], _) if rest == b => true,
+        (_, [_, rest @ ..]) if rest == a => true,
+        ([_, x @ ..], [_, y @ ..]) if x == y => true,
+        ([p, q, x @ ..], [r, s, y @ ..]) => (p, q) == (s, r) && x == y,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KNOWN: [&str; 12] = [
+        "g12_pa",
+        "g12_sigma_pa",
+        "pressure_pa",
+        "p_kpa",
+        "axial_q_over_p",
+        "grain_shear_modulus_pa",
+        "poisson",
+        "phi",
+        "theta_pa",
+        "gamma_over_delta",
+        "k",
+        "contact_law",
+    ];
+
+    #[test]
+    fn a_slip_of_a_name_is_that_name() {
+        for (column, name) in [
+            ("G12_PA", "g12_pa"),
+            ("g12", "g12_pa"),
+            ("g12-pa", "g12_pa"),
+            ("g12_mpa", "g12_pa"),
+            ("g12_sigma", "g12_sigma_pa"),
+            ("g12_stddev_pa", "g12_sigma_pa"),
+            ("g12_error", "g12_sigma_pa"),
+            ("Pressure", "pressure_pa"),
+            ("presure_pa", "pressure_pa"),
+            ("p", "p_kpa"),
+            ("q_over_p", "axial_q_over_p"),
+            ("stress_ratio", "axial_q_over_p"),
+            ("shear_modulus_pa", "grain_shear_modulus_pa"),
+            ("poison", "poisson"),
+            ("poisson_ratio", "poisson"),
+            ("tehta_pa", "theta_pa"),
+            ("Phi", "phi"),
+            ("K", "k"),
+        ] {
+            assert_eq!(meant(column, &KNOWN), Some(name), "{column}");
+        }
+    }
+
+    #[test]
+    fn unlike_names_and_those_marked_as_others_are_left_alone() {
+        for column in [
+            "name",
+            "sample_id",
+            "operator",
+            "temperature",
+            "mu2",
+            "seed",
+            "preparation",
+            "set.friction",
+            "psi",
+            "x",
+            "time",
+            "relaxed.k",
+            "e",
+            "delta",
+            "law_of_grains",
+            "_g12",
+            "_G12_PA",
+            "",
+        ] {
+            assert_eq!(meant(column, &KNOWN), None, "{column}");
+        }
+    }
+}
