@@ -19,8 +19,12 @@ const SCATTER: f64 = 2.2;
 /// Imbalance of moduli that were rounded to three or four digits.
 const ROUNDING: f64 = 5e-3;
 
-/// Number of standard deviations that chance exceeds less than once in a thousand times.
-const CERTAIN: f64 = 3.3;
+/// Probability with which chance alone raises one of the alarms that the data contradict each other or the model. There are
+/// three, of which consistent data together raise less than one in a hundred.
+pub(crate) const FALSE_ALARM: f64 = 2e-3;
+
+/// Number of standard deviations that chance exceeds, to either side, with the probability [`FALSE_ALARM`].
+const CERTAIN: f64 = 3.09;
 
 /// Relative error of a modulus beyond which linear propagation is inaccurate: at 5 % the intervals still cover their
 /// level, at 30 % they do not.
@@ -55,32 +59,28 @@ pub(crate) fn common(
         let calibrated = calibration.material().poisson_ratio;
         add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
     }
+    add(conditions.contact_law.is_none(), Warning::ContactLawAssumed);
     let rolls = conditions.contact_law.is_some_and(|law| law.rolling.is_some());
     add(rolls, Warning::RollingResistance);
     if let Some(asymmetry) = observation.asymmetry {
         let scatter = observation.grains.map_or(0.0, |n| SCATTER / f64::from(n.max(1)).sqrt());
-        add(asymmetry > scatter.max(ASYMMETRY), Warning::NotTransverselyIsotropic { asymmetry });
+        // Independent errors of the entries of a stiffness are asymmetric, too.
+        let of_errors = CERTAIN * largest_error(observation).map_or(0.0, |(_, relative)| relative);
+        let usual = scatter.max(ASYMMETRY).hypot(of_errors);
+        add(asymmetry > usual, Warning::NotTransverselyIsotropic { asymmetry });
     }
-    add(observation.moduli.unstable(), Warning::NotOneMedium);
+    add(observation.moduli.unstable(observation.covariance.as_ref(), CERTAIN), Warning::NotOneMedium);
     if let Some(relative) = observation.moduli.imbalance() {
         let errors = observation.covariance.as_ref();
         let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c)).unwrap_or(0.0);
-        add(relative.abs() > ROUNDING + CERTAIN * stddev, Warning::Imbalance { relative });
+        add(relative.abs() > ROUNDING.max(CERTAIN * stddev), Warning::Imbalance { relative });
     }
     for quantity in [InferredQuantity::K, InferredQuantity::Z] {
         let Some(value) = structure.get(quantity) else { continue };
         add(value < 1.0, Warning::CoordinationAbsurd { quantity, value });
     }
-    if let Some(covariance) = &observation.covariance {
-        let relative = |(modulus, value): (Modulus, f64)| {
-            let i = modulus as usize;
-            (modulus, covariance[(i, i)].max(0.0).sqrt() / value.abs())
-        };
-        // C13 is a small difference of large numbers: its relative error is not meaningful.
-        let given = observation.moduli.known().filter(|(m, _)| *m != Modulus::C13).map(relative);
-        if let Some((modulus, relative)) = given.max_by(|a, b| a.1.total_cmp(&b.1)) {
-            add(relative > LARGE_ERROR, Warning::ErrorsLarge { modulus, relative });
-        }
+    if let Some((modulus, relative)) = largest_error(observation) {
+        add(relative > LARGE_ERROR, Warning::ErrorsLarge { modulus, relative });
     }
     if let Some(eps) = structure.eps {
         add(outside(eps, [-0.5, 1.0]), Warning::EpsOutOfRange { eps });
@@ -92,6 +92,18 @@ pub(crate) fn common(
         add(conditions.gamma.source == StrainRatioSource::Zero, Warning::GammaAssumedZero);
     }
     warnings
+}
+
+/// The modulus with the largest relative error, and this error.
+fn largest_error(observation: &Observation) -> Option<(Modulus, f64)> {
+    let covariance = observation.covariance.as_ref()?;
+    let relative = |(modulus, value): (Modulus, f64)| {
+        let i = modulus as usize;
+        (modulus, covariance[(i, i)].max(0.0).sqrt() / value.abs())
+    };
+    // C13 is a small difference of large numbers: its relative error is not meaningful.
+    let given = observation.moduli.known().filter(|(m, _)| *m != Modulus::C13).map(relative);
+    given.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// The warning for a coordination number in Eqs. 21 and 22 that no packing of the calibration had.

@@ -111,6 +111,19 @@ impl Measured {
     }
 }
 
+/// q/p that is not known: a normal distribution of mean 0 and standard deviation 0.15, cut at ±0.3. Its moments.
+pub const UNKNOWN_STRESS_RATIO: Measured = Measured { value: 0.0, stddev: 0.131_94 };
+
+/// A spread of the sizes that is not known: uniform from 0 to [`LARGEST_SPREAD`]. The laws take its square s², whose mean is
+/// 0.03 and standard deviation 0.0268: here as a spread and its standard deviation that give the same.
+pub const UNKNOWN_SIZE_SPREAD: Measured = Measured { value: 0.173_2, stddev: 0.077_46 };
+
+/// The largest spread of the sizes of which one that is not known may be.
+pub(crate) const LARGEST_SPREAD: f64 = 0.3;
+
+/// Number of inputs that describe the state.
+pub(crate) const STATE_INPUTS: usize = 7;
+
 /// The inputs of a model besides the moduli.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
@@ -120,9 +133,9 @@ pub struct Conditions {
     pub gamma: StrainRatio,
     /// Solid fraction φ; `None` if not known.
     pub solid_fraction: Option<Measured>,
-    /// (σ_33 − (σ_11 + σ_22)/2)/p, in [−3/2, 3] where no stress is tensile; `None` takes the stress as isotropic.
+    /// (σ_33 − (σ_11 + σ_22)/2)/p, in [−3/2, 3] where no stress is tensile; `None` takes [`UNKNOWN_STRESS_RATIO`].
     pub stress_ratio: Option<Measured>,
-    /// Standard deviation of the radii of the grains over their mean; `None` takes the grains as equal.
+    /// Standard deviation of the radii of the grains over their mean; `None` takes [`UNKNOWN_SIZE_SPREAD`].
     pub size_spread: Option<f64>,
     /// Material of the grains; `None` takes that of the calibration.
     pub material: Option<Material>,
@@ -151,6 +164,37 @@ impl Conditions {
             contact_law: None,
             smooth: false,
         }
+    }
+
+    /// Standard deviations of the inputs of the state, in the order of the last of [`crate::INPUT_NAMES`]: relative ones of the
+    /// pressure, the solid fraction and the shear modulus of the grains. `material` is that of the calibration.
+    pub(crate) fn stddevs(&self, material: &Material) -> [f64; STATE_INPUTS] {
+        let grains = self.material.as_ref().unwrap_or(material);
+        [
+            self.pressure.stddev / self.pressure.value,
+            self.gamma.stddev,
+            self.solid_fraction.map_or(0.0, |phi| phi.stddev / phi.value),
+            self.stress_ratio.unwrap_or(UNKNOWN_STRESS_RATIO).stddev,
+            if self.size_spread.is_some() { 0.0 } else { UNKNOWN_SIZE_SPREAD.stddev },
+            self.shear_modulus_stddev / grains.shear_modulus,
+            self.poisson_ratio_stddev,
+        ]
+    }
+
+    /// The same with one input of the state changed, by a relative amount where [`Conditions::stddevs`] has a relative
+    /// deviation. `None` if the input is not known.
+    pub(crate) fn moved(&self, input: usize, by: f64, material: &Material) -> Option<Self> {
+        let mut moved = *self;
+        match input {
+            0 => moved.pressure.value *= 1.0 + by,
+            1 => moved.gamma.value += by,
+            2 => moved.solid_fraction.as_mut()?.value *= 1.0 + by,
+            3 => moved.stress_ratio.get_or_insert(UNKNOWN_STRESS_RATIO).value += by,
+            4 => *moved.size_spread.get_or_insert(UNKNOWN_SIZE_SPREAD.value) += by,
+            5 => moved.material.get_or_insert(*material).shear_modulus *= 1.0 + by,
+            _ => moved.material.get_or_insert(*material).poisson_ratio += by,
+        }
+        Some(moved)
     }
 
     /// The first fault, if any.

@@ -5,7 +5,8 @@ use crate::checks;
 use crate::conditions::StrainRatio;
 use crate::domain::Domain;
 use crate::error::EmtError;
-use crate::observation::{INPUTS, InputCovariance, Observation};
+use crate::moduli::MODULI;
+use crate::observation::{INPUT_NAMES, INPUTS, InputCovariance, Observation};
 use crate::point_estimate::{Jacobian, Misfit, PointEstimate};
 use crate::prior::Prior;
 use crate::update::{Updated, updated};
@@ -21,6 +22,9 @@ pub(crate) const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 
 /// Distance of a prior from the data, in standard deviations of both, that chance exceeds once in a thousand times.
 const PRIOR_CONFLICT: f64 = 3.3;
+
+/// Share of the variance of a quantity from which the input that causes it is named.
+const WIDENS: f64 = 0.5;
 
 /// How far an estimate can be relied on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,6 +178,21 @@ impl Estimate {
         Some([(middle - half).max(low), (middle + half).min(high)])
     }
 
+    /// The input of the state that contributes most to the variance of a quantity: its name, the quantity, and its share of the
+    /// whole variance, from 0 to 1. `None` where the state has no error.
+    pub fn widest(&self) -> Option<(&'static str, InferredQuantity, f64)> {
+        let (inputs, total) = (self.inputs?, self.covariance()?);
+        let of = |quantity: InferredQuantity| {
+            let i = quantity as usize;
+            self.structure.get(quantity).filter(|_| total[(i, i)] > 0.0)?;
+            let share = |j: usize| self.jacobian[(i, j)].powi(2) * inputs[(j, j)] / total[(i, i)];
+            let widest = (MODULI..INPUTS).max_by(|a, b| share(*a).total_cmp(&share(*b)))?;
+            Some((INPUT_NAMES[widest], quantity, share(widest)))
+        };
+        let all = InferredQuantity::ALL.into_iter().filter_map(of);
+        all.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|(_, _, share)| *share > 0.0)
+    }
+
     /// Condition number: ratio of the largest to the smallest singular value of the Jacobian of the model's unknowns,
     /// with relative changes for coordination numbers. It compares how strongly errors of the data act on different
     /// combinations.
@@ -220,7 +239,7 @@ pub(crate) fn assemble(
     jacobian: Jacobian,
 ) -> Result<Estimate, EmtError> {
     let PointEstimate { structure, discrepancy, misfit, mut warnings, .. } = point;
-    let inputs = observation.input_covariance();
+    let inputs = observation.input_covariance(calibration.material());
     let data_covariance = inputs.map(|input| jacobian * input * jacobian.transpose());
     let gamma = observation.conditions.gamma;
     let model_covariance = discrepancy
@@ -235,7 +254,7 @@ pub(crate) fn assemble(
     }
     warnings.extend(checks::common(observation, &structure, calibration, uses_gamma, domain.compares_state));
     let status = Status::of_estimate(&structure, domain, &warnings);
-    Ok(Estimate {
+    let mut estimate = Estimate {
         model,
         calibration: calibration.name().to_owned(),
         gamma: uses_gamma.then_some(gamma),
@@ -250,7 +269,11 @@ pub(crate) fn assemble(
         inputs,
         unknowns: domain.structure.map(|range| range.is_some()),
         limits: [[f64::NEG_INFINITY, f64::INFINITY]; InferredQuantity::COUNT],
-    })
+    };
+    if let Some((input, quantity, share)) = estimate.widest().filter(|(_, _, share)| *share > WIDENS) {
+        estimate.warnings.push(Warning::WidenedMost { input, quantity, share });
+    }
+    Ok(estimate)
 }
 
 fn of_determined(

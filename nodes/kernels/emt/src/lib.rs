@@ -73,7 +73,9 @@ pub use calibration::{
     Calibration, CalibrationError, DeviatorLaw, IsotropicCalibration, ModelDiscrepancy, NetworkState,
     RattlerLaw, Reach, RelaxationCalibration, ScalingLaw,
 };
-pub use conditions::{Conditions, Measured, StrainRatio, StrainRatioSource};
+pub use conditions::{
+    Conditions, Measured, StrainRatio, StrainRatioSource, UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO,
+};
 pub use domain::{Domain, Range};
 pub use eq16::Eq16Reading;
 pub use error::EmtError;

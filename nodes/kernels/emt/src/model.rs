@@ -57,7 +57,7 @@ pub trait Model: Sync + Debug {
         let observation = observation.checked()?;
         let mut point = self.solve(&observation, calibration)?;
         let jacobian = point.jacobian.take().unwrap_or_else(|| {
-            numerical_jacobian(&observation, &point.structure, |o| {
+            numerical_jacobian(&observation, &point.structure, calibration.material(), |o| {
                 self.solve(o, calibration).map(|p| p.structure)
             })
         });

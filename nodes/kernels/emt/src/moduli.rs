@@ -152,15 +152,20 @@ impl Moduli {
         (self, covariance)
     }
 
-    /// Whether no medium has these moduli: some strain would cost no energy. Considers the known ones of C11,
-    /// C33, C13 and G12.
-    pub(crate) fn unstable(&self) -> bool {
+    /// Whether no medium has these moduli, by more than so many standard deviations of their errors: some strain would cost no
+    /// energy. Considers the known ones of C11, C33, C13 and G12.
+    pub(crate) fn unstable(&self, covariance: Option<&ModuliCovariance>, sigmas: f64) -> bool {
         let [c11, c33, c13, g12] =
             [Modulus::C11, Modulus::C33, Modulus::C13, Modulus::G12].map(|m| self.get(m));
-        let plane = c11.zip(g12).is_some_and(|(c11, g12)| c11 <= g12);
+        let beyond = |margin: f64, slopes: [f64; MODULI]| {
+            let row = RowSVector::from(slopes);
+            let variance = covariance.map_or(0.0, |c| (row * c * row.transpose())[0].max(0.0));
+            margin <= -sigmas * variance.sqrt()
+        };
+        let plane = c11.zip(g12).is_some_and(|(c11, g12)| beyond(c11 - g12, [-1.0, 0.0, 0.0, 1.0, 0.0, 0.0]));
         let axial = c11.zip(g12).zip(c33.zip(c13)).is_some_and(|((c11, g12), (c33, c13))| {
             // Strain E along the axis while the stress across it does no work: C33 (C11 + C12)/2 > C13².
-            c33 * (c11 - g12) <= c13 * c13
+            beyond(c33 * (c11 - g12) - c13 * c13, [-c33, 0.0, 0.0, c33, c11 - g12, -2.0 * c13])
         });
         plane || axial
     }

@@ -1,14 +1,14 @@
 //! What is observed on a packing.
 
-use crate::conditions::{Conditions, StrainRatio};
+use crate::conditions::{Conditions, STATE_INPUTS, StrainRatio};
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
-use grainlab_core::{Mat3, Stiffness};
+use grainlab_core::{Mat3, Material, Stiffness};
 use nalgebra::{SMatrix, SymmetricEigen};
 
 /// Number of inputs of an inversion: the moduli, the pressure, γ/Δ, the solid fraction, the stress ratio q/p, the spread of
 /// the sizes, and the shear modulus and Poisson ratio of the grains.
-pub const INPUTS: usize = MODULI + 7;
+pub const INPUTS: usize = MODULI + STATE_INPUTS;
 
 /// Names of the inputs, in the order of the columns of a Jacobian.
 pub const INPUT_NAMES: [&str; INPUTS] = [
@@ -136,9 +136,14 @@ impl Observation {
         self.conditions.check()
     }
 
-    /// Covariance of the relative errors of the inputs; `None` if that of the moduli is not known.
-    pub(crate) fn input_covariance(&self) -> Option<InputCovariance> {
-        let covariance = self.covariance.as_ref()?;
+    /// Covariance of the relative errors of the inputs; `None` if neither that of the moduli nor an error of the state is known.
+    /// `material` is that of the calibration.
+    pub(crate) fn input_covariance(&self, material: &Material) -> Option<InputCovariance> {
+        let of_state = self.conditions.stddevs(material);
+        if self.covariance.is_none() && of_state.iter().all(|stddev| *stddev == 0.0) {
+            return None;
+        }
+        let covariance = self.covariance.unwrap_or_default();
         let values = self.moduli.values().map(|m| m.filter(|m| *m != 0.0));
         let mut relative = InputCovariance::zeros();
         for (i, a) in values.iter().enumerate() {
@@ -148,35 +153,19 @@ impl Observation {
                 }
             }
         }
-        let c = &self.conditions;
-        relative[(MODULI, MODULI)] = (c.pressure.stddev / c.pressure.value).powi(2);
-        relative[(MODULI + 1, MODULI + 1)] = c.gamma.stddev.powi(2);
-        relative[(MODULI + 2, MODULI + 2)] =
-            c.solid_fraction.map_or(0.0, |phi| (phi.stddev / phi.value).powi(2));
-        relative[(MODULI + 3, MODULI + 3)] = c.stress_ratio.map_or(0.0, |ratio| ratio.stddev.powi(2));
-        relative[(MODULI + 5, MODULI + 5)] =
-            c.material.map_or(0.0, |m| (c.shear_modulus_stddev / m.shear_modulus).powi(2));
-        relative[(MODULI + 6, MODULI + 6)] = c.poisson_ratio_stddev.powi(2);
+        for (i, stddev) in of_state.iter().enumerate() {
+            relative[(MODULI + i, MODULI + i)] = stddev * stddev;
+        }
         Some(relative)
     }
 
-    /// The same with one input changed by the relative amount `by`, γ/Δ, q/p, the spread of the sizes and the Poisson ratio by
-    /// the absolute one. `None` if the input is not known.
-    pub(crate) fn moved(&self, input: usize, by: f64) -> Option<Self> {
+    /// The same with one input changed, as [`Conditions::moved`]; moduli by a relative amount. `None` if the input is not known.
+    pub(crate) fn moved(&self, input: usize, by: f64, material: &Material) -> Option<Self> {
         let mut moved = self.clone();
-        match input {
-            0..MODULI => {
-                let modulus = Modulus::ALL[input];
-                let value = self.moduli.get(modulus)?;
-                moved.moduli = self.moduli.with(modulus, value * (1.0 + by));
-            }
-            6 => moved.conditions.pressure.value *= 1.0 + by,
-            7 => moved.conditions.gamma.value += by,
-            8 => moved.conditions.solid_fraction.as_mut()?.value *= 1.0 + by,
-            9 => moved.conditions.stress_ratio.as_mut()?.value += by,
-            10 => *moved.conditions.size_spread.as_mut()? += by,
-            11 => moved.conditions.material.as_mut()?.shear_modulus *= 1.0 + by,
-            _ => moved.conditions.material.as_mut()?.poisson_ratio += by,
+        if let Some(modulus) = Modulus::ALL.get(input) {
+            moved.moduli = self.moduli.with(*modulus, self.moduli.get(*modulus)? * (1.0 + by));
+        } else {
+            moved.conditions = self.conditions.moved(input - MODULI, by, material)?;
         }
         Some(moved)
     }

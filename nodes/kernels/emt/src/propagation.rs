@@ -3,6 +3,7 @@
 use crate::error::EmtError;
 use crate::observation::{INPUTS, Observation};
 use crate::point_estimate::Jacobian;
+use grainlab_core::Material;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use nalgebra::SVector;
 
@@ -14,13 +15,14 @@ const STEP: f64 = 1e-5;
 pub(crate) fn numerical_jacobian(
     observation: &Observation,
     structure: &Microstructure,
+    material: &Material,
     solve: impl Fn(&Observation) -> Result<Microstructure, EmtError>,
 ) -> Jacobian {
     let here = column(structure);
     let mut jacobian = Jacobian::zeros();
     for input in 0..INPUTS {
         let at = |by: f64| {
-            let moved = observation.moved(input, by)?;
+            let moved = observation.moved(input, by, material)?;
             solve(&moved).ok().map(|s| column(&s))
         };
         let slope = match (at(STEP), at(-STEP)) {

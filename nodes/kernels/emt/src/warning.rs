@@ -60,10 +60,19 @@ pub enum Warning {
     },
     /// γ/Δ is not known and was taken as zero.
     GammaAssumedZero,
-    /// The stress ratio q/p is not known; the stress was taken as isotropic.
-    StressAssumedIsotropic,
-    /// The sizes of the grains are not known; they were taken as equal.
-    SizesAssumedEqual,
+    /// The stress ratio q/p is not known; [`crate::UNKNOWN_STRESS_RATIO`] was taken.
+    StressRatioUnknown,
+    /// The sizes of the grains are not known; [`crate::UNKNOWN_SIZE_SPREAD`] was taken.
+    SizesUnknown,
+    /// An input of the state contributes most of the variance of a quantity.
+    WidenedMost {
+        /// Its name, one of [`crate::INPUT_NAMES`].
+        input: &'static str,
+        /// The quantity that it widens most.
+        quantity: InferredQuantity,
+        /// Its share of the variance of that quantity.
+        share: f64,
+    },
     /// The contact law is not known; Hertz–Mindlin contacts were assumed.
     ContactLawAssumed,
     /// A quantity of the state is outside the packings of the calibration.
@@ -155,8 +164,9 @@ impl Warning {
         !matches!(
             self,
             Warning::GammaAssumedZero
-                | Warning::StressAssumedIsotropic
-                | Warning::SizesAssumedEqual
+                | Warning::StressRatioUnknown
+                | Warning::SizesUnknown
+                | Warning::WidenedMost { .. }
                 | Warning::ContactLawAssumed
                 | Warning::IsotropicContacts
                 | Warning::ErrorsLarge { .. }
@@ -221,12 +231,20 @@ impl fmt::Display for Warning {
             Warning::RollingResistance => {
                 write!(f, "the contacts resist rolling; no model knows packings whose contacts do")
             }
-            Warning::StressAssumedIsotropic => {
-                write!(f, "the stress ratio q/p is not known: the stress was taken as isotropic")
-            }
-            Warning::SizesAssumedEqual => {
-                write!(f, "the spread of the grain sizes is not known: the grains were taken as equal")
-            }
+            Warning::StressRatioUnknown => write!(
+                f,
+                "the stress ratio q/p is not known: it is 0 +- 0.15, cut at +- 0.3, in value and error; a sample at rest in its bed \
+                 (K0, q/p about 0.75) is outside"
+            ),
+            Warning::SizesUnknown => write!(
+                f,
+                "the spread of the grain sizes is not known: any from 0 to 0.3 is equally probable, in value and error"
+            ),
+            Warning::WidenedMost { input, quantity, share } => write!(
+                f,
+                "{input} widens most: {:.0} % of the variance of {quantity} is due to it",
+                100.0 * share
+            ),
             Warning::ContactLawAssumed => {
                 write!(f, "the contact law is not known: the contacts were taken as Hertz-Mindlin contacts")
             }

@@ -103,11 +103,6 @@ impl ScalingLaw {
             self.by_z + by_stiffness_ratio * state.stiffness_ratio + by_pressure * state.ln_pressure;
         by_ln_z / z + self.by_excess / (z - self.onset)
     }
-
-    /// d ln X/d ln p.
-    pub(crate) fn by_ln_pressure(&self, z: f64) -> f64 {
-        self.by_pressure + self.mixed[1] * z.ln()
-    }
 }
 
 /// The anisotropy of a network: X = ε (a0 + a1 u + a2 s² + a3 κ + a4 ln p + a5 u ln p + a6 z + a7 u κ) + q/p (b0 + b1 u +
@@ -154,14 +149,8 @@ impl DeviatorLaw {
     }
 
     /// dX/d(q/p).
-    pub(crate) fn by_stress_ratio(&self, z: f64, state: &NetworkState) -> f64 {
+    fn by_stress_ratio(&self, z: f64, state: &NetworkState) -> f64 {
         dot(&self.by_stress_ratio, &Self::stress_factors(z, state))
-    }
-
-    /// dX/d ln p.
-    pub(crate) fn by_ln_pressure(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
-        let u = critical(z);
-        eps * (self.by_eps[4] + self.by_eps[5] * u) + state.stress_ratio * self.by_stress_ratio[2] * u
     }
 
     /// X.
@@ -211,11 +200,6 @@ impl RattlerLaw {
     pub(crate) fn slope(&self, z: f64, state: &NetworkState) -> f64 {
         let [_, b, c, d, _, _, g] = self.0;
         b + 2.0 * c * z + 3.0 * d * z * z + g * state.size_variance
-    }
-
-    /// dk/d ln p.
-    pub(crate) fn by_ln_pressure(&self) -> f64 {
-        self.0[4]
     }
 }
 

@@ -13,8 +13,14 @@ const GROWTH: f64 = 12.0;
 /// Factor of the variance just outside.
 const OUTSIDE: f64 = 1.8;
 
-/// Share of a range within which a state at its end still counts as inside: the tolerance of a servo.
-const TOLERANCE: f64 = 1e-3;
+/// Share of a range beyond its ends that still counts as inside: random packings do not reach the ends of the ranges that
+/// they were drawn from, which are those stated.
+const TOLERANCE: f64 = 0.02;
+
+/// Least width of a range by which distances from it are measured: of ln p, of z, and of the others.
+const LN_WIDTH: f64 = 1.0;
+const Z_WIDTH: f64 = 0.5;
+const WIDTH: f64 = 0.1;
 
 /// Lowest and highest of the packings of a calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -62,10 +68,10 @@ impl Reach {
         let size_spread = state.size_variance.max(0.0).sqrt();
         let stiffness_ratio = state.stiffness_ratio + REFERENCE_STIFFNESS_RATIO;
         [
-            beyond("p/E*", pressure, self.pressure, f64::ln, 1.0),
-            beyond("k_t/k_n", stiffness_ratio, self.stiffness_ratio, |v| v, 0.1),
-            beyond("the spread of the grain sizes", size_spread, self.size_spread, |v| v, 0.1),
-            beyond("q/p", state.stress_ratio, self.stress_ratio, |v| v, 0.1),
+            beyond("p/E*", pressure, self.pressure, f64::ln, LN_WIDTH),
+            beyond("k_t/k_n", stiffness_ratio, self.stiffness_ratio, |v| v, WIDTH),
+            beyond("the spread of the grain sizes", size_spread, self.size_spread, |v| v, WIDTH),
+            beyond("q/p", state.stress_ratio, self.stress_ratio, |v| v, WIDTH),
         ]
         .into_iter()
         .flatten()
@@ -86,17 +92,33 @@ impl Reach {
         })
     }
 
+    /// The ranges of z, ε, q/p and the spread of the sizes that count as inside.
+    pub(crate) fn with_ends(&self) -> Self {
+        let wider = |[low, high]: [f64; 2], least: f64| {
+            let by = TOLERANCE * (high - low).max(least);
+            [low - by, high + by]
+        };
+        Self {
+            z: wider(self.z, Z_WIDTH),
+            eps: wider(self.eps, WIDTH),
+            size_spread: wider(self.size_spread, WIDTH),
+            stress_ratio: wider(self.stress_ratio, WIDTH),
+            pressure: wider(self.pressure.map(f64::ln), LN_WIDTH).map(f64::exp),
+            stiffness_ratio: wider(self.stiffness_ratio, WIDTH),
+        }
+    }
+
     /// The range of ε with estimates: half a width wider at each end.
     pub(crate) fn eps_with_estimates(&self) -> [f64; 2] {
         let [low, high] = self.eps;
-        let wider = UNKNOWN * (high - low).max(0.1);
+        let wider = UNKNOWN * (high - low).max(WIDTH);
         [low - wider, high + wider]
     }
 
     /// The inferred structure, if it is outside; ε `None` is inside.
     pub(crate) fn outside_structure(&self, z: f64, eps: Option<f64>) -> Vec<Outside> {
-        let of_eps = eps.and_then(|eps| beyond("eps", eps, self.eps, |v| v, 0.1));
-        beyond("z", z, self.z, |v| v, 0.5).into_iter().chain(of_eps).collect()
+        let of_eps = eps.and_then(|eps| beyond("eps", eps, self.eps, |v| v, WIDTH));
+        beyond("z", z, self.z, |v| v, Z_WIDTH).into_iter().chain(of_eps).collect()
     }
 }
 
@@ -125,7 +147,8 @@ mod tests {
     fn variances_grow_with_the_distance_and_half_a_range_away_there_is_no_estimate() {
         let at = |value| beyond("q/p", value, [-0.2, 0.3], |v| v, 0.1);
         assert_eq!(at(0.3), None);
-        assert_eq!(at(-0.2001), None);
+        assert_eq!(at(-0.2099), None);
+        assert!(at(-0.2101).is_some());
         let near = at(0.35).unwrap();
         assert!(!near.is_too_far() && (near.growth() - (OUTSIDE + GROWTH * 0.04)).abs() < 1e-9, "{near:?}");
         let far = at(-0.46).unwrap();

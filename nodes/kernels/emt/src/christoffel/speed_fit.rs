@@ -220,7 +220,7 @@ fn check_density(density: Measured) -> Result<(), ChristoffelError> {
 
 fn is_unstable(moduli: &Moduli) -> bool {
     let negative = moduli.known().any(|(modulus, value)| value <= 0.0 && modulus != Modulus::C13);
-    negative || moduli.unstable()
+    negative || moduli.unstable(None, 0.0)
 }
 
 fn listed(moduli: &Moduli) -> String {

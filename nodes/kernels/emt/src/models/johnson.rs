@@ -92,7 +92,7 @@ impl Model for Johnson {
         let k = shape.coordination(unit, phi, &material, observation.pressure());
         let mut warnings = vec![Warning::IsotropicContacts];
         if conditions.stress_ratio.is_none() {
-            warnings.push(Warning::StressAssumedIsotropic);
+            warnings.push(Warning::StressRatioUnknown);
         }
         let structure = Microstructure::default()
             .with(InferredQuantity::K, k)

@@ -14,6 +14,7 @@ mod network_likelihood;
 mod scan;
 mod state;
 
+use crate::checks::FALSE_ALARM;
 use crate::calibration::{Calibration, Outside, Reach, RelaxationCalibration};
 use crate::conditions::Conditions;
 use crate::domain::Domain;
@@ -21,6 +22,7 @@ use crate::error::EmtError;
 use crate::likelihood::Likelihood;
 use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
+use crate::normal;
 use crate::observation::Observation;
 use crate::point_estimate::{Misfit, PointEstimate};
 use crate::warning::Warning;
@@ -50,9 +52,11 @@ impl Model for Relaxed {
     fn domain(&self, calibration: &Calibration) -> Domain {
         let mut structure = [None; InferredQuantity::COUNT];
         let Some(network) = calibration.network() else { return Domain::new(NAME, structure) };
-        let Reach { z, eps, pressure: reduced_pressure, stress_ratio, size_spread, .. } = network.reach;
+        let Reach { z, eps, pressure: reduced_pressure, stress_ratio, size_spread, .. } =
+            network.reach.with_ends();
         structure[InferredQuantity::Z as usize] = Some(z);
         structure[InferredQuantity::Eps as usize] = Some(eps);
+        let size_spread = [size_spread[0].max(0.0), size_spread[1]];
         Domain {
             reduced_pressure,
             stress_ratio,
@@ -140,31 +144,31 @@ fn network(calibration: &Calibration) -> Result<&RelaxationCalibration, EmtError
 fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state: &State) -> PointEstimate {
     let mut warnings = Vec::new();
     if !state.stress_known {
-        warnings.push(Warning::StressAssumedIsotropic);
+        warnings.push(Warning::StressRatioUnknown);
     }
     if !state.sizes_known {
-        warnings.push(Warning::SizesAssumedEqual);
+        warnings.push(Warning::SizesUnknown);
     }
     for outside in &state.outside {
         let Outside { quantity, value, range, .. } = *outside;
         warnings.push(Warning::StateOutsideFit { quantity, value, range });
     }
-    let Reach { z, eps, .. } = network.reach;
-    if !(z[0]..=z[1]).contains(&fit.z) {
-        let quantity = InferredQuantity::Z;
-        warnings.push(Warning::CoordinationOutsideFit { quantity, value: fit.z, range: z });
-    }
-    if let Some(found) = fit.eps().filter(|found| !(eps[0]..=eps[1]).contains(found)) {
-        warnings.push(Warning::EpsOutsideFit { eps: found, range: eps });
+    for Outside { quantity, value, range, .. } in fit.outside(network) {
+        warnings.push(match quantity {
+            "z" => Warning::CoordinationOutsideFit { quantity: InferredQuantity::Z, value, range },
+            _ => Warning::EpsOutsideFit { eps: value, range },
+        });
     }
     let misfit = fit
         .degrees_of_freedom(data)
         .map(|degrees_of_freedom| Misfit { chi_square: fit.chi_square, degrees_of_freedom });
-    if let Some(Misfit { chi_square, degrees_of_freedom }) = misfit
-        && chi_square > one_in_a_thousand(degrees_of_freedom)
-    {
+    if let Some(Misfit { chi_square, degrees_of_freedom }) = misfit {
         let worst = fit.worst(data);
-        warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
+        // The largest of several differences.
+        let of_worst = normal::chi_square_above(worst.1.powi(2), 1) * data.used as f64;
+        if normal::chi_square_above(chi_square, degrees_of_freedom).min(of_worst) < FALSE_ALARM {
+            warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
+        }
     }
     let inferred = fit.inferred(data, network, state);
     PointEstimate {
@@ -174,9 +178,4 @@ fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state
         misfit,
         warnings,
     }
-}
-
-/// Value that χ² exceeds by chance once in a thousand times.
-fn one_in_a_thousand(degrees_of_freedom: usize) -> f64 {
-    [10.83, 13.82, 16.27, 18.47][degrees_of_freedom.clamp(1, 4) - 1]
 }

@@ -220,7 +220,7 @@ fn unknown_stress_and_sizes_are_taken_as_isotropic_and_equal_and_said() {
     let unknown = Conditions { stress_ratio: None, size_spread: None, ..conditions() };
     let assumed = Relaxed.infer(&Observation { conditions: unknown, ..o }, ours()).unwrap();
     assert_eq!(assumed.structure, known.structure);
-    let told = |w: &Warning| matches!(w, Warning::StressAssumedIsotropic | Warning::SizesAssumedEqual);
+    let told = |w: &Warning| matches!(w, Warning::StressRatioUnknown | Warning::SizesUnknown);
     assert_eq!(assumed.warnings.iter().filter(|w| told(w)).count(), 2);
     assert!(!known.warnings.iter().any(told), "{:?}", known.warnings);
 }

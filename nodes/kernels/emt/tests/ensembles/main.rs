@@ -2,6 +2,7 @@
 //! ones.
 
 mod csv;
+mod judged;
 mod least_squares;
 mod left_out;
 mod predictive;

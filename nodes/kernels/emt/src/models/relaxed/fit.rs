@@ -14,6 +14,7 @@ const NO_ROOM: f64 = 1e-6;
 
 type Square = SMatrix<f64, MODULI, MODULI>;
 type Moduli = SVector<f64, MODULI>;
+type WithFollowing = SMatrix<f64, 2, MODULI>;
 
 /// The moduli used, in units of [`State::unit`]. A modulus that was not measured but follows from the others is left
 /// out; if all six were measured and their relation holds exactly, Θ is left out. Rows of moduli left out or not known
@@ -74,6 +75,8 @@ pub(super) struct Fit {
     /// Inverse of the covariance of the residual, and covariance of the unknowns.
     weight: Square,
     unknowns: SMatrix<f64, 2, 2>,
+    /// Covariance of ε weighted by stiffness and of k with the moduli, by the errors of the state.
+    with_following: WithFollowing,
 }
 
 /// The estimate and its errors.
@@ -100,14 +103,24 @@ impl Fit {
         let by_eps = |slopes: &SMatrix<f64, MODULI, INVARIANTS>| {
             (0..3).map(|i| slopes.column(2 + i) * deviators[i].by_eps(z, laws)).sum::<Moduli>()
         };
+        let of_inputs = |eps: f64| {
+            let uncertain = state.inputs.iter().filter(|input| input.variance > 0.0);
+            uncertain
+                .map(|input| {
+                    let slopes = input.slopes(network, z, eps, &data.value);
+                    let moduli = data.masked(slopes.moduli);
+                    (moduli * moduli.transpose() * input.variance, slopes.following * moduli.transpose() * input.variance)
+                })
+                .fold((Square::zeros(), WithFollowing::zeros()), |(a, b), (c, d)| (a + c, b + d))
+        };
         let at_zero = data.masked(isotropic.slopes());
         let first = Moduli::from(isotropic.moduli());
-        let covariance = |slopes: &SMatrix<f64, MODULI, INVARIANTS>, by_eps: &Moduli| {
+        let covariance = |slopes: &SMatrix<f64, MODULI, INVARIANTS>, by_eps: &Moduli, of_inputs: &Square| {
             let scatter = network
                 .scatter_at(z, &state.variance_factors)
                 .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
                 .into_owned();
-            let mut c = slopes * scatter * slopes.transpose() + data.covariance;
+            let mut c = slopes * scatter * slopes.transpose() + data.covariance + of_inputs;
             if !fits_eps {
                 let [mean, spread] = network.eps_spread;
                 c += by_eps * by_eps.transpose() * (mean * mean + spread * spread);
@@ -123,7 +136,7 @@ impl Fit {
             Some(eps) => eps,
             None if fits_eps => {
                 let direction = by_eps(&at_zero);
-                let c = covariance(&at_zero, &direction);
+                let c = covariance(&at_zero, &direction, &of_inputs(0.0).0);
                 let weighted = Cholesky::new(c)?.solve(&direction);
                 let residual = data.masked(data.value - first);
                 weighted.dot(&residual) / weighted.dot(&direction)
@@ -133,7 +146,8 @@ impl Fit {
         let invariants = state.invariants(network, z, eps);
         let by_invariants = data.masked(invariants.slopes());
         let direction = by_eps(&by_invariants);
-        let c = covariance(&by_invariants, &direction);
+        let (of_inputs, with_following) = of_inputs(eps);
+        let c = covariance(&by_invariants, &direction, &of_inputs);
         let cholesky = Cholesky::new(c)?;
         let by_z = by_invariants.column(0) * network.theta.slope(z, laws)
             + by_invariants.column(1) * network.shear.slope(z, laws)
@@ -160,6 +174,7 @@ impl Fit {
             by_invariants,
             by_unknowns,
             weight,
+            with_following,
             unknowns: information.try_inverse()?,
         })
     }
@@ -223,9 +238,10 @@ impl Fit {
             of_k.slope(z, laws),
             0.0,
         );
-        // The scatter of these two is correlated with that of the moduli: regression on the residual.
-        let regression =
-            scatter.fixed_view::<2, INVARIANTS>(INVARIANTS, 0) * self.by_invariants.transpose() * self.weight;
+        // The scatter of these two is correlated with that of the moduli, and so are errors of the state: regression on the residual.
+        let with_moduli =
+            scatter.fixed_view::<2, INVARIANTS>(INVARIANTS, 0) * self.by_invariants.transpose() + self.with_following;
+        let regression = with_moduli * self.weight;
         let residual_gain = SMatrix::<f64, MODULI, MODULI>::identity() - self.by_unknowns * gain;
         let following = follows * gain + regression * residual_gain;
         let beyond = regression * self.residual;
@@ -244,21 +260,6 @@ impl Fit {
         by_moduli.fixed_view_mut::<2, MODULI>(0, 0).copy_from(&gain);
         by_moduli.fixed_view_mut::<2, MODULI>(2, 0).copy_from(&following);
 
-        // The residual changes with the data and, with opposite sign, with the prediction for the state.
-        let deviators = [network.dilatation, network.voigt, network.harmonic];
-        let mut by_ln_p = -data.value / 3.0
-            - self.by_invariants.column(0) * network.theta.by_ln_pressure(z)
-            - self.by_invariants.column(1) * network.shear.by_ln_pressure(z);
-        let mut by_stress = Moduli::zeros();
-        for (i, law) in deviators.iter().enumerate() {
-            by_ln_p -= self.by_invariants.column(2 + i) * law.by_ln_pressure(z, eps, laws);
-            by_stress -= self.by_invariants.column(2 + i) * law.by_stress_ratio(z, laws);
-        }
-        let mut by_pressure = by_moduli * data.masked(by_ln_p);
-        let mut by_stress = by_moduli * data.masked(by_stress);
-        by_pressure[2] += of_eps.by_ln_pressure(z, eps, laws);
-        by_pressure[3] += of_k.by_ln_pressure();
-        by_stress[2] += of_eps.by_stress_ratio(z, laws);
         let mut jacobian = Jacobian::zeros();
         for (row, quantity) in rows.into_iter().enumerate() {
             if structure.get(quantity).is_none() {
@@ -268,8 +269,18 @@ impl Fit {
             for i in 0..MODULI {
                 jacobian[(of, i)] = by_moduli[(row, i)] * data.value[i];
             }
-            jacobian[(of, MODULI)] = by_pressure[row];
-            jacobian[(of, MODULI + 3)] = if state.stress_known { by_stress[row] } else { 0.0 };
+        }
+        for input in &state.inputs {
+            // The residual changes with opposite sign.
+            let slopes = input.slopes(network, z, eps, &data.value);
+            let mut by_input = -by_moduli * data.masked(slopes.moduli);
+            by_input[2] += slopes.following[0];
+            by_input[3] += slopes.following[1];
+            for (row, quantity) in rows.into_iter().enumerate() {
+                if structure.get(quantity).is_some() {
+                    jacobian[(quantity as usize, input.at)] = by_input[row];
+                }
+            }
         }
 
         // Errors from the scatter of the packings: through the moduli, and that of k and of ε weighted by stiffness.

@@ -4,21 +4,18 @@
 use super::fit::Data;
 use super::state::State;
 use crate::calibration::{Calibration, Outside, RelaxationCalibration};
-use crate::conditions::Conditions;
 use crate::error::EmtError;
 use crate::invariants::INVARIANTS;
 use crate::likelihood::{FOLLOWING, Likelihood, Predicted, UNIT};
-use crate::moduli::{MODULI, Modulus};
+use crate::moduli::Modulus;
 use crate::observation::Observation;
 use grainlab_core::results::InferredQuantity;
-use nalgebra::{SMatrix, SVector, Vector2};
+use nalgebra::{SVector, Vector2};
 
 /// See the text of the module.
 pub(super) struct NetworkLikelihood<'a> {
     network: &'a RelaxationCalibration,
     state: State,
-    /// The states one standard deviation above and below, for each uncertain input.
-    uncertain: Vec<[State; 2]>,
     data: Data,
     moduli: Vec<Modulus>,
     observed: Vec<f64>,
@@ -32,34 +29,15 @@ impl<'a> NetworkLikelihood<'a> {
         network: &'a RelaxationCalibration,
         calibration: &Calibration,
     ) -> Result<Self, EmtError> {
-        let conditions = &observation.conditions;
-        let of = |conditions: &Conditions| State::of(conditions, observation.grains, network, calibration);
-        let state = of(conditions);
+        let state = State::of(&observation.conditions, observation.grains, network, calibration);
         state.within_reach(calibration.name())?;
         let data = Data::of(observation, &state);
         if data.used == 0 {
             return Err(EmtError::Missing { model, missing: "any modulus" });
         }
-        let mut uncertain = Vec::new();
-        if conditions.pressure.stddev > 0.0 {
-            uncertain.push([1.0, -1.0].map(|sign| {
-                let mut moved = *conditions;
-                moved.pressure.value *= (sign * conditions.pressure.stddev / conditions.pressure.value).exp();
-                of(&moved)
-            }));
-        }
-        if let Some(ratio) = conditions.stress_ratio.filter(|ratio| ratio.stddev > 0.0) {
-            uncertain.push([1.0, -1.0].map(|sign| {
-                let mut moved = *conditions;
-                if let Some(moved) = &mut moved.stress_ratio {
-                    moved.value += sign * ratio.stddev;
-                }
-                of(&moved)
-            }));
-        }
         let moduli: Vec<_> = Modulus::ALL.into_iter().filter(|m| data.is_used[*m as usize]).collect();
         let observed = moduli.iter().map(|m| data.value[*m as usize] * state.unit).collect();
-        Ok(Self { network, state, uncertain, data, moduli, observed })
+        Ok(Self { network, state, data, moduli, observed })
     }
 }
 
@@ -98,11 +76,14 @@ impl Likelihood for NetworkLikelihood<'_> {
         let slopes = data.masked(invariants.slopes());
         let mut covariance = slopes * scatter.fixed_view::<INVARIANTS, INVARIANTS>(0, 0) * slopes.transpose()
             + data.covariance;
-        for [above, below] in &self.uncertain {
-            let moduli =
-                |s: &State| SVector::<f64, MODULI>::from(s.invariants(network, z, eps).moduli()) * s.unit;
-            let direction = data.masked(moduli(above) - moduli(below)) / (2.0 * state.unit);
-            covariance += direction * direction.transpose();
+        let mut with_moduli = scatter.fixed_view::<FOLLOWING, INVARIANTS>(INVARIANTS, 0) * slopes.transpose();
+        let mut following = scatter.fixed_view::<FOLLOWING, FOLLOWING>(INVARIANTS, INVARIANTS).into_owned();
+        for input in state.inputs.iter().filter(|input| input.variance > 0.0) {
+            let by = input.slopes(network, z, eps, &data.value);
+            let moduli = data.masked(by.moduli);
+            covariance += moduli * moduli.transpose() * input.variance;
+            with_moduli += by.following * moduli.transpose() * input.variance;
+            following += by.following * by.following.transpose() * input.variance;
         }
         let residual = data.masked(data.value - SVector::from(invariants.moduli()));
         let scale = state.unit / UNIT;
@@ -113,14 +94,12 @@ impl Likelihood for NetworkLikelihood<'_> {
             }
         }
         let mut predicted = Predicted::new(residual * scale, covariance, self.moduli.len())?;
-        let with_moduli: SMatrix<f64, FOLLOWING, MODULI> =
-            scatter.fixed_view::<FOLLOWING, INVARIANTS>(INVARIANTS, 0) * slopes.transpose() * scale;
+        with_moduli *= scale;
         let laws = &state.laws;
         let law = Vector2::new(network.eps_stiffness.value(z, eps, laws), network.rattlers.value(z, laws));
         predicted.following = (
             law + with_moduli * predicted.weighted(),
-            scatter.fixed_view::<FOLLOWING, FOLLOWING>(INVARIANTS, INVARIANTS)
-                - with_moduli * predicted.inverse() * with_moduli.transpose(),
+            following - with_moduli * predicted.inverse() * with_moduli.transpose(),
         );
         Some(predicted)
     }
