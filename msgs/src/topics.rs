@@ -22,6 +22,18 @@ impl Topic {
         })
     }
 
+    /// The row of a topic in a recording, by its name, or by its type where a remap gave it another name.
+    ///
+    /// ```
+    /// use grainlab_msgs::{Topic, topics};
+    /// assert_eq!(Topic::of_channel("/left/grains", "grainlab_msgs/msg/Packing"), Some(&topics::PACKING));
+    /// assert_eq!(Topic::of_channel("/stress", "std_msgs/msg/String"), None);
+    /// ```
+    pub fn of_channel(name: &str, type_name: &str) -> Option<&'static Self> {
+        let named = Self::by_name(name).filter(|t| type_name.is_empty() || t.info.type_name == type_name);
+        named.or_else(|| TOPICS.iter().find(|t| t.is_recorded() && t.info.type_name == type_name))
+    }
+
     /// Whether recorders write it: parts of messages and copies of messages are left out.
     pub fn is_recorded(&self) -> bool {
         !self.is_transport() && self.name != STRESS_SAMPLED.name

@@ -25,8 +25,13 @@ pub fn assert_same(first: &Path, second: &Path) {
 
 /// The same for a second run whose topics are in a ROS namespace, as in `/left`.
 pub fn assert_same_under(first: &Path, second: &Path, namespace: &str) {
+    assert_same_named(first, second, |topic| format!("{namespace}{topic}"));
+}
+
+/// The same for a second run whose topics have other names.
+pub fn assert_same_named(first: &Path, second: &Path, name: impl Fn(&str) -> String) {
     for topic in REPRODUCIBLE {
-        let (a, b) = (distinct(first, topic), distinct(second, &format!("{namespace}{topic}")));
+        let (a, b) = (distinct(first, topic), distinct(second, &name(topic)));
         assert!(!a.is_empty(), "{topic}: nothing recorded");
         assert_eq!(a.len(), b.len(), "{topic}: {} and {} distinct messages", a.len(), b.len());
         let difference = a.iter().zip(&b).position(|(x, y)| x != y);

@@ -18,15 +18,14 @@ pub fn tool_bus(name: &str) -> Result<DdsBus, Failure> {
 
 /// Joins a domain as `name`, with the discovery range of the environment. Logs warnings to stderr.
 pub fn bus_in(domain: u16, name: &str) -> Result<DdsBus, Failure> {
-    bus_as(domain, name, Identity::from_env(Scope::Everyone))
+    bus_named(domain, Names::new(name).map_err(Failure::usage)?, Identity::from_env(Scope::Everyone))
 }
 
-/// The same with this identity.
-pub fn bus_as(domain: u16, name: &str, identity: Identity) -> Result<DdsBus, Failure> {
+/// The same with these names of topics and this identity.
+pub fn bus_named(domain: u16, names: Names, identity: Identity) -> Result<DdsBus, Failure> {
     let quiet = RosArgs { log_level: log::LevelFilter::Warn, rosout: false, ..RosArgs::default() };
-    Logger::install(name, &quiet);
+    Logger::install(names.node(), &quiet);
     let network = Network { domain, ..Network::from_env().map_err(Failure::usage)? };
-    let names = Names::new(name).map_err(Failure::usage)?;
     DdsBus::join(network, names, identity).map_err(Failure::failed)
 }
 

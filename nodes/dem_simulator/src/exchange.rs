@@ -151,6 +151,11 @@ impl DemSimulator {
         if let Some(rate) = self.lockstep.pass(now) {
             return match self.obey(bus, &rate) {
                 Ok(advanced) => self.advanced(bus, &advanced),
+                // The run is at a request that it can be resumed from; the shutdown that follows saves it.
+                Err(error) if error.is_stopped() => {
+                    self.lockstep.not_applied();
+                    Ok(Next::Again)
+                }
                 Err(error) => self.fail(bus, &error.to_string()),
             };
         }

@@ -138,6 +138,11 @@ impl Lockstep {
         Some(rate)
     }
 
+    /// Takes back a rate that was not applied: its computation was stopped.
+    pub(crate) fn not_applied(&mut self) {
+        self.counts.exchanges = self.counts.exchanges.saturating_sub(1);
+    }
+
     /// The messages to publish again, if the current request is due: with the previous one, since a servo that was
     /// killed may have delivered its last answer to the simulator and not to the recorder. The next servo repeats that
     /// answer.

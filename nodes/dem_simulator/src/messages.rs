@@ -10,6 +10,11 @@ use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::tf2_msgs::TFMessage;
 use grainlab_msgs::{msg, stamp};
 
+/// The number of a phase in messages, from 1, by its index in the scene.
+fn number(index: usize) -> u32 {
+    index as u32 + 1
+}
+
 /// Frame of everything measured in the cell.
 const FRAME: &str = "cell";
 
@@ -18,7 +23,7 @@ pub(crate) fn stress(request: &ServoRequest) -> Result<msg::Stress, BoundaryErro
     msg::Stress::try_from(&StressRequest {
         sequence: request.sequence,
         step: request.step,
-        phase: request.phase,
+        phase: number(request.phase as usize),
         stamp: stamp(request.time),
         stress: seen.stress.tensor,
         asymmetry: seen.stress.asymmetry,
@@ -52,7 +57,7 @@ pub(crate) fn run_state(run: &Simulation, state: u8, packings: Packings, message
     msg::RunState {
         header: Header { stamp: stamp(run.engine().time()), frame_id: FRAME.to_owned() },
         state,
-        phase: phase as u32,
+        phase: number(phase),
         phase_name: phases.get(phase).map(|p| p.name.clone()).unwrap_or_default(),
         progress: run.path().progress(run.scene()).clamp(0.0, 1.0),
         step: run.engine().steps(),
@@ -67,7 +72,7 @@ pub(crate) fn energy(run: &Simulation, phase_name: &str, found: &EnergyBalance) 
     msg::EnergyBalance {
         header: Header { stamp: stamp(run.engine().time()), frame_id: FRAME.to_owned() },
         step: run.engine().steps(),
-        phase: run.path().phase.saturating_sub(1) as u32,
+        phase: number(run.path().phase.saturating_sub(1)),
         phase_name: phase_name.to_owned(),
         start: found.start,
         strain_work: found.strain_work,

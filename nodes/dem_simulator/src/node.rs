@@ -37,8 +37,10 @@ const CLOCK_PERIOD: Duration = Duration::from_millis(10);
 pub(crate) const NOTICE_PERIOD: Duration = Duration::from_secs(5);
 /// Pause before the next attempt while a slow reader holds up the send queue.
 pub(crate) const HOLD: Duration = Duration::from_millis(5);
-/// Time limit for the delivery of a saved state: less than the launcher waits before it kills a process.
-const SAVING: Duration = Duration::from_secs(4);
+/// Time limit for the delivery of a packing that is in transit when a state is saved.
+const EARLIER: Duration = Duration::from_secs(2);
+/// Time limit for the delivery of a saved state: less than the launcher waits before it kills a simulator.
+pub const SAVED_WITHIN: Duration = Duration::from_secs(20);
 /// Time limit for the acknowledgement of the last messages.
 const FLUSH_LIMIT: Duration = Duration::from_secs(2);
 
@@ -129,7 +131,11 @@ impl DemSimulator {
             }
             None => (Simulation::new(scene)?, Packings::default()),
         };
-        run.set_compute(settings.compute(run.scene().grains as usize)?);
+        let compute = settings.compute(run.scene().grains as usize)?;
+        run.set_compute(match bus.stop_flag() {
+            Some(flag) => compute.stopping_on(flag),
+            None => compute,
+        });
         let stress = Publisher::advertise(bus, &topics::STRESS)?;
         let samples = Samples::advertise(bus)?;
         let packing = BulkPublisher::advertise(bus, &topics::PACKING)?;
@@ -232,29 +238,37 @@ impl DemSimulator {
         Err(NodeError::new(Exit::PhysicsInvalid, format!("{reason}. {saved}")))
     }
 
-    fn save(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<(), BusError> {
-        if let Err(error) = self.publish_packing() {
-            log::error!("the state cannot be saved: {error}");
-        }
+    /// Publishes the state as the last packing, and waits until its readers have it. The error is why they may not.
+    fn save(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<(), String> {
+        let published = self.publish_packing().map_err(|e| e.to_string());
         self.publish_run_state(RunState::FAILED, reason);
-        // After half the time, every running reader has received the packing before this one.
-        for flush in [false, true] {
-            if flush && !self.send_queue.is_empty() {
-                self.send_queue.flush(bus)?;
-            }
-            let until = bus.now() + SAVING / 2;
+        let delivered = self.deliver_all(bus);
+        self.farewell(bus);
+        published?;
+        if delivered.map_err(|e| e.to_string())? {
+            return Ok(());
+        }
+        let (lacking, time) = (self.send_queue.packings().waited_for(), SAVED_WITHIN.as_secs());
+        Err(format!("{lacking} readers do not have the whole packing after {time} s"))
+    }
+
+    /// Delivers all queued messages; true if every reader that is waited for has them.
+    fn deliver_all(&mut self, bus: &mut dyn Bus) -> Result<bool, BusError> {
+        let begin = bus.now();
+        for limit in [EARLIER, SAVED_WITHIN] {
             self.send_queue.deliver(bus)?;
-            while !self.send_queue.is_empty() && bus.now() < until {
+            while !self.send_queue.is_empty() && bus.now() < begin + limit {
                 bus.wait(HOLD);
                 self.send_queue.deliver(bus)?;
             }
+            if self.send_queue.is_empty() {
+                return Ok(true);
+            }
+            if limit == EARLIER {
+                self.send_queue.flush(bus)?;
+            }
         }
-        if !self.send_queue.is_empty() {
-            let lacking = self.send_queue.packings().waited_for();
-            log::warn!("{lacking} readers do not have the whole last packing after {} s", SAVING.as_secs());
-        }
-        self.farewell(bus);
-        Ok(())
+        Ok(false)
     }
 
     pub(crate) fn farewell(&self, bus: &mut dyn Bus) {
@@ -332,7 +346,11 @@ impl Node for DemSimulator {
         match self.stage {
             Stage::Starting => Ok(Exit::Interrupted),
             Stage::Running => {
-                self.save(bus, "interrupted; the run can be resumed from the last packing")?;
+                let step = self.run.engine().steps();
+                match self.save(bus, "interrupted") {
+                    Ok(()) => log::info!("the state of step {step} is saved as a packing"),
+                    Err(error) => log::error!("the state of step {step} could not be saved: {error}"),
+                }
                 Ok(Exit::Interrupted)
             }
             Stage::Finished => {

@@ -112,6 +112,7 @@ impl SendQueue {
 
     /// Sends all queued messages now, for a process that is about to end: the last packing replaces one in transit.
     pub(crate) fn flush(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
+        self.packings.hurry();
         for item in self.behind.drain(..).chain(self.waiting.drain(..)) {
             let sent = match &item {
                 Item::Request(publisher, body) | Item::State(publisher, body) => {

@@ -1,6 +1,7 @@
 //! Nodes and endpoints of a domain.
 
 use crate::names::{RosName, ros_type};
+use grainlab_node_kit::type_hash;
 use ros2_client::QosProfile;
 use ros2_client::qos::{Durability, Reliability};
 use serde::Serialize;
@@ -19,11 +20,19 @@ pub(crate) struct Endpoint {
     /// It writes, else it reads.
     pub(crate) writes: bool,
     pub(crate) qos: QosProfile,
+    /// `RIHS01_…`, or empty if it is not announced.
+    pub(crate) type_hash: String,
 }
 
 impl Endpoint {
     pub(crate) fn new(guid: Guid, topic: &str, type_name: &str, writes: bool, qos: QosProfile) -> Self {
-        Self { guid, name: RosName::of(topic), type_name: ros_type(type_name), writes, qos }
+        let type_hash = String::new();
+        Self { guid, name: RosName::of(topic), type_name: ros_type(type_name), writes, qos, type_hash }
+    }
+
+    /// The same with the hash in its user data.
+    pub(crate) fn announcing(self, user_data: &[u8]) -> Self {
+        Self { type_hash: type_hash(user_data), ..self }
     }
 
     pub(crate) fn participant(&self) -> &[u8] {

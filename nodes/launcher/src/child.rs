@@ -97,13 +97,6 @@ impl Child {
         Ok(())
     }
 
-    /// The last line of its log from `words` on, if it contains them.
-    pub fn last_line_if(&self, logs: &Path, words: &str) -> Option<String> {
-        let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).ok()?;
-        let line = text.lines().last()?;
-        line.find(words).map(|at| line[at..].to_owned())
-    }
-
     /// Repeats the last errors of its log on stderr.
     pub fn quote_log(&self, logs: &Path) {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).unwrap_or_default();

@@ -4,6 +4,7 @@ use super::child::{Child, Ended};
 use super::supervisor::Supervisor;
 use super::watch::{Event, Watch};
 use crate::nodes::NodeKind;
+use grainlab_dem_simulator::SAVED_WITHIN;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
 use tokio::sync::mpsc::UnboundedReceiver;
@@ -12,7 +13,13 @@ use tokio::time::{sleep_until, timeout};
 /// Time limit for the end of a process after SIGKILL.
 const KILLED_WITHIN: Duration = Duration::from_secs(1);
 
-/// Time after which the launcher says that the recorder is not done.
+/// Time that a simulator needs, besides, to end a step and to leave.
+const LEAVES_WITHIN: Duration = Duration::from_secs(5);
+
+/// Signal 0: nothing is sent.
+const NONE: i32 = 0;
+
+/// Time after which the launcher says what is not done.
 const SLOW: Duration = Duration::from_secs(3);
 
 /// Period of the check for stopped processes.
@@ -21,11 +28,13 @@ const POLL_PERIOD: Duration = Duration::from_millis(200);
 /// Additional time that a complete run waits for a stopped process.
 const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 
-/// The three steps of an end.
+/// The steps of an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ending {
     /// Every node ends and sends its last report, which is recorded.
     Farewell,
+    /// The simulator saves its state, and sends its last report.
+    Save,
     /// The recorder ends.
     Record,
     /// Processes that still run are ended by SIGTERM and SIGKILL.
@@ -45,6 +54,12 @@ impl Ending {
         };
         match self {
             Ending::Farewell => seconds(5, 1),
+            // It has its SIGINT already: a second one would end it at once.
+            Ending::Save => [
+                (NONE, SAVED_WITHIN + LEAVES_WITHIN),
+                (libc::SIGTERM, Duration::from_secs(1)),
+                (libc::SIGKILL, KILLED_WITHIN),
+            ],
             Ending::Record => seconds(60, 1),
             Ending::Exit => seconds(1, 1),
         }
@@ -61,22 +76,30 @@ impl Supervisor {
     ) -> bool {
         let mut hurried = false;
         self.progress.wait_for("ending the processes");
-        for ending in [Ending::Farewell, Ending::Record, Ending::Exit] {
+        for ending in [Ending::Farewell, Ending::Save, Ending::Record, Ending::Exit] {
             // An interrupted run ends at once; a complete run waits for stopped processes.
             let waits = exit != Exit::Interrupted && !hurried;
             hurried |= self.end(ending, waits, events).await;
-            // It ends together with the processes.
-            watch.stop();
+            if ending != Ending::Farewell {
+                // It ends together with the processes.
+                watch.stop();
+            }
         }
         hurried
     }
 
+    /// Whether the simulator has a state to save: it has published one.
+    fn may_save(&self) -> bool {
+        self.first_step.is_some()
+    }
+
     /// Whether an end still waits for this child.
     fn awaits(&self, child: &Child, ending: Ending) -> bool {
-        let recorder = child.plan.is(NodeKind::Recorder);
+        let [recorder, simulator] = [NodeKind::Recorder, NodeKind::DemSimulator].map(|n| child.plan.is(n));
         match (ending, child.pid) {
             (_, None) => false,
             (Ending::Farewell, Some(pid)) => !recorder && !self.left.contains(&pid),
+            (Ending::Save, Some(pid)) => simulator && self.may_save() && !self.left.contains(&pid),
             (Ending::Record, _) => recorder,
             (Ending::Exit, _) => true,
         }
@@ -86,12 +109,22 @@ impl Supervisor {
     /// which kills all remaining processes.
     async fn end(&mut self, ending: Ending, waits: bool, events: &mut UnboundedReceiver<Event>) -> bool {
         let mut hurried = false;
-        let mut slow_at = Some(tokio::time::Instant::now() + SLOW).filter(|_| ending == Ending::Record);
+        let slow = match ending {
+            Ending::Save => Some("the simulator saves its state"),
+            Ending::Record => Some("the recorder is writing the recording to the disk"),
+            Ending::Farewell | Ending::Exit => None,
+        };
+        let mut slow_at = slow.map(|_| tokio::time::Instant::now() + SLOW);
         for (signal, time) in ending.signals() {
             let signal = if hurried { libc::SIGKILL } else { signal };
             // A process that sent its last report has received the signal, and a second one would end it at once.
             if ending != Ending::Exit || signal != libc::SIGINT {
-                self.children.iter().filter(|c| self.awaits(c, ending)).for_each(|c| c.signal(signal));
+                // A simulator that saves its state is given more time, after the others.
+                let spares =
+                    ending == Ending::Farewell && signal != libc::SIGINT && !hurried && self.may_save();
+                let is_meant =
+                    |c: &&Child| self.awaits(c, ending) && !(spares && c.plan.is(NodeKind::DemSimulator));
+                self.children.iter().filter(is_meant).for_each(|c| c.signal(signal));
             }
             let running = |s: &Self| s.children.iter().any(|c| s.awaits(c, ending));
             let mut deadline = tokio::time::Instant::now() + time;
@@ -112,7 +145,7 @@ impl Supervisor {
                             deadline = (tokio::time::Instant::now() + time).min(latest);
                         }
                         if slow_at.take_if(|at| tokio::time::Instant::now() >= *at).is_some() {
-                            self.progress.say("the recorder is writing the recording to the disk");
+                            self.progress.say(slow.unwrap_or_default());
                         }
                     }
                 }

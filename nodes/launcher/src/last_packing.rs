@@ -24,8 +24,8 @@ pub fn read(directory: &Path) -> Result<(Packing, Vec<u8>), Failure> {
 
 fn packings(recording: &Recording) -> Result<Vec<Vec<u8>>, Failure> {
     let channels = recording.channels();
-    let is_packing = |topic: &str| topic.rsplit('/').next() == Some(topics::PACKING.name);
-    let names = channels.iter().filter(|c| is_packing(&c.topic)).map(|c| c.topic.clone());
+    let of_packings = channels.iter().filter(|c| c.ros_type == topics::PACKING.info.type_name);
+    let names = of_packings.map(|c| c.topic.clone());
     let messages = recording.messages(&Selection::topics(names)).map_err(Failure::failed)?;
     Ok(messages.map(|m| m.payload.to_vec()).collect())
 }

@@ -1,5 +1,6 @@
 //! The launcher: starts the processes of a launch file and supervises them until the run is done.
 //!
+//! - [`agreement`]: what the processes of a launch file must agree on
 //! - `child`: one process, which ends with the launcher
 //! - `progress`: a line for each phase; `phase_line`: that of a terminal
 //! - `pending_results`: results of the last packing that are still pending; `deadline`: their time limits
@@ -9,6 +10,7 @@
 //! - `nodes`: every node of ours, and how it is started; [`last_packing`]: what a simulator continues from
 //! - [`pipe`]: ends a node whose launcher was killed
 
+pub mod agreement;
 mod child;
 mod deadline;
 mod ending;

@@ -126,15 +126,42 @@ impl NodeKind {
         }
     }
 
-    /// The values of its parameters with these ROS arguments; the error is text.
-    pub(crate) fn parse(self, arguments: &[String]) -> Result<Parameters, String> {
+    /// The names of its topics and the values of its parameters with these ROS arguments; the error is text.
+    pub(crate) fn parse(self, arguments: &[String]) -> Result<(Names, Parameters), String> {
         let text = |e: &dyn fmt::Display| e.to_string();
         let (ros, plain) = RosArgs::parse(arguments).map_err(|e| text(&e))?;
         if let Some(word) = plain.first() {
             return Err(format!("unexpected argument {word:?}; ROS arguments come after --ros-args"));
         }
         let names = Names::from_args(self.name(), &ros).map_err(|e| text(&e))?;
-        Parameters::resolve(&self.parameters(), self.name(), &names, &ros).map_err(|e| text(&e))
+        let parameters = Parameters::resolve(&self.parameters(), self.name(), &names, &ros);
+        Ok((names, parameters.map_err(|e| text(&e))?))
+    }
+
+    /// The topics that it publishes or reads in a run, of those that are recorded.
+    pub(crate) fn topics(self) -> Vec<Topic> {
+        let own: &[Topic] = match self {
+            Self::DemSimulator => &[
+                topics::STRESS,
+                topics::STRAIN_RATE,
+                topics::PACKING,
+                topics::MICROSTRUCTURE,
+                topics::RUN_STATE,
+                topics::ENERGY,
+                topics::CLOCK,
+                topics::TF_STATIC,
+            ],
+            Self::ServoController => &[topics::STRESS, topics::STRAIN_RATE],
+            Self::FabricAnalyzer => &[topics::PACKING, topics::FABRIC, topics::MODULI],
+            Self::AcousticProbe => &[topics::PACKING, topics::WAVE_SPEEDS, topics::WAVEFORM],
+            Self::EmtInversion => &[topics::MODULI, topics::WAVE_SPEEDS, topics::MICROSTRUCTURE],
+            Self::Recorder => topics::TOPICS,
+            Self::PackingPictures => &[topics::PACKING],
+            // It finds its topics by itself.
+            Self::FoxgloveBridge => &[],
+        };
+        let of_every_node = [topics::DIAGNOSTICS, topics::ROSOUT].into_iter().filter(|t| !own.contains(t));
+        own.iter().copied().filter(Topic::is_recorded).chain(of_every_node).collect()
     }
 
     /// Number of such nodes that a run may have, as a range and as text: a second one of a unique node would
@@ -252,6 +279,7 @@ fn node_error(failure: &Failure) -> NodeError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_node_kit::Hub;
 
     #[test]
     fn a_name_means_its_node_and_an_unknown_one_lists_all() {
@@ -260,6 +288,25 @@ mod tests {
         }
         let error = "dem_simulater".parse::<NodeKind>().unwrap_err().to_string();
         assert!(error.starts_with("no node \"dem_simulater\"; there are: dem_simulator, servo"), "{error}");
+    }
+
+    #[test]
+    fn a_node_uses_no_topic_beside_those_whose_names_are_compared_before_the_start() {
+        let folder = tempfile::tempdir().unwrap();
+        // The bridge finds its topics by itself, on a socket.
+        for kind in NodeKind::all().filter(|kind| *kind != NodeKind::FoxgloveBridge) {
+            let output = format!("output:={}", folder.path().join("run").display());
+            let given = ["--ros-args", "-p", &output].map(str::to_owned);
+            let given = if kind == NodeKind::Recorder { given.as_slice() } else { &[] };
+            let (names, parameters) = kind.parse(given).unwrap();
+            let mut bus = Hub::new(1).bus(names);
+            let _node = kind.build(&mut bus, &parameters, &ResultSlot::default()).unwrap();
+            let used = bus.published().into_iter().map(|p| p.topic);
+            let used = used.chain(bus.received().into_iter().map(|r| r.topic));
+            for name in used.filter(|name| Topic::by_name(name).is_some_and(|t| t.is_recorded())) {
+                assert!(kind.topics().iter().any(|t| t.absolute_name() == name), "{kind}: {name}");
+            }
+        }
     }
 
     #[test]

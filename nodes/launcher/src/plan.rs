@@ -2,6 +2,7 @@
 //! programs.
 
 use crate::nodes::{NodeKind, UnknownNode};
+use grainlab_node_kit::{Names, Parameters};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -32,6 +33,29 @@ pub enum PlanError {
     /// A value for an undeclared argument.
     #[error("the launch file declares no arg {name:?}; declared are: {known}")]
     NoSuchArgument { name: String, known: String },
+    /// An argument that the launcher itself sets is not declared.
+    #[error(
+        "the launch file does not declare the arg {name:?}, which grainlab launch sets in each run, as scene, seed and out. \
+         Add to it:\n- arg: {{name: {name}, default: \"{default}\"}}\nand hand it on, as in `-p {parameter}:=$(var {name})`"
+    )]
+    OfLauncher { name: &'static str, default: &'static str, parameter: &'static str },
+    /// A node does not use what the launcher sets.
+    #[error(
+        "executable {name}: its parameter {parameter} is {found:?}, not {wanted:?}, which grainlab launch sets: hand it on with \
+         `-p {parameter}:=$(var {arg})`"
+    )]
+    NotHandedOn { name: String, parameter: &'static str, found: String, wanted: String, arg: &'static str },
+    /// Two processes use different names for one topic.
+    #[error(
+        "executable {name}: the topic {topic} is {found} there and {recorded} for the recorder: the processes of a run meet, and \
+         are recorded, under one name. Give all of them the same namespace (-r __ns:=/NAME) and the same remaps (-r)"
+    )]
+    Apart { name: String, topic: &'static str, found: String, recorded: String },
+    /// Two topics have one name.
+    #[error(
+        "executable {name}: the topics {first} and {second} are both {found}: give each a name of its own"
+    )]
+    OneName { name: String, first: &'static str, second: &'static str, found: String },
     /// An argument without a default and a value.
     #[error("arg {0:?} has no default and no value was given")]
     NoValue(String),
@@ -87,6 +111,10 @@ struct Executable {
     on_exit: Option<String>,
 }
 
+/// The arguments that the launcher sets: name, default under ROS 2, parameter of a node.
+const OF_LAUNCHER: [(&str, &str, &str); 3] =
+    [("scene", "demo", "scene"), ("seed", "-1", "seed"), ("out", "''", "output")];
+
 /// Maximum number of processes of a run. A member number is one byte: 0 means none, and 255 is the launcher.
 const PLACES: usize = 254;
 
@@ -116,11 +144,17 @@ impl NodePlan {
     /// # Errors
     /// If there is such a parameter; the text names the process, the parameter and its valid values.
     pub fn check_parameters(&self) -> Result<(), PlanError> {
-        let Some(node) = self.node else { return Ok(()) };
+        self.parsed().map(drop)
+    }
+
+    /// Its node with the names of its topics and the values of its parameters; `None` for a third-party program.
+    pub(crate) fn parsed(&self) -> Result<Option<(NodeKind, Names, Parameters)>, PlanError> {
+        let Some(node) = self.node else { return Ok(None) };
         // After `run NODE`.
-        node.parse(&self.arguments[2..])
-            .map(drop)
-            .map_err(|reason| PlanError::Arguments { name: self.name.clone(), reason })
+        let parsed = node.parse(&self.arguments[2..]);
+        let (names, parameters) =
+            parsed.map_err(|reason| PlanError::Arguments { name: self.name.clone(), reason })?;
+        Ok(Some((node, names, parameters)))
     }
 
     /// Sets the parameters of a simulator whose run is supervised. It does not look for duplicates, unless the launch file
@@ -173,6 +207,9 @@ impl LaunchFile {
     pub fn nodes(&self, values: &BTreeMap<&str, String>) -> Result<Vec<NodePlan>, PlanError> {
         let known = || self.arguments.iter().map(|(n, _)| n.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = values.keys().find(|k| self.arguments.iter().all(|(n, _)| n != *k)) {
+            if let Some((name, default, parameter)) = OF_LAUNCHER.into_iter().find(|(n, ..)| n == name) {
+                return Err(PlanError::OfLauncher { name, default, parameter });
+            }
             return Err(PlanError::NoSuchArgument { name: (*name).to_owned(), known: known() });
         }
         let mut variables = BTreeMap::new();

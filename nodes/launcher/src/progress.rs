@@ -113,7 +113,7 @@ impl Progress {
 
     fn begin_phase(&mut self, state: &RunStateReading) {
         self.printed_at = Instant::now();
-        let name = PhaseName { number: state.phase + 1, of: self.phases, name: state.phase_name.clone() };
+        let name = PhaseName { number: state.phase, of: self.phases, name: state.phase_name.clone() };
         self.phase = Some(Phase {
             index: state.phase,
             name: name.clone(),

@@ -8,12 +8,13 @@ use super::progress::Progress;
 use super::stopped::Stopped;
 use super::time_limit::TimeLimit;
 use super::watch::{Event, Watch};
+use crate::agreement::names_of_run;
 use crate::nodes::NodeKind;
 use crate::run::Run;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use grainlab_msgs::topics;
-use grainlab_node_kit::Exit;
+use grainlab_node_kit::{Exit, Names};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -37,8 +38,8 @@ const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 /// Time before a message about a run that has not begun.
 const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 
-/// The message while the simulator has published nothing.
-const SEARCHING: &str = "its processes have not found each other";
+/// What the message of a simulator begins with that waits for other processes.
+const WAITS: &str = "waiting for";
 
 /// The recorder, whose end is the end of the record.
 const RECORDER: NodeKind = NodeKind::Recorder;
@@ -63,6 +64,8 @@ pub struct Outline {
 pub struct Supervisor {
     pub(super) children: Vec<Child>,
     run: Run,
+    /// The names of the topics of the run.
+    names: Names,
     directory: PathBuf,
     logs: PathBuf,
     pub(super) ended: UnboundedReceiver<Ended>,
@@ -73,8 +76,10 @@ pub struct Supervisor {
     pub(super) progress: Progress,
     outline: Outline,
     begun: bool,
+    /// What the simulator last said that it does or waits for.
+    simulator: Option<String>,
     /// The step at which the run began or resumed.
-    first_step: Option<u64>,
+    pub(super) first_step: Option<u64>,
     finished: Option<RunStateReading>,
     failed: Option<String>,
     /// The watch failed: the end of the run would not be noticed.
@@ -125,7 +130,9 @@ impl Supervisor {
         let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
         let pending = PendingResults::of(&plans);
+        let names = names_of_run(&plans).map_err(Failure::usage)?;
         Ok(Self {
+            names,
             children: plans.into_iter().zip(1..).map(|(plan, member)| Child::new(plan, member)).collect(),
             run,
             directory: directory.to_owned(),
@@ -139,6 +146,7 @@ impl Supervisor {
             outline,
             begun: false,
             first_step: None,
+            simulator: None,
             finished: None,
             failed: None,
             blind: false,
@@ -156,7 +164,7 @@ impl Supervisor {
     /// Starts every process, waits for the end, ends every process.
     pub async fn run(mut self) -> Result<Supervised, Failure> {
         let begin = Instant::now();
-        let (watch, mut events) = Watch::start(self.run)?;
+        let (watch, mut events) = Watch::start(self.run, self.names.clone())?;
         // The watch starts first, so that it receives all messages.
         if let Some(event) = events.recv().await {
             self.take(event);
@@ -312,6 +320,7 @@ impl Supervisor {
                 }
             }
             Event::Phase(report) => self.progress.report(report),
+            Event::Simulator(says) => self.simulator = Some(says),
             Event::Goodbye(pid) => {
                 self.left.insert(pid);
             }
@@ -383,13 +392,14 @@ impl Supervisor {
         self.stopped.any()
     }
 
-    /// The condition that the simulator waits for, from its log.
+    /// What a run that has not begun waits for, as far as its simulator has said it.
     fn say_what_is_waited_for(&self) {
-        let simulator = self.children.iter().find(|c| c.plan.is(SIMULATOR));
-        let waits = simulator.and_then(|c| c.last_line_if(&self.logs, "waiting for"));
-        // A simulator that publishes and does not wait computes its first step.
-        let Some(what) = waits.or_else(|| self.first_step.is_none().then(|| SEARCHING.to_owned())) else {
-            return;
+        let what = match (self.simulator.as_deref(), self.first_step) {
+            (Some(says), _) if says.starts_with(WAITS) => says,
+            (Some(_), None) => "the simulator has published no state",
+            (None, None) => "the simulator starts, or places its grains",
+            // It computes its first step.
+            (_, Some(_)) => return,
         };
         self.progress.say(&format!("the run has not begun: {what}"));
     }

@@ -3,7 +3,7 @@
 use crate::run::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::Failure;
-use grainlab_console::network::bus_as;
+use grainlab_console::network::bus_named;
 use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
 use grainlab_fabric_analyzer::WITHOUT_MODULI;
 use grainlab_msgs::boundary::RunStateReading;
@@ -11,7 +11,9 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::member_of;
-use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Identity, Report, Stranger, Subscription, watchdog};
+use grainlab_node_kit::{
+    Bus, BusError, DdsBus, Demand, Identity, Names, Report, Stranger, Subscription, watchdog,
+};
 use grainlab_recorder::strangers::name;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -69,6 +71,8 @@ pub(crate) enum Event {
     Microstructure { source: String, step: u64, member: u8 },
     /// How far the present phase is.
     Phase(PhaseReport),
+    /// What the simulator does or waits for.
+    Simulator(String),
     /// The process with this id sent its last report.
     Goodbye(u32),
     /// The bus is open: messages are received from now on.
@@ -98,8 +102,8 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Joins the domain as a process of the run, and receives until it is dropped.
-    pub(crate) fn start(run: Run) -> Result<(Self, UnboundedReceiver<Event>), Failure> {
+    /// Joins the domain as a process of the run, with the names of its topics, and receives until it is dropped.
+    pub(crate) fn start(run: Run, names: Names) -> Result<(Self, UnboundedReceiver<Event>), Failure> {
         let (events, receiver) = unbounded_channel();
         let stop = Arc::new(AtomicBool::new(false));
         let asked = Arc::clone(&stop);
@@ -108,7 +112,7 @@ impl Watch {
             // The programs of the launcher are its descendants.
             let root = Some(std::process::id());
             let identity = Identity { root, ..Identity::member_of(run.id, LAUNCHER) };
-            let bus = bus_as(run.domain, "launcher", identity);
+            let bus = bus_named(run.domain, names.for_node("launcher"), identity);
             let watched = bus.map_err(|e| e.to_string()).and_then(|mut bus| {
                 let watched = watch(&mut bus, &events, &asked);
                 if watched.is_err() {
@@ -202,6 +206,7 @@ impl RunSubscriptions {
                 }
                 if let Some(phase) = phase_of(&report) {
                     send(Event::Phase(phase));
+                    send(Event::Simulator(report.health.message.clone()));
                 }
                 if report.is_final() {
                     send(Event::Goodbye(report.pid));

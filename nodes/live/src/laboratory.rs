@@ -209,7 +209,7 @@ impl Laboratory {
         now.saturating_sub(self.heard)
     }
 
-    /// Number of the phase under way, from 0.
+    /// Number of the phase under way, from 1.
     pub(crate) fn phase(&self) -> Option<u32> {
         let of_state = self.state.as_ref().map(|s| s.phase);
         of_state.max(self.latest.as_ref().map(|r| r.phase))

@@ -79,7 +79,7 @@ impl Laboratory {
             card(
                 "phase",
                 &phase.map_or_else(none, |n| escaped(&self.timeline.phase_name(n))),
-                &phase.map_or_else(String::new, |n| format!("number {}", n + 1)),
+                &phase.map_or_else(String::new, |n| format!("number {n}")),
                 &self
                     .state
                     .as_ref()

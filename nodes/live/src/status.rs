@@ -99,7 +99,7 @@ impl Laboratory {
         };
         let phase = self.phase().map_or_else(String::new, |n| {
             let name = self.timeline.phase_name(n);
-            format!("phase {}, {name}{}", n + 1, self.rest_of_phase(&name))
+            format!("phase {n}, {name}{}", self.rest_of_phase(&name))
         });
         format!(
             "<div class=\"progress\" role=\"progressbar\" aria-label=\"Progress\" aria-valuemin=\"0\" aria-valuemax=\"100\" \
@@ -185,6 +185,7 @@ mod tests {
     fn reported(name: &str, shares: &[(u64, &str)]) -> Laboratory {
         let mut lab = Laboratory::new(None, Duration::ZERO);
         let message = grainlab_msgs::msg::RunState {
+            phase: 1,
             phase_name: "extension".to_owned(),
             progress: 0.5,
             packings: 1,

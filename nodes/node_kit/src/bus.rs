@@ -1,6 +1,6 @@
 //! The bus: a node's interface to the network. There are two implementations, over DDS and in memory.
 
-use crate::admission::Stranger;
+use crate::admission::{Participant, Stranger};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::Identity;
@@ -9,6 +9,7 @@ use crate::sample::{Sample, SampleId, WriterId};
 use grainlab_msgs::Topic;
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 /// Handle of an advertised topic on one bus.
@@ -165,6 +166,12 @@ pub trait Bus {
     /// Writers on the resolved topic whose samples are not taken, sorted, as known at the last [`Bus::wait`].
     fn strange_writers(&self, topic: &Topic) -> Vec<WriterId>;
 
+    /// Participants with a writer on the resolved topic whose messages are not read: they are of another type, or of another
+    /// definition of the type. Sorted.
+    fn misfits(&self, _topic: &Topic) -> Vec<Participant> {
+        Vec::new()
+    }
+
     /// What the writers of other processes offer on topics of ROS, of those that [`Bus::identity`] counts, in the order of
     /// topics, as known at the last [`Bus::wait`].
     fn offers(&self) -> Vec<Offer>;
@@ -191,6 +198,12 @@ pub trait Bus {
 
     /// The owner of this writer, for messages to users.
     fn describe(&self, writer: WriterId) -> Stranger;
+
+    /// A flag that is true once the process was asked to end, for computations that take long; `None` on a bus without
+    /// signals.
+    fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
+        None
+    }
 
     /// Waits until every reliable reader has acknowledged everything, or `timeout` has passed; true in the first case.
     /// Topics that this bus itself reads reliably are left out: their acknowledgements are not known.

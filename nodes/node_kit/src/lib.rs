@@ -66,7 +66,7 @@ pub use logging::Logger;
 pub use memory::{Actor, Dice, Faults, Hub, MemoryBus, run_until};
 pub use names::{NameError, Names};
 pub use node::{Next, Node, NodeError};
-pub use offer::Offer;
+pub use offer::{Offer, type_hash};
 pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
 pub use parameters::{
     FromParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range, parse_value,

@@ -93,6 +93,12 @@ impl Names {
         Ok(names)
     }
 
+    /// The same namespace and remaps for the topics of another node.
+    #[must_use]
+    pub fn for_node(self, node: &str) -> Self {
+        Self { node: node.into(), ..self }
+    }
+
     /// The node's base name, as in `dem_simulator`.
     pub fn node(&self) -> &str {
         &self.node

@@ -1,7 +1,7 @@
 //! What a writer of another process offers, and the names of topics and types in DDS.
 
 use crate::sample::WriterId;
-use grainlab_msgs::Qos;
+use grainlab_msgs::{Qos, TypeInfo};
 
 /// A writer of another process on a topic of ROS.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,7 +18,26 @@ pub struct Offer {
     pub type_hash: String,
 }
 
+/// Why the messages of a writer are not read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Misfit {
+    /// They are of another type.
+    Type(String),
+    /// They are of another definition of the type, with this hash.
+    Definition(String),
+}
+
 impl Offer {
+    /// Why messages of this writer must not be read as those of `info`, whose fields come in another order or have other
+    /// types. A writer that announces no hash is taken at its word.
+    pub(crate) fn misfit(&self, info: &TypeInfo) -> Option<Misfit> {
+        if self.type_name != info.type_name {
+            return Some(Misfit::Type(self.type_name.clone()));
+        }
+        let known = !self.type_hash.is_empty() && !info.hash.is_empty();
+        (known && self.type_hash != info.hash).then(|| Misfit::Definition(self.type_hash.clone()))
+    }
+
     /// From the names in DDS and the user data of the writer; `None` unless they are those of a topic of ROS.
     pub(crate) fn of_wire(
         writer: WriterId,
@@ -46,15 +65,33 @@ impl Offer {
     }
 }
 
-/// The hash in `typehash=RIHS01_…;`, as rmw writes it into the user data.
-fn type_hash(user_data: &[u8]) -> String {
+const HASH_KEY: &str = "typehash=";
+
+/// The user data of a writer of this type, as rmw writes it; none if the hash is not known.
+pub(crate) fn user_data(info: &TypeInfo) -> Option<Vec<u8>> {
+    (!info.hash.is_empty()).then(|| format!("{HASH_KEY}{};", info.hash).into_bytes())
+}
+
+/// The hash in `typehash=RIHS01_…;`, as rmw writes it into the user data of an endpoint; empty if there is none.
+pub fn type_hash(user_data: &[u8]) -> String {
     let text = String::from_utf8_lossy(user_data);
-    let found = text.split(';').find_map(|entry| entry.strip_prefix("typehash="));
+    let found = text.split(';').find_map(|entry| entry.strip_prefix(HASH_KEY));
     let is_hash = |hash: &&str| {
         hash.strip_prefix("RIHS01_")
             .is_some_and(|d| d.len() == 64 && d.bytes().all(|b| b.is_ascii_hexdigit()))
     };
     found.filter(is_hash).unwrap_or_default().to_owned()
+}
+
+impl std::fmt::Display for Misfit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Type(other) => write!(f, "its messages are {other}"),
+            Self::Definition(hash) => {
+                write!(f, "it has another definition of the type (hash {}...)", &hash[..19.min(hash.len())])
+            }
+        }
+    }
 }
 
 /// `grainlab_msgs/msg/Stress` as DDS has it: `grainlab_msgs::msg::dds_::Stress_`.
@@ -68,6 +105,24 @@ pub(crate) fn wire_type(type_name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_writer_of_another_type_or_definition_does_not_fit_and_one_without_a_hash_is_believed() {
+        let qos = Qos { reliable: true, depth: 0, transient_local: false };
+        let info = grainlab_msgs::topics::STRESS.info;
+        let misfit = |type_name: &str, data: &[u8]| {
+            Offer::of_wire(WriterId([1; 16]), "rt/stress", &wire_type(type_name), qos, data)
+                .unwrap()
+                .misfit(&info)
+        };
+        assert_eq!(misfit(info.type_name, &user_data(&info).unwrap()), None);
+        assert_eq!(misfit(info.type_name, b""), None);
+        let other = format!("RIHS01_{}", "0f".repeat(32));
+        let announced = format!("typehash={other};");
+        assert_eq!(misfit(info.type_name, announced.as_bytes()), Some(Misfit::Definition(other)));
+        let string = "std_msgs/msg/String";
+        assert_eq!(misfit(string, b""), Some(Misfit::Type(string.to_owned())));
+    }
 
     #[test]
     fn names_on_the_wire_are_those_of_ros_or_no_offer() {

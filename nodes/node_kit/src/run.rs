@@ -92,9 +92,9 @@ where
         let network = refused(Exit::Usage, Network::from_env())?;
         let node_name = names.fully_qualified();
         let logger = Logger::install(&node_name, args);
-        let signals = refused(Exit::Failure, Signals::install())?;
-        let stop = signals.flag();
         let identity = Identity::from_env(spec.scope);
+        let signals = refused(Exit::Failure, Signals::of_node(identity.root))?;
+        let stop = signals.flag();
         let mut bus = refused(Exit::Failure, DdsBus::declaring(network, names, identity, declared))?;
         refused(Exit::Failure, bus.watch(signals))?;
         let mut node = build(&mut bus, &parameters).map_err(|error| {

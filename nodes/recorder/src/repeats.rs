@@ -5,7 +5,7 @@
 
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{Topic, from_cdr, topics};
-use grainlab_recordings::{ReadError, Recording, Selection};
+use grainlab_recordings::{ChannelInfo, ReadError, Recording, Selection};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -70,13 +70,11 @@ pub struct Repeats {
 impl Repeats {
     /// Reads the messages of earlier recorders.
     pub fn remember(&mut self, recording: &Recording) -> Result<(), ReadError> {
-        let contract = |resolved: &str| {
-            Topic::by_name(resolved.rsplit('/').next().unwrap_or(resolved)).filter(|t| t.reproducible)
-        };
+        let contract = |c: &ChannelInfo| Topic::of_channel(&c.topic, &c.ros_type).filter(|t| t.reproducible);
         let channels = recording.channels();
-        let names = channels.iter().filter(|c| contract(&c.topic).is_some()).map(|c| c.topic.clone());
+        let names = channels.iter().filter(|c| contract(c).is_some()).map(|c| c.topic.clone());
         for message in recording.messages(&Selection::topics(names))? {
-            let Some(topic) = contract(&message.channel.topic) else { continue };
+            let Some(topic) = contract(&message.channel) else { continue };
             if [topics::STRESS.name, topics::STRAIN_RATE.name].contains(&topic.name) {
                 self.enter(topic, 0, &message.payload);
             } else {

@@ -168,8 +168,8 @@ impl Timeline {
         let ends = phases.iter().skip(1).map(|(_, t)| *t).chain([self.end]);
         let band = |((phase, from), to): (&(u32, f64), f64)| Band {
             range: [from * MS, to * MS],
-            label: format!("{}", phase + 1),
-            tooltip: format!("{}: {}", phase + 1, self.phase_name(*phase)),
+            label: format!("{}", self.number(*phase)),
+            tooltip: format!("{}: {}", self.number(*phase), self.phase_name(*phase)),
         };
         phases.iter().zip(ends).map(band).collect()
     }

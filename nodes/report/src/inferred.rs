@@ -168,11 +168,9 @@ impl Run {
         ];
         let row = |s: &InvertedPacking| {
             let r = &s.packing.report;
-            let phase = s
-                .packing
-                .position
-                .filter(|p| p.phase > 0)
-                .map_or_else(String::new, |p| self.timeline.phase_name(p.phase as u32 - 1));
+            let phase = s.packing.position.filter(|p| p.phase > 0).map_or_else(String::new, |p| {
+                self.timeline.phase_name(p.phase as u32 - 1 + self.timeline.first_phase())
+            });
             let best = recommended(s);
             let mut cells = vec![
                 Cell::text(phase),

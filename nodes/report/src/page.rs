@@ -115,7 +115,7 @@ impl Run {
                 ("warn", format!("Complete, with {}", grainlab_console::count(s.warnings.len(), "warning")))
             }
             Some(code) => {
-                let why = ended(code, s.warnings.first().map(String::as_str));
+                let why = ended(code, s.warnings.first().map(String::as_str), s.saved_step);
                 ("bad", format!("Ended {}", why.unwrap_or_else(|| format!("with exit code {code}"))))
             }
         };

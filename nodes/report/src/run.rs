@@ -102,7 +102,7 @@ impl Run {
             Ok(timeline) => {
                 self.timeline = timeline;
                 // The scene has the names of all phases.
-                let phases = self.scene.iter().flat_map(|s| &s.phases).zip(0..);
+                let phases = self.scene.iter().flat_map(|s| &s.phases).zip(self.timeline.first_phase()..);
                 phases.for_each(|(phase, n)| self.timeline.name(n, &phase.name));
             }
             Err(error) => self.missing.push(format!("Nothing against time: {error}")),

@@ -18,6 +18,7 @@ pub(crate) struct SummaryFile {
     pub(crate) exchanges_per_second: Option<f64>,
     pub(crate) waiting_fraction: Option<f64>,
     pub(crate) particle_steps_per_second: Option<f64>,
+    pub(crate) saved_step: Option<u64>,
     pub(crate) exit: Option<u8>,
     pub(crate) warnings: Vec<String>,
 }

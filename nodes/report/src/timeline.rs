@@ -4,7 +4,7 @@ use crate::phased::{MOST_PHASES, PhaseAxis, Phased};
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_msgs::boundary::{EnergyReading, FabricReading, StressRequest};
 use grainlab_msgs::{Message, Topic, from_cdr, msg, simulated_seconds, topics};
-use grainlab_recordings::{ReadError, Recording, Selection};
+use grainlab_recordings::{ChannelInfo, ReadError, Recording, Selection};
 use grainlab_viewer::{Film, View};
 use std::collections::BTreeMap;
 
@@ -48,6 +48,8 @@ pub struct Timeline {
     pub(crate) unreadable: usize,
     /// Sequence number of the next request.
     next: u64,
+    /// The recording counts phases from 0, as those of earlier versions.
+    from_zero: bool,
 }
 
 /// The structure of a packing at a time.
@@ -81,18 +83,21 @@ impl Timeline {
             last: None,
             unreadable: 0,
             next: 0,
+            from_zero: false,
         }
     }
 
     /// Reads the recording of a run of this number of phases.
     pub(crate) fn read(recording: &Recording, phases: usize) -> Result<Self, ReadError> {
         let wanted = [topics::STRESS, topics::FABRIC, topics::PACKING, topics::RUN_STATE, topics::ENERGY];
-        let of = |name: &str| Topic::by_name(name).filter(|t| wanted.iter().any(|w| w.name == t.name));
+        let of = |c: &ChannelInfo| {
+            Topic::of_channel(&c.topic, &c.ros_type).filter(|t| wanted.iter().any(|w| w.name == t.name))
+        };
         let channels = recording.channels();
-        let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
+        let names = channels.iter().filter(|c| of(c).is_some()).map(|c| c.topic.clone());
         let mut timeline = Self::of_phases(phases);
         for message in recording.messages(&Selection::topics(names))? {
-            let Some(topic) = of(&message.channel.topic) else { continue };
+            let Some(topic) = of(&message.channel) else { continue };
             if timeline.take(topic.name, &message.payload).is_none() {
                 timeline.unreadable += 1;
             }
@@ -129,6 +134,7 @@ impl Timeline {
         }
         self.next = request.sequence + 1;
         let (time, phase) = (simulated_seconds(&request.stamp), request.phase);
+        self.from_zero |= phase == 0;
         if self.phases.len() < MOST_PHASES
             && self.phases.last().is_none_or(|(phase, _)| *phase != request.phase)
         {
@@ -201,9 +207,19 @@ impl Timeline {
         }
     }
 
-    /// The name of a phase, by its number from 0.
+    /// The name of a phase, by its number in messages.
     pub fn phase_name(&self, phase: u32) -> String {
-        self.names.get(&phase).cloned().unwrap_or_else(|| format!("phase {}", phase + 1))
+        self.names.get(&phase).cloned().unwrap_or_else(|| format!("phase {}", self.number(phase)))
+    }
+
+    /// The number of a phase, from 1, by its number in messages.
+    pub(crate) fn number(&self, phase: u32) -> u32 {
+        phase + u32::from(self.from_zero)
+    }
+
+    /// The number of the first phase in messages.
+    pub(crate) fn first_phase(&self) -> u32 {
+        u32::from(!self.from_zero)
     }
 
     /// Number of values of each series.

@@ -29,7 +29,7 @@ const MOST_NOTES: usize = 1;
 /// The result of a run as text. `program` is the name of the binary on the command line.
 pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
     let mut lines: Vec<String> =
-        ended(s.exit, s.reason.as_deref()).map(|why| row("Ended", &why)).into_iter().collect();
+        ended(s.exit, s.reason.as_deref(), s.saved_step).map(|why| row("Ended", &why)).into_iter().collect();
     match s.states.as_slice() {
         [] => lines.push(row("Prepared", "no packing at the end of a phase")),
         [state] => lines.extend(one(state)),
@@ -40,7 +40,7 @@ pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
     lines.push(row("Files", &format!("{folder}: recording, summary.json, scene.toml, logs")));
     let next = [
         (s.exit == Exit::Interrupted.code())
-            .then(|| format!("launch --resume {folder}    # goes on where it was interrupted")),
+            .then(|| format!("launch --resume {folder}    # {}", goes_on(s.saved_step))),
         (!s.states.is_empty()).then(|| format!("analyze {folder}    # all that is measured")),
         Some(format!("bag info {folder}    # what was recorded")),
         Some("launch --scene s2 --verbose    # another scene, every model".to_owned()),
@@ -51,18 +51,28 @@ pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-/// What an exit code other than 0 means for the lines below it.
-pub fn ended(code: u8, reason: Option<&str>) -> Option<String> {
+/// Where a run that is resumed goes on.
+pub fn goes_on(saved_step: Option<u64>) -> String {
+    saved_step
+        .map_or_else(|| "begins anew: no state was saved".to_owned(), |n| format!("goes on from step {n}"))
+}
+
+/// What an exit code other than 0 means for the lines below it, with the step of the last packing in the recording.
+pub fn ended(code: u8, reason: Option<&str>, saved_step: Option<u64>) -> Option<String> {
     let exit = Exit::ALL.into_iter().find(|e| e.code() == code)?;
+    let saved = || match saved_step {
+        Some(step) => format!("the last saved state is that of step {step}"),
+        None => "no state was saved".to_owned(),
+    };
     let why = match exit {
         Exit::Done => return None,
-        Exit::Failure => "a process failed; the last state is in the recording",
-        Exit::Usage => "invalid arguments",
-        Exit::DataLoss => "messages or results are missing in the recording",
+        Exit::Failure => format!("a process failed; {}", saved()),
+        Exit::Usage => "invalid arguments".to_owned(),
+        Exit::DataLoss => "messages or results are missing in the recording".to_owned(),
         Exit::PhysicsInvalid => {
-            reason.unwrap_or("the loading path was not completed; the last state is in the recording")
+            reason.map_or_else(|| format!("the loading path was not completed; {}", saved()), str::to_owned)
         }
-        Exit::Interrupted => "interrupted; the last state is in the recording",
+        Exit::Interrupted => format!("interrupted; {}", saved()),
     };
     Some(format!("with exit code {code}: {why}"))
 }
@@ -198,12 +208,14 @@ fn estimate(
 }
 
 fn pace(s: &Summary) -> String {
-    let mut text = format!("{:.1} s", s.wall_seconds);
+    let since = if s.resumed { " since it was resumed" } else { "" };
+    let mut text = format!("{:.1} s{since}", s.wall_seconds);
     if let Some(rate) = s.particle_steps_per_second {
         text += &format!(", {:.1} M particle-steps/s", rate / 1e6);
     }
     if let Some(n) = s.exchanges {
-        text += &format!(", {}", count(n, "exchange"));
+        let in_all = if s.resumed { " in all" } else { "" };
+        text += &format!(", {}{in_all}", count(n, "exchange"));
     }
     let (messages, lost) = s.topics.iter().fold((0, 0), |(m, l), t| (m + t.recorded, l + t.lost));
     text += &format!("; {} recorded, {lost} lost", count(messages, "message"));
@@ -229,9 +241,23 @@ mod tests {
     #[test]
     fn only_a_run_that_is_done_ends_without_a_reason() {
         for exit in Exit::ALL {
-            assert_eq!(ended(exit.code(), None).is_none(), exit == Exit::Done, "{exit:?}");
+            assert_eq!(ended(exit.code(), None, None).is_none(), exit == Exit::Done, "{exit:?}");
         }
-        let ended = ended(4, Some("phase 2 (rest) did not meet its end conditions")).unwrap();
-        assert_eq!(ended, "with exit code 4: phase 2 (rest) did not meet its end conditions");
+        let why = ended(4, Some("phase 2 (rest) did not meet its end conditions"), None).unwrap();
+        assert_eq!(why, "with exit code 4: phase 2 (rest) did not meet its end conditions");
+    }
+
+    #[test]
+    fn an_interrupted_run_names_the_state_that_was_saved_or_says_that_none_was() {
+        let why = |saved| ended(Exit::Interrupted.code(), None, saved).unwrap();
+        assert_eq!(
+            why(Some(120)),
+            "with exit code 130: interrupted; the last saved state is that of step 120"
+        );
+        assert_eq!(why(None), "with exit code 130: interrupted; no state was saved");
+        assert_eq!(
+            [Some(120), None].map(goes_on),
+            ["goes on from step 120", "begins anew: no state was saved"]
+        );
     }
 }

@@ -1,24 +1,43 @@
-//! Whether every exchange of the lockstep is in a recording, by the numbers that requests and answers carry.
+//! Which exchanges of the lockstep are in a recording, by the numbers that requests and answers carry.
 
 use grainlab_msgs::msg::{StrainRate, Stress};
-use grainlab_msgs::{from_cdr, topics};
-use grainlab_recordings::{ReadError, Recording, Selection};
+use grainlab_msgs::{Topic, from_cdr, topics};
+use grainlab_recordings::{ChannelInfo, ReadError, Recording, Selection};
 
-/// Missing messages of a finished run, one line per topic.
-pub fn missing(recording: &Recording) -> Result<Vec<String>, ReadError> {
-    let stress =
-        numbers(recording, topics::STRESS.name, |body| from_cdr::<Stress>(body).ok().map(|m| m.sequence))?;
-    let rates = numbers(recording, topics::STRAIN_RATE.name, |body| {
-        from_cdr::<StrainRate>(body).ok().map(|m| m.sequence)
-    })?;
-    let exchanges = stress.iter().chain(&rates).max().map_or(0, |last| last + 1);
-    let line = |(topic, known): (&str, &[u64])| {
-        let lacking = exchanges - known.len() as u64;
-        (lacking > 0)
-            .then(|| format!("{lacking} of {exchanges} messages of {topic} are not in the recording"))
-    };
-    let topics = [(topics::STRESS.name, stress.as_slice()), (topics::STRAIN_RATE.name, rates.as_slice())];
-    Ok(topics.into_iter().filter_map(line).collect())
+/// Numbers of the requests and of the answers in a recording.
+#[derive(Debug, Default)]
+pub struct Exchanges {
+    stress: Vec<u64>,
+    rates: Vec<u64>,
+}
+
+impl Exchanges {
+    /// Those of all parts of a run that was resumed.
+    pub fn of(recording: &Recording) -> Result<Self, ReadError> {
+        let stress = |body: &[u8]| from_cdr::<Stress>(body).ok().map(|m| m.sequence);
+        let rate = |body: &[u8]| from_cdr::<StrainRate>(body).ok().map(|m| m.sequence);
+        Ok(Self {
+            stress: numbers(recording, topics::STRESS.name, stress)?,
+            rates: numbers(recording, topics::STRAIN_RATE.name, rate)?,
+        })
+    }
+
+    /// Number of answered requests.
+    pub fn count(&self) -> u64 {
+        self.rates.len() as u64
+    }
+
+    /// Missing messages of a finished run, one line per topic.
+    pub fn missing(&self) -> Vec<String> {
+        let exchanges = self.stress.iter().chain(&self.rates).max().map_or(0, |last| last + 1);
+        let line = |(topic, known): (&str, &[u64])| {
+            let lacking = exchanges - known.len() as u64;
+            (lacking > 0)
+                .then(|| format!("{lacking} of {exchanges} messages of {topic} are not in the recording"))
+        };
+        let topics = [(topics::STRESS.name, &*self.stress), (topics::STRAIN_RATE.name, &*self.rates)];
+        topics.into_iter().filter_map(line).collect()
+    }
 }
 
 /// Distinct numbers of a topic's messages, sorted.
@@ -28,8 +47,10 @@ fn numbers(
     number: impl Fn(&[u8]) -> Option<u64>,
 ) -> Result<Vec<u64>, ReadError> {
     let channels = recording.channels();
-    let of_topic =
-        channels.iter().filter(|c| c.topic.rsplit('/').next() == Some(name)).map(|c| c.topic.clone());
+    let is_wanted = |c: &&std::sync::Arc<ChannelInfo>| {
+        Topic::of_channel(&c.topic, &c.ros_type).is_some_and(|t| t.name == name)
+    };
+    let of_topic = channels.iter().filter(is_wanted).map(|c| c.topic.clone());
     let messages = recording.messages(&Selection::topics(of_topic))?;
     let mut numbers: Vec<u64> = messages.filter_map(|m| number(&m.payload)).collect();
     numbers.sort_unstable();

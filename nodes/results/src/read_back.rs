@@ -12,7 +12,7 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
 use grainlab_node_kit::Report;
 use grainlab_recorder::strangers::{self, Authors, StrangerView};
-use grainlab_recordings::{Recording, Selection};
+use grainlab_recordings::{ChannelInfo, Recording, Selection};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -40,6 +40,8 @@ pub struct ReadBack {
     pub(crate) reports: BTreeMap<(String, u32), Report>,
     /// Number of packing messages.
     pub packings: usize,
+    /// Step of the last packing that a run can be resumed from.
+    pub saved_step: Option<u64>,
     /// Data of packings without a microstructure.
     pub not_inverted: usize,
     /// Packings without a structure.
@@ -104,9 +106,11 @@ pub fn read(recording: &Recording) -> ReadBack {
         topics::MICROSTRUCTURE,
         topics::DIAGNOSTICS,
     ];
-    let of = |name: &str| Topic::by_name(name).filter(|t| wanted.iter().any(|w| w.name == t.name));
+    let of = |c: &ChannelInfo| {
+        Topic::of_channel(&c.topic, &c.ros_type).filter(|t| wanted.iter().any(|w| w.name == t.name))
+    };
     let channels = recording.channels();
-    let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
+    let names = channels.iter().filter(|c| of(c).is_some()).map(|c| c.topic.clone());
     let authors = Names::of(recording);
     back.strangers = strangers::strangers(recording);
     let mut about: BTreeMap<u64, About> = BTreeMap::new();
@@ -118,7 +122,7 @@ pub fn read(recording: &Recording) -> ReadBack {
         }
     };
     for message in messages {
-        let Some(topic) = of(&message.channel.topic) else { continue };
+        let Some(topic) = of(&message.channel) else { continue };
         let taken = if topic.name == topics::DIAGNOSTICS.name {
             reports(&mut back.reports, &message.payload)
         } else {
@@ -131,6 +135,8 @@ pub fn read(recording: &Recording) -> ReadBack {
                 }
                 if topic.name == topics::PACKING.name {
                     back.packings += 1;
+                    let on_path = about.get(&step).is_some_and(|a| a.position.is_some());
+                    back.saved_step = if on_path { Some(step) } else { back.saved_step };
                 } else {
                     back.results.entry(topic.name).or_default().insert(step);
                 }

@@ -5,6 +5,7 @@ use grainlab_node_kit::{Exit, Report};
 use grainlab_recorder::strangers::StrangerView;
 use grainlab_recordings::TopicTally;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// A run.
 #[derive(Debug, Serialize)]
@@ -14,6 +15,8 @@ pub struct Summary {
     pub(crate) domain: u16,
     /// Id of the run.
     pub(crate) run: String,
+    /// The run was resumed: times and rates are those of its last part, and counts those of the whole run.
+    pub(crate) resumed: bool,
     pub(crate) wall_seconds: f64,
     pub(crate) nodes: Vec<NodeEnd>,
     /// Processes whose messages were left out.
@@ -30,6 +33,8 @@ pub struct Summary {
     /// Packings published within phases.
     pub(crate) film: Film,
     pub(crate) recording: Option<String>,
+    /// Step of the last packing in the recording, from which a run that is not finished goes on.
+    pub(crate) saved_step: Option<u64>,
     pub(crate) exit: u8,
     /// Why `exit` is not 0, if the launcher knows.
     #[serde(skip)]
@@ -61,16 +66,20 @@ pub(crate) struct TopicCount {
     pub(crate) repeated: u64,
 }
 
-impl From<&TopicTally> for TopicCount {
-    fn from(t: &TopicTally) -> Self {
-        let TopicTally { name, published, recorded, lost, repeated, .. } = t;
-        Self {
-            name: name.clone(),
-            published: *published,
-            recorded: *recorded,
-            lost: *lost,
-            repeated: *repeated,
-        }
+impl TopicCount {
+    /// The counts of the recorders, of which a killed one left none, and the messages that are there all the same.
+    fn of(tallies: &[TopicTally], recorded: &BTreeMap<String, u64>) -> Vec<Self> {
+        let count = |t: &TopicTally| {
+            let there = recorded.get(&t.name).copied().unwrap_or(0).max(t.recorded);
+            Self {
+                name: t.name.clone(),
+                published: t.published + (there - t.recorded),
+                recorded: there,
+                lost: t.lost,
+                repeated: t.repeated,
+            }
+        };
+        tallies.iter().map(count).collect()
     }
 }
 
@@ -85,7 +94,7 @@ struct Counters {
 
 impl Counters {
     fn of<'a>(reports: impl Iterator<Item = &'a Report>) -> Self {
-        let simulator = |r: &&Report| r.node.ends_with("/dem_simulator");
+        let simulator = |r: &&Report| r.health.values.iter().any(|(key, _)| key == "particle_steps_per_s");
         let Some(report) = reports.filter(simulator).last() else { return Self::default() };
         let number = |key: &str| {
             let (_, value) = report.health.values.iter().find(|(k, _)| k == key)?;
@@ -112,16 +121,18 @@ impl Summary {
             domain: launched.domain,
             run: launched.run,
             strangers: back.strangers,
+            resumed: launched.resumed,
             wall_seconds: launched.wall_seconds,
             nodes: launched.nodes,
-            topics: tallies.unwrap_or_default().iter().map(TopicCount::from).collect(),
-            exchanges: counters.exchanges.map(|n| n as u64),
+            topics: TopicCount::of(tallies.unwrap_or_default(), &launched.recorded),
+            exchanges: launched.exchanges,
             exchanges_per_second: per_wall(counters.exchanges),
             waiting_fraction: per_wall(counters.waiting),
             particle_steps_per_second: counters.particle_steps,
             states: back.states,
             film: back.film,
             recording: launched.recording,
+            saved_step: back.saved_step,
             exit: launched.exit.code(),
             reason: launched.reasons.into_iter().next(),
             warnings,
@@ -142,6 +153,12 @@ pub struct Launched {
     pub run: String,
     /// From the first start of a process to the last end, s.
     pub wall_seconds: f64,
+    /// The run was resumed: the time is that of its last part.
+    pub resumed: bool,
+    /// Exchanges in the recording, of the whole run.
+    pub exchanges: Option<u64>,
+    /// Messages in the recording, by topic.
+    pub recorded: BTreeMap<String, u64>,
     /// Every process.
     pub nodes: Vec<NodeEnd>,
     /// The directory of the recording; `None` if it cannot be read.

@@ -33,7 +33,8 @@ pub fn text(s: &Summary) -> String {
         );
     }
     text += "Run\n";
-    text += &format!("  wall time {:.2} s", s.wall_seconds);
+    let since = if s.resumed { " since it was resumed" } else { "" };
+    text += &format!("  wall time {:.2} s{since}", s.wall_seconds);
     if let Some(rate) = s.particle_steps_per_second {
         text += &format!(", {:.2} M particle-steps/s while computing", rate / 1e6);
     }

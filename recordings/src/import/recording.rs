@@ -26,10 +26,13 @@ pub fn each(
     if !given.is_empty() {
         return Err(ImportError::HasItsOwn(given));
     }
-    let topic = options.topic.as_deref().unwrap_or(topics::PACKING.name);
+    let channels = recording.channels();
+    let mut of_packings = channels.iter().filter(|c| c.ros_type == msg::Packing::TYPE);
+    // A namespace or a remap gives the topic of the packings of a run another name.
+    let only = of_packings.next().filter(|_| of_packings.next().is_none()).map(|c| c.topic.as_str());
+    let topic = options.topic.as_deref().or(only).unwrap_or(topics::PACKING.name);
     let channel = recording.channel(topic)?;
     if channel.ros_type != msg::Packing::TYPE {
-        let channels = recording.channels();
         let known = channels.iter().filter(|c| c.ros_type == msg::Packing::TYPE).map(|c| c.topic.as_str());
         let known = known.collect::<Vec<_>>().join(", ");
         let (path, topic) = (recording.path().to_owned(), format!("{topic} of type {}", msg::Packing::TYPE));

@@ -2,6 +2,7 @@
 
 use super::finding::Finding;
 use crate::graph::{Endpoint, Graph, TopicEntry, is_reliable, is_transient_local};
+use grainlab_msgs::TypeInfo;
 use std::collections::BTreeSet;
 
 /// Findings about all topics.
@@ -10,6 +11,7 @@ pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
     let mut found = Vec::new();
     for (name, topic) in &topics {
         found.extend(types(graph, name, topic));
+        found.extend(definitions(graph, name, topic));
         for reader in &topic.subscriptions {
             let unheard = topic.publishers.iter().filter(|w| w.type_name == reader.type_name);
             found.extend(unheard.flat_map(|writer| policies(graph, name, writer, reader)));
@@ -41,6 +43,27 @@ fn types(graph: &Graph, name: &str, topic: &TopicEntry<'_>) -> Option<Finding> {
         format!("{name} has more than one type: {}", all.join(" and ")),
         "give one of them another name with -r, or the type that the other has",
     ))
+}
+
+/// Endpoints with another definition of a type than this program: a reader would take one field for another.
+fn definitions(graph: &Graph, name: &str, topic: &TopicEntry<'_>) -> Vec<Finding> {
+    let differs = |e: &&&Endpoint| {
+        TypeInfo::by_name(&e.type_name).is_some_and(|t| !e.type_hash.is_empty() && e.type_hash != t.hash)
+    };
+    let endpoints = topic.publishers.iter().chain(&topic.subscriptions);
+    let finding = |e: &&Endpoint| {
+        Finding::error(
+            "definition_mismatch",
+            format!(
+                "{name}: {} has another definition of {} than this program (hash {}...): nodes of grainlab do not read it",
+                graph.owner(e),
+                e.type_name,
+                &e.type_hash[..19.min(e.type_hash.len())]
+            ),
+            "use one version of grainlab and of its message files on both sides",
+        )
+    };
+    endpoints.filter(differs).map(finding).collect()
 }
 
 /// The policies in which a subscription requests more than a publisher offers (DDS 1.4, 2.2.3).
@@ -171,6 +194,20 @@ mod tests {
                 found[0].what
             );
             assert!(kinds(pair(requested, offered)).is_empty(), "offering more is no fault: {expected}");
+        }
+    }
+
+    #[test]
+    fn another_definition_of_a_type_is_named_and_ours_and_none_are_not() {
+        let qos = QosProfile::publisher_default;
+        let info = grainlab_msgs::topics::STRESS.info;
+        let other = format!("typehash=RIHS01_{};", "0f".repeat(32));
+        let ours = format!("typehash={};", info.hash);
+        for (announced, expected) in [(other.as_str(), 1), (&ours, 0), ("", 0)] {
+            let writer = endpoint(1, "rt/stress", TYPE, true, qos()).announcing(announced.as_bytes());
+            let found = findings(&graph(vec![writer, endpoint(2, "rt/stress", TYPE, false, qos())]));
+            assert_eq!(found.len(), expected, "{announced}: {found:?}");
+            assert!(found.iter().all(|f| f.kind == "definition_mismatch" && f.what.contains("/node_1")));
         }
     }
 

@@ -76,6 +76,9 @@ pub enum DemError {
         /// What shows that it is jammed.
         cause: String,
     },
+    /// The flag of [`Compute::stopping_on`](crate::Compute::stopping_on) was set.
+    #[error("the computation was stopped")]
+    Stopped,
     /// The strain rate is not finite.
     #[error("strain rate component {component} is {value}; it must be finite")]
     Rate {

@@ -296,6 +296,27 @@ fn a_state_taken_up_anew_after_any_interval_goes_on_bit_for_bit() {
 }
 
 #[test]
+fn an_interval_that_is_stopped_at_any_event_changes_nothing() {
+    let begin = fluid(600, 0.55, 7);
+    let mut whole = begin.clone();
+    let looks = std::cell::Cell::new(0u32);
+    let count = || {
+        looks.set(looks.get() + 1);
+        false
+    };
+    whole.advance_unless(-30.0, 2e-5, &count).unwrap();
+    assert!(looks.get() > 8, "{looks:?}");
+    for limit in 0..looks.get() {
+        let (mut stopped, seen) = (begin.clone(), std::cell::Cell::new(0));
+        let over = || seen.replace(seen.get() + 1) >= limit;
+        assert_eq!(stopped.advance_unless(-30.0, 2e-5, &over), Err(DemError::Stopped));
+        assert_eq!(stopped, begin);
+        stopped.advance(-30.0, 2e-5).unwrap();
+        assert_eq!(stopped, whole);
+    }
+}
+
+#[test]
 fn expansion_leaves_grains_free() {
     let mut s = fluid(100, 0.5, 8);
     let before = s.solid_fraction();

@@ -15,3 +15,10 @@ pub enum ExperimentError {
     #[error("cannot resume: {0}")]
     Resume(String),
 }
+
+impl ExperimentError {
+    /// Whether the run was stopped by the flag of its compute settings, and can go on.
+    pub fn is_stopped(&self) -> bool {
+        matches!(self, Self::Engine(DemError::Stopped))
+    }
+}

@@ -153,7 +153,7 @@ impl Simulation {
         self.packings
     }
 
-    /// Sets instruction set and threads. Results do not depend on them.
+    /// Sets instruction set and threads, on which results do not depend, and the flag that stops a computation.
     pub fn set_compute(&mut self, compute: Compute) {
         self.engine.set_compute(compute);
     }
@@ -192,8 +192,9 @@ impl Simulation {
         })
     }
 
-    /// Strains at `rate` (Voigt order, 1/s) for one control period. On failure the run returns to a copy of its state, at most
-    /// a hundred steps and one control period ago.
+    /// Strains at `rate` (Voigt order, 1/s) for one control period. On failure, and if the flag of its compute settings is
+    /// set, the run returns to a copy of its state at a request: the present one in an event-driven gas, else one at most a
+    /// hundred steps and one control period ago. It goes on from there to the same bytes.
     pub fn advance(&mut self, rate: &[f64; 6]) -> Result<StepOutcome, ExperimentError> {
         let none = StepOutcome { ended: None, packing_due: false, finished: self.finished(), energy: None };
         let Some(phase) = self.path.phase(&self.scene) else { return Ok(none) };
@@ -314,7 +315,8 @@ impl Simulation {
         let interval = gas.step * f64::from(period);
         let mut spheres =
             HardSpheres::new(old.cell, old.radii.clone(), old.positions.clone(), old.velocities.clone())?;
-        let (deformation, _) = spheres.advance(rate[0], interval)?;
+        let compute = self.engine.compute().clone();
+        let (deformation, _) = spheres.advance_unless(rate[0], interval, &|| compute.is_stopped())?;
         spheres.apply_thermostat(gas.speed);
         let packing = Packing {
             step: old.step + u64::from(period),
@@ -326,7 +328,6 @@ impl Simulation {
             contacts: Vec::new(),
             ..old
         };
-        let compute = self.engine.compute().clone();
         self.engine = Engine::from_packing(&packing, *self.engine.settings());
         self.engine.set_compute(compute);
         self.engine.set_rate(&rate)?;
@@ -379,7 +380,9 @@ impl Simulation {
     }
 
     fn save_rollback(&mut self) {
-        let due = |r: &Rollback| self.engine.steps() - r.engine.step() >= ROLLBACK_INTERVAL;
+        // A period of hard spheres is long, and a copy is short beside it.
+        let hard = self.path.phase(&self.scene).is_some_and(|phase| self.event_driven(phase).is_some());
+        let due = |r: &Rollback| hard || self.engine.steps() - r.engine.step() >= ROLLBACK_INTERVAL;
         if self.rollback.as_ref().is_none_or(due) {
             self.rollback = Some(Rollback {
                 engine: self.engine.checkpoint(),

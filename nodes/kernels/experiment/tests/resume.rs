@@ -1,9 +1,11 @@
 //! A packing and its run state are a checkpoint: a run resumed from them continues bit for bit.
 
 use grainlab_core::Packing;
-use grainlab_dem::DemError;
+use grainlab_dem::{Compute, DemError};
 use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_scene::Scene;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 const SCENE: &str = r#"
 name = "tiny"
@@ -130,6 +132,38 @@ fn an_event_driven_gas_resumed_at_every_request_equals_the_run_that_went_on() {
         }
         assert_eq!(second.packing(), end, "resumed at step {}", packing.step);
         assert_eq!(second.run_state(), run.run_state());
+    }
+}
+
+#[test]
+fn a_run_that_is_stopped_saves_a_state_that_goes_on_to_the_same_bytes() {
+    for scene in [SCENE.to_owned(), event_driven()] {
+        let mut run = begin(&scene);
+        while advance(&mut run) {}
+        let (end, state) = (run.packing(), run.run_state());
+        let (mut run, mut advances, mut stop_at, mut stops) = (begin(&scene), 0u64, 3, [0; 5]);
+        while let Some(request) = run.request() {
+            let rate = grainlab_servo::control(&request.servo_input()).unwrap().rate;
+            let flag = Arc::new(AtomicBool::new(advances == stop_at));
+            run.set_compute(Compute::default().stopping_on(flag));
+            advances += 1;
+            let Err(error) = run.advance(&rate) else { continue };
+            assert!(error.is_stopped(), "{error}");
+            // The state returned to may be some requests back: more of them each time, so that the run comes to its end.
+            stop_at = advances * 9 / 8 + 20;
+            stops[request.phase as usize] += 1;
+            let back = run.request().unwrap();
+            let at_once = request.phase == 0 && scene != SCENE;
+            assert!(if at_once { back == request } else { back.step <= request.step }, "{back:?}");
+            let saved = (run.packing(), run.run_state());
+            run = Simulation::resume(Scene::parse(&scene).unwrap(), &saved.0, &saved.1).unwrap();
+        }
+        assert!(
+            stops.iter().filter(|n| **n > 0).count() > 2,
+            "stopped {stops:?} times in {advances} advances"
+        );
+        assert_eq!(run.packing(), end, "stopped {stops:?} times");
+        assert_eq!(run.run_state(), state);
     }
 }
 

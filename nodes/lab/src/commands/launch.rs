@@ -3,6 +3,7 @@
 use grainlab_campaign::{RunState, run_state};
 use grainlab_console::scenes::SceneText;
 use grainlab_console::{Failure, Format, scenes};
+use grainlab_launcher::agreement::names_of_run;
 use grainlab_launcher::{BUILT_IN, LaunchFile, NodePlan};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::input;
@@ -96,7 +97,7 @@ impl Default for Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let output = Output { format: args.format, verbose: args.verbose };
+    let output = Output { format: args.format, verbose: args.verbose, resumed: false };
     if let Some(run) = &args.resume {
         return resume::run(run, output);
     }
@@ -139,6 +140,7 @@ fn planned(args: &Args) -> Result<(SceneText, Order), Failure> {
     let plans = order.plans(Path::new("."))?;
     refuse_unknown(&plans)?;
     plans.iter().try_for_each(NodePlan::check_parameters).map_err(Failure::usage)?;
+    names_of_run(&plans).map_err(Failure::usage)?;
     Ok((scene, order))
 }
 

@@ -1,5 +1,7 @@
 use super::*;
+use crate::agreement::names_of_run;
 use NodeKind::{AcousticProbe, DemSimulator, EmtInversion, FabricAnalyzer, Recorder, ServoController};
+use std::path::Path;
 
 const DEFAULT: &str = BUILT_IN[0].1;
 const ACOUSTIC: &str = BUILT_IN[1].1;
@@ -198,4 +200,77 @@ fn a_mutated_launch_file_gives_plans_or_an_error() {
         },
     }
     .run();
+}
+
+/// The default file with these ROS arguments for every node.
+fn with_arguments(arguments: &str) -> String {
+    let nodes = ["recorder", "emt_inversion", "fabric_analyzer", "servo_controller", "dem_simulator"];
+    nodes.iter().fold(DEFAULT.to_owned(), |text, node| {
+        let (with, bare) = (format!("run {node} --ros-args "), format!("run {node}"));
+        let given = format!("{with}{arguments} ");
+        if text.contains(&with) { text.replace(&with, &given) } else { text.replace(&bare, &given) }
+    })
+}
+
+#[test]
+fn the_names_of_a_run_are_those_that_all_its_processes_use() {
+    let resolved = |arguments: &str, topic: &str| {
+        let names = names_of_run(&nodes(&with_arguments(arguments), &[]).unwrap()).unwrap();
+        names.for_node("launcher").resolve(topic).unwrap()
+    };
+    assert_eq!(resolved("", "stress"), "/stress");
+    assert_eq!(resolved("-r __ns:=/left", "run_state"), "/left/run_state");
+    assert_eq!(resolved("-r __ns:=/left", "/diagnostics"), "/diagnostics");
+    assert_eq!(resolved("--remap __ns:=/left -r run_state:=/x/state", "run_state"), "/x/state");
+}
+
+#[test]
+fn processes_that_would_not_meet_are_refused_with_the_topic_and_both_names() {
+    let refused = |text: &str| names_of_run(&nodes(text, &[]).unwrap()).unwrap_err().to_string();
+    let one_side = |rule: &str| {
+        DEFAULT.replace("run dem_simulator --ros-args", &format!("run dem_simulator --ros-args -r {rule}"))
+    };
+    for (text, topic, name) in [
+        (one_side("__ns:=/left"), "stress", "/left/stress"),
+        (one_side("packing:=grains"), "packing", "/grains"),
+        (one_side("/diagnostics:=/d"), "/diagnostics", "/d"),
+        (
+            DEFAULT.replace("run emt_inversion", "run emt_inversion --ros-args -r microstructure:=/m"),
+            "microstructure",
+            "/m",
+        ),
+    ] {
+        let error = refused(&text);
+        assert!(error.contains(&format!("the topic {topic} is {name} there")), "{error}");
+    }
+    let error = refused(&with_arguments("-r stress:=strain_rate"));
+    assert!(error.contains("stress and strain_rate are both /strain_rate"), "{error}");
+    // A rule for a topic that a node does not use changes nothing.
+    let unused = DEFAULT.replace("run emt_inversion", "run emt_inversion --ros-args -r stress:=/s");
+    assert!(names_of_run(&nodes(&unused, &[]).unwrap()).is_ok());
+}
+
+#[test]
+fn args_that_the_launcher_sets_are_declared_and_handed_on() {
+    let values = [("scene", "/r/scene.toml"), ("seed", "3"), ("out", "/r")];
+    let undeclared = DEFAULT.replace("name: out\n", "name: where\n");
+    let error = nodes(&undeclared, &values).unwrap_err().to_string();
+    assert!(error.contains("\"out\"") && error.contains("- arg: {name: out, default:"), "{error}");
+    let check = |text: &str| {
+        let plans = nodes(text, &values).unwrap();
+        let agrees = |p: &NodePlan| p.check_handed_on(Path::new("/r/scene.toml"), 3, Path::new("/r"));
+        plans.iter().try_for_each(agrees).map_err(|e| e.to_string())
+    };
+    assert_eq!(check(DEFAULT), Ok(()));
+    let simulator = "run dem_simulator --ros-args -p scene:=$(var scene) -p seed:=$(var seed)";
+    for (kept, parameter) in [("-p scene:=$(var scene)", "seed"), ("-p seed:=$(var seed)", "scene")] {
+        let error =
+            check(&DEFAULT.replace(simulator, &format!("run dem_simulator --ros-args {kept}"))).unwrap_err();
+        assert!(
+            error.starts_with("executable dem_simulator: its parameter ") && error.contains(parameter),
+            "{error}"
+        );
+    }
+    let error = check(&DEFAULT.replace("-p output:=$(var out)", "")).unwrap_err();
+    assert!(error.contains("executable recorder: its parameter output"), "{error}");
 }

@@ -41,7 +41,7 @@ fn the_history_of_a_long_run_is_bounded_and_ends_with_its_last_value() {
     assert_eq!(lab.latest.as_ref().map(|r| r.sequence), Some(299_999));
     // In one phase, more values make the curves no longer.
     let mut one = Laboratory::new(None, Duration::ZERO);
-    let at = |n: u64| msg::Stress { phase: 0, ..request(n) };
+    let at = |n: u64| msg::Stress { phase: 1, ..request(n) };
     (0..50_000).for_each(|n| one.request(&at(n), Duration::ZERO));
     let early = size(&one);
     (50_000..500_000).for_each(|n| one.request(&at(n), Duration::ZERO));

@@ -21,6 +21,9 @@ pub(crate) const SILENCE: Duration = Duration::from_secs(15);
 /// The writer stops waiting for a reader that sends credits, is ready, and makes no progress for this long.
 pub(super) const STALLED: Duration = Duration::from_secs(30);
 
+/// The same two limits for a process that is about to end.
+pub(super) const HURRIED: Duration = Duration::from_secs(5);
+
 /// How long a writer waits for the first credit of a reader in the graph.
 pub(super) const FIRST_CREDIT_LIMIT: Duration = Duration::from_secs(3);
 

@@ -79,6 +79,11 @@ impl BulkPublisher {
         self.supersede(bus, body)
     }
 
+    /// Waits only for a short time, from now on, for readers that are silent or not ready: the process is about to end.
+    pub fn hurry(&mut self) {
+        self.sender.hurry();
+    }
+
     /// The same without waiting for readers that lack the previous message: they never receive it. For the last message
     /// of a process.
     pub fn supersede(&mut self, bus: &mut dyn Bus, body: &[u8]) -> Result<(), BusError> {

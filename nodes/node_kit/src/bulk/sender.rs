@@ -1,6 +1,6 @@
 //! The sender: the next part to send, and the progress of each reader.
 
-use super::limits::{FIRST_CREDIT_LIMIT, LOST_AFTER, SILENCE, STALLED, WINDOW};
+use super::limits::{FIRST_CREDIT_LIMIT, HURRIED, LOST_AFTER, SILENCE, STALLED, WINDOW};
 use super::part::Shape;
 use crate::sample::WriterId;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
@@ -52,6 +52,8 @@ pub(super) struct Sender {
     readers: BTreeMap<WriterId, Reader>,
     /// Number of repeated parts.
     repeated: u64,
+    /// The process is about to end.
+    hurries: bool,
 }
 
 impl Sender {
@@ -67,12 +69,18 @@ impl Sender {
             again: BTreeSet::new(),
             readers: BTreeMap::new(),
             repeated: 0,
+            hurries: false,
         }
     }
 
     /// Number of repeated parts.
     pub(super) fn repeated(&self) -> u64 {
         self.repeated
+    }
+
+    /// Waits only for a short time for readers that are silent or not ready, and does not hold back parts for them.
+    pub(super) fn hurry(&mut self) {
+        self.hurries = true;
     }
 
     /// Sets the next body, which replaces the previous one.
@@ -157,7 +165,8 @@ impl Sender {
     /// Parts below this index may be sent: a window beyond the slowest active reader with missing parts.
     fn frontier(&self) -> u32 {
         let Some(shape) = self.shape else { return 0 };
-        let waiting = self.readers.values().filter(|r| r.active && r.next < shape.count);
+        let counts = |r: &&Reader| r.active && r.next < shape.count && (r.ready || !self.hurries);
+        let waiting = self.readers.values().filter(counts);
         let ends = waiting.map(|r| if r.ready { r.next.saturating_add(WINDOW) } else { r.next });
         ends.min().map_or(0, |end| end.min(shape.count))
     }
@@ -177,9 +186,10 @@ impl Sender {
         for (id, reader) in self.readers.iter_mut().filter(|(_, r)| r.active) {
             let (silent, stuck) =
                 (now.saturating_sub(reader.latest_credit), now.saturating_sub(reader.progress));
-            let reason = if silent > SILENCE {
+            let (silence, stalled) = if self.hurries { (HURRIED, HURRIED) } else { (SILENCE, STALLED) };
+            let reason = if silent > silence {
                 format!("no credit for {:.0} s", silent.as_secs_f64())
-            } else if reader.ready && reader.next < count && stuck > STALLED {
+            } else if (reader.ready || self.hurries) && reader.next < count && stuck > stalled {
                 format!("no progress for {:.0} s", stuck.as_secs_f64())
             } else {
                 continue;

@@ -27,6 +27,7 @@ const ENOUGH: usize = 64 << 20;
 pub struct BulkSubscription {
     resolved: String,
     plain: SubscriptionId,
+    plain_topic: Topic,
     parts: Subscription<PackingChunk>,
     part_topic: Topic,
     credits: Publisher<PackingCredit>,
@@ -55,6 +56,7 @@ impl BulkSubscription {
         Ok(Self {
             resolved,
             plain,
+            plain_topic: *topic,
             parts,
             part_topic,
             credits,
@@ -93,6 +95,11 @@ impl BulkSubscription {
             self.push(sample);
         }
         while let Some((part, info)) = self.parts.take_valid(bus)? {
+            // The parts have no type: that of the whole is announced by the plain writer.
+            if bus.misfits(&self.plain_topic).contains(&info.writer.participant()) {
+                bus.count_refused(self.parts.id());
+                continue;
+            }
             let outcome = self.receiver.receive(now, info.writer, &part);
             if outcome.begins {
                 self.written.insert(info.writer, info.source_time);

@@ -23,13 +23,15 @@ use crate::services::{Declared, ServiceThread, SimTime};
 use crate::signals::Signals;
 use crate::wall_clock;
 use crate::watchdog::OpenParticipant;
-use grainlab_msgs::Topic;
+use grainlab_msgs::{Topic, TypeInfo};
 use mio::{Events, Interest, Poll, Token, Waker};
 use ros2_client::{Context, Gid, NodeName};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
+
+mod fitting;
 
 const SIGNALS: Token = Token(0);
 const STATUS: Token = Token(1);
@@ -41,6 +43,8 @@ struct Reader {
     inbox: Arc<Mutex<Inbox>>,
     gid: Gid,
     topic: String,
+    /// What its samples are decoded as.
+    info: TypeInfo,
     /// A notification arrived, and the reader was not found empty since.
     ready: bool,
     /// That notification is still to be cleared.
@@ -77,6 +81,10 @@ pub struct DdsBus {
     topics: BTreeMap<String, DdsTopic>,
     discovery: Discovery,
     graph: Graph,
+    /// The graph changed, and no wait has returned it yet.
+    changed: bool,
+    /// Writers that were said to be refused, by subscription.
+    refused: BTreeSet<(WriterId, usize)>,
     gate: Arc<Gate>,
     node: Arc<Mutex<ros2_client::Node>>,
     /// Endpoints were made since the node was last announced to the ROS graph.
@@ -143,6 +151,8 @@ impl DdsBus {
             topics: BTreeMap::new(),
             discovery,
             graph,
+            changed: false,
+            refused: BTreeSet::new(),
             gate,
             node: Arc::new(Mutex::new(node)),
             unannounced: true,
@@ -187,7 +197,9 @@ impl DdsBus {
 
     /// The reader for `demand` on a topic. It is created at the first call.
     fn reader_for(&mut self, resolved: String, topic: &Topic, demand: Demand) -> Result<usize, BusError> {
-        let serves = |r: &Reader| r.topic == resolved && lock(&r.inbox).demand().covers(demand);
+        let serves = |r: &Reader| {
+            r.topic == resolved && r.info == topic.info && lock(&r.inbox).demand().covers(demand)
+        };
         if let Some((index, _)) = self.readers.iter().find(|(_, r)| serves(r)) {
             return Ok(index);
         }
@@ -204,7 +216,8 @@ impl DdsBus {
         self.gate.add_reader(gid, &resolved);
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
-        Ok(self.readers.add(Reader { inbox, gid, topic: resolved, ready: false, notified: false }))
+        let info = topic.info;
+        Ok(self.readers.add(Reader { inbox, gid, topic: resolved, info, ready: false, notified: false }))
     }
 
     /// Processes the events of discovery; true if something changed.
@@ -254,7 +267,7 @@ impl DdsBus {
                 }
             }
         }
-        let changed = status && self.follow_graph();
+        let changed = (status && self.follow_graph()) | std::mem::take(&mut self.changed);
         if signal && self.signals.as_mut().is_some_and(Signals::drain) {
             return Some(Wake::Shutdown);
         }
@@ -337,19 +350,7 @@ impl Bus for DdsBus {
     }
 
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
-        self.background_reader.seen();
-        let subscriber = self.subscribers.get_mut(subscription.0).ok_or(BusError::Handle("take"))?;
-        let reader = self.readers.get_mut(subscriber.reader).ok_or(BusError::Handle("take"))?;
-        let mut inbox = lock(&reader.inbox);
-        if std::mem::take(&mut reader.notified) {
-            inbox.acknowledge();
-        }
-        let sample = inbox.take(subscriber.place)?;
-        match sample {
-            Some(_) => subscriber.taken += 1,
-            None => reader.ready = false,
-        }
-        Ok(sample)
+        self.take_fitting(subscription)
     }
 
     fn wait(&mut self, timeout: Duration) -> Wake {
@@ -406,14 +407,18 @@ impl Bus for DdsBus {
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let reader = self.subscribers.get(subscription.0).and_then(|s| self.readers.get(s.reader));
-        reader.map_or(0, |r| self.graph.matches_of(r.gid, |guid| self.gate.admits(guid)))
+        reader.map_or(0, |r| self.graph.matches_of(r.gid, |guid| self.counts(guid, &r.info)))
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId> {
         self.names
             .resolve(topic.name)
-            .map(|name| self.graph.writers_of(&wire_name(&name), |guid| self.gate.admits(guid)))
+            .map(|name| self.graph.writers_of(&wire_name(&name), |guid| self.counts(guid, &topic.info)))
             .unwrap_or_default()
+    }
+
+    fn misfits(&self, topic: &Topic) -> Vec<Participant> {
+        self.misfits_on(topic)
     }
 
     fn strange_writers(&self, topic: &Topic) -> Vec<WriterId> {
@@ -451,6 +456,10 @@ impl Bus for DdsBus {
         if let Some(subscriber) = self.subscribers.get_mut(subscription.0) {
             subscriber.refused += 1;
         }
+    }
+
+    fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
+        self.signals.as_ref().map(Signals::flag)
     }
 
     fn identity(&self) -> Identity {

@@ -18,7 +18,7 @@ use super::gate::Gate;
 use super::network::{Network, Reach};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
-use crate::offer::{Offer, wire_type};
+use crate::offer::{Offer, user_data, wire_type};
 use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
 use grainlab_msgs::{Qos, Topic};
 use ros2_client::{Context, Gid, Node};
@@ -216,7 +216,11 @@ pub(super) fn window(topic: &Topic) -> u32 {
 /// The policies that a writer of `topic` offers.
 fn offered(topic: &Topic) -> QosPolicies {
     let qos = topic.qos;
-    policies(qos.reliable, qos.transient_local, qos.depth, window(topic))
+    let offered = policies(qos.reliable, qos.transient_local, qos.depth, window(topic));
+    match user_data(&topic.info) {
+        Some(data) => offered.with_user_data(data),
+        None => offered,
+    }
 }
 
 /// The policies that a reader requests; `demand` is within the topic's QoS already.

@@ -1,8 +1,9 @@
 //! The endpoints of other processes and their matches, as discovery reports them.
 
 use super::direct::Change;
-use crate::offer::Offer;
+use crate::offer::{Misfit, Offer};
 use crate::sample::WriterId;
+use grainlab_msgs::TypeInfo;
 use ros2_client::Gid;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -72,6 +73,12 @@ impl Graph {
             .filter(|(guid, (topic, _))| topic == dds_topic && counts(guid))
             .map(|(g, _)| WriterId(g.to_bytes16()))
             .collect()
+    }
+
+    /// Why the messages of a writer must not be read as those of a type.
+    pub(super) fn misfit(&self, writer: &WriterId, info: &TypeInfo) -> Option<Misfit> {
+        let (_, offer) = self.writers.get(&Gid::from(writer.0))?;
+        offer.as_ref()?.misfit(info)
     }
 
     /// What remote writers offer, in the order of topics, of those that count.

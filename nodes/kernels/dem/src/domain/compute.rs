@@ -1,4 +1,5 @@
-//! What a step is computed with: instruction set and threads. Neither changes a bit of the result.
+//! What a step is computed with: instruction set and threads, neither of which changes a bit of the result; and a flag that
+//! ends a computation early.
 
 use crate::simd::instruction_set::Simd;
 use rayon::ThreadPool;
@@ -15,6 +16,7 @@ pub struct Compute {
     simd: Simd,
     threads: usize,
     pool: Option<Arc<ThreadPool>>,
+    stop: Option<Arc<AtomicBool>>,
 }
 
 /// Why an instruction set or a number of threads is not available.
@@ -40,7 +42,7 @@ fn names(sets: &[Simd]) -> String {
 impl Default for Compute {
     /// The widest instruction set of this processor, one thread.
     fn default() -> Self {
-        Self { simd: Simd::best(), threads: 1, pool: None }
+        Self { simd: Simd::best(), threads: 1, pool: None, stop: None }
     }
 }
 
@@ -59,7 +61,18 @@ impl Compute {
                 Some(Arc::new(built.map_err(|e| error(e.to_string()))?))
             }
         };
-        Ok(Self { simd, threads, pool })
+        Ok(Self { simd, threads, pool, stop: None })
+    }
+
+    /// The same with a flag that another thread may set: computations then end with
+    /// [`DemError::Stopped`](crate::DemError::Stopped) within about a step.
+    pub fn stopping_on(self, flag: Arc<AtomicBool>) -> Self {
+        Self { stop: Some(flag), ..self }
+    }
+
+    /// Whether the flag is set.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// Threads worth using for this many grains and cores. Pairs across the border of two subdomains are evaluated in both,

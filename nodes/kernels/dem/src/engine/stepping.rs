@@ -37,6 +37,9 @@ impl Engine {
     }
 
     /// Several steps, with the same result as one by one but faster. Returns the deformation of the cell.
+    ///
+    /// # Errors
+    /// [`DemError::Stopped`] after any number of them if the flag of the compute settings is set; others if the state is lost.
     pub fn run(&mut self, steps: u32) -> Result<Mat3, DemError> {
         self.run_steps(steps, None)
     }
@@ -60,6 +63,9 @@ impl Engine {
         // Speeds of a motion that was done together with the forces of the step before.
         let mut moved: Option<SpeedStats> = None;
         for left in (0..steps).rev() {
+            if self.compute.is_stopped() {
+                return Err(DemError::Stopped);
+            }
             let stats = moved.take().unwrap_or_else(|| self.move_grains());
             let deformation = integrate::deformation(&self.state);
             total = deformation * total;

@@ -9,9 +9,10 @@ use grainlab_launcher::Run;
 use grainlab_launcher::{Received, Supervised};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
+use grainlab_results::continuity::Exchanges;
 use grainlab_results::read_back::{self, ReadBack};
 use grainlab_results::{Launched, MeasuredPacking, NodeEnd, Printed, Summary};
-use grainlab_results::{brief, continuity, summary_text};
+use grainlab_results::{brief, summary_text};
 use std::path::{Path, PathBuf};
 
 /// Published results that the recording lacks.
@@ -47,10 +48,12 @@ pub(super) fn finish(
         exit = worse(exit, Exit::DataLoss);
     }
     let mut missing = missing(&supervised.received, &back);
+    let exchanges = recording.as_ref().ok().map(Exchanges::of).transpose().map_err(Failure::failed)?;
     // An interrupted run may end with an unanswered request.
-    if let (Some(_), Ok(recording)) = (supervised.received.packings, &recording) {
-        missing.extend(continuity::missing(recording).map_err(Failure::failed)?);
+    if let (Some(_), Some(exchanges)) = (supervised.received.packings, &exchanges) {
+        missing.extend(exchanges.missing());
     }
+    let topics = recording.as_ref().map_or_else(|_| Vec::new(), |recording| recording.info().topics);
     // Without processes, a run that was finished before is reported.
     let (children, is_old) = (&supervised.children, supervised.children.is_empty());
     let has = |node: NodeKind| is_old || children.iter().any(|c| c.plan.is(node));
@@ -71,6 +74,9 @@ pub(super) fn finish(
         seed: scene.scene.seed,
         domain: run.domain,
         run: run.id.to_string(),
+        resumed: output.resumed,
+        exchanges: exchanges.map(|e| e.count()),
+        recorded: topics.into_iter().map(|t| (t.name, t.messages)).collect(),
         wall_seconds: supervised.wall.as_secs_f64(),
         nodes: nodes.collect(),
         recording: recording.is_ok().then(|| directory.display().to_string()),

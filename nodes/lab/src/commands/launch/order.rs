@@ -55,7 +55,11 @@ impl Order {
         values.insert("seed", self.seed.to_string());
         values.insert("out", path(directory));
         let file = LaunchFile::parse(&self.launch).map_err(Failure::usage)?;
-        file.nodes(&values).map_err(Failure::usage)
+        let plans = file.nodes(&values).map_err(Failure::usage)?;
+        let scene = directory.join("scene.toml");
+        let agrees = |plan: &NodePlan| plan.check_handed_on(&scene, self.seed, directory);
+        plans.iter().try_for_each(agrees).map_err(Failure::usage)?;
+        Ok(plans)
     }
 }
 

@@ -8,4 +8,6 @@ pub(super) struct Output {
     pub(super) format: Format,
     /// Print everything, beside the summary.
     pub(super) verbose: bool,
+    /// The run is continued: its times are those of the last part.
+    pub(super) resumed: bool,
 }

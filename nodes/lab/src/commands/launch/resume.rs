@@ -14,13 +14,15 @@ use grainlab_console::scenes::SceneText;
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::last_packing;
 use grainlab_launcher::{Received, Run, Supervised};
-use grainlab_msgs::{from_cdr, msg, topics};
+use grainlab_msgs::{Topic, from_cdr, msg, topics};
 use grainlab_node_kit::{Exit, RunId};
-use grainlab_recordings::{Recording, Selection};
+use grainlab_recordings::{ChannelInfo, Recording, Selection};
+use grainlab_results::brief::goes_on;
 use std::path::Path;
 use std::time::Duration;
 
 pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
+    let output = Output { resumed: true, ..output };
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     let directory = directory.canonicalize().map_err(|e| failed(&e))?;
     let order = Order::read(&directory)?;
@@ -49,12 +51,15 @@ pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
             )));
         }
         let path = serde_json::Value::from(directory.to_string_lossy());
+        let saved = match last_packing::count(&directory) {
+            0 => None,
+            _ => Some(last_packing::read(&directory)?.0.step),
+        };
+        grainlab_console::say!("grainlab: {}: {}", directory.display(), goes_on(saved));
         for plan in &mut plans {
             let given = match plan.node {
                 Some(NodeKind::Recorder) => "append:=true".to_owned(),
-                Some(NodeKind::DemSimulator) if last_packing::count(&directory) > 0 => {
-                    format!("resume:={path}")
-                }
+                Some(NodeKind::DemSimulator) if saved.is_some() => format!("resume:={path}"),
                 _ => continue,
             };
             plan.arguments.extend(["--ros-args".to_owned(), "-p".to_owned(), given]);
@@ -77,7 +82,8 @@ fn report(directory: &Path, scene: &SceneText, output: Output) -> Result<Exit, F
 fn is_finished(recording: &Recording) -> bool {
     let last = |name: &str| {
         let channels = recording.channels();
-        let topic = channels.iter().find(|c| c.topic.rsplit('/').next() == Some(name))?;
+        let of = |c: &ChannelInfo| Topic::of_channel(&c.topic, &c.ros_type);
+        let topic = channels.iter().find(|c| of(c).is_some_and(|t| t.name == name))?;
         let messages = recording.messages(&Selection::topics([topic.topic.clone()])).ok()?;
         messages.last().map(|m| m.payload.to_vec())
     };

@@ -287,6 +287,7 @@ impl SubscriptionBuiltinTopicData {
       resource_limits: None, // nor Resource Limits, see Figure 8.30 in RTPS spec 2.5
       lifespan: self.lifespan,
       data_representation: self.data_representation.clone(),
+      user_data: None,
 
       #[cfg(feature = "security")]
       property: None, // TODO: no property QoS?
@@ -421,8 +422,10 @@ impl PlCdrDeserialize for DiscoveredReaderData {
     let user_data = pl_map
       .get(&ParameterId::PID_USER_DATA)
       .and_then(|v| v.first())
-      .map(|p| p.value.clone())
-      .unwrap_or_default();
+      // A sequence of octets: its length comes first.
+      .and_then(|p| p.value.get(4..))
+      .unwrap_or_default()
+      .to_vec();
 
     Ok(DiscoveredReaderData {
       reader_proxy: ReaderProxy::new(
@@ -736,6 +739,7 @@ impl PublicationBuiltinTopicData {
       resource_limits: None, // nor Resource Limits, see Figure 8.30 in RTPS spec 2.5
       lifespan: self.lifespan,
       data_representation: self.data_representation.clone(),
+      user_data: None,
       #[cfg(feature = "security")]
       property: None, // TODO: no property Qos?
     }
@@ -810,7 +814,7 @@ impl DiscoveredWriterData {
       last_updated: Instant::now(),
       writer_proxy,
       publication_topic_data,
-      user_data: Vec::new(),
+      user_data: writer.qos().user_data.unwrap_or_default(),
     }
   }
 }
@@ -880,8 +884,10 @@ impl PlCdrDeserialize for DiscoveredWriterData {
     let user_data = pl_map
       .get(&ParameterId::PID_USER_DATA)
       .and_then(|v| v.first())
-      .map(|p| p.value.clone())
-      .unwrap_or_default();
+      // A sequence of octets: its length comes first.
+      .and_then(|p| p.value.get(4..))
+      .unwrap_or_default()
+      .to_vec();
 
     Ok(DiscoveredWriterData {
       last_updated: Instant::now(),
@@ -956,7 +962,7 @@ impl ParameterListable for DiscoveredWriterData {
           #[cfg(feature = "security")]
           security_info,
         },
-      user_data: _,
+      user_data,
     } = self;
 
     let mut pl = ParameterList::new();
@@ -1015,6 +1021,9 @@ impl ParameterListable for DiscoveredWriterData {
       &service_instance_name.clone().map(|e| e.into()),
       StringWithNul
     );
+    if !user_data.is_empty() {
+      emit!(PID_USER_DATA, user_data, Vec<u8>);
+    }
     emit_option!(PID_RELATED_ENTITY_GUID, related_datareader_key, GUID);
     // TODO: Should topic alias be on parameter with vector or multiple
     // parameters with one alias name each?
@@ -1097,6 +1106,7 @@ impl HasQoSPolicy for TopicBuiltinTopicData {
       resource_limits: self.resource_limits,
       lifespan: self.lifespan,
       data_representation: None, // Topic-level DATA_REPRESENTATION not tracked
+      user_data: None,
       #[cfg(feature = "security")]
       property: None, // TODO: no property Qos?
     }

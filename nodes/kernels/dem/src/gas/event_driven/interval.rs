@@ -73,11 +73,16 @@ pub(super) struct EventCounts {
     pub(super) impulse_length: f64,
 }
 
-/// There were more events than allowed.
+/// Events between two looks at whether to stop: below a millisecond.
+const LOOK: u64 = 256;
+
+/// Why the end was not reached.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct EventLimit {
-    /// Time reached.
-    pub(super) reached: f64,
+pub(super) enum Cut {
+    /// There were more events than allowed, before this time.
+    Limit { reached: f64 },
+    /// The caller stopped it.
+    Stopped,
 }
 
 impl Interval {
@@ -88,9 +93,9 @@ impl Interval {
         radii: &[f64],
         positions: &[Vec3],
         velocities: &[Vec3],
-        growth: f64,
-        end: f64,
+        (growth, end): (f64, f64),
         margin: f64,
+        stopped: &dyn Fn() -> bool,
     ) -> Result<Self, DemError> {
         let n = radii.len();
         let largest = radii.iter().copied().fold(0.0, f64::max) * (1.0 + growth * end).max(1.0);
@@ -135,13 +140,18 @@ impl Interval {
             origin: order.iter().map(|i| (*i, folded[*i as usize].1)).collect(),
             grains,
         };
+        let go_on = |i: usize| {
+            if (i as u64).is_multiple_of(LOOK) && stopped() { Err(DemError::Stopped) } else { Ok(()) }
+        };
         for i in 0..n {
+            go_on(i)?;
             interval.find_neighbours(i);
             interval.check_overlaps(i)?;
             interval.margin_times.push(interval.margin_time(i));
         }
         interval.queue = Queue::new(interval.margin_times.iter().copied());
         for i in 0..n {
+            go_on(i)?;
             // A collision that an earlier grain found is kept unless there is an earlier one.
             interval.find_collision(i, 0.0);
             interval.queue.set(i, interval.event_time(i));
@@ -149,8 +159,8 @@ impl Interval {
         Ok(interval)
     }
 
-    /// Runs to the end, or through `limit` events.
-    pub(super) fn run(&mut self, limit: u64) -> Result<EventCounts, EventLimit> {
+    /// Runs to the end, through `limit` events, or until it is stopped.
+    pub(super) fn run(&mut self, limit: u64, stopped: &dyn Fn() -> bool) -> Result<EventCounts, Cut> {
         let (mut counts, mut events) = (EventCounts::default(), 0);
         while let Some((time, i)) = self.queue.first() {
             if time >= self.end {
@@ -158,7 +168,10 @@ impl Interval {
             }
             events += 1;
             if events > limit {
-                return Err(EventLimit { reached: time });
+                return Err(Cut::Limit { reached: time });
+            }
+            if events.is_multiple_of(LOOK) && stopped() {
+                return Err(Cut::Stopped);
             }
             let i = i as usize;
             let collision = self.collisions[i];

@@ -5,7 +5,7 @@
 //! cell has shrunk. Only positions, velocities and cell are kept between two intervals, so a state saved between them goes on
 //! bit for bit.
 
-use super::interval::Interval;
+use super::interval::{Cut, Interval};
 use crate::error::DemError;
 use grainlab_core::{Cell, Mat3, Vec3};
 
@@ -108,6 +108,19 @@ impl HardSpheres {
     /// [`DemError::Jammed`] where there are too many collisions, or the cell becomes narrower than a grain. The state is then
     /// unchanged.
     pub fn advance(&mut self, rate: f64, interval: f64) -> Result<(Mat3, Collisions), DemError> {
+        self.advance_unless(rate, interval, &|| false)
+    }
+
+    /// The same, unless `stopped` becomes true on the way.
+    ///
+    /// # Errors
+    /// Those of [`HardSpheres::advance`], and [`DemError::Stopped`]; the state is then unchanged, too.
+    pub fn advance_unless(
+        &mut self,
+        rate: f64,
+        interval: f64,
+        stopped: &dyn Fn() -> bool,
+    ) -> Result<(Mat3, Collisions), DemError> {
         let stretch = (rate * interval).exp();
         if !(interval > 0.0 && stretch > 0.0 && (1.0 / stretch).is_finite()) {
             let what = format!("an interval of {interval} s at a strain rate of {rate} 1/s leads nowhere");
@@ -129,12 +142,15 @@ impl HardSpheres {
         let limit = JAMMED * (10.0 + expected) * self.radii.len() as f64;
         let margin = 2.0 * mean * margin(self.solid_fraction());
         let margin = margin.min(0.5 * (edges.min() - widest));
-        let mut events =
-            Interval::new(edges, &self.radii, &self.positions, &self.velocities, -rate, end, margin)?;
-        let counts = events.run(limit as u64).map_err(|e| {
-            let solid_fraction = self.solid_fraction() * (1.0 - rate * e.reached).powi(3);
-            let cause = format!("{limit:.0} events in one interval: its pressure has diverged");
-            DemError::Jammed { solid_fraction, cause }
+        let Self { radii, positions, velocities, .. } = &*self;
+        let mut events = Interval::new(edges, radii, positions, velocities, (-rate, end), margin, stopped)?;
+        let counts = events.run(limit as u64, stopped).map_err(|e| match e {
+            Cut::Stopped => DemError::Stopped,
+            Cut::Limit { reached } => {
+                let solid_fraction = self.solid_fraction() * (1.0 - rate * reached).powi(3);
+                let cause = format!("{limit:.0} events in one interval: its pressure has diverged");
+                DemError::Jammed { solid_fraction, cause }
+            }
         })?;
         let energy = events.twice_energy();
         events.finish(stretch, &mut self.positions, &mut self.velocities);
