@@ -1,16 +1,14 @@
 //! Whether every exchange of the lockstep is in a recording, by the numbers that requests and answers carry.
 
 use grainlab_msgs::msg::{StrainRate, Stress};
-use grainlab_msgs::{from_cdr, topics};
-use grainlab_recordings::{ReadError, Recording, Selection};
+use grainlab_msgs::topics;
+use grainlab_recordings::{Message, ReadError, Recording, Selection};
 
 /// Missing messages of a finished run, one line per topic.
 pub fn missing(recording: &Recording) -> Result<Vec<String>, ReadError> {
-    let stress =
-        numbers(recording, topics::STRESS.name, |body| from_cdr::<Stress>(body).ok().map(|m| m.sequence))?;
-    let rates = numbers(recording, topics::STRAIN_RATE.name, |body| {
-        from_cdr::<StrainRate>(body).ok().map(|m| m.sequence)
-    })?;
+    let stress = numbers(recording, topics::STRESS.name, |m| m.decoded::<Stress>().ok().map(|m| m.sequence))?;
+    let rates =
+        numbers(recording, topics::STRAIN_RATE.name, |m| m.decoded::<StrainRate>().ok().map(|m| m.sequence))?;
     let exchanges = stress.iter().chain(&rates).max().map_or(0, |last| last + 1);
     let line = |(topic, known): (&str, &[u64])| {
         let lacking = exchanges - known.len() as u64;
@@ -25,13 +23,13 @@ pub fn missing(recording: &Recording) -> Result<Vec<String>, ReadError> {
 fn numbers(
     recording: &Recording,
     name: &str,
-    number: impl Fn(&[u8]) -> Option<u64>,
+    number: impl Fn(&Message) -> Option<u64>,
 ) -> Result<Vec<u64>, ReadError> {
     let channels = recording.channels();
     let of_topic =
         channels.iter().filter(|c| c.topic.rsplit('/').next() == Some(name)).map(|c| c.topic.clone());
     let messages = recording.messages(&Selection::topics(of_topic))?;
-    let mut numbers: Vec<u64> = messages.filter_map(|m| number(&m.payload)).collect();
+    let mut numbers: Vec<u64> = messages.filter_map(|m| number(&m)).collect();
     numbers.sort_unstable();
     numbers.dedup();
     Ok(numbers)
