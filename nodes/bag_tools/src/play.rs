@@ -8,7 +8,7 @@ use grainlab_console::Failure;
 use grainlab_console::network::tool_bus;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{Bus, Exit};
-use grainlab_recordings::{PlayOptions, Player, QosOverrides, Recording};
+use grainlab_recordings::{PlayOptions, Player, QosOverrides, Recording, StoredDefinition};
 use keys::Keys;
 use outlet::{Outlets, offer, pause, wait_for_readers};
 use session::Session;
@@ -25,7 +25,8 @@ Examples:
 
 Playback that starts in the middle begins with the last earlier message of every latched topic. A topic that a live node
 publishes is left out with a message: two writers would mix their messages. Any type is played, byte for byte, with the QoS
-that its publishers offered when it was recorded (reliable, volatile, depth 10 if they differed).
+that its publishers offered when it was recorded (reliable, volatile, depth 10 if they differed). A type of this program whose
+definition in the recording differs is sent as that of this program, by the names of its fields, or left out (exit 3).
 
 Keys, if stdin is a terminal, or with --start-paused or --step: space pauses and continues, s or right sends the next message,
 up and down change the rate by a tenth, q ends. Not from a terminal, an empty line is a step, too.";
@@ -132,17 +133,26 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 
     let mut bus = tool_bus("player")?;
     pause(&mut bus, LOOK_AROUND);
-    let mut publishers = Outlets::new();
+    let (mut publishers, mut refused) = (Outlets::new(), false);
     for channel in wanted {
         let name = channel.topic.clone();
         let to = args.remap.iter().find(|r| r.from == name).map_or(name.as_str(), |r| &r.to);
         let replaced = args.clock.is_some() && to == topics::CLOCK.name;
         let outlet = match replaced {
             true => Err("--clock publishes it".to_owned()),
+            false if matches!(channel.stored, StoredDefinition::Refused(_)) => {
+                refused = true;
+                Err(channel.stored.note().unwrap_or_default())
+            }
             false => offer(&mut bus, &channel, to, &overrides)?,
         };
         match outlet {
             Ok(publisher) => {
+                channel
+                    .stored
+                    .note()
+                    .iter()
+                    .for_each(|note| grainlab_console::say!("grainlab: {name}: {note}"));
                 publishers.insert(name, publisher);
             }
             Err(reason) => {
@@ -159,8 +169,15 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let keys = Keys::open(args.start_paused || args.step);
     let clock = args.clock.map(|hz| session::ClockOutlet::advertise(&mut bus, hz)).transpose()?;
-    let mut session =
-        Session { bus: &mut bus, outlets: &mut publishers, keys, clock, sent: 0, late: Duration::ZERO };
+    let mut session = Session {
+        bus: &mut bus,
+        outlets: &mut publishers,
+        keys,
+        clock,
+        sent: 0,
+        unread: 0,
+        late: Duration::ZERO,
+    };
     let mut finished = true;
     let mut is_paused = args.start_paused || args.step;
     loop {
@@ -173,7 +190,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             break;
         }
     }
-    let (sent, late) = (session.sent, session.late);
+    let (sent, unread, late) = (session.sent, session.unread, session.late);
     drop(session);
     let acknowledged = bus.flush(FAREWELL);
     std::thread::sleep(GRACE);
@@ -189,10 +206,17 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Ok(Exit::Interrupted);
     }
     grainlab_console::say!("grainlab: {} sent", grainlab_console::count(sent, "message"));
+    if unread > 0 {
+        grainlab_console::say!(
+            "grainlab: {} left out: their definition differs from that of this program",
+            grainlab_console::count(unread, "message")
+        );
+    }
     if !acknowledged {
         grainlab_console::say!("grainlab: a reader has not acknowledged the last messages");
     }
-    Ok(if acknowledged && warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
+    let whole = acknowledged && warnings.is_empty() && !refused && unread == 0;
+    Ok(if whole { Exit::Done } else { Exit::DataLoss })
 }
 
 fn frequency(text: &str) -> Result<f64, String> {

@@ -19,7 +19,6 @@ mod output;
 mod pace;
 pub mod plot;
 pub mod scenes;
-mod start;
 mod whole_file;
 
 pub use count::count;

@@ -1,9 +1,9 @@
 //! Scenes by name or path, with their bases and overrides.
 
 use crate::failure::Failure;
-use crate::start;
 use grainlab_core::Packing;
 use grainlab_node_kit::{Exit, ParameterSpec};
+use grainlab_recordings::import::{StartError, start};
 use grainlab_recordings::input;
 use grainlab_scene::{BUILT_IN, Draft, Scene, Source, assignment, built_in};
 use std::path::Path;
@@ -43,13 +43,19 @@ pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
     for set in sets.iter().chain(&seed) {
         draft.set(assignment(set).map_err(refused)?).map_err(refused)?;
     }
-    let start = draft.start().map(|file| start::read(&draft, &file)).transpose();
-    let start = start.map_err(|f| Failure::new(f.exit, format!("{}: {f}", with(sets))))?;
+    let start = draft.start().map(|file| start(&draft, &file)).transpose().map_err(|e| {
+        let message = format!("{}: {e}", with(sets));
+        if matches!(e, StartError::File { .. }) { Failure::failed(message) } else { Failure::usage(message) }
+    })?;
+    for (start, note) in start.iter().flat_map(|s| s.notes.iter().map(move |note| (s, note))) {
+        crate::say!("grainlab: {}: {note}", start.path.display());
+    }
     let resolved = match &start {
         None => draft.resolve(),
         Some(found) => {
             // The whole path, because the scene is read again from the directory of its run.
-            draft.start_at(&found.path.to_string_lossy(), found.step);
+            let forces = found.contact_forces.as_ref().map(|path| path.to_string_lossy());
+            draft.start_at(&found.path.to_string_lossy(), forces.as_deref(), found.step);
             draft.resolve_from(&found.packing)
         }
     };

@@ -1,12 +1,12 @@
 //! Runs of scenes in this process.
 
 use crate::error;
+use crate::files::warn;
 use crate::packing::PyPacking;
 use grainlab_core::Packing;
 use grainlab_dem::Compute;
 use grainlab_experiment::Simulation;
-use grainlab_recordings::import::{self, ImportOptions};
-use grainlab_recordings::input;
+use grainlab_recordings::{import, input};
 use grainlab_scene::{BUILT_IN, Draft, Source, built_in};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
@@ -47,18 +47,20 @@ pub(crate) fn simulate(
     for text in set.chain(seed) {
         draft.set(grainlab_scene::assignment(&text?).map_err(error::scene)?).map_err(error::scene)?;
     }
-    let start = draft.start().map(|file| first_packing(&file)).transpose()?;
+    let start = draft.start().map(|file| import::start(&draft, &file)).transpose().map_err(error::file)?;
     let resolved = match &start {
-        Some((packing, path)) => {
-            draft.start_at(&path.to_string_lossy(), packing.step);
-            draft.resolve_from(packing)
+        Some(found) => {
+            let forces = found.contact_forces.as_ref().map(|path| path.to_string_lossy());
+            draft.start_at(&found.path.to_string_lossy(), forces.as_deref(), found.step);
+            draft.resolve_from(&found.packing)
         }
         None => draft.resolve(),
     };
     let scene = resolved.map_err(error::scene)?.scene;
     let compute = Compute::new(grainlab_dem::Simd::best(), threads).map_err(error::scene)?;
     let name = scene.name.clone();
-    let start = start.map(|(packing, _)| packing);
+    start.iter().flat_map(|found| &found.notes).try_for_each(|note| warn(py, note))?;
+    let start = start.map(|found| found.packing);
     let begin = || match &start {
         Some(packing) => Simulation::from_packing(scene, packing),
         None => Simulation::new(scene),
@@ -95,19 +97,6 @@ fn source(name: &str, from: Option<&str>) -> Result<Source, String> {
     let text = input::text(&path, input::SETTINGS).map_err(|e| e.to_string())?;
     let name = path.canonicalize().unwrap_or(path);
     Ok(Source { name: name.to_string_lossy().into_owned(), text })
-}
-
-/// The packing that a scene starts from, and its file.
-fn first_packing(file: &grainlab_scene::StartFile) -> PyResult<(Packing, PathBuf)> {
-    let beside = file.from.as_deref().map(Path::new).and_then(Path::parent).unwrap_or(Path::new(""));
-    let path = beside.join(&file.path);
-    let packings = import::load(&path, &ImportOptions::default()).map_err(error::file)?.packings;
-    let wanted = packings.into_iter().rfind(|p| file.step.is_none_or(|step| step == p.step));
-    let found = wanted.ok_or_else(|| {
-        let step = file.step.unwrap_or_default();
-        error::file(format!("{}: no packing of step {step}", path.display()))
-    })?;
-    Ok((found.packing, path.canonicalize().unwrap_or(path)))
 }
 
 impl State {

@@ -3,8 +3,8 @@
 use crate::phased::{MOST_PHASES, PhaseAxis, Phased};
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_msgs::boundary::{EnergyReading, FabricReading, StressRequest};
-use grainlab_msgs::{Message, Topic, from_cdr, msg, simulated_seconds, topics};
-use grainlab_recordings::{ChannelInfo, ReadError, Recording, Selection};
+use grainlab_msgs::{Topic, msg, simulated_seconds, topics};
+use grainlab_recordings::{ChannelInfo, Message, ReadError, Recording, Selection};
 use grainlab_viewer::{Film, View};
 use std::collections::BTreeMap;
 
@@ -98,7 +98,7 @@ impl Timeline {
         let mut timeline = Self::of_phases(phases);
         for message in recording.messages(&Selection::topics(names))? {
             let Some(topic) = of(&message.channel) else { continue };
-            if timeline.take(topic.name, &message.payload).is_none() {
+            if timeline.take(topic.name, &message).is_none() {
                 timeline.unreadable += 1;
             }
         }
@@ -106,22 +106,22 @@ impl Timeline {
     }
 
     /// Takes one message; `None` if it cannot be read.
-    fn take(&mut self, topic: &str, payload: &[u8]) -> Option<()> {
+    fn take(&mut self, topic: &str, recorded: &Message) -> Option<()> {
         if topic == topics::STRESS.name {
-            self.request(&StressRequest::try_from(&decoded::<msg::Stress>(payload)?).ok()?);
+            self.request(&StressRequest::try_from(&recorded.decoded::<msg::Stress>().ok()?).ok()?);
         } else if topic == topics::FABRIC.name {
-            let message: msg::Fabric = decoded(payload)?;
+            let message: msg::Fabric = recorded.decoded().ok()?;
             let time = simulated_seconds(&message.header.stamp);
             self.structure(time, &FabricReading::try_from(&message).ok()?);
         } else if topic == topics::PACKING.name {
-            self.packing(Packing::try_from(&decoded::<msg::Packing>(payload)?).ok()?);
+            self.packing(Packing::try_from(&recorded.decoded::<msg::Packing>().ok()?).ok()?);
         } else if topic == topics::ENERGY.name {
-            let balance = EnergyReading::try_from(&decoded::<msg::EnergyBalance>(payload)?).ok()?;
+            let balance = EnergyReading::try_from(&recorded.decoded::<msg::EnergyBalance>().ok()?).ok()?;
             // A restarted simulator sends the balance of a phase again.
             self.energy.retain(|b| b.phase != balance.phase);
             self.energy.push(balance);
         } else {
-            let state: msg::RunState = decoded(payload)?;
+            let state: msg::RunState = recorded.decoded().ok()?;
             self.name(state.phase, &state.phase_name);
         }
         Some(())
@@ -236,10 +236,6 @@ impl Timeline {
     pub(crate) fn axis(&self) -> PhaseAxis {
         PhaseAxis(self.phases.iter().map(|(_, time)| *time).chain([self.end]).collect())
     }
-}
-
-fn decoded<T: Message>(payload: &[u8]) -> Option<T> {
-    from_cdr(payload).ok()
 }
 
 /// A state as readers see it.

@@ -1,8 +1,8 @@
 //! Which exchanges of the lockstep are in a recording, by the numbers that requests and answers carry.
 
 use grainlab_msgs::msg::{StrainRate, Stress};
-use grainlab_msgs::{Topic, from_cdr, topics};
-use grainlab_recordings::{ChannelInfo, ReadError, Recording, Selection};
+use grainlab_msgs::{Topic, topics};
+use grainlab_recordings::{ChannelInfo, Message, ReadError, Recording, Selection};
 
 /// Numbers of the requests and of the answers in a recording.
 #[derive(Debug, Default)]
@@ -14,8 +14,8 @@ pub struct Exchanges {
 impl Exchanges {
     /// Those of all parts of a run that was resumed.
     pub fn of(recording: &Recording) -> Result<Self, ReadError> {
-        let stress = |body: &[u8]| from_cdr::<Stress>(body).ok().map(|m| m.sequence);
-        let rate = |body: &[u8]| from_cdr::<StrainRate>(body).ok().map(|m| m.sequence);
+        let stress = |m: &Message| m.decoded::<Stress>().ok().map(|m| m.sequence);
+        let rate = |m: &Message| m.decoded::<StrainRate>().ok().map(|m| m.sequence);
         Ok(Self {
             stress: numbers(recording, topics::STRESS.name, stress)?,
             rates: numbers(recording, topics::STRAIN_RATE.name, rate)?,
@@ -44,7 +44,7 @@ impl Exchanges {
 fn numbers(
     recording: &Recording,
     name: &str,
-    number: impl Fn(&[u8]) -> Option<u64>,
+    number: impl Fn(&Message) -> Option<u64>,
 ) -> Result<Vec<u64>, ReadError> {
     let channels = recording.channels();
     let is_wanted = |c: &&std::sync::Arc<ChannelInfo>| {
@@ -52,7 +52,7 @@ fn numbers(
     };
     let of_topic = channels.iter().filter(is_wanted).map(|c| c.topic.clone());
     let messages = recording.messages(&Selection::topics(of_topic))?;
-    let mut numbers: Vec<u64> = messages.filter_map(|m| number(&m.payload)).collect();
+    let mut numbers: Vec<u64> = messages.filter_map(|m| number(&m)).collect();
     numbers.sort_unstable();
     numbers.dedup();
     Ok(numbers)

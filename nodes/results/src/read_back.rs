@@ -9,10 +9,10 @@ use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::{PackingView, ReportParts, min_contacts, report};
 use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
+use grainlab_msgs::{Topic, msg, topics};
 use grainlab_node_kit::Report;
 use grainlab_recorder::strangers::{self, Authors, StrangerView};
-use grainlab_recordings::{ChannelInfo, Recording, Selection};
+use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -98,6 +98,7 @@ impl About {
 /// Reads a recording back.
 pub fn read(recording: &Recording) -> ReadBack {
     let mut back = ReadBack::default();
+    recording.differing().iter().for_each(|line| grainlab_console::say!("grainlab: {line}"));
     let wanted = [
         topics::PACKING,
         topics::FABRIC,
@@ -124,12 +125,12 @@ pub fn read(recording: &Recording) -> ReadBack {
     for message in messages {
         let Some(topic) = of(&message.channel) else { continue };
         let taken = if topic.name == topics::DIAGNOSTICS.name {
-            reports(&mut back.reports, &message.payload)
+            reports(&mut back.reports, &message)
         } else {
             let by = authors.node(&message.channel.topic, message.log_time);
-            enter(&mut about, topic, &message.payload, by).map(|step| {
+            enter(&mut about, topic, &message, by).map(|step| {
                 if topic.name == topics::MICROSTRUCTURE.name
-                    && let Ok(found) = decoded::<msg::Microstructure>(&message.payload)
+                    && let Ok(found) = message.decoded::<msg::Microstructure>()
                 {
                     back.inverted.insert((found.source, step));
                 }
@@ -206,21 +207,17 @@ fn reported(packing: &Packing, found: FabricReading, stiffness: Option<ElasticSt
     report(&PackingView::new(packing), parts)
 }
 
-fn decoded<T: Message>(payload: &[u8]) -> Result<T, String> {
-    from_cdr(payload).map_err(|e| e.to_string())
-}
-
 /// Adds one message; returns the step of its packing.
 fn enter(
     about: &mut BTreeMap<u64, About>,
     topic: &Topic,
-    payload: &[u8],
+    recorded: &Message,
     by: Option<&str>,
 ) -> Result<u64, String> {
     let text = |e: grainlab_msgs::boundary::BoundaryError| e.to_string();
     match topic.name {
         name if name == topics::PACKING.name => {
-            let message: msg::Packing = decoded(payload)?;
+            let message: msg::Packing = recorded.decoded()?;
             let packing = Packing::try_from(&message).map_err(text)?;
             let step = packing.step;
             let about = about.entry(step).or_default();
@@ -229,25 +226,25 @@ fn enter(
             Ok(step)
         }
         name if name == topics::FABRIC.name => {
-            let message: msg::Fabric = decoded(payload)?;
+            let message: msg::Fabric = recorded.decoded()?;
             about.entry(message.source_step).or_default().fabric =
                 Some(FabricReading::try_from(&message).map_err(text)?);
             Ok(message.source_step)
         }
         name if name == topics::MODULI.name => {
-            let message: msg::Moduli = decoded(payload)?;
+            let message: msg::Moduli = recorded.decoded()?;
             let about = about.entry(message.source_step).or_default();
             about.stiffness = ModuliReading::try_from(&message).map_err(text)?.stiffness;
             Ok(message.source_step)
         }
         name if name == topics::WAVE_SPEEDS.name => {
-            let message: msg::WaveSpeeds = decoded(payload)?;
+            let message: msg::WaveSpeeds = recorded.decoded()?;
             let reading = WaveSpeedsReading::try_from(&message).map_err(text)?;
             about.entry(message.source_step).or_default().wave_speeds = Some(reading);
             Ok(message.source_step)
         }
         _ => {
-            let message: msg::Microstructure = decoded(payload)?;
+            let message: msg::Microstructure = recorded.decoded()?;
             let reading = MicrostructureReading::try_from(&message).map_err(text)?;
             let known = &mut about.entry(reading.source_step).or_default().results;
             for estimate in &reading.estimates {
@@ -283,8 +280,8 @@ impl Names {
     }
 }
 
-fn reports(known: &mut BTreeMap<(String, u32), Report>, payload: &[u8]) -> Result<(), String> {
-    let message: DiagnosticArray = decoded(payload)?;
+fn reports(known: &mut BTreeMap<(String, u32), Report>, recorded: &Message) -> Result<(), String> {
+    let message: DiagnosticArray = recorded.decoded()?;
     for report in Report::from_message(&message) {
         known.insert((report.node.clone(), report.pid), report);
     }

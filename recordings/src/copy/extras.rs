@@ -1,6 +1,6 @@
 //! Stored files and metadata records of several recordings as those of one.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use mcap::records::Metadata;
 
@@ -30,6 +30,7 @@ impl Extras {
                 }
             }
         }
+        all.notes.extend(several_runs(recordings));
         let sources: Vec<String> = recordings.iter().map(|r| r.path().display().to_string()).collect();
         let metadata = BTreeMap::from([
             ("operation".to_owned(), operation.to_owned()),
@@ -71,6 +72,16 @@ impl Extras {
                 .push(format!("{what} {old} of {path} is named {new}: there is another one of its name"));
         }
     }
+}
+
+/// A note if the recordings are of several runs: their messages are in the same topics of the copy.
+fn several_runs(recordings: &[Recording]) -> Option<String> {
+    let id = |r: &Recording| r.metadata(METADATA_RECORD)?.remove("run");
+    let runs: BTreeSet<String> = recordings.iter().filter_map(id).collect();
+    (runs.len() > 1).then(|| {
+        let runs = runs.into_iter().collect::<Vec<_>>().join(", ");
+        format!("the recordings are of several runs ({runs}): a topic has the messages of all of them, one beside the other")
+    })
 }
 
 /// `scene.toml`, `scene.2.toml`, and so on: the first that is free.

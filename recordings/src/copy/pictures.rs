@@ -8,7 +8,7 @@ use grainlab_pictures::{Drawn, Picture, packing};
 
 use super::channels::Channels;
 use super::error::CopyError;
-use crate::reader::ChannelInfo;
+use crate::reader::{ChannelInfo, Message, StoredDefinition};
 use crate::writer::TopicSpec;
 
 /// The topics of pictures of a copy.
@@ -46,15 +46,16 @@ impl Pictures {
 
     /// The place and the bytes of each picture of a message of the channel at `place`: none if it has no packing, or the
     /// packing is not valid, which is noted.
-    pub(super) fn made(&mut self, place: usize, sequence: u32, payload: &[u8]) -> Vec<(usize, Vec<u8>)> {
+    pub(super) fn made(&mut self, place: usize, message: &Message) -> Vec<(usize, Vec<u8>)> {
         let Some(first) = self.places.get(&place) else { return Vec::new() };
-        match packing(payload) {
+        match message.own_bytes().and_then(|bytes| packing(&bytes).map_err(|e| e.to_string())) {
             Ok(packing) => {
                 let drawn = Drawn::new(&packing);
                 Picture::ALL.iter().enumerate().map(|(n, p)| (first + n, p.encoded(&drawn))).collect()
             }
             Err(error) => {
                 self.missing += 1;
+                let sequence = message.sequence;
                 self.notes
                     .push(format!("no picture of the packing with sequence number {sequence}: {error}"));
                 Vec::new()
@@ -71,6 +72,7 @@ fn described(picture: &Topic, topic: &str) -> ChannelInfo {
         ("topic_type_hash".to_owned(), spec.type_hash.clone()),
     ]);
     ChannelInfo {
+        stored: StoredDefinition::Same,
         topic: spec.name,
         ros_type: spec.ros_type,
         schema: spec.definition.clone().into_bytes(),

@@ -66,7 +66,8 @@ pub fn copy(
             made += write(&mut output, &mut pictures, place, start, &message)?;
         }
     }
-    for message in merged(recordings, &topics, select) {
+    let mut repeated = 0;
+    for message in merged(recordings, &topics, select, &mut repeated) {
         let Some(place) = places.of(&message.channel) else { continue };
         messages += 1;
         made += write(&mut output, &mut pictures, place, message.log_time, &message)?;
@@ -76,6 +77,11 @@ pub fn copy(
     }
     let bytes = output.finish()?;
     let mut notes = channels.notes;
+    if repeated > 0 {
+        notes.push(format!(
+            "{repeated} messages are in more than one of the recordings; each is written once"
+        ));
+    }
     notes.extend(extras.notes);
     notes.extend(pictures.notes);
     Ok(Copied {
@@ -100,7 +106,7 @@ fn write(
 ) -> Result<u64, CopyError> {
     let (sequence, publish_time) = (message.sequence, message.publish_time);
     output.message(place, sequence, log_time, publish_time, &message.payload)?;
-    let made = pictures.made(place, sequence, &message.payload);
+    let made = pictures.made(place, message);
     for (place, payload) in &made {
         output.message(*place, sequence, log_time, publish_time, payload)?;
     }
@@ -141,17 +147,20 @@ fn before(recordings: &[Recording], channels: &Channels, start: u64) -> Vec<Mess
             .filter(|m| channels.place(&m.channel).is_some_and(|p| Arc::ptr_eq(&channels.list[p], channel)))
             .collect();
         of_topic.sort_by_key(|m| m.log_time);
+        of_topic.dedup_by(|a, b| a.is_copy_of(b));
         found.extend(of_topic.split_off(of_topic.len().saturating_sub(depth)));
     }
     found.sort_by_key(|m| m.log_time);
     found
 }
 
-/// The messages of all recordings in order of log time; those of equal time in the order of the recordings.
+/// The messages of all recordings in order of log time; those of equal time in the order of the recordings. A message that was in
+/// a recording before is left out, and counted.
 fn merged<'r>(
     recordings: &'r [Recording],
     topics: &[String],
     select: &Select<'_>,
+    repeated: &'r mut u64,
 ) -> impl Iterator<Item = Message> + 'r {
     let of = |recording: &'r Recording| {
         let here = |name: &&String| recording.channel(name).is_ok();
@@ -160,12 +169,30 @@ fn merged<'r>(
         messages.ok().map(Messages::peekable)
     };
     let mut sources: Vec<_> = recordings.iter().filter_map(of).collect();
+    // Messages of the present time, each with its source and whether another source has it, too.
+    let mut present: Vec<(usize, Message, bool)> = Vec::new();
     std::iter::from_fn(move || {
         if let [only] = &mut sources[..] {
             return only.next();
         }
-        let times = sources.iter_mut().enumerate().filter_map(|(n, s)| Some((s.peek()?.log_time, n)));
-        let (_, earliest) = times.min()?;
-        sources[earliest].next()
+        loop {
+            let times = sources.iter_mut().enumerate().filter_map(|(n, s)| Some((s.peek()?.log_time, n)));
+            let (time, earliest) = times.min()?;
+            let message = sources[earliest].next()?;
+            present.retain(|(_, before, _)| before.log_time == time);
+            // A source that has a message twice has two messages.
+            let copy = present
+                .iter_mut()
+                .find(|(source, before, taken)| *source != earliest && !*taken && message.is_copy_of(before));
+            match copy {
+                Some((_, _, taken)) => {
+                    (*taken, *repeated) = (sources.len() == 2, *repeated + 1);
+                }
+                None => {
+                    present.push((earliest, message.clone(), false));
+                    return Some(message);
+                }
+            }
+        }
     })
 }

@@ -15,7 +15,8 @@ pub fn extended_xyz(packing: &Packing) -> String {
     let _ = writeln!(
         text,
         "{}\" Properties=species:S:1:pos:R:3:id:I:1:radius:R:1:mass:R:1:velo:R:3:angular_velocity:R:3 pbc=\"T T T\" \
-         Time={:e} step={} shear_modulus={:e} poisson_ratio={:e} density={:e} friction={:e} units=\"m kg s\"",
+         Time={:e} step={} shear_modulus={:e} poisson_ratio={:e} density={:e} friction={:e} \
+         contact_law={} contact_law_parameters=\"{}\" units=\"m kg s\"",
         edges.join(" "),
         packing.time,
         packing.step,
@@ -23,6 +24,8 @@ pub fn extended_xyz(packing: &Packing) -> String {
         m.poisson_ratio,
         m.density,
         packing.friction,
+        packing.law.name(),
+        packing.law.parameters().iter().map(|p| format!("{p:e}")).collect::<Vec<_>>().join(" "),
     );
     for k in 0..packing.grains() {
         let radius = packing.radii[k];

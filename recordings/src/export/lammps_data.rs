@@ -1,11 +1,11 @@
 //! Writes LAMMPS data files of `atom_style sphere`.
 
-use super::lammps_dump::restricted;
+use super::lammps_dump::{ids, restricted};
 use grainlab_core::Packing;
 use std::fmt::Write as _;
 
 /// A data file: id, type, diameter, density, position folded into the cell with its image flags, velocity, angular velocity; SI
-/// units. Contact forces are not part of the format. Ids are one more than those of the packing, because LAMMPS counts from 1.
+/// units. Contact forces are not part of the format. Ids are those of the packing, or one more if it has an id 0: LAMMPS counts from 1.
 /// A cell that is not in the restricted triclinic form of LAMMPS is written as a general one (LAMMPS from April 2024 on).
 pub fn lammps_data(packing: &Packing) -> String {
     let m = packing.cell.matrix();
@@ -32,12 +32,12 @@ pub fn lammps_data(packing: &Packing) -> String {
             text.push_str("0 0 0 abc origin\n");
         }
     }
+    let ids = ids(packing);
     text.push_str("\nAtoms # sphere\n\n");
     for (k, x) in packing.positions.iter().enumerate() {
         let image = packing.cell.fractional(x).map(f64::floor);
         let x = x - m * image;
-        let (id, diameter, density) =
-            (u64::from(packing.ids[k]) + 1, 2.0 * packing.radii[k], packing.material.density);
+        let (id, diameter, density) = (ids[k], 2.0 * packing.radii[k], packing.material.density);
         let _ = writeln!(
             text,
             "{id} 1 {diameter:e} {density:e} {:e} {:e} {:e} {} {} {}",
@@ -46,7 +46,7 @@ pub fn lammps_data(packing: &Packing) -> String {
     }
     text.push_str("\nVelocities\n\n");
     for k in 0..packing.grains() {
-        let (id, v, w) = (u64::from(packing.ids[k]) + 1, &packing.velocities[k], &packing.spins[k]);
+        let (id, v, w) = (ids[k], &packing.velocities[k], &packing.spins[k]);
         let _ = writeln!(text, "{id} {:e} {:e} {:e} {:e} {:e} {:e}", v.x, v.y, v.z, w.x, w.y, w.z);
     }
     text

@@ -12,9 +12,15 @@ pub(super) fn restricted(packing: &Packing) -> Option<[f64; 3]> {
     below.into_iter().all(|at| m[at] == 0.0).then(|| [m[(0, 1)], m[(0, 2)], m[(1, 2)]])
 }
 
+/// The ids of the grains in every file for LAMMPS, which counts from 1: those of the packing, or one more if it has an id 0.
+pub(super) fn ids(packing: &Packing) -> Vec<u64> {
+    let first = u64::from(packing.ids.contains(&0));
+    packing.ids.iter().map(|id| u64::from(*id) + first).collect()
+}
+
 /// One frame of a LAMMPS dump: id, type, radius, mass, unwrapped positions, velocities, angular velocities,
 /// and the number of contacts as `c_contacts`. Frames can be concatenated. Contact forces are not
-/// part of the format. A cell that is not in the restricted triclinic form of LAMMPS is written as a general one, by its edge
+/// part of the format. Ids are those of the packing, or one more if it has an id 0, as in [`lammps_data`](super::lammps_data()). A cell that is not in the restricted triclinic form of LAMMPS is written as a general one, by its edge
 /// vectors (`BOX BOUNDS abc origin`, LAMMPS from April 2024 on).
 pub fn lammps_dump(packing: &Packing) -> String {
     let mut text = format!(
@@ -29,9 +35,9 @@ pub fn lammps_dump(packing: &Packing) -> String {
         contacts[c.j as usize] += 1;
     }
     text.push_str("ITEM: ATOMS id type radius mass xu yu zu vx vy vz omegax omegay omegaz c_contacts\n");
-    for (k, contacts) in contacts.into_iter().enumerate() {
+    for (k, (contacts, id)) in contacts.into_iter().zip(ids(packing)).enumerate() {
         let radius = packing.radii[k];
-        let _ = write!(text, "{} 1 {radius:e} {:e}", packing.ids[k], packing.material.sphere_mass(radius));
+        let _ = write!(text, "{id} 1 {radius:e} {:e}", packing.material.sphere_mass(radius));
         let vectors: [&Vec3; 3] = [&packing.positions[k], &packing.velocities[k], &packing.spins[k]];
         for value in vectors.into_iter().flatten() {
             let _ = write!(text, " {value:e}");

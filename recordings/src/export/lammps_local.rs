@@ -1,5 +1,6 @@
 //! Writes the contacts of a packing as a LAMMPS `dump local`.
 
+use super::lammps_dump::ids;
 use grainlab_core::Packing;
 use std::fmt::Write as _;
 
@@ -12,10 +13,11 @@ pub fn lammps_local(packing: &Packing) -> String {
         packing.step,
         packing.contacts.len()
     );
+    let ids = ids(packing);
     for c in &packing.contacts {
         // The normal points away from the first grain, and the force pushes it back.
         let (f, t) = (-c.normal_force * c.normal, &c.tangential_force);
-        let (i, j) = (packing.ids[c.i as usize], packing.ids[c.j as usize]);
+        let (i, j) = (ids[c.i as usize], ids[c.j as usize]);
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{i} {j} {:e} {:e} {:e} {:e} {:e} {:e}", f.x, f.y, f.z, t.x, t.y, t.z);
     }

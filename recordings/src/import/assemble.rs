@@ -2,13 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::packing_header;
 
 use super::contacts::{self, SearchError};
 use super::error::ImportError;
 use super::imported::Imported;
-use super::settings::Settings;
+use super::setting::Setting;
+use super::settings::{ImportOptions, Settings};
 use super::text::{Line, digits};
 
 /// Grains in the order and with the ids of a file.
@@ -27,6 +28,12 @@ pub(super) struct GrainTable {
     pub(super) lines: Vec<usize>,
     /// Most significant digits of any coordinate as printed.
     pub(super) digits: u32,
+    /// kg, where the file has them; else empty.
+    pub(super) masses: Vec<f64>,
+    /// Types or species of the file, if it has them.
+    pub(super) kinds: BTreeSet<String>,
+    /// A radius of the file that the one given replaces, and that, m.
+    pub(super) replaced: Option<(f64, f64)>,
 }
 
 /// A contact as listed in a file.
@@ -73,6 +80,39 @@ impl State {
 }
 
 impl GrainTable {
+    /// The radius of a grain, m: the one given, else that of the file.
+    pub(super) fn radius(
+        &mut self,
+        stated: Option<f64>,
+        options: &ImportOptions,
+    ) -> Result<f64, ImportError> {
+        let radius = options.radius.or(stated).ok_or_else(|| ImportError::Missing(vec![Setting::Radius]))?;
+        if let Some(stated) = stated.filter(|stated| *stated != radius) {
+            self.replaced.get_or_insert((stated, radius));
+        }
+        Ok(radius)
+    }
+
+    /// What to know about the grains of a packing with this material.
+    fn notes(&self, material: &Material) -> Vec<String> {
+        let other =
+            |(mass, radius): &(&f64, &f64)| (**mass / material.sphere_mass(**radius) - 1.0).abs() > 1e-5;
+        let heavier = self.masses.iter().zip(&self.radii).filter(other).count();
+        let masses = (heavier > 0).then(|| {
+            format!("{heavier} grain(s) have another mass than density and radius give; the density is used")
+        });
+        let kinds = (self.kinds.len() > 1).then(|| {
+            format!(
+                "the grains are of {} types in the file; they are taken to be of one material",
+                self.kinds.len()
+            )
+        });
+        let radii = self.replaced.map(|(stated, given)| {
+            format!("the radii of the file, the first of them {stated} m, are replaced by the one given, {given} m")
+        });
+        [radii, masses, kinds].into_iter().flatten().collect()
+    }
+
     /// Adds a grain read from `line`; vectors are position, velocity and spin.
     pub(super) fn push(
         &mut self,
@@ -111,6 +151,9 @@ impl GrainTable {
             spins: vectors(&self.spins),
             lines: order.iter().map(|&k| self.lines[k]).collect(),
             digits: self.digits,
+            masses: order.iter().filter_map(|&k| self.masses.get(k).copied()).collect(),
+            kinds: self.kinds,
+            replaced: self.replaced,
         }
     }
 
@@ -150,6 +193,8 @@ pub(super) fn packing(
         }
     }
     let printed = grains.digits;
+    notes.extend(settings.notes.iter().cloned());
+    notes.extend(grains.notes(&settings.material));
     let mut packing = Packing {
         step: state.step,
         time: state.time,
@@ -188,10 +233,10 @@ pub(super) fn packing(
             let contacts =
                 listed.iter().map(|c| listed_contact(&packing, &index, c)).collect::<Result<Vec<_>, _>>()?;
             compare(&packing, &contacts, &found, &mut notes);
-            notes.extend(other_law(&packing, &contacts));
             contacts
         }
     };
+    notes.extend(other_law(&packing));
     notes.extend(too_few_digits(printed, &packing));
     packing.contacts.sort_by_key(|c| (c.i, c.j, c.image));
     let packing = packing.validated()?.consistent()?;
@@ -287,17 +332,13 @@ fn listed_contact(
 
 /// Warns if listed forces are not those of the contact law: the stiffness would be that of different
 /// contacts.
-fn other_law(packing: &Packing, listed: &[Contact]) -> Option<String> {
-    let force = |c: &Contact| {
-        packing.law.normal_force(&packing.material, packing.effective_radius(c), c.overlap.max(0.0))
-    };
-    let expected: f64 = listed.iter().map(force).sum();
-    let difference: f64 = listed.iter().map(|c| (c.normal_force - force(c)).abs()).sum();
-    (difference > 0.01 * expected).then(|| {
+fn other_law(packing: &Packing) -> Option<String> {
+    let difference = packing.law_difference();
+    (difference > 0.01).then(|| {
         format!(
             "normal forces differ from the contact law by {:.1} % on average: of another contact law, another material, or \
              in motion; the stiffness is that of {} contacts of this material",
-            100.0 * difference / expected,
+            100.0 * difference,
             packing.law.name()
         )
     })

@@ -11,7 +11,8 @@
 //!
 //! Sidecar keys: `G` (Pa), `nu`, `density` (kg/m³), `mu_prep` (a number, or `"inf"`), `cell` (three rows of
 //! three; columns are the edge vectors, m) or `box_L` (three edges, m), and optionally `step`, `time` (s),
-//! `time_step` (s), `deformation` (three rows of three). Other keys are ignored.
+//! `time_step` (s), `deformation` (three rows of three). `N` and `n_contacts`, the numbers of rows, are checked, and so are `units`
+//! (SI) and `pbc` (periodic in all directions). Other keys are ignored.
 
 use grainlab_core::Vec3;
 
@@ -32,32 +33,26 @@ use sidecar::Sidecar;
 pub fn packing(csv: &str, sidecar: Option<&str>, options: &ImportOptions) -> Result<Imported, ImportError> {
     let sidecar = Sidecar::parse(sidecar)?;
     let settings = sidecar.known()?.complete(options)?;
-    let (mut grains, mut contacts, mut masses) = (GrainTable::default(), Vec::new(), Vec::new());
+    let (mut grains, mut contacts) = (GrainTable::default(), Vec::new());
     for line in lines(csv).filter(|l| !l.text.trim().is_empty() && !l.text.trim_start().starts_with('#')) {
         let fields: Vec<&str> = line.text.trim().split(',').collect();
         match fields.as_slice() {
-            ["p", rest @ ..] => masses.push(grain(&line, rest, &mut grains)?),
+            ["p", rest @ ..] => grain(&line, rest, options, &mut grains)?,
             ["c", rest @ ..] => contacts.push(contact(&line, rest)?),
             other => return Err(line.error(format!("a row starts with p or c, not {}", shown(other[0])))),
         }
     }
-    let mut notes = Vec::new();
-    let wrong = |(mass, radius): &(&f64, &f64)| {
-        let expected = settings.material.sphere_mass(**radius);
-        (**mass / expected - 1.0).abs() > 1e-6
-    };
-    let heavier = masses.iter().zip(&grains.radii).filter(wrong).count();
-    if heavier > 0 {
-        notes.push(format!(
-            "{heavier} grain(s) have another mass than density and radius give; the density is used"
-        ));
-    }
+    sidecar.counts(grains.ids.len(), contacts.len())?;
     let listed = (!contacts.is_empty()).then_some(contacts.as_slice());
-    assemble::packing(grains, &settings, listed, sidecar.state()?, "CSV".into(), notes)
+    assemble::packing(grains, &settings, listed, sidecar.state()?, "CSV".into(), Vec::new())
 }
 
-/// Adds a grain; returns its mass, kg.
-fn grain(line: &Line<'_>, fields: &[&str], grains: &mut GrainTable) -> Result<f64, ImportError> {
+fn grain(
+    line: &Line<'_>,
+    fields: &[&str],
+    options: &ImportOptions,
+    grains: &mut GrainTable,
+) -> Result<(), ImportError> {
     let [id, x, y, z, radius, mass, vx, vy, vz, wx, wy, wz] = *fields else {
         let n = fields.len();
         return Err(line
@@ -67,8 +62,9 @@ fn grain(line: &Line<'_>, fields: &[&str], grains: &mut GrainTable) -> Result<f6
     let velocity = line.vector("velocity", [vx, vy, vz])?;
     let spin = line.vector("angular velocity", [wx, wy, wz])?;
     grains.printed([x, y, z]);
-    grains.push(line, line.id("id", id)?, line.number("radius", radius)?, [position, velocity, spin])?;
-    line.number("mass", mass)
+    grains.masses.push(line.number("mass", mass)?);
+    let radius = grains.radius(Some(line.number("radius", radius)?), options)?;
+    grains.push(line, line.id("id", id)?, radius, [position, velocity, spin])
 }
 
 fn contact(line: &Line<'_>, fields: &[&str]) -> Result<ListedContact, ImportError> {

@@ -125,6 +125,27 @@ pub enum ImportError {
         /// Friction coefficient.
         friction: f64,
     },
+    /// Columns of contact forces that are not what they are taken for.
+    #[error("contact forces: {problem}; {likely}")]
+    Columns {
+        /// The parts of the force that are wrong, and their columns.
+        problem: String,
+        /// The columns that fit.
+        likely: String,
+    },
+    /// Contact forces beside a file that has them itself, or cannot have them.
+    #[error("contact forces in a file of their own are read beside a LAMMPS dump or data file only")]
+    ForcesBeside,
+    /// A file has another number of grains or contacts than it states.
+    #[error("it has {found} {what}, and states {stated}: it is cut, or of another state")]
+    Count {
+        /// Grains or contacts.
+        what: &'static str,
+        /// As stated.
+        stated: usize,
+        /// As found.
+        found: usize,
+    },
     /// Grains and contact forces are of different steps.
     #[error(
         "the contact forces are of step {forces} and the grains of step {grains}: dump both at the same step"

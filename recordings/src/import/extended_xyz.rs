@@ -2,17 +2,20 @@
 //!
 //! Each frame is the number of grains, a comment with `Lattice="..."` and `Properties=...`, and a line per grain. Columns that are
 //! read: `pos:R:3`, `radius:R:1`, and where they are `id:I:1`, `velo:R:3`, `angular_velocity:R:3`; SI units. Of the comment also
-//! `shear_modulus`, `poisson_ratio`, `density`, `friction`, `Time` and `step`. Contacts are found from positions.
+//! `shear_modulus`, `poisson_ratio`, `density`, `friction`, `contact_law`, `contact_law_parameters`, `Time` and `step`; `units` and
+//! `pbc` must be SI and periodic in all directions. Contacts are found from positions.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::settings::{ImportOptions, Known};
+use super::stated;
 use super::text::{Line, lines};
 
 /// Whether a comment is that of extended XYZ.
@@ -89,17 +92,19 @@ impl Frame {
             columns.insert((*name).to_owned(), (fields, width));
             fields += width;
         }
-        let whole = |key: &str| entries.get(key).and_then(|value| value.parse().ok());
+        entries.get("units").map_or(Ok(()), |units| stated::units(line.number, units))?;
+        entries.get("pbc").map_or(Ok(()), |pbc| stated::periodic(line.number, pbc))?;
+        let step: Option<u64> = entries.get("step").map(|value| line.number("step", value)).transpose()?;
         Ok(Self {
             known: Known {
                 cell,
                 shear_modulus: number("shear_modulus")?,
                 poisson_ratio: number("poisson_ratio")?,
                 density: number("density")?,
-                law: None,
+                law: law(line, &entries)?,
                 friction: number("friction")?,
             },
-            state: State { time: number("Time")?.unwrap_or(0.0), ..State::at(whole("step").unwrap_or(0)) },
+            state: State { time: number("Time")?.unwrap_or(0.0), ..State::at(step.unwrap_or(0)) },
             columns,
             fields,
         })
@@ -128,11 +133,10 @@ impl Frame {
             _ => Ok(None),
         };
         let position = vector("pos")?.ok_or_else(|| line.error("Properties has no column pos:R:3"))?;
-        let radius = match (column("radius", 1), options.radius) {
-            (_, Some(given)) => given,
-            (Some(&[radius]), None) => line.number("radius", radius)?,
-            _ => return Err(ImportError::Missing(vec![super::Setting::Radius])),
-        };
+        let number = |name: &str| column(name, 1).map(|field| line.number::<f64>(name, field[0])).transpose();
+        let radius = grains.radius(number("radius")?, options)?;
+        grains.masses.extend(number("mass")?);
+        grains.kinds.extend(column("species", 1).map(|kind| kind[0].to_owned()));
         let id = match column("id", 1) {
             Some(&[id]) => line.id("id", id)?,
             _ => index as u32,
@@ -144,6 +148,16 @@ impl Frame {
         let spin = vector("angular_velocity")?.unwrap_or_else(Vec3::zeros);
         grains.push(line, id, radius, [position, velocity, spin])
     }
+}
+
+/// The contact law of a comment.
+fn law(line: &Line<'_>, entries: &BTreeMap<&str, &str>) -> Result<Option<ContactLaw>, ImportError> {
+    let Some(name) = entries.get("contact_law") else { return Ok(None) };
+    let parameters =
+        entries.get("contact_law_parameters").into_iter().flat_map(|text| text.split_whitespace());
+    let parameters: Vec<f64> =
+        parameters.map(|word| line.number("contact_law_parameters", word)).collect::<Result<_, _>>()?;
+    ContactLaw::new(name, &parameters).map(Some).map_err(|e| line.error(e.to_string()))
 }
 
 /// `key=value` and `key="value with spaces"`.

@@ -1,7 +1,8 @@
 //! LAMMPS data files of `atom_style sphere`, as written by `write_data`.
 //!
 //! It reads the box, `Atoms` (id, type, diameter, density, x, y, z; image flags are ignored) and
-//! `Velocities` (id, v, ω), in SI units. Contacts are found from positions.
+//! `Velocities` (id, v, ω), in SI units. Contacts are found from positions, unless a `dump local` with their forces is given
+//! ([`ImportOptions::contact_forces`]). The format does not state boundaries: they are taken as periodic.
 
 use std::collections::BTreeMap;
 
@@ -11,6 +12,7 @@ use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::lammps_cell::lammps_cell;
+use super::lammps_local::{self, Local};
 use super::settings::{ImportOptions, Known};
 use super::text::{Line, lines};
 
@@ -19,6 +21,8 @@ use super::text::{Line, lines};
 /// # Errors
 /// If the text is invalid, has another style or unit or mixed densities, or settings are missing.
 pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportError> {
+    let forces = options.contact_forces.as_deref();
+    let local = forces.map(|text| lammps_local::contacts(text, &options.contact_columns)).transpose()?;
     let mut file = DataFile::default();
     let mut section = Section::Header;
     for line in lines(text) {
@@ -40,7 +44,7 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
             }
         }
     }
-    file.finish(options)
+    file.finish(options, local.as_ref())
 }
 
 #[derive(Clone, Copy)]
@@ -60,6 +64,15 @@ impl Section {
                 Err(ImportError::Unsupported { line, what, reason: "only spheres are (atom_style sphere)" })
             }
             "Velocities" => Ok(Self::Velocities),
+            "Bonds" | "Angles" | "Dihedrals" | "Impropers" | "Ellipsoids" | "Lines" | "Triangles"
+            | "Bodies" => {
+                let (line, what) = (line.number, format!("the section {name}"));
+                Err(ImportError::Unsupported {
+                    line,
+                    what,
+                    reason: "grains must be single spheres without bonds",
+                })
+            }
             _ => Ok(Self::Other),
         }
     }
@@ -84,8 +97,8 @@ impl DataFile {
         let value = |key: &str| {
             line.text.split(',').find_map(|p| p.trim().strip_prefix(key)?.trim().strip_prefix('='))
         };
-        if let Some(step) = value("timestep").and_then(|t| t.trim().parse().ok()) {
-            self.step = step;
+        if let Some(step) = value("timestep") {
+            self.step = line.number("timestep", step)?;
         }
         match value("units").map(str::trim) {
             None | Some("si") => Ok(()),
@@ -114,18 +127,19 @@ impl DataFile {
     }
 
     fn atom(&mut self, line: &Line<'_>, words: &[&str]) -> Result<(), ImportError> {
-        let [id, _, diameter, density, x, y, z] = match *words {
+        let [id, kind, diameter, density, x, y, z] = match *words {
             [id, t, d, rho, x, y, z] | [id, t, d, rho, x, y, z, _, _, _] => [id, t, d, rho, x, y, z],
             _ => {
                 let problem = "an atom is id type diameter density x y z, and three image flags or none";
                 return Err(line.error(format!("{problem}: 7 or 10 fields, not {}", words.len())));
             }
         };
-        let radius = 0.5 * line.number::<f64>("diameter", diameter)?;
+        let stated = 0.5 * line.number::<f64>("diameter", diameter)?;
+        self.grains.kinds.insert(kind.to_owned());
         self.densities.push(line.number("density", density)?);
         let position = line.vector("position", [x, y, z])?;
         self.grains.printed([x, y, z]);
-        self.grains.push(line, line.id("id", id)?, radius, [position, Vec3::zeros(), Vec3::zeros()])
+        self.grains.push(line, line.id("id", id)?, stated, [position, Vec3::zeros(), Vec3::zeros()])
     }
 
     fn velocity(&mut self, line: &Line<'_>, words: &[&str]) -> Result<(), ImportError> {
@@ -139,7 +153,11 @@ impl DataFile {
         Ok(())
     }
 
-    fn finish(mut self, options: &ImportOptions) -> Result<Imported, ImportError> {
+    fn finish(
+        mut self,
+        options: &ImportOptions,
+        forces: Option<&Local<'_>>,
+    ) -> Result<Imported, ImportError> {
         for (k, id) in self.grains.ids.iter().enumerate() {
             if let Some((_, v, w)) = self.motion.remove(id) {
                 (self.grains.velocities[k], self.grains.spins[k]) = (v, w);
@@ -164,15 +182,20 @@ impl DataFile {
             return Err(ImportError::Unsupported { line: 1, what: "a mixture of densities".into(), reason });
         }
         let settings = Known { cell, density, ..Known::default() }.complete(options)?;
+        for k in 0..found {
+            self.grains.radii[k] = self.grains.radius(Some(self.grains.radii[k]), options)?;
+            self.grains
+                .masses
+                .push(4.0 / 3.0 * std::f64::consts::PI * self.densities[k] * self.grains.radii[k].powi(3));
+        }
         let grains = self.grains.sorted_by_id();
-        assemble::packing(
-            grains,
-            &settings,
-            None,
-            State::at(self.step),
-            "LAMMPS data file".into(),
-            Vec::new(),
-        )
+        forces.map_or(Ok(()), |forces| forces.check(self.step, &grains, &settings.cell))?;
+        let contacts = forces.map(|forces| forces.contacts.as_slice());
+        let state = State::at(self.step);
+        let imported =
+            assemble::packing(grains, &settings, contacts, state, "LAMMPS data file".into(), Vec::new())?;
+        forces.map_or(Ok(()), |forces| forces.whole(&imported.packing))?;
+        Ok(imported)
     }
 }
 

@@ -15,8 +15,7 @@ use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::lammps_cell::lammps_cell;
-use super::lammps_local;
-use super::setting::Setting;
+use super::lammps_local::{self, Local};
 use super::settings::{ImportOptions, Known};
 use super::text::{Line, cut, lines, shown};
 
@@ -59,15 +58,8 @@ pub fn each(
         number += 1;
         let source =
             if count > 1 { format!("LAMMPS dump, frame {number} of {count}") } else { "LAMMPS dump".into() };
-        let of_step = frame.step;
-        let listed = local.as_ref().map(|local| local.contacts.as_slice());
-        let imported = frame.packing(options, listed, source)?;
-        if let Some(local) = &local {
-            if let Some(forces) = local.step.filter(|step| *step != of_step) {
-                return Err(ImportError::OtherStep { forces, grains: of_step });
-            }
-            local.whole(&imported.packing)?;
-        }
+        let imported = frame.packing(options, local.as_ref(), source)?;
+        local.as_ref().map_or(Ok(()), |local| local.whole(&imported.packing))?;
         if take(imported).is_break() {
             break;
         }
@@ -77,6 +69,8 @@ pub fn each(
 
 struct Frame<'a> {
     step: u64,
+    /// s; 0 if the dump has none.
+    time: f64,
     origin: Vec3,
     cell: Mat3,
     rows: Vec<Row<'a>>,
@@ -89,6 +83,7 @@ struct Row<'a> {
     id: u32,
     radius: Option<f64>,
     mass: Option<f64>,
+    kind: Option<&'a str>,
     position: Vec3,
     scaled: bool,
     velocity: Vec3,
@@ -110,7 +105,7 @@ impl<'a, L: Iterator<Item = Line<'a>>> Frames<'a, L> {
     /// The next frame; `None` at the end of the text.
     fn next(&mut self) -> Result<Option<Frame<'a>>, ImportError> {
         let lines = &mut self.lines;
-        let (mut step, mut count, mut cell) = (0, None, None);
+        let (mut step, mut time, mut count, mut cell) = (0, 0.0, None, None);
         while let Some(line) = lines.next() {
             let Some(item) = line.text.trim().strip_prefix("ITEM:").map(str::trim) else {
                 return Err(line.error(format!("ITEM: … expected, found {}", shown(line.text))));
@@ -136,7 +131,8 @@ impl<'a, L: Iterator<Item = Line<'a>>> Frames<'a, L> {
                     });
                 }
             } else if item == "TIME" {
-                follow()?;
+                let value = follow()?;
+                time = value.finite("the time", value.text)?;
             } else if let Some(names) = item.strip_prefix("ATOMS") {
                 let (origin, cell) = cell.take().ok_or_else(|| line.error("ATOMS come before BOX BOUNDS"))?;
                 let columns = Columns::new(&line, names)?;
@@ -147,7 +143,7 @@ impl<'a, L: Iterator<Item = Line<'a>>> Frames<'a, L> {
                 if let Some(expected) = count.filter(|n| *n != rows.len()) {
                     return Err(line.error(format!("{} atoms follow, {expected} were announced", rows.len())));
                 }
-                return Ok(Some(Frame { step, origin, cell, rows }));
+                return Ok(Some(Frame { step, time, origin, cell, rows }));
             } else {
                 while lines.next_if(|l| !l.text.starts_with("ITEM:")).is_some() {}
             }
@@ -252,6 +248,7 @@ impl Columns {
             id: self.id.map_or(Ok(before as u32 + 1), |k| line.id("id", words[k]))?,
             radius,
             mass: number("mass")?,
+            kind: self.names.get("type").map(|&k| words[k]),
             position: line.vector("position", self.position.map(|k| words[k]))?,
             scaled: self.scaled,
             velocity: vector("v")?,
@@ -264,19 +261,20 @@ impl Frame<'_> {
     fn packing(
         &self,
         options: &ImportOptions,
-        contacts: Option<&[assemble::ListedContact]>,
+        forces: Option<&Local<'_>>,
         source: String,
     ) -> Result<Imported, ImportError> {
         let mut grains = GrainTable::default();
         let mut densities = Vec::new();
         for row in &self.rows {
-            let radius =
-                row.radius.or(options.radius).ok_or_else(|| ImportError::Missing(vec![Setting::Radius]))?;
+            let radius = grains.radius(row.radius, options)?;
             let position = if row.scaled { self.origin + self.cell * row.position } else { row.position };
             if !row.scaled {
                 grains.printed(row.coordinates);
             }
             grains.push(&row.line, row.id, radius, [position, row.velocity, row.spin])?;
+            grains.masses.extend(row.mass);
+            grains.kinds.extend(row.kind.map(str::to_owned));
             densities.extend(row.mass.map(|m| m / (4.0 / 3.0 * std::f64::consts::PI * radius.powi(3))));
         }
         // Masses give the density if all agree within 6 printed digits.
@@ -284,7 +282,10 @@ impl Frame<'_> {
             densities.first().copied().filter(|d| densities.iter().all(|e| (e / d - 1.0).abs() < 1e-5));
         let settings = Known { cell: Some(self.cell), density, ..Known::default() }.complete(options)?;
         let grains = grains.sorted_by_id().folded_if_far(&settings.cell);
-        assemble::packing(grains, &settings, contacts, State::at(self.step), source, Vec::new())
+        forces.map_or(Ok(()), |forces| forces.check(self.step, &grains, &settings.cell))?;
+        let contacts = forces.map(|forces| forces.contacts.as_slice());
+        let state = State { time: self.time, ..State::at(self.step) };
+        assemble::packing(grains, &settings, contacts, state, source, Vec::new())
     }
 }
 

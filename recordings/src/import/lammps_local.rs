@@ -15,10 +15,11 @@
 //! [`ImportOptions::contact_columns`](super::ImportOptions::contact_columns). Pairs that do not touch, which
 //! LAMMPS lists as long as they are neighbours, have no force and are left out.
 
-use super::assemble::{ListedContact, ListedForce};
+use super::assemble::{GrainTable, ListedContact, ListedForce};
 use super::error::ImportError;
+use super::lammps_columns::{self, Row};
 use super::text::lines;
-use grainlab_core::Vec3;
+use grainlab_core::{Cell, Vec3};
 
 /// Ids of the two grains, normal force, tangential force.
 const BY_NUMBER: [&str; 8] =
@@ -33,21 +34,31 @@ const LEAST: usize = 5;
 const CENTRAL: f64 = 1e-9;
 
 /// The content of a dump.
-#[derive(Debug)]
-pub(super) struct Local {
+pub(super) struct Local<'a> {
     /// Time step of the last frame, if given.
     pub(super) step: Option<u64>,
     /// Its pairs that carry force.
     pub(super) contacts: Vec<ListedContact>,
     /// Whether the columns include tangential forces.
     tangential: bool,
+    /// Names of all columns, places of those that are read, and the rows of the contacts.
+    names: Vec<&'a str>,
+    columns: Vec<usize>,
+    rows: Vec<Row<'a>>,
 }
 
 /// The contacts of the last frame. `chosen` are the columns in the default order, five or eight; none for
 /// the default ones.
-pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportError> {
+pub(super) fn contacts<'a>(text: &'a str, chosen: &[String]) -> Result<Local<'a>, ImportError> {
     let mut columns: Option<Vec<usize>> = None;
-    let mut local = Local { step: None, contacts: Vec::new(), tangential: false };
+    let mut local = Local {
+        step: None,
+        contacts: Vec::new(),
+        tangential: false,
+        names: Vec::new(),
+        columns: Vec::new(),
+        rows: Vec::new(),
+    };
     let (mut entries, mut rows, mut last) = (None, 0usize, None);
     let mut text = lines(text).filter(|l| !l.text.trim().is_empty());
     while let Some(line) = text.next() {
@@ -67,6 +78,8 @@ pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportErr
                 let found = find(&names, chosen).map_err(|problem| line.error(problem))?;
                 local.tangential = found.len() == BY_NAME.len();
                 local.contacts.clear();
+                local.rows.clear();
+                (local.names, local.columns) = (names, found.clone());
                 rows = 0;
                 columns = Some(found);
             }
@@ -75,17 +88,21 @@ pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportErr
             let words = line.words();
             let field =
                 |k: usize| words.get(columns[k]).copied().ok_or_else(|| line.error("a column is missing"));
-            let mut force = line.vector("force", [field(2)?, field(3)?, field(4)?])?;
-            if local.tangential {
-                force += line.vector("tangential force", [field(5)?, field(6)?, field(7)?])?;
-            }
-            if force == Vec3::zeros() {
+            let normal = line.vector("force", [field(2)?, field(3)?, field(4)?])?;
+            let tangential = match local.tangential {
+                true => line.vector("tangential force", [field(5)?, field(6)?, field(7)?])?,
+                false => Vec3::zeros(),
+            };
+            let force = normal + tangential;
+            if normal == Vec3::zeros() && tangential == Vec3::zeros() {
                 continue;
             }
+            let ids = (line.id("first grain", field(0)?)?, line.id("second grain", field(1)?)?);
+            local.rows.push(Row { ids, normal, tangential, text: line.text });
             local.contacts.push(ListedContact {
                 rolling: Vec3::zeros(),
                 line: line.number,
-                ids: (line.id("first grain", field(0)?)?, line.id("second grain", field(1)?)?),
+                ids,
                 normal: None,
                 overlap: None,
                 force: ListedForce::Total(force),
@@ -102,7 +119,20 @@ pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportErr
     }
 }
 
-impl Local {
+impl Local<'_> {
+    /// Refuses contacts of another step than that of the grains, and columns that are not those of a normal and a tangential
+    /// force.
+    pub(super) fn check(&self, step: u64, grains: &GrainTable, cell: &Cell) -> Result<(), ImportError> {
+        if let Some(forces) = self.step.filter(|forces| *forces != step) {
+            return Err(ImportError::OtherStep { forces, grains: step });
+        }
+        if !self.tangential {
+            return Ok(());
+        }
+        let columns: Vec<&str> = self.columns.iter().map(|k| self.names[*k]).collect();
+        lammps_columns::check(&self.rows, (&columns, &self.names), (grains, cell))
+    }
+
     /// Refuses normal forces given as the whole force: with friction and without columns of tangential forces,
     /// some force must have a tangential part.
     pub(super) fn whole(&self, packing: &grainlab_core::Packing) -> Result<(), ImportError> {

@@ -71,10 +71,16 @@ pub fn each(
         return Ok(recording.warnings());
     }
     if starts_with(path, vtkhdf::MAGIC) {
+        if options.contact_forces.is_some() {
+            return Err(inside(ImportError::ForcesBeside));
+        }
         return hdf(path, options, take).map_err(inside);
     }
     let text = text(path)?;
     match format(&extension, &stem, &text).map_err(inside)? {
+        Format::Csv | Format::Xyz | Format::Yade if options.contact_forces.is_some() => {
+            Err(ImportError::ForcesBeside)
+        }
         Format::Csv => {
             let sidecar = path.with_file_name(format!("{stem}.json"));
             let sidecar = if sidecar.exists() { Some(self::text(&sidecar)?) } else { None };

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use grainlab_core::Packing;
-use grainlab_msgs::{Message as _, from_cdr, msg, topics};
+use grainlab_msgs::{Message as _, msg, topics};
 
 use super::ImportOptions;
 use super::error::ImportError;
@@ -58,10 +58,18 @@ pub fn packing(message: &Message) -> Result<Imported, ImportError> {
         sequence: message.sequence,
         problem,
     };
-    let decoded: msg::Packing = from_cdr(&message.payload).map_err(|e| fail(e.to_string()))?;
+    let decoded: msg::Packing = message.decoded().map_err(fail)?;
     let packing = Packing::try_from(&decoded).map_err(|e| fail(e.to_string()))?;
     let scene = if decoded.scene.is_empty() { "a scene without name" } else { &decoded.scene };
     let source = format!("recording, {scene}, step {}", packing.step);
     let (header, run_state) = (decoded.header, decoded.run_state);
-    Ok(Imported { step: packing.step, packing, header, run_state, source, notes: Vec::new() })
+    let notes = message.channel.stored.note().map(|note| format!("{}: {note}", message.channel.topic));
+    Ok(Imported {
+        step: packing.step,
+        packing,
+        header,
+        run_state,
+        source,
+        notes: notes.into_iter().collect(),
+    })
 }

@@ -6,7 +6,7 @@ use grainlab_core::{Cell, Mat3, Material};
 use super::error::ImportError;
 use super::setting::Setting;
 
-/// Values given by the user; each one overrides the file and its sidecar.
+/// Values given by the user: each one replaces what the file or its sidecar says, which is noted where it says something else.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
     /// The cell: edge vectors as columns, m.
@@ -21,11 +21,11 @@ pub struct ImportOptions {
     pub friction: Option<f64>,
     /// Contact law; Hertz–Mindlin if not given.
     pub law: Option<ContactLaw>,
-    /// Radius of every grain, m, for files without radii.
+    /// Radius of every grain, m.
     pub radius: Option<f64>,
     /// Topic of a recording; `packing` if not given.
     pub topic: Option<String>,
-    /// Text of a LAMMPS `dump local` with the contact forces of the one frame of a dump.
+    /// Text of a LAMMPS `dump local` with the contact forces of a data file, or of the one frame of a dump.
     pub contact_forces: Option<String>,
     /// Its columns, if not the default ones: ids of the two grains, normal force on the first, tangential
     /// force on the first (`patom1 patom2 fx fy fz p1 p2 p3`); or the first five, with the whole force. Empty for the
@@ -64,12 +64,27 @@ pub(super) struct Known {
 }
 
 /// All properties of a packing except its grains.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Settings {
     pub(super) cell: Cell,
     pub(super) material: Material,
     pub(super) law: ContactLaw,
     pub(super) friction: f64,
+    /// What the user replaced.
+    pub(super) notes: Vec<String>,
+}
+
+/// A note of a value in the file that another one replaces.
+pub(super) fn replaced<T: PartialEq + std::fmt::Display>(
+    what: &str,
+    unit: &str,
+    given: Option<T>,
+    known: Option<T>,
+) -> Option<String> {
+    let (given, known) = (given?, known?);
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    (given != known)
+        .then(|| format!("{what} of the file, {known}{unit}, is replaced by the one given, {given}{unit}"))
 }
 
 impl Known {
@@ -97,6 +112,16 @@ impl Known {
         let rows = std::array::from_fn(|k| matrix[(k / 3, k % 3)]);
         let cell = Cell::new(matrix).ok_or(ImportError::Cell(rows))?;
         let material = Material { shear_modulus, poisson_ratio, density };
-        Ok(Settings { cell, material, law: options.law.or(self.law).unwrap_or_default(), friction })
+        let cells = |m: Mat3| format!("{:?}", m.transpose().as_slice());
+        let notes = [
+            replaced("the shear modulus", "Pa", options.shear_modulus, self.shear_modulus),
+            replaced("the Poisson ratio", "", options.poisson_ratio, self.poisson_ratio),
+            replaced("the density", "kg/m3", options.density, self.density),
+            replaced("the friction", "", options.friction, self.friction),
+            replaced("the contact law", "", options.law, self.law),
+            replaced("the cell", "m", options.cell.map(cells), self.cell.map(cells)),
+        ];
+        let law = options.law.or(self.law).unwrap_or_default();
+        Ok(Settings { cell, material, law, friction, notes: notes.into_iter().flatten().collect() })
     }
 }

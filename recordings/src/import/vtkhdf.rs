@@ -4,7 +4,6 @@
 //! `Points`. Of `FieldData`: `cell`, `deformation`, `shear_modulus`, `poisson_ratio`, `density`, `friction`, `TimeValue`, `step`,
 //! `time_step`. Contacts are those of the file of contacts beside it, or else found from positions.
 
-use super::Setting;
 use super::assemble::{self, GrainTable, ListedContact, ListedForce, State};
 use super::error::ImportError;
 use super::imported::Imported;
@@ -29,8 +28,12 @@ pub fn packing(
     let file = Data::open(grains)?;
     let field = |name: &str| file.scalar(&format!("FieldData/{name}"));
     let matrix = |name: &str| -> Result<Option<Mat3>, ImportError> {
-        let numbers = file.numbers::<f64>(&format!("FieldData/{name}"))?;
-        Ok(numbers.filter(|n| n.len() == 9).map(|n| Mat3::from_row_slice(&n)))
+        match file.numbers::<f64>(&format!("FieldData/{name}"))? {
+            Some(n) if n.len() != 9 => {
+                Err(damaged(format!("{name} has {} numbers; it must have 9", n.len())))
+            }
+            numbers => Ok(numbers.map(|n| Mat3::from_row_slice(&n))),
+        }
     };
     let known = Known {
         cell: matrix("cell")?,
@@ -42,7 +45,12 @@ pub fn packing(
     };
     let settings = known.complete(options)?;
     let state = State {
-        step: field("step")?.filter(|s| *s >= 0.0).map_or(0, |s| s as u64),
+        step: match field("step")? {
+            Some(step) if step < 0.0 || step.fract() != 0.0 => {
+                return Err(damaged(format!("step is {step}")));
+            }
+            step => step.map_or(0, |s| s as u64),
+        },
         time: field("TimeValue")?.unwrap_or(0.0),
         deformation: matrix("deformation")?.unwrap_or_else(Mat3::identity),
         time_step: field("time_step")?.unwrap_or(0.0),
@@ -105,9 +113,10 @@ impl Data {
         let Ok(attributes) = self.0.group("grainlab").and_then(|group| group.attrs()) else {
             return Ok(None);
         };
-        let Some(AttrValue::AsciiString(name) | AttrValue::String(name)) = attributes.get("contact_law")
-        else {
-            return Ok(None);
+        let name = match attributes.get("contact_law") {
+            None => return Ok(None),
+            Some(AttrValue::AsciiString(name) | AttrValue::String(name)) => name,
+            Some(other) => return Err(damaged(format!("contact_law is {other:?}; it must be a name"))),
         };
         let parameters = match attributes.get("contact_law_parameters") {
             Some(AttrValue::F64Array(parameters)) => parameters.clone(),
@@ -125,12 +134,13 @@ impl Data {
         let points =
             self.numbers::<f64>("Points")?.ok_or_else(|| damaged("there is no dataset /VTKHDF/Points"))?;
         let count = points.len() / 3;
-        let radii = match (options.radius, radii) {
-            (Some(radius), _) => vec![radius; count],
-            (None, Some(radii)) if radii.len() == count => radii,
-            (None, Some(radii)) => return Err(damaged(format!("{} radii for {count} points", radii.len()))),
-            (None, None) => return Err(ImportError::Missing(vec![Setting::Radius])),
-        };
+        let stated = self.numbers::<i64>("NumberOfPoints")?.map(|n| n.iter().sum::<i64>());
+        if let Some(stated) = stated.and_then(|n| usize::try_from(n).ok()).filter(|n| *n != count) {
+            return Err(ImportError::Count { what: "grains", stated, found: count });
+        }
+        if let Some(radii) = radii.as_ref().filter(|radii| radii.len() != count) {
+            return Err(damaged(format!("{} radii for {count} points", radii.len())));
+        }
         let positions = match self.vectors("PointData/position_unwrapped", count)? {
             Some(held) => held,
             None => self.vectors("Points", count)?.unwrap_or_default(),
@@ -139,11 +149,13 @@ impl Data {
         let velocities = self.vectors("PointData/velocity", count)?.unwrap_or_else(zeros);
         let spins = self.vectors("PointData/angular_velocity", count)?.unwrap_or_else(zeros);
         let ids = self.column::<u32>("PointData/id", count)?.unwrap_or_else(|| (0..count as u32).collect());
-        let mut table = GrainTable::default();
+        let masses = self.column::<f64>("PointData/mass", count)?.unwrap_or_default();
+        let mut table = GrainTable { masses, ..GrainTable::default() };
         for k in 0..count {
             // Rows take the place of lines in messages.
             let row = Line { number: k + 1, text: "" };
-            table.push(&row, ids[k], radii[k], [positions[k], velocities[k], spins[k]])?;
+            let radius = table.radius(radii.as_ref().map(|radii| radii[k]), options)?;
+            table.push(&row, ids[k], radius, [positions[k], velocities[k], spins[k]])?;
         }
         Ok(table)
     }

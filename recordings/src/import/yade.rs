@@ -47,7 +47,7 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
             }
             continue;
         }
-        let material = columns.grain(&line, &mut grains)?;
+        let material = columns.grain(&line, options, &mut grains)?;
         if !materials.contains(&material) {
             materials.push(material);
         }
@@ -105,7 +105,12 @@ impl Columns {
     }
 
     /// Adds the grain of a row; returns the name of its material.
-    fn grain<'a>(&self, line: &Line<'a>, grains: &mut GrainTable) -> Result<Option<&'a str>, ImportError> {
+    fn grain<'a>(
+        &self,
+        line: &Line<'a>,
+        options: &ImportOptions,
+        grains: &mut GrainTable,
+    ) -> Result<Option<&'a str>, ImportError> {
         let words = line.words();
         let expected = self.count.unwrap_or(words.len().max(4));
         if words.len() != expected {
@@ -115,7 +120,7 @@ impl Columns {
         let moving = |name: &str, at: Option<usize>| at.map_or(Ok(Vec3::zeros()), |at| vector(name, at));
         // YADE counts bodies from 0.
         let id = self.id.map_or(Ok(grains.ids.len() as u32), |k| line.id("id", words[k]))?;
-        let radius = line.number("radius", words[self.x + 3])?;
+        let radius = grains.radius(Some(line.number("radius", words[self.x + 3])?), options)?;
         let vectors = [
             vector("position", self.x)?,
             moving("velocity", self.velocity)?,

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::definition::StoredDefinition;
+
 /// The description of one topic in a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelInfo {
@@ -23,6 +25,8 @@ pub struct ChannelInfo {
     pub type_hash: String,
     /// All metadata of the channel, QoS and type hash included.
     pub metadata: BTreeMap<String, String>,
+    /// How its definition relates to the type of this name in this program.
+    pub stored: StoredDefinition,
 }
 
 impl ChannelInfo {

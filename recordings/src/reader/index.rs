@@ -10,6 +10,7 @@ use mcap::records::{Channel, Footer, MessageHeader, Record, SchemaHeader, op};
 
 use super::channel::ChannelInfo;
 use super::chunk;
+use super::definition::StoredDefinition;
 use super::error::{Warning, WarningKind};
 use super::records::{FRAME, RawRecord, Records};
 
@@ -226,15 +227,18 @@ impl Index {
             },
         };
         let value = |key: &str| channel.metadata.get(key).cloned().unwrap_or_default();
+        let (definition, type_hash) =
+            (String::from_utf8_lossy(&schema).into_owned(), value("topic_type_hash"));
         Ok(ChannelInfo {
             topic: channel.topic.clone(),
+            stored: StoredDefinition::of(&ros_type, &schema_encoding, &definition, &type_hash),
             ros_type,
-            definition: String::from_utf8_lossy(&schema).into_owned(),
+            definition,
             schema,
             schema_encoding,
             message_encoding: channel.message_encoding.clone(),
             qos: value("offered_qos_profiles"),
-            type_hash: value("topic_type_hash"),
+            type_hash,
             metadata: channel.metadata.clone(),
         })
     }

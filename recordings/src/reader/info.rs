@@ -38,6 +38,8 @@ pub struct Info {
     pub messages: u64,
     /// The topics, by name.
     pub topics: Vec<TopicInfo>,
+    /// Topics whose definition is not that of this program, with what differs.
+    pub definitions: Vec<String>,
     /// Names of the stored files.
     pub attachments: Vec<String>,
     /// Names of the metadata records.
@@ -54,6 +56,9 @@ pub struct TopicInfo {
     /// Type.
     #[serde(rename = "type")]
     pub ros_type: String,
+    /// Its definition beside that of this program: `same`, `mapped` (read by the names of fields), `refused`, or `unknown` (this
+    /// program has no type of the name).
+    pub definition: &'static str,
     /// Messages in the recording.
     pub messages: u64,
     /// Whether late readers get the last message.
@@ -94,6 +99,7 @@ fn of(recording: &Recording) -> Info {
             TopicInfo {
                 name: channel.topic.clone(),
                 ros_type: channel.ros_type.clone(),
+                definition: channel.stored.word(),
                 messages: counts.get(channel.topic.as_str()).copied().unwrap_or(0),
                 latched: channel.is_latched(),
                 published: tally.map(|t| t.published),
@@ -121,6 +127,7 @@ fn of(recording: &Recording) -> Info {
         duration_s: range.map_or(0.0, |(a, b)| (b - a) as f64 * 1e-9),
         messages: topics.iter().map(|t| t.messages).sum(),
         topics,
+        definitions: recording.differing(),
         attachments: files.iter().flat_map(|f| f.index.attachments.iter().map(|a| a.name.clone())).collect(),
         metadata: recording.metadata_names().into_iter().collect(),
         warnings: recording.warnings(),
@@ -167,6 +174,9 @@ impl fmt::Display for Info {
                 count(t.repeated),
                 if t.latched { "  latched" } else { "" }
             )?;
+        }
+        for line in &self.definitions {
+            write!(f, "\n{line}")?;
         }
         Ok(())
     }

@@ -2,6 +2,8 @@
 
 use super::channel::ChannelInfo;
 use super::held::Content;
+use grainlab_msgs::from_cdr;
+use std::borrow::Cow;
 use std::ops::{Deref, Range};
 use std::sync::Arc;
 
@@ -42,6 +44,33 @@ pub struct Message {
 }
 
 impl Message {
+    /// Its bytes by the definition of this program, if that has a type of the name: fields in another order are read by
+    /// their names, and messages of another type are refused.
+    ///
+    /// # Errors
+    /// What differs.
+    pub fn own_bytes(&self) -> Result<Cow<'_, [u8]>, String> {
+        self.channel.stored.own(&self.payload)
+    }
+
+    /// The message as a type of this program.
+    ///
+    /// # Errors
+    /// If it is another type, or not a valid message.
+    pub fn decoded<T: grainlab_msgs::Message>(&self) -> Result<T, String> {
+        if self.channel.ros_type != T::TYPE {
+            return Err(format!("its type is {:?}, not {}", self.channel.ros_type, T::TYPE));
+        }
+        from_cdr(&self.own_bytes()?).map_err(|e| e.to_string())
+    }
+
+    /// Whether it is the same message in another recording: topic, type, times, sequence and bytes.
+    pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
+        let key = |m: &Self| (m.sequence, m.log_time, m.publish_time);
+        let name = |m: &Self| (m.channel.topic.clone(), m.channel.ros_type.clone());
+        key(self) == key(other) && name(self) == name(other) && *self.payload == *other.payload
+    }
+
     /// Whether topic, times, sequence and bytes are the same.
     pub(crate) fn says_the_same(&self, other: &Self) -> bool {
         let key = |m: &Self| (m.sequence, m.log_time, m.publish_time);

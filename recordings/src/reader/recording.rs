@@ -85,6 +85,12 @@ impl Recording {
         by_topic.into_values().collect()
     }
 
+    /// The topics whose definition is not that of this program, each with a line about it.
+    pub fn differing(&self) -> Vec<String> {
+        let line = |c: &Arc<ChannelInfo>| Some(format!("{} ({}): {}", c.topic, c.ros_type, c.stored.note()?));
+        self.all_channels().filter_map(line).collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
     /// All channels of all files; a topic may have several, of several files or publishers.
     pub(crate) fn all_channels(&self) -> impl Iterator<Item = &Arc<ChannelInfo>> {
         self.files.iter().flat_map(|f| f.index.channels.values())

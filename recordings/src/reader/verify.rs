@@ -8,6 +8,7 @@ use mcap::records::{Record, op};
 use serde::Serialize;
 
 use super::chunk;
+use super::definition::StoredDefinition;
 use super::error::{Warning, WarningKind};
 use super::file::OpenFile;
 use super::recording::Recording;
@@ -32,6 +33,10 @@ pub struct Check {
     pub lost: Option<u64>,
     /// Files without a ledger: the recorder was killed, or is still running.
     pub unaccounted: Vec<PathBuf>,
+    /// Topics whose definition is not that of this program, with what differs.
+    pub definitions: Vec<String>,
+    /// Whether messages of such a topic cannot be read by this program.
+    pub refused: bool,
     /// All faults.
     pub warnings: Vec<Warning>,
 }
@@ -76,6 +81,8 @@ impl Recording {
             attachments: found.attachments,
             lost: ledger.map(|l| l.iter().map(|t| t.lost).fold(0, u64::saturating_add)),
             unaccounted,
+            definitions: self.differing(),
+            refused: self.all_channels().any(|c| matches!(c.stored, StoredDefinition::Refused(_))),
             warnings: self.warnings(),
         }
     }

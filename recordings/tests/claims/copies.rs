@@ -96,6 +96,44 @@ fn parts_of_a_recording_merged_are_the_recording_again() {
 }
 
 #[test]
+fn a_message_that_two_recordings_have_is_written_once_and_said() {
+    let root = tempfile::tempdir().unwrap();
+    let (run, _) = run_in(&root, 300);
+    let (twice, part, with) = (root.path().join("twice"), root.path().join("part"), root.path().join("with"));
+    let options = CopyOptions::default();
+    let copied = copy(&[open(&run), open(&run)], &Select::default(), &twice, &options).unwrap();
+    let count = said(&open(&run)).len();
+    assert_eq!(said(&sound(&twice)), said(&open(&run)));
+    assert!(
+        copied.notes.concat().contains(&format!("{count} messages are in more than one")),
+        "{:?}",
+        copied.notes
+    );
+    // A part of it adds nothing, and the messages of another run stay.
+    let middle =
+        Select { start: Some(START + 100_000_000), end: Some(START + 200_000_000), ..Select::default() };
+    copy(&[open(&run)], &Select { latched: false, ..middle }, &part, &options).unwrap();
+    copy(&[open(&run), open(&part)], &Select::default(), &with, &options).unwrap();
+    assert_eq!(said(&sound(&with)), said(&open(&run)));
+}
+
+#[test]
+fn recordings_of_two_runs_in_one_are_said() {
+    let root = tempfile::tempdir().unwrap();
+    let paths = ["a", "b"].map(|name| {
+        let path = root.path().join(name);
+        let mut run = RunWriter::create(&path, name, &[], Default::default()).unwrap();
+        run.set_metadata("run", name);
+        run.finish().unwrap();
+        path
+    });
+    let sources = [open(&paths[0]), open(&paths[1])];
+    let copied =
+        copy(&sources, &Select::default(), &root.path().join("both"), &CopyOptions::default()).unwrap();
+    assert!(copied.notes.concat().contains("of several runs (a, b)"), "{:?}", copied.notes);
+}
+
+#[test]
 fn files_of_one_name_and_different_content_are_all_kept() {
     let root = tempfile::tempdir().unwrap();
     let (a, b) = (root.path().join("a"), root.path().join("b"));

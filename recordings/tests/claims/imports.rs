@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use grainlab_core::Vec3;
-use grainlab_recordings::import::{ImportError, ImportOptions, Setting, csv, lammps_data, lammps_dump, load};
+use grainlab_recordings::import::{
+    ImportError, ImportOptions, Setting, csv, extended_xyz, lammps_data, lammps_dump, load,
+};
 
 use crate::reference_packing::{golden, reference};
 
@@ -95,6 +97,84 @@ fn a_missing_sidecar_is_answered_with_the_flags_that_replace_it() {
     let cell = Some(*reference().packing.cell.matrix());
     let loaded = load(&alone, &ImportOptions { cell, ..glass() }).unwrap();
     assert_eq!(loaded.packings[0].packing, reference().packing);
+}
+
+/// What a file states and a packing cannot be, or that it does not keep, is refused.
+#[test]
+fn units_boundaries_and_counts_that_a_file_states_are_honoured_or_refused() {
+    let frame = "2\nLattice=\"1 0 0 0 1 0 0 0 1\" Properties=species:S:1:pos:R:3:radius:R:1 pbc=\"T T T\" units=\"m kg s\" step=3\n\
+        X 0.1 0.1 0.1 0.11\nX 0.1 0.1 0.3 0.11\n";
+    let xyz = |text: &str| {
+        let mut found = Vec::new();
+        extended_xyz::each(text, &glass(), &mut |p| {
+            found.push(p);
+            std::ops::ControlFlow::Continue(())
+        })
+        .map(|()| found.remove(0))
+    };
+    assert_eq!(xyz(frame).unwrap().step, 3);
+    assert_eq!(xyz(&frame.replace(" pbc=\"T T T\" units=\"m kg s\"", "")).unwrap().packing.contacts.len(), 1);
+    for (from, to, expected) in [
+        ("T T T", "T T F", "pbc T T F is not supported"),
+        ("T T T", "F F F", "pbc F F F"),
+        ("m kg s", "mm g s", "units mm g s is not supported"),
+        ("step=3", "step=abc", "step is \"abc\""),
+        ("step=3", "contact_law=glue", "glue"),
+    ] {
+        let error = xyz(&frame.replace(from, to)).unwrap_err().to_string();
+        assert!(error.contains(expected), "{to}: {error}");
+    }
+    let linear =
+        xyz(&frame.replace("step=3", "contact_law=linear contact_law_parameters=\"1e5 0.5\"")).unwrap();
+    assert_eq!(linear.packing.law.name(), "linear");
+    let sidecar =
+        |keys: &str| csv::packing(PAIR, Some(&format!("{{{keys}, \"box_L\": [1, 1, 1]}}")), &glass());
+    let right = sidecar(r#""N": 2, "n_contacts": 0, "units": "SI", "pbc": [true, true, true]"#).unwrap();
+    assert_eq!(right.packing.grains(), 2);
+    for (keys, expected) in [
+        (r#""N": 3"#, "it has 2 grains, and states 3"),
+        (r#""n_contacts": 5"#, "it has 0 contacts, and states 5"),
+        (r#""units": "mm g s""#, "units mm g s"),
+        (r#""pbc": [true, true, false]"#, "periodic"),
+    ] {
+        let error = sidecar(keys).unwrap_err().to_string();
+        assert!(error.contains(expected), "{keys}: {error}");
+    }
+    for section in ["Bonds", "Bodies"] {
+        let error = lammps_data::packing(&format!("{DATA}\n{section}\n\n1 1 10 20\n"), &glass()).unwrap_err();
+        assert!(error.to_string().contains(section), "{error}");
+    }
+    let forces = ImportOptions { contact_forces: Some("ITEM: TIMESTEP".into()), ..in_cube(1.0) };
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path().join("pair.csv");
+    std::fs::write(&path, PAIR).unwrap();
+    let error = load(&path, &forces).unwrap_err().to_string();
+    assert!(error.contains("beside a LAMMPS dump or data file only"), "{error}");
+}
+
+#[test]
+fn a_value_given_replaces_that_of_every_file_and_says_so() {
+    let sidecar = r#"{"G": 29e9, "nu": 0.2, "density": 7850, "mu_prep": 0.3, "box_L": [1, 1, 1]}"#;
+    let given = ImportOptions { density: Some(2500.0), radius: Some(0.12), ..ImportOptions::default() };
+    let found = csv::packing(PAIR, Some(sidecar), &given).unwrap();
+    assert_eq!((found.packing.material.density, found.packing.radii.clone()), (2500.0, vec![0.12; 2]));
+    let notes = found.notes.join("\n");
+    for expected in
+        ["the density of the file, 7850 kg/m3, is replaced by the one given, 2500", "the radii of the file"]
+    {
+        assert!(notes.contains(expected), "{notes}");
+    }
+    // The same value is not replaced.
+    let same = ImportOptions { density: Some(7850.0), ..ImportOptions::default() };
+    let notes = csv::packing(PAIR, Some(sidecar), &same).unwrap().notes.join("\n");
+    assert!(!notes.contains("replaced"), "{notes}");
+    let given = ImportOptions { density: Some(1000.0), radius: Some(0.2), ..glass() };
+    let data = lammps_data::packing(DATA, &given).unwrap();
+    assert_eq!(data.packing.radii, [0.2; 3]);
+    let notes = data.notes.join("\n");
+    assert!(notes.contains("2500 kg/m3, is replaced") && notes.contains("the radii of the file"), "{notes}");
+    let dump = lammps_dump::packings(DUMP, &given).unwrap().remove(0);
+    assert!(dump.packing.radii == [0.2; 2] && dump.notes.join("\n").contains("the radii of the file"));
 }
 
 #[test]

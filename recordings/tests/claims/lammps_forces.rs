@@ -75,6 +75,43 @@ fn columns_are_found_by_the_names_given_too() {
     assert!(problem(&options(other, &columns[..4])).contains("five or eight"), "four columns");
 }
 
+const HEADER: &str = "c_pl[1] c_pl[2] c_pf[1] c_pf[2] c_pf[3] c_pf[4] c_pf[5] c_pf[6] c_pf[7]";
+
+#[test]
+fn columns_that_are_not_a_normal_and_a_tangential_force_are_refused_with_those_that_fit() {
+    // compute pair/local dist fx fy fz force p1 p2 p3: force takes the place of p1.
+    let wide = |line: &str| {
+        let words: Vec<&str> = line.split(' ').collect();
+        match words.len() {
+            9.. if line.starts_with(|c: char| c.is_ascii_digit()) => {
+                format!("{} 0.001 {}", words[..6].join(" "), words[6..].join(" "))
+            }
+            _ => line.replace(HEADER, &format!("{HEADER} c_pf[8]")),
+        }
+    };
+    let with_force: Vec<String> = forces().lines().map(|line| wide(line.trim_end())).collect();
+    let error = problem(&options(with_force.join("\n"), &[]));
+    let expected = "--contact-columns 'c_pl[1],c_pl[2],c_pf[2],c_pf[3],c_pf[4],c_pf[6],c_pf[7],c_pf[8]'";
+    assert!(error.contains("the tangential force is not across it (c_pf[5] c_pf[6] c_pf[7])"), "{error}");
+    assert!(error.contains(expected), "{error}");
+    // One column to the side, and ids that are not those of the grains.
+    for (columns, expected) in [
+        (
+            ["c_pl[1]", "c_pl[2]", "c_pf[1]", "c_pf[2]", "c_pf[3]", "c_pf[5]", "c_pf[6]", "c_pf[7]"],
+            "c_pf[5],c_pf[6],c_pf[7]'",
+        ),
+        (
+            ["c_pl[1]", "c_pl[2]", "c_pf[5]", "c_pf[6]", "c_pf[7]", "c_pf[2]", "c_pf[3]", "c_pf[4]"],
+            "c_pf[5],c_pf[6],c_pf[7]'",
+        ),
+    ] {
+        let error = problem(&options(forces(), &columns));
+        assert!(error.contains("the normal force is not along") && error.contains(expected), "{error}");
+    }
+    let exchanged: Vec<String> = forces().lines().map(|l| l.replacen("55 155 ", "55 156 ", 1)).collect();
+    assert!(problem(&options(exchanged.join("\n"), &[])).contains("in 1 of 847 contacts"));
+}
+
 /// These are all forces of a granular pair style from `compute pair/local dist fx fy fz`.
 #[test]
 fn normal_forces_alone_are_refused_where_friction_acts_and_the_columns_are_named() {

@@ -3,6 +3,7 @@
 mod contact_search;
 mod copies;
 mod damage;
+mod definitions;
 mod exports;
 mod imports;
 mod lammps_forces;
@@ -11,6 +12,7 @@ mod playback;
 mod recovery;
 mod reference_packing;
 mod round_trips;
+mod start;
 mod support;
 mod write_and_read;
 mod yade;

@@ -102,6 +102,39 @@ fn a_dump_brings_back_grains_and_network_in_straight_and_tilted_cells() {
 }
 
 #[test]
+fn a_grain_has_one_id_in_all_files_for_lammps_from_one_on() {
+    for first in [0, 1, 7] {
+        let mut p = rich();
+        p.ids = (first..).take(p.grains()).collect();
+        let expected: Vec<u32> = p.ids.iter().map(|id| if first == 0 { id + 1 } else { *id }).collect();
+        let options = ImportOptions {
+            shear_modulus: Some(p.material.shear_modulus),
+            poisson_ratio: Some(p.material.poisson_ratio),
+            friction: Some(p.friction),
+            law: Some(p.law),
+            contact_forces: Some(export::lammps_local(&p)),
+            ..ImportOptions::default()
+        };
+        let dump = lammps_dump::packings(&export::lammps_dump(&p), &options).unwrap().remove(0).packing;
+        // The step of a data file is in a title of its own form.
+        let data = lammps_data::packing(
+            &export::lammps_data(&p),
+            &ImportOptions { contact_forces: None, ..options },
+        );
+        let data = data.unwrap().packing;
+        assert_eq!((&dump.ids, &data.ids), (&expected, &expected));
+        assert_eq!(dump.radii, data.radii);
+        let forces = |p: &Packing| p.contacts.iter().map(|c| (c.i, c.j, c.normal_force)).collect::<Vec<_>>();
+        for (own, read) in forces(&p).into_iter().zip(forces(&dump)) {
+            assert!(
+                (own.0, own.1) == (read.0, read.1) && (own.2 / read.2 - 1.0).abs() < 1e-9,
+                "{own:?} {read:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_cell_of_any_orientation_comes_back_from_dump_and_data_file_bit_for_bit() {
     let mut p = rich();
     let shear = Mat3::new(1.0, 0.02, -0.01, 0.02, 1.0, 0.03, -0.01, 0.03, 1.0);

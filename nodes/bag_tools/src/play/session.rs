@@ -22,6 +22,8 @@ pub(super) struct Session<'a> {
     pub(super) clock: Option<ClockOutlet>,
     /// Messages sent.
     pub(super) sent: u64,
+    /// Messages of a part of the recording whose definition is another one than that of their topic.
+    pub(super) unread: u64,
     /// Total delay, because readers were slow.
     pub(super) late: Duration,
 }
@@ -117,8 +119,12 @@ impl Session<'_> {
     /// Sends a message, waiting for slow readers; false on a signal.
     fn send(&mut self, message: &Message) -> Result<bool, Failure> {
         let Some(outlet) = self.outlets.get_mut(&message.channel.topic) else { return Ok(true) };
+        let Ok(body) = message.own_bytes() else {
+            self.unread += 1;
+            return Ok(true);
+        };
         loop {
-            match outlet.publish(self.bus, &message.payload) {
+            match outlet.publish(self.bus, &body) {
                 Ok(()) => break,
                 Err(BusError::Full { .. }) => {}
                 Err(error) => return Err(Failure::failed(error)),

@@ -47,6 +47,15 @@ impl Packing {
         Ok(self)
     }
 
+    /// Mean difference of the normal forces from those of the contact law at the same overlaps, over the mean of the latter; 0
+    /// without contacts. Forces of another law or material, and of a packing in motion, differ.
+    pub fn law_difference(&self) -> f64 {
+        let law =
+            |c: &Contact| self.law.normal_force(&self.material, self.effective_radius(c), c.overlap.max(0.0));
+        let difference: f64 = self.contacts.iter().map(|c| (c.normal_force - law(c)).abs()).sum();
+        if difference == 0.0 { 0.0 } else { difference / self.contacts.iter().map(law).sum::<f64>() }
+    }
+
     fn check_ids(&self) -> Result<(), PackingError> {
         if self.ids.windows(2).all(|w| w[0] < w[1]) {
             return Ok(());

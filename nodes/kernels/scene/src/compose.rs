@@ -6,12 +6,15 @@
 //! merged in the same way.
 
 use crate::built_in::built_in;
+use crate::contact;
 use crate::fault::{Fault, SceneError};
 use crate::model::Scene;
 use crate::overlay::overlay;
 use crate::parse::{Resolved, read};
-use crate::reader::as_number;
+use crate::reader::{Reader, as_number};
 use grainlab_core::Packing;
+use grainlab_core::contact::ContactLaw;
+use std::collections::BTreeMap;
 use toml::{Table, Value};
 
 /// The text of a base.
@@ -31,19 +34,33 @@ pub type Library<'a> = &'a dyn Fn(&str, &str) -> Result<Source, String>;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
     table: Table,
-    /// The source that contains the path of the packing to start from.
-    start_from: Option<String>,
+    /// The sources that contain the paths of files to start from, by key of `[start]`.
+    start_from: BTreeMap<&'static str, String>,
 }
+
+/// The keys of `[start]` that name files.
+const FILES: [&str; 2] = ["packing", "contact_forces"];
 
 /// The packing that a scene starts from, as written in its text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StartFile {
+    /// Its file.
+    pub packing: StartPath,
+    /// The file with its contact forces, if they are in one of their own.
+    pub contact_forces: Option<StartPath>,
+    /// Columns of that file, if they are named.
+    pub contact_columns: Vec<String>,
+    /// Solver step of the packing in a recording; `None`: the last one.
+    pub step: Option<u64>,
+}
+
+/// The path of a file to start from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StartPath {
     /// A path relative to the source that contains it.
     pub path: String,
     /// That source; `None` if the path was set outside the scene.
     pub from: Option<String>,
-    /// Solver step of the packing in a recording; `None`: the last one.
-    pub step: Option<u64>,
 }
 
 impl Scene {
@@ -89,7 +106,9 @@ impl Draft {
             }
             layers.push((source.name, table));
         }
-        let start_from = layers.iter().find(|(_, table)| names_start(table)).map(|(name, _)| name.clone());
+        let named =
+            |key: &'static str| Some((key, layers.iter().find(|(_, table)| has_key(table, key))?.0.clone()));
+        let start_from = FILES.into_iter().filter_map(named).collect();
         let mut table = layers.pop().unwrap_or_default().1;
         let mut faults = Vec::new();
         for (_, layer) in layers.into_iter().rev() {
@@ -100,9 +119,7 @@ impl Draft {
 
     /// Merges keys into the scene, as [`crate::assignment`] parses them.
     pub fn set(&mut self, keys: Table) -> Result<(), SceneError> {
-        if names_start(&keys) {
-            self.start_from = None;
-        }
+        self.start_from.retain(|key, _| !has_key(&keys, key));
         let faults = overlay(&mut self.table, keys);
         if faults.is_empty() { Ok(()) } else { Err(SceneError { faults }) }
     }
@@ -110,17 +127,33 @@ impl Draft {
     /// The packing that the scene starts from, if any: to be read and given to [`Draft::resolve_from`].
     pub fn start(&self) -> Option<StartFile> {
         let start = self.table.get("start")?.as_table()?;
-        let path = start.get("packing")?.as_str()?.to_owned();
-        let step = start.get("step").and_then(Value::as_integer).and_then(|s| u64::try_from(s).ok());
-        Some(StartFile { path, from: self.start_from.clone(), step })
+        let path = |key: &str| {
+            let path = start.get(key)?.as_str()?.to_owned();
+            Some(StartPath { path, from: self.start_from.get(key).cloned() })
+        };
+        let columns = start.get("contact_columns").and_then(Value::as_array).into_iter().flatten();
+        Some(StartFile {
+            packing: path("packing")?,
+            contact_forces: path("contact_forces"),
+            contact_columns: columns.filter_map(|name| name.as_str().map(str::to_owned)).collect(),
+            step: start.get("step").and_then(Value::as_integer).and_then(|s| u64::try_from(s).ok()),
+        })
     }
 
-    /// Sets the packing to start from by the whole path of its file and its solver step.
-    pub fn start_at(&mut self, path: &str, step: u64) {
-        let entries = [("packing", Value::from(path)), ("step", Value::from(step as i64))];
-        let start = entries.map(|(key, value)| (key.to_owned(), value));
-        self.table.insert("start".into(), Value::Table(Table::from_iter(start)));
-        self.start_from = None;
+    /// Sets the packing to start from by the whole paths of its files and its solver step. Other keys of `[start]` stay.
+    pub fn start_at(&mut self, packing: &str, contact_forces: Option<&str>, step: u64) {
+        let Some(start) = self.table.get_mut("start").and_then(Value::as_table_mut) else { return };
+        start.insert("packing".into(), packing.into());
+        start.insert("step".into(), Value::from(step as i64));
+        contact_forces.map(|path| start.insert("contact_forces".into(), path.into()));
+        self.start_from.clear();
+    }
+
+    /// The contact law of the scene, if it names a valid one: that of a packing whose file has none.
+    pub fn law(&self) -> Option<ContactLaw> {
+        let mut r = Reader::new("contact", self.table.get("contact")?.as_table()?);
+        let law = contact::read(&mut r, &ContactLaw::default());
+        r.finish().1.is_empty().then_some(law)
     }
 
     /// The friction of the first phase: its own, or that of the scene.
@@ -145,8 +178,9 @@ impl Draft {
     }
 }
 
-fn names_start(table: &Table) -> bool {
-    table.get("start").and_then(Value::as_table).is_some_and(|start| start.contains_key("packing"))
+/// Whether a table has a key of `[start]`.
+fn has_key(table: &Table, key: &str) -> bool {
+    table.get("start").and_then(Value::as_table).is_some_and(|start| start.contains_key(key))
 }
 
 fn fault(place: &str, message: impl Into<String>) -> SceneError {

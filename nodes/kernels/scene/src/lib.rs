@@ -36,7 +36,7 @@ mod until;
 
 pub use assignment::assignment;
 pub use built_in::{BUILT_IN, built_in};
-pub use compose::{Draft, Library, Source, StartFile};
+pub use compose::{Draft, Library, Source, StartFile, StartPath};
 pub use fault::{Fault, SceneError};
 pub use key::{DefaultValue, Domain, Interval, Key};
 pub use keys::KEYS;

@@ -84,6 +84,10 @@ pub struct Phase {
 pub struct Start {
     /// Path of its file.
     pub packing: String,
+    /// Path of the file with its contact forces, if they are in one of their own.
+    pub contact_forces: Option<String>,
+    /// Columns of that file, if they are named.
+    pub contact_columns: Vec<String>,
     /// Its solver step.
     pub step: Option<u64>,
 }

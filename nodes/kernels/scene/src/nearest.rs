@@ -3,12 +3,12 @@
 /// Longer words are not compared, because the cost of a distance is the product of both lengths.
 const LONGEST: usize = 64;
 
-/// The known word nearest to `word`, if it differs by one or two letters or has the same beginning.
+/// The known word nearest to `word`, and not the same, if it differs by one or two letters or has the same beginning.
 pub(crate) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     if word.len() > LONGEST {
         return None;
     }
-    let known = known.filter(|k| k.len() <= LONGEST);
+    let known = known.filter(|k| k.len() <= LONGEST && *k != word);
     let distance = |k: &str| strsim::damerau_levenshtein(word, k);
     let near = |k: &&str| distance(k) <= (k.chars().count() / 3).max(1) || is_start(word, k);
     known.filter(near).min_by_key(|k| distance(k)).map(str::to_owned)
@@ -34,5 +34,6 @@ mod tests {
         assert_eq!(of("cuont").as_deref(), Some("count"));
         assert_eq!(of("fric").as_deref(), Some("friction"));
         assert_eq!(of("colour"), None);
+        assert_eq!(of("friction"), None);
     }
 }

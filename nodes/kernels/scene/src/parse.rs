@@ -71,6 +71,9 @@ fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
     if let Some(message) = packing.and_then(|p| start::other_law(&law, p)) {
         r.fault("contact", message);
     }
+    if let Some(message) = packing.and_then(start::other_forces) {
+        r.fault("start.packing", message);
+    }
     let numerics = r.section("numerics", read_numerics);
     let mut inherited =
         Inherited { friction, taken: false, spin_drag: phases::spin_drag(&material, sizes.mean()) };

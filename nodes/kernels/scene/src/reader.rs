@@ -252,13 +252,32 @@ impl<'a> Reader<'a> {
         known.sort_unstable();
         known.dedup();
         for key in self.table.keys().filter(|k| !known.contains(&k.as_str())) {
-            let hint = nearest(key, known.iter().copied()).map_or_else(|| elsewhere(key), |k| hint(&k));
             let place = self.place_of(key);
-            let message = format!("unknown key{hint}; known here: {}", known.join(", "));
+            let problem = needs(&place).unwrap_or_else(|| {
+                let hint = nearest(key, known.iter().copied()).map_or_else(|| elsewhere(key), |k| hint(&k));
+                format!("unknown key{hint}")
+            });
+            let message = format!("{problem}; known here: {}", known.join(", "));
             self.faults.push(Fault { place, message });
         }
         (self.entries, self.faults)
     }
+}
+
+/// What a key of the format that is not taken at its own place needs; `None` if there is no such key.
+fn needs(place: &str) -> Option<String> {
+    // A place such as `phase[1] (rest).until.speed`, which in a cycle has the place of the cycle before it.
+    let path = place.rsplit_once("phase[").map_or_else(
+        || place.to_owned(),
+        |(_, own)| own.split_once('.').map_or_else(String::new, |(_, rest)| format!("phase.{rest}")),
+    );
+    let key = crate::keys::KEYS.iter().find(|k| k.path == path)?;
+    let laws = crate::keys::LAW_KEYS.iter().filter(|(_, keys)| keys.iter().any(|k| k.path == path));
+    let laws: Vec<String> = laws.map(|(law, _)| format!("law = {law:?}")).collect();
+    let kinds: Vec<String> = key.kinds.iter().map(|kind| format!("kind = {kind:?}")).collect();
+    let needed = if laws.is_empty() { kinds } else { laws };
+    let needed = if needed.is_empty() { String::new() } else { format!(" needs {};", needed.join(" or ")) };
+    Some(format!("is not taken here:{needed} {}", key.meaning))
 }
 
 /// Places in which a key of this name exists.

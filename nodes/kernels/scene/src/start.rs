@@ -1,5 +1,6 @@
 //! A run that starts from a packing: parts of the scene that have to agree with it.
 
+use crate::canonical::Entry;
 use crate::fault::Fault;
 use crate::keys;
 use crate::model::{Phase, Start};
@@ -15,12 +16,33 @@ const SAME: f64 = 1e-5;
 pub(crate) fn read(r: &mut Reader<'_>) -> Option<Start> {
     r.sub(&keys::START, |r| {
         let packing = r.text(&keys::START_PACKING);
+        let forces = &keys::START_CONTACT_FORCES;
+        let contact_forces = if r.has(forces) { Some(r.text_or(forces, None)) } else { None };
+        r.get(forces);
+        let contact_columns = columns(r);
+        if !contact_columns.is_empty() && contact_forces.is_none() {
+            r.fault("contact_columns", "names columns of contact_forces, which is missing");
+        }
         let step = r.has(&keys::START_STEP).then(|| r.whole(&keys::START_STEP));
         if step.is_none() {
             r.get(&keys::START_STEP);
         }
-        Start { packing, step }
+        Start { packing, contact_forces, contact_columns, step }
     })
+}
+
+/// The names of the columns of contact forces.
+fn columns(r: &mut Reader<'_>) -> Vec<String> {
+    let key = &keys::START_CONTACT_COLUMNS;
+    let Some(value) = r.get(key) else { return Vec::new() };
+    let names: Option<Vec<String>> =
+        value.as_array().and_then(|all| all.iter().map(|name| name.as_str().map(str::to_owned)).collect());
+    let Some(names) = names.filter(|names| [5, 8].contains(&names.len())) else {
+        r.refuse(key, Some(value));
+        return Vec::new();
+    };
+    r.keep(key, Entry::Value(value.to_string()));
+    names
 }
 
 /// Number and sizes of the grains are those of the packing.
@@ -57,6 +79,22 @@ pub(crate) fn other_law(own: &ContactLaw, packing: &Packing) -> Option<String> {
     let of = &packing.law;
     (own != of).then(|| {
         format!("is {own}, but the forces of the packing that the run starts from are those of {of}")
+    })
+}
+
+/// Normal forces of a file and those of the law that differ by more than this fraction on average are of another law, of another
+/// material, or of a packing in motion.
+const OTHER_FORCES: f64 = 0.01;
+
+/// Why the forces of the packing cannot be those of its contact law, if they cannot. The engine has normal forces from overlaps.
+pub(crate) fn other_forces(packing: &Packing) -> Option<String> {
+    let difference = packing.law_difference();
+    (difference > OTHER_FORCES).then(|| {
+        format!(
+            "normal forces of the packing differ by {:.1} % on average from those of {} with this material, from which the run would \
+             begin at another stress: give the law and the material that the forces are of, or bring the packing to rest first",
+            100.0 * difference, packing.law
+        )
     })
 }
 

@@ -162,6 +162,10 @@ fn an_unknown_key_is_named_with_a_suggestion() {
         ("grains.cuont=500", "grains.cuont: unknown key (did you mean count?)"),
         ("count=500", "count: unknown key (did you mean grains.count?)"),
         ("drag=1", "drag: unknown key (did you mean phase.NAME.drag?)"),
+        (
+            "contact.normal_stiffness=1e4",
+            "contact.normal_stiffness: is not taken here: needs law = \"linear\"; ",
+        ),
         ("grain.count=500", "grain: unknown key (did you mean grains?)"),
         ("grains.count=0", "grains.count: is 0; it must be a whole number from 1 to 10000000"),
         ("grains.count=many", "grains.count: is \"many\"; it must be a whole number from 1 to 10000000"),

@@ -300,6 +300,34 @@ fn a_run_that_starts_from_a_packing_takes_its_grains_and_its_material() {
         let error = of(&text).unwrap_err().to_string();
         assert!(error.contains(expected), "{text}: {error}");
     }
+    // Keys of the table are refused where the packing is known and where the command line sets them.
+    let mut draft = Draft::of_text(&format!("{head}foo = 3\n{rest}")).unwrap();
+    draft.start_at("/whole/p.csv", None, 5);
+    let unknown = draft.resolve_from(&packing).unwrap_err().to_string();
+    assert!(unknown.contains("start.foo: unknown key"), "{unknown}");
+    let mut draft = Draft::of_text(&format!("{head}{rest}")).unwrap();
+    draft.set(grainlab_scene::assignment("start.contact_columns=[\"a\"]").unwrap()).unwrap();
+    draft.start_at("/whole/p.csv", None, 5);
+    let columns = draft.resolve_from(&packing).unwrap_err().to_string();
+    assert!(columns.contains("start.contact_columns: is an array; it must be"), "{columns}");
+    let mut draft = Draft::of_text(&format!("{head}contact_forces = 'f.dump'\n{rest}")).unwrap();
+    draft
+        .set(grainlab_scene::assignment("start.contact_columns=[\"a\",\"b\",\"x\",\"y\",\"z\"]").unwrap())
+        .unwrap();
+    let file = draft.start().unwrap();
+    let forces = file.contact_forces.unwrap();
+    assert_eq!((forces.path.as_str(), forces.from.as_deref()), ("f.dump", Some("scene")));
+    assert_eq!(file.contact_columns, ["a", "b", "x", "y", "z"]);
+    draft.start_at("/whole/p.csv", Some("/whole/f.dump"), 5);
+    let first = draft.resolve_from(&packing).unwrap();
+    let again = Draft::of_text(&first.toml).unwrap().resolve_from(&packing).unwrap();
+    assert_eq!(again.scene.start, first.scene.start);
+    assert_eq!(first.scene.start.unwrap().contact_forces.as_deref(), Some("/whole/f.dump"));
+    let other =
+        Packing { contacts: vec![Contact { normal_force: 2e-4, ..packing.contacts[0] }], ..packing.clone() };
+    let error =
+        Draft::of_text(&format!("{head}{rest}")).unwrap().resolve_from(&other).unwrap_err().to_string();
+    assert!(error.contains("start.packing: normal forces of the packing differ by"), "{error}");
     let unread = Scene::parse(&format!("{head}{rest}")).unwrap_err().to_string();
     assert!(unread.contains("start: names a packing, which has not been read"), "{unread}");
 }
@@ -354,7 +382,7 @@ fn pair() -> Packing {
         image: [0; 3],
         overlap,
         normal: Vec3::x(),
-        normal_force: 1e-4,
+        normal_force: Material::GLASS.normal_force(1e-4 * 2e-4 / 3e-4, overlap),
         tangential_force: Vec3::y() * 1e-6,
         rolling_force: Vec3::zeros(),
     };

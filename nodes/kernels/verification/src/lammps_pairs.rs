@@ -213,7 +213,9 @@ fn central(case: &Case) -> Result<Vec<Row>, VerificationError> {
         // A contact without attraction ends earlier, and keeps more of the speed.
         if damping > 0.0 && *velocity < 0.0 {
             let kept = Damped::new(springs(linear), damping).restitution;
-            rebound.push(Point::explained(at, *velocity, v, -kept * incoming));
+            // With attraction, a dashpot keeps the restitution for which it was set.
+            let theirs = case.damping.map_or(1.0, |d| d.restitution);
+            rebound.push(Point::explained(at, *velocity, v, -kept * incoming, -theirs * incoming));
         } else {
             positions.push(Point::new(at, *position, x));
             velocities.push(Point::new(at, *velocity, v));
@@ -231,7 +233,8 @@ fn central(case: &Case) -> Result<Vec<Row>, VerificationError> {
         let row = row("rebound", "m/s", Measure::Relative, 1e-3, rebound);
         rows.push(row.with_note(
             "LAMMPS lets the dashpot attract at the end of a contact. Ours ends where the force would attract, \
-             and so keeps more of the speed: as much as the equation of motion of such a contact gives.",
+             and so keeps more of the speed: as much as the equation of motion of such a contact gives. Theirs is the restitution \
+             for which the dashpot was set.",
         ));
     }
     if let (Some(spin), Some(last)) = (case.found_spin, motions.last()) {
@@ -265,15 +268,25 @@ fn oblique(impact: &Impact) -> Result<Vec<Row>, VerificationError> {
     let slowed = impact.friction * damped.elastic_impulse * velocity.z.abs();
     // The surface of a sphere that spins about +y slides towards -x at its lowest point: friction is along +x.
     let surface = velocity.x - impact.spin * impact.radius;
+    // With attraction, and with the dashpot in the Coulomb limit: the restitution for which it was set, and the whole impulse.
+    let (theirs_kept, theirs_slowed) =
+        (impact.restitution, impact.friction * (1.0 + impact.restitution) * velocity.z.abs());
+    let along = |slowed: f64| velocity.x - slowed.copysign(surface);
     let speeds = vec![
-        Point::explained(0.0, impact.found_velocity[0], v.x, velocity.x - slowed.copysign(surface)),
-        Point::explained(1.0, impact.found_velocity[1], v.z, kept * velocity.z.abs()),
+        Point::explained(0.0, impact.found_velocity[0], v.x, along(slowed), along(theirs_slowed)),
+        Point::explained(
+            1.0,
+            impact.found_velocity[1],
+            v.z,
+            kept * velocity.z.abs(),
+            theirs_kept * velocity.z.abs(),
+        ),
     ];
-    let turned = impact.spin + (2.5 * slowed / impact.radius).copysign(surface);
-    let spin = vec![Point::explained(0.0, impact.found_spin, w, turned)];
+    let turned = |slowed: f64| impact.spin + (2.5 * slowed / impact.radius).copysign(surface);
+    let spin = vec![Point::explained(0.0, impact.found_spin, w, turned(slowed), turned(theirs_slowed))];
     let note = "LAMMPS's normal dashpot attracts at the end of a contact, and its Coulomb limit counts it; ours does neither. \
-                Explained is a sphere that slides throughout, with restitution and elastic impulse from the equation of motion \
-                of such a contact. The tolerance is that of LAMMPS's own test against the closed form.";
+                A sphere that slides throughout has ours with restitution and elastic impulse from the equation of motion \
+                of such a contact, and theirs with the restitution of the dashpot and the whole impulse. The tolerance is that of LAMMPS's own test against the closed form.";
     let row = |what: &str, unit, points| {
         let name = format!("{}, {what}", impact.name);
         let tolerance = impact.tolerance;

@@ -101,14 +101,14 @@ fn tangential() -> Result<Vec<Row>, VerificationError> {
     };
     let points = rows.iter().map(|r| Point::new(r[0], r[3], at(&same, r[0]))).collect();
     let sums = rows.iter().map(|r| {
-        let explained = clamped(&material(), r[0] as usize, STEP, OVERLAP);
-        Point::explained(r[0], r[3], at(&mindlin, r[0]), explained)
+        let own = clamped(&material(), r[0] as usize, STEP, OVERLAP);
+        Point::by_own_law(r[0], r[3], at(&mindlin, r[0]), own)
     });
     Ok(vec![
         row("their stiffness", 1e-8, points),
         row("Mindlin's stiffness", 1e-8, sums.collect()).with_note(
             "Mercury's stiffness is (2/3) 8 G* a with G* = E* (1 + nu)/2, ours Mindlin's 8 G* a with G* = E* (1 - nu)/(2 (2 - nu)): less than \
-             half of it at nu = 0.3. Explained is ours, added up by hand.",
+             half of it at nu = 0.3. Ours is Mindlin's, added up by hand; theirs is that of the row above.",
         ),
     ])
 }

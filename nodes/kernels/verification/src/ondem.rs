@@ -81,14 +81,14 @@ fn elastic() -> Result<Vec<Row>, VerificationError> {
     let sent = forces(oscillation(0.02 * DISTANCE));
     let points_sent = gold.iter().map(|r| {
         let steps = 1..=(r[0] as u32 + 1);
-        let explained = summed(steps.map(oscillation(0.02 * DISTANCE)));
-        Point::explained(r[0], r[2], sent[r[0] as usize], explained)
+        let own = summed(steps.map(oscillation(0.02 * DISTANCE)));
+        Point::by_own_law(r[0], r[2], sent[r[0] as usize], own)
     });
     Ok(vec![
         row("at the stated shear velocity", points),
         row("by the spins sent to codes", points_sent.collect()).with_note(
-            "Their spins in 1/s equal their shear velocity in m/s, so that the surfaces move (2 R - overlap)/1 m = 1.95 times as fast, and slide: \
-             explained is that motion.",
+            "Their spins in 1/s equal their shear velocity in m/s, so that the surfaces move (2 R - overlap)/1 m = 1.95 times as fast, and slide. Ours \
+             is the sum of our law over that motion; theirs is that of the row above.",
         ),
     ])
 }

@@ -13,17 +13,24 @@ pub struct Point {
     pub ours: f64,
     /// What ours should be for the reason in the note of the row, where it should not be theirs.
     pub explained: Option<f64>,
+    /// What theirs should be for that reason, by a computation that is neither theirs nor ours.
+    pub reproduced: Option<f64>,
 }
 
 impl Point {
     /// A number that should be theirs.
     pub fn new(at: f64, theirs: f64, ours: f64) -> Self {
-        Self { at, theirs, ours, explained: None }
+        Self { at, theirs, ours, explained: None, reproduced: None }
     }
 
-    /// A number that should be `explained`, for the reason in the note of the row.
-    pub fn explained(at: f64, theirs: f64, ours: f64, explained: f64) -> Self {
-        Self { explained: Some(explained), ..Self::new(at, theirs, ours) }
+    /// A number that should be `own`, by the law of this program from elsewhere: that it is explains ours, and not theirs.
+    pub fn by_own_law(at: f64, theirs: f64, ours: f64, own: f64) -> Self {
+        Self { explained: Some(own), ..Self::new(at, theirs, ours) }
+    }
+
+    /// A number that should be `explained`, for the reason in the note of the row, for which theirs should be `reproduced`.
+    pub fn explained(at: f64, theirs: f64, ours: f64, explained: f64, reproduced: f64) -> Self {
+        Self { reproduced: Some(reproduced), ..Self::by_own_law(at, theirs, ours, explained) }
     }
 }
 
@@ -59,8 +66,11 @@ impl Measure {
 pub enum Verdict {
     /// Within the tolerance.
     Passed,
-    /// Not within the tolerance, but within it of the number that follows from the reason in the note.
+    /// Not within the tolerance, for a known difference: with it, a computation of neither side gives their number, and without
+    /// it ours, both within the tolerance.
     Explained,
+    /// Not within the tolerance. Ours is what the law of this program gives, and nothing reproduces theirs.
+    Differs,
     /// The engine lacks what the comparison needs; the note says what.
     NotComparable,
     /// Outside the tolerance, without an explanation.
@@ -73,6 +83,7 @@ impl Verdict {
         match self {
             Self::Passed => "passed",
             Self::Explained => "explained",
+            Self::Differs => "differs",
             Self::NotComparable => "not_comparable",
             Self::Failed => "failed",
         }
@@ -83,6 +94,7 @@ impl Verdict {
         match self {
             Self::Passed => "passed",
             Self::Explained => "explained",
+            Self::Differs => "DIFFERS",
             Self::NotComparable => "not comparable",
             Self::Failed => "FAILED",
         }
@@ -143,13 +155,20 @@ impl Row {
 
     /// The difference from their numbers; `None` where nothing is compared.
     pub fn difference(&self) -> Option<f64> {
-        self.against(|p| p.theirs)
+        self.against(|p| p.ours, |p| p.theirs)
     }
 
     /// The difference from the explained numbers; `None` where no number is explained.
     pub fn unexplained(&self) -> Option<f64> {
         let explained = self.points.iter().any(|p| p.explained.is_some());
-        explained.then(|| self.against(|p| p.explained.unwrap_or(p.theirs))).flatten()
+        explained.then(|| self.against(|p| p.ours, |p| p.explained.unwrap_or(p.theirs))).flatten()
+    }
+
+    /// The difference of the reproduced numbers from theirs; `None` where a number that is explained is not reproduced.
+    pub fn unreproduced(&self) -> Option<f64> {
+        let mut explained = self.points.iter().filter(|p| p.explained.is_some()).peekable();
+        let reproduced = explained.peek().is_some() && explained.all(|p| p.reproduced.is_some());
+        reproduced.then(|| self.against(|p| p.reproduced.unwrap_or(p.theirs), |p| p.theirs)).flatten()
     }
 
     /// What follows.
@@ -159,7 +178,8 @@ impl Row {
         match (self.difference(), self.unexplained()) {
             (None, _) => Verdict::NotComparable,
             (Some(d), _) if within(d) => Verdict::Passed,
-            (_, Some(d)) if within(d) => Verdict::Explained,
+            (_, Some(d)) if within(d) && self.unreproduced().is_some_and(within) => Verdict::Explained,
+            (_, Some(d)) if within(d) => Verdict::Differs,
             _ => Verdict::Failed,
         }
     }
@@ -173,7 +193,7 @@ impl Row {
         self.points.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
     }
 
-    fn against(&self, wanted: impl Fn(&Point) -> f64) -> Option<f64> {
+    fn against(&self, found: impl Fn(&Point) -> f64, wanted: impl Fn(&Point) -> f64) -> Option<f64> {
         if self.points.is_empty() {
             return None;
         }
@@ -182,7 +202,7 @@ impl Row {
             self.points.iter().map(of).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
         };
         let sum = |of: &dyn Fn(&Point) -> f64| self.points.iter().map(of).sum::<f64>();
-        let difference = |p: &Point| (p.ours - wanted(p)).abs();
+        let difference = |p: &Point| (found(p) - wanted(p)).abs();
         let size = |p: &Point| wanted(p).abs();
         Some(match self.measure {
             Measure::Relative => {
@@ -222,8 +242,12 @@ mod tests {
         let of = |point| row(Measure::Relative, 0.01, vec![point]).verdict();
         assert_eq!(of(Point::new(0.0, 1.0, 1.005)), Verdict::Passed);
         assert_eq!(of(Point::new(0.0, 1.0, 1.5)), Verdict::Failed);
-        assert_eq!(of(Point::explained(0.0, 1.0, 1.5, 1.501)), Verdict::Explained);
-        assert_eq!(of(Point::explained(0.0, 1.0, 1.6, 1.501)), Verdict::Failed);
+        assert_eq!(of(Point::explained(0.0, 1.0, 1.5, 1.501, 1.001)), Verdict::Explained);
+        assert_eq!(of(Point::explained(0.0, 1.0, 1.6, 1.501, 1.001)), Verdict::Failed);
+        // What is ours by our own law, or has a reason that does not give theirs, explains nothing.
+        assert_eq!(of(Point::by_own_law(0.0, 1.0, 1.5, 1.501)), Verdict::Differs);
+        assert_eq!(of(Point::explained(0.0, 1.0, 1.5, 1.501, 1.1)), Verdict::Differs);
+        assert_eq!(of(Point::by_own_law(0.0, 1.0, 1.6, 1.501)), Verdict::Failed);
         assert_eq!(of(Point::new(0.0, 1.0, f64::NAN)), Verdict::Failed);
         assert_eq!(Row::not_comparable("s", "n", "s", "no walls").verdict(), Verdict::NotComparable);
     }

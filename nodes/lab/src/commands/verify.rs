@@ -11,8 +11,9 @@ use suites::{SUITES, Suite};
 
 const EXAMPLES: &str = "\
 Every comparison is made by the engine, the contact law and the measurements of this program. Passed: within the tolerance.
-Explained: outside it, but within it of what follows from a known difference, which the notes name. Not comparable: this
-program lacks what is needed. JSON and CSV have each source in full, and JSON every point of a curve.
+Explained: outside it for a known difference, which the notes name; with it a computation of neither side gives their number, and
+without it ours. Differs: outside it; ours is what our own law gives, and nothing reproduces theirs. Not comparable: this program
+lacks what is needed. Exit 1 if a comparison failed; those that differ are listed below the table. JSON and CSV have each source in full, and JSON every point of a curve.
 
 Examples:
   grainlab verify                       everything but the slow suites

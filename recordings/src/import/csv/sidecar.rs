@@ -7,6 +7,7 @@ use serde::Deserialize;
 use crate::import::assemble::State;
 use crate::import::error::ImportError;
 use crate::import::settings::Known;
+use crate::import::stated;
 
 #[derive(Debug, Default, Deserialize)]
 pub(super) struct Sidecar {
@@ -25,6 +26,11 @@ pub(super) struct Sidecar {
     time: Option<f64>,
     time_step: Option<f64>,
     deformation: Option<[[f64; 3]; 3]>,
+    #[serde(rename = "N")]
+    grains: Option<usize>,
+    n_contacts: Option<usize>,
+    units: Option<String>,
+    pbc: Option<serde_json::Value>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -40,7 +46,21 @@ impl Sidecar {
         serde_json::from_str(text).map_err(|e| ImportError::Sidecar(e.to_string()))
     }
 
+    /// Refuses other numbers of grains and contacts than it states.
+    pub(super) fn counts(&self, grains: usize, contacts: usize) -> Result<(), ImportError> {
+        for (what, stated, found) in
+            [("grains", self.grains, grains), ("contacts", self.n_contacts, contacts)]
+        {
+            if let Some(stated) = stated.filter(|stated| *stated != found) {
+                return Err(ImportError::Count { what, stated, found });
+            }
+        }
+        Ok(())
+    }
+
     pub(super) fn known(&self) -> Result<Known, ImportError> {
+        self.units.as_deref().map_or(Ok(()), |units| stated::units(1, units))?;
+        self.pbc.as_ref().map_or(Ok(()), |pbc| stated::periodic(1, &pbc.to_string()))?;
         let friction = match &self.mu_prep {
             None => None,
             Some(Friction::Number(mu)) => Some(*mu),

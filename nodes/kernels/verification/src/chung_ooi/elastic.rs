@@ -36,12 +36,12 @@ pub(super) fn rows(case: &Elastic) -> Result<Vec<Row>, VerificationError> {
         let point = |[overlap, force]: &[f64; 2]| {
             let overlap = 1e-6 * overlap;
             let closed = hertz.force * (overlap / hertz.overlap).min(1.0).powf(1.5);
-            Point::explained(overlap, 1e3 * force, found.force_at(overlap), closed)
+            Point::by_own_law(overlap, 1e3 * force, found.force_at(overlap), closed)
         };
         let points = case.path.iter().map(point).collect();
         let row = row("force by overlap", digitised(case.test), "N", Measure::OfSum, 0.01, points);
         rows.push(row.with_note(
-            "The digitised points scatter about Hertz's law by up to some percent; explained is that law.",
+            "The digitised points scatter about Hertz's law by up to some percent. Ours is that law in closed form.",
         ));
     }
     Ok(rows)

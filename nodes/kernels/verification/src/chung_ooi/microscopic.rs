@@ -60,7 +60,7 @@ pub(super) fn rows(
                 sliding.push(Point::new(*incidence, *theirs, ours));
             } else {
                 let same_law = impacts.find([5, material, curve], *incidence, Law::Incremental)?;
-                sticking.push(Point::explained(*incidence, *theirs, ours, quantity(same_law)));
+                sticking.push(Point::by_own_law(*incidence, *theirs, ours, quantity(same_law)));
             }
         }
         let row = |part: &str, tolerance, points| {
@@ -70,7 +70,7 @@ pub(super) fn rows(
         rows.push(row("sliding", 0.02, sliding));
         rows.push(row("sticking", 3.0 * overlap(case), sticking).with_note(
             "Where the sphere sticks, the paper's surface rebounds with some 0.8 of its speed. Neither ours nor either law of LAMMPS \
-             does, and Kratos judges the sliding part alone. Explained is LAMMPS with the same law as ours; it takes the slip at \
+             does, and Kratos judges the sliding part alone. Ours is what LAMMPS gives with the same law; it takes the slip at \
              radius R and the torque at R - overlap/2, ours both at R - overlap/2, so that a few times overlap/R remain.",
         ));
     }
@@ -93,13 +93,13 @@ pub(super) fn finite_elements(
                 let ours = quantity(impact(case, *incidence)?);
                 // Curves 2 and 3 of the impacts by LAMMPS.
                 let same_law = impacts.find([5, 0, 2 + curve], *incidence, Law::Incremental)?;
-                points.push(Point::explained(*incidence, *theirs, ours, quantity(same_law)));
+                points.push(Point::by_own_law(*incidence, *theirs, ours, quantity(same_law)));
             }
             let name = format!("test 5, {}, finite elements, {what}", case.solid.name);
             let row = Row::new(NAME, name, digitised(5), "", Measure::OfSum, 0.05, points);
             rows.push(row.with_note(
                 "Finite elements have partial slip within the area of contact, which neither ours nor LAMMPS's tangential law has. \
-                 Explained is LAMMPS with the same law.",
+                 Ours is what LAMMPS gives with the same law.",
             ));
         }
     }

@@ -15,8 +15,8 @@ const RESTITUTION: f64 = 0.98;
 
 const NOTE: &str = "At small angles the sphere sticks for part of the contact, and the result depends on the tangential spring. The \
                     paper's is the present stiffness times the whole displacement: LAMMPS with that law (mindlin) gives its curve. \
-                    Ours adds up increments of force, scaled down on unloading; explained is LAMMPS with this law \
-                    (mindlin_rescale/force).";
+                    Ours adds up increments of force, scaled down on unloading: LAMMPS with this law \
+                    (mindlin_rescale/force) gives ours.";
 
 /// What is read off a rebound.
 #[derive(Clone, Copy)]
@@ -71,8 +71,8 @@ pub(super) fn rows(
     let points = |quantity: Quantity, curve: usize, data: &mut dyn Iterator<Item = (f64, f64)>| {
         data.map(|(angle, theirs)| {
             let ours = quantity.of(impact(case, angle)?, angle);
-            let same_law = impacts.find([4, material, curve], angle, Law::Incremental)?;
-            Ok(Point::explained(angle, theirs, ours, quantity.of(same_law, angle)))
+            let by = |law| Ok(quantity.of(impacts.find([4, material, curve], angle, law)?, angle));
+            Ok(Point::explained(angle, theirs, ours, by(Law::Incremental)?, by(Law::Secant)?))
         })
         .collect::<Result<Vec<_>, VerificationError>>()
     };
@@ -107,7 +107,7 @@ pub(super) fn rows(
             0.05,
             points,
         );
-        rows.push(row.with_note("No curve of the paper goes through the measured points at small angles; explained is LAMMPS with the same law as ours."));
+        rows.push(row.with_note("No curve of the paper goes through the measured points at small angles; LAMMPS with the same law gives ours."));
     }
     Ok(rows)
 }

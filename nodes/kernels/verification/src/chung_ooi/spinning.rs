@@ -40,7 +40,7 @@ pub(super) fn rows(
         let lammps = impacts.find([case.test as usize, material, 0], *slip, Law::Incremental)?;
         by_lammps.push(Point::new(*slip, *theirs, -(lammps.v_x - lammps.spin * RADIUS) / surface));
         if *slip < SLIDING {
-            sliding.push(Point::explained(*slip, *theirs, beta, share * slip - 1.0));
+            sliding.push(Point::explained(*slip, *theirs, beta, share * slip - 1.0, slip - 1.0));
         }
     }
     let name = |part: &str| format!("test {}, {}, surface restitution, {part}", case.test, case.solid.name);
@@ -57,7 +57,7 @@ pub(super) fn rows(
     );
     let note = format!(
         "Our Coulomb limit is friction times the elastic normal force, without the dashpot: what slides transfers friction times the \
-         impulse of that part, here {share:.3} of the whole impulse. Explained is that, in closed form.{heavy}"
+         impulse of that part, here {share:.3} of the whole impulse, which theirs has. Both are closed forms.{heavy}"
     );
     Ok(vec![
         row(sliding).with_note(note),

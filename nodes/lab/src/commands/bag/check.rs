@@ -12,7 +12,8 @@ Examples:
   grainlab bag check run.mcap --format json
 
 Reads every record: framing, checksums of chunks, attachments, summary and data, the index against the messages, the order
-of files, and the recorder's ledger against the messages. Exit 0 without faults, else 3.";
+of files, the recorder's ledger against the messages, and the definitions of types against those of this program. Exit 0 without
+faults, else 3; a definition that is read by the names of its fields is no fault.";
 
 /// Arguments of `grainlab bag check`.
 #[derive(Debug, clap::Args)]
@@ -28,7 +29,10 @@ pub(crate) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let check = Recording::open(&args.path).map_err(Failure::failed)?.check();
-    let sound = check.warnings.is_empty() && check.unaccounted.is_empty() && check.lost.unwrap_or(0) == 0;
+    let sound = check.warnings.is_empty()
+        && check.unaccounted.is_empty()
+        && !check.refused
+        && check.lost.unwrap_or(0) == 0;
     print(&match args.format {
         Format::Table => text(&check),
         Format::Json => json(&check)?,
@@ -36,6 +40,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     })?;
     if args.format != Format::Table {
         check.warnings.iter().for_each(|w| say!("grainlab: {w}"));
+        check.definitions.iter().for_each(|line| say!("grainlab: {line}"));
     }
     Ok(if sound { Exit::Done } else { Exit::DataLoss })
 }
@@ -58,8 +63,9 @@ fn text(check: &Check) -> String {
     if let Some(lost) = check.lost.filter(|n| *n > 0) {
         lines.push(format!("according to the ledger, {lost} messages were published and not recorded"));
     }
+    lines.extend(check.definitions.iter().cloned());
     if lines.len() == 1 {
-        lines.push("all records, checksums, indexes and ledgers are valid".to_owned());
+        lines.push("all records, checksums, indexes, ledgers and definitions are valid".to_owned());
     }
     lines.join("\n") + "\n"
 }

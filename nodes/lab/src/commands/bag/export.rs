@@ -1,11 +1,12 @@
 //! `grainlab bag export`.
 
+use crate::commands::packings::import as import_flags;
 use clap::ValueEnum;
 use grainlab_console::Failure;
 use grainlab_console::{print, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::export::{ExportFormat, Exporter, FilePart};
-use grainlab_recordings::import::{self, ImportOptions, Imported};
+use grainlab_recordings::import::{self, Imported};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Write as _;
@@ -16,6 +17,8 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab bag export recordings/runs/s2-1-1 --format vtk --out paraview      # open grains.pvd and contacts.pvd
   grainlab bag export run.mcap --format csv --out tables
+  grainlab bag export packing.data --contact-forces forces.dump --shear-modulus 29e9 --poisson 0.2 --friction 0.3 \
+      --format csv --out tables
 
 Writes every packing of a recording, or of a file of any format that `grainlab analyze` reads, in SI units:
   csv          packing_1.csv with grains and contacts, packing_1.json with cell and material, ...: no loss
@@ -25,13 +28,14 @@ Writes every packing of a recording, or of a file of any format that `grainlab a
   vtk          grains_1.vtp and contacts_1.vtp, ..., and the collections grains.pvd and contacts.pvd
   vtkhdf       grains_1.vtkhdf and contacts_1.vtkhdf, ...: no loss
 `grainlab analyze` reads csv, lammps, lammps-data, xyz and vtkhdf back. In vtk and vtkhdf, contacts are lines between centres, with their
-forces. Existing files are not overwritten. Exit 3 if a part of the recording could not be read.";
+forces. In files for LAMMPS, ids count from 1: those of the packing, or one more if it has an id 0. Data that PATH lacks are given as to
+`grainlab analyze`. Existing files are not overwritten. Exit 3 if a part of the recording could not be read.";
 
 /// Arguments of `grainlab bag export`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Run directory or MCAP file
+    /// Run directory, MCAP file, or a file of any format that `grainlab analyze` reads
     #[arg(value_name = "PATH")]
     path: PathBuf,
     /// Folder of the new files, made if it does not exist
@@ -40,9 +44,8 @@ pub(crate) struct Args {
     /// Format of the new files
     #[arg(long, value_enum)]
     format: Format,
-    /// Topic of the packings [default: packing]
-    #[arg(long, value_name = "NAME")]
-    topic: Option<String>,
+    #[command(flatten)]
+    import: import_flags::Args,
 }
 
 /// File formats of packings.
@@ -78,8 +81,8 @@ impl From<Format> for ExportFormat {
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     std::fs::create_dir_all(&args.out)
         .map_err(|e| Failure::failed(format!("{}: {e}", args.out.display())))?;
-    let options = ImportOptions { topic: args.topic.clone(), ..ImportOptions::default() };
-    let mut writer = Writer::new(args.format.into(), &args.out);
+    let options = args.import.options()?;
+    let mut writer = Writer::new(args.format.into(), &args.path, &args.out);
     let mut failure = None;
     let warnings = import::each(&args.path, &options, &mut |imported| match writer.write(&imported) {
         Ok(()) => ControlFlow::Continue(()),
@@ -105,6 +108,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 /// Writes packings into a folder.
 struct Writer<'a> {
     exporter: Exporter,
+    path: &'a Path,
     folder: &'a Path,
     packings: u64,
     /// The files made so far, which further parts extend.
@@ -112,11 +116,13 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(format: ExportFormat, folder: &'a Path) -> Self {
-        Self { exporter: Exporter::new(format), folder, packings: 0, made: BTreeSet::new() }
+    fn new(format: ExportFormat, path: &'a Path, folder: &'a Path) -> Self {
+        Self { exporter: Exporter::new(format), path, folder, packings: 0, made: BTreeSet::new() }
     }
 
     fn write(&mut self, imported: &Imported) -> Result<(), Failure> {
+        let source = self.path.display();
+        imported.notes.iter().for_each(|note| say!("grainlab: {source}: {note}"));
         let parts = self.exporter.next(&imported.packing).map_err(Failure::failed)?;
         self.packings += 1;
         parts.iter().try_for_each(|part| self.append(part))
@@ -151,13 +157,14 @@ impl<'a> Writer<'a> {
 mod tests {
     use super::*;
     use grainlab_recordings::export::lammps_dump;
-    use grainlab_recordings::import::load;
+    use grainlab_recordings::import::{ImportOptions, load};
 
     const SIDECAR: &str = r#"{"G": 29e9, "nu": 0.2, "density": 2500, "mu_prep": 0.3, "box_L": [1, 1, 1]}"#;
     const GRAINS: &str = "p,1,0.1,0.1,0.1,0.11,0,0,0,0,0,0,0\np,2,0.1,0.1,0.3,0.11,0,0,0,0,0,0,0\n";
 
     fn args(path: PathBuf, out: PathBuf, format: Format) -> Args {
-        Args { path, out, format, topic: None }
+        let import = import_flags::Args::default();
+        Args { path, out, format, import }
     }
 
     #[test]

@@ -59,7 +59,8 @@ fn table(view: &View) -> String {
 }
 
 fn csv(info: &Info) -> String {
-    let mut t = Table::new(["topic", "type", "messages", "published", "lost", "repeated", "latched"]);
+    let mut t =
+        Table::new(["topic", "type", "messages", "published", "lost", "repeated", "latched", "definition"]);
     let count = |n: Option<u64>| n.map_or_else(String::new, |n| n.to_string());
     for topic in &info.topics {
         t.row([
@@ -70,6 +71,7 @@ fn csv(info: &Info) -> String {
             count(topic.lost),
             count(topic.repeated),
             topic.latched.to_string(),
+            topic.definition.to_owned(),
         ]);
     }
     t.csv()

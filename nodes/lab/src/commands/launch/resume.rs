@@ -14,7 +14,7 @@ use grainlab_console::scenes::SceneText;
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::last_packing;
 use grainlab_launcher::{Received, Run, Supervised};
-use grainlab_msgs::{Topic, from_cdr, msg, topics};
+use grainlab_msgs::{Topic, msg, topics};
 use grainlab_node_kit::{Exit, RunId};
 use grainlab_recordings::{ChannelInfo, Recording, Selection};
 use grainlab_results::brief::goes_on;
@@ -85,11 +85,10 @@ fn is_finished(recording: &Recording) -> bool {
         let of = |c: &ChannelInfo| Topic::of_channel(&c.topic, &c.ros_type);
         let topic = channels.iter().find(|c| of(c).is_some_and(|t| t.name == name))?;
         let messages = recording.messages(&Selection::topics([topic.topic.clone()])).ok()?;
-        messages.last().map(|m| m.payload.to_vec())
+        messages.last()
     };
-    let state = last(topics::RUN_STATE.name).and_then(|body| from_cdr::<msg::RunState>(&body).ok());
-    let found =
-        last(topics::MICROSTRUCTURE.name).and_then(|body| from_cdr::<msg::Microstructure>(&body).ok());
+    let state = last(topics::RUN_STATE.name).and_then(|m| m.decoded::<msg::RunState>().ok());
+    let found = last(topics::MICROSTRUCTURE.name).and_then(|m| m.decoded::<msg::Microstructure>().ok());
     let done = state.filter(|s| s.state == msg::RunState::FINISHED).map(|s| s.last_packing_step);
     done.is_some() && done == found.map(|m| m.source_step)
 }

@@ -220,7 +220,10 @@ fn read(
         }
         Err(error) => {
             let mut exit = match without_path(&error) {
-                ImportError::Missing(_) | ImportError::Cell(_) | ImportError::HasItsOwn(_) => Exit::Usage,
+                ImportError::Missing(_)
+                | ImportError::Cell(_)
+                | ImportError::HasItsOwn(_)
+                | ImportError::ForcesBeside => Exit::Usage,
                 _ => Exit::Failure,
             };
             let mut complaints = Vec::new();

@@ -13,7 +13,7 @@ the finished results and ends with 130. Formats are recognised by content: a rec
 c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
 (atom_style sphere), extended XYZ (pos, radius), VTKHDF (grains_1.vtkhdf, with the contacts of contacts_1.vtkhdf beside it), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
 comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). If a file lists no contacts, they are found
-from positions, with Hertz normal forces and without tangential ones. The contact forces of a LAMMPS dump need these lines,
+from positions, with Hertz normal forces and without tangential ones. A flag replaces what a file says, which is noted. The contact forces of a LAMMPS dump or data file need these lines,
 all of them with friction (fx fy fz of granular pair styles is only the normal force):
   compute pl all property/local patom1 patom2
   compute pf all pair/local dist fx fy fz p1 p2 p3
@@ -22,8 +22,8 @@ all of them with friction (fx fy fz of granular pair styles is only the normal f
 Columns are found by these names, by those of dump_modify colname (patom1 patom2 fx fy fz p1 p2 p3), or by
 --contact-columns.";
 
-/// A flag takes precedence over a file and its sidecar.
-#[derive(Debug, clap::Args)]
+/// A flag replaces what a file or its sidecar says, which is noted.
+#[derive(Debug, Default, clap::Args)]
 #[group(skip)]
 pub(crate) struct Args {
     /// Shear modulus of the grains, Pa
@@ -41,7 +41,7 @@ pub(crate) struct Args {
     /// Contact law with its parameters: hertz_mindlin, or linear:KN,RATIO with k_n in N/m and k_t/k_n
     #[arg(long, value_name = "LAW")]
     contact_law: Option<ContactLaw>,
-    /// Radius of every grain, m, for files without radii
+    /// Radius of every grain, m
     #[arg(long, value_name = "M")]
     radius: Option<f64>,
     /// Periodic cell, m: three edge lengths, or nine numbers row by row with the edge vectors as columns
@@ -50,8 +50,8 @@ pub(crate) struct Args {
     /// Topic of the packings: of recordings, or of a live run
     #[arg(long, value_name = "NAME", default_value = "packing")]
     pub(crate) topic: String,
-    /// LAMMPS `dump local` with the contact forces of a single-frame dump, also as .gz; see below for its
-    /// columns
+    /// LAMMPS `dump local` with the contact forces of a data file or of a single-frame dump, also as .gz, of normal and
+    /// tangential force (see `grainlab analyze --help`)
     #[arg(long, value_name = "FILE")]
     contact_forces: Option<PathBuf>,
     /// Its columns, if they differ: ids, normal force, tangential force (or ids and the whole force)
@@ -91,7 +91,7 @@ impl Args {
             friction: self.friction,
             law: self.contact_law,
             radius: self.radius,
-            topic: Some(self.topic.clone()),
+            topic: Some(self.topic.clone()).filter(|topic| !topic.is_empty()),
             contact_forces,
             contact_columns: self.contact_columns.clone(),
         })

@@ -11,6 +11,7 @@ pub(super) struct Judged<'a> {
     row: &'a Row,
     difference: Option<f64>,
     unexplained_difference: Option<f64>,
+    unreproduced_difference: Option<f64>,
     verdict: Verdict,
 }
 
@@ -18,7 +19,8 @@ impl<'a> Judged<'a> {
     /// The judgement of a row.
     pub(super) fn new(row: &'a Row) -> Self {
         let (difference, unexplained_difference) = (row.difference(), row.unexplained());
-        Self { row, difference, unexplained_difference, verdict: row.verdict() }
+        let unreproduced_difference = row.unreproduced();
+        Self { row, difference, unexplained_difference, unreproduced_difference, verdict: row.verdict() }
     }
 }
 
@@ -106,14 +108,24 @@ fn wrapped(begin: &str, next: &str, words: &str, width: usize) -> String {
 /// How many comparisons there are of each verdict.
 fn summary(rows: &[Row]) -> String {
     let of = |verdict| rows.iter().filter(|r| r.verdict() == verdict).count();
-    format!(
-        "{}: {} passed, {} explained, {} not comparable, {} failed\n",
+    let mut text = format!(
+        "{}: {} passed, {} explained, {} differ from their source, {} not comparable, {} failed\n",
         count(rows.len(), "comparison"),
         of(Verdict::Passed),
         of(Verdict::Explained),
+        of(Verdict::Differs),
         of(Verdict::NotComparable),
         of(Verdict::Failed)
-    )
+    );
+    for (verdict, words) in [
+        (Verdict::Differs, "DIFFERS from its source, ours being what our own law gives"),
+        (Verdict::Failed, "FAILED"),
+    ] {
+        for row in rows.iter().filter(|r| r.verdict() == verdict) {
+            text += &wrapped("  ", "    ", &format!("{words}: {}, {}", row.suite, row.name), WIDTH);
+        }
+    }
+    text
 }
 
 /// One line a comparison, with the point of the largest difference.
@@ -131,6 +143,8 @@ pub(super) fn csv(rows: &[Row]) -> String {
         "measure",
         "difference",
         "unexplained_difference",
+        "reproduced",
+        "unreproduced_difference",
         "tolerance",
         "verdict",
         "note",
@@ -150,6 +164,8 @@ pub(super) fn csv(rows: &[Row]) -> String {
             row.measure.name().to_owned(),
             exact(row.difference()),
             exact(row.unexplained()),
+            exact(worst.and_then(|p| p.reproduced)),
+            exact(row.unreproduced()),
             exact(Some(row.tolerance)),
             row.verdict().name().to_owned(),
             row.note.clone(),
@@ -200,7 +216,8 @@ mod tests {
         };
         let rows = [
             row("same", vec![Point::new(0.0, 2.0, 2.0), Point::new(1.0, 1.0, 1.001)]),
-            row("other law", vec![Point::explained(0.0, 1.0, 1.5, 1.5)]).with_note("Another law."),
+            row("other law", vec![Point::explained(0.0, 1.0, 1.5, 1.5, 1.0)]).with_note("Another law."),
+            row("own law", vec![Point::by_own_law(0.0, 1.0, 1.5, 1.5)]).with_note("Another law."),
             Row::not_comparable("suite", "walls", "Somebody", "There are none."),
         ];
         let text = text(&rows);
@@ -209,20 +226,22 @@ mod tests {
         assert!(lines[3].starts_with("  same ") && lines[3].ends_with("passed"), "{text}");
         assert!(lines[3].contains("1.0010 N") && lines[3].contains(" 1.0e-3    1e-2 "), "{text}");
         assert!(lines[4].ends_with("explained [1]"), "{text}");
+        assert!(lines[5].ends_with("DIFFERS [1]"), "{text}");
         assert_eq!(
-            lines[5..],
+            lines[6..],
             [
                 "  walls: not comparable [2]",
                 "  [1] Another law.",
                 "  [2] There are none.",
                 "",
-                "3 comparisons: 1 passed, 1 explained, 1 not comparable, 0 failed"
+                "4 comparisons: 1 passed, 1 explained, 1 differ from their source, 1 not comparable, 0 failed",
+                "  DIFFERS from its source, ours being what our own law gives: suite, own law"
             ]
         );
         let csv = csv(&rows);
         assert!(csv.lines().nth(2).unwrap().contains("explained,Another law."), "{csv}");
         assert!(
-            csv.lines().nth(3).unwrap().contains(",relative,") && csv.contains(",not_comparable,"),
+            csv.lines().nth(4).unwrap().contains(",relative,") && csv.contains(",not_comparable,"),
             "{csv}"
         );
     }
@@ -230,7 +249,8 @@ mod tests {
     #[test]
     fn long_names_sources_and_notes_take_several_lines_of_at_most_100_columns() {
         let words = "a note of many words ".repeat(20);
-        let points = vec![Point::explained(0.0, -1.234_567e-12, -1.234_567e12, -1.234_567e12)];
+        let points =
+            vec![Point::explained(0.0, -1.234_567e-12, -1.234_567e12, -1.234_567e12, -1.234_567e-12)];
         let name = "500 smooth spheres, 36 moduli, with the term of the normal forces";
         let row = Row::new("a-suite", name, words.clone(), "rad/s", Measure::Relative, 1.9e-2, points);
         let text = text(&[row.with_note(words)]);

@@ -1,0 +1,138 @@
+//! The packing that a scene starts from.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use grainlab_core::{Contact, Packing};
+use grainlab_scene::{Draft, StartFile, StartPath};
+
+use super::{ImportError, ImportOptions, Imported, Setting, each, text};
+
+/// A packing to start from, with its exact place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// The packing.
+    pub packing: Packing,
+    /// The whole path of its file.
+    pub path: PathBuf,
+    /// The whole path of the file with its contact forces, if they are in one of their own.
+    pub contact_forces: Option<PathBuf>,
+    /// Its solver step.
+    pub step: u64,
+    /// Warnings, one line each.
+    pub notes: Vec<String>,
+}
+
+/// Why a scene cannot start from its packing.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// A file cannot be read.
+    #[error("start.{key}: {source}")]
+    File {
+        /// The key of `[start]` that names it.
+        key: &'static str,
+        /// The reason.
+        source: Box<ImportError>,
+    },
+    /// The file lacks data that the scene has to give.
+    #[error(
+        "start.packing: {0}; name shear_modulus, poisson_ratio and density under [material], and the friction of the first phase"
+    )]
+    Lacks(Box<ImportError>),
+    /// The file has no packing of the step.
+    #[error("start.step: {path} has no packing of step {step}")]
+    NoStep {
+        /// The file.
+        path: PathBuf,
+        /// The step asked for.
+        step: u64,
+    },
+}
+
+/// Reads the packing named by `file`: that of its step, or the last one. Data that the file lacks are taken from the scene.
+///
+/// # Errors
+/// See [`StartError`].
+pub fn start(draft: &Draft, file: &StartFile) -> Result<Start, StartError> {
+    let path = whole("packing", &file.packing)?;
+    let contact_forces =
+        file.contact_forces.as_ref().map(|forces| whole("contact_forces", forces)).transpose()?;
+    let failed = |key| move |source: ImportError| StartError::File { key, source: Box::new(source) };
+    let given = ImportOptions {
+        contact_forces: contact_forces.as_deref().map(text).transpose().map_err(failed("contact_forces"))?,
+        contact_columns: file.contact_columns.clone(),
+        ..ImportOptions::default()
+    };
+    let found = match pick(&path, file.step, &given) {
+        Err(error) => match missing(&error) {
+            Some(missing) => pick(&path, file.step, &of_scene(draft, missing, given)),
+            None => Err(error),
+        },
+        found => found,
+    };
+    let found = found.map_err(|e| match missing(&e) {
+        Some(_) => StartError::Lacks(Box::new(e)),
+        None => failed("packing")(e),
+    })?;
+    let Some(Imported { packing, step, mut notes, .. }) = found else {
+        return Err(StartError::NoStep { path, step: file.step.unwrap_or_default() });
+    };
+    notes.extend(draft.first_friction().and_then(|friction| cut(&packing, friction)));
+    Ok(Start { packing, path, contact_forces, step, notes })
+}
+
+/// The whole path of a file named under a key of `[start]`.
+fn whole(key: &'static str, file: &StartPath) -> Result<PathBuf, StartError> {
+    let folder = file.from.as_deref().map(Path::new).and_then(Path::parent).unwrap_or(Path::new(""));
+    let path = folder.join(&file.path);
+    path.canonicalize()
+        .map_err(|source| StartError::File { key, source: Box::new(ImportError::Io { path, source }) })
+}
+
+/// The packing of this step, or the last one.
+fn pick(path: &Path, step: Option<u64>, options: &ImportOptions) -> Result<Option<Imported>, ImportError> {
+    let mut found = None;
+    each(path, options, &mut |imported| {
+        let wanted = step.is_none_or(|step| step == imported.step);
+        if wanted {
+            found = Some(imported);
+        }
+        if wanted && step.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    Ok(found)
+}
+
+fn missing(error: &ImportError) -> Option<&[Setting]> {
+    match error {
+        ImportError::Missing(settings) => Some(settings),
+        ImportError::In { source, .. } => missing(source),
+        _ => None,
+    }
+}
+
+/// The values of the scene for data that the file lacks.
+fn of_scene(draft: &Draft, missing: &[Setting], forces: ImportOptions) -> ImportOptions {
+    let given = |setting, value: Option<f64>| value.filter(|_| missing.contains(&setting));
+    ImportOptions {
+        shear_modulus: given(Setting::ShearModulus, draft.material("shear_modulus")),
+        poisson_ratio: given(Setting::PoissonRatio, draft.material("poisson_ratio")),
+        density: given(Setting::Density, draft.material("density")),
+        friction: given(Setting::Friction, draft.first_friction()),
+        // A file that lacks a material lacks a law, too.
+        law: draft.law(),
+        ..forces
+    }
+}
+
+/// A warning of contacts that the friction of the first phase cannot hold.
+fn cut(packing: &Packing, friction: f64) -> Option<String> {
+    let slides = |c: &&Contact| c.tangential_force.norm() > 1.001 * friction * c.normal_force;
+    let count = packing.contacts.iter().filter(slides).count();
+    (friction > 0.0 && count > 0).then(|| {
+        format!(
+            "{count} of {} contacts carry more tangential force than the friction {friction} of the first phase holds: they slide at \
+             once, and the run does not begin at the stress of the packing",
+            packing.contacts.len()
+        )
+    })
+}

@@ -1,0 +1,100 @@
+//! Runs that begin with a packing of LAMMPS and its contact forces (`tests/golden/lammps/make.in`).
+
+use std::path::{Path, PathBuf};
+
+use grainlab_experiment::Simulation;
+use grainlab_recordings::import::{self, Start, StartError};
+use grainlab_scene::{Draft, SceneError, Source};
+
+fn golden() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/golden/lammps")
+}
+
+/// A triaxial path from the packing, with these lines in `[start]` and these tables.
+fn draft(start: &str, tables: &str, friction: f64) -> Draft {
+    let text = format!(
+        "name = 'from_lammps'\n[start]\npacking = 'grains.dump.gz'\n{start}\n{tables}\n[[phase]]\nkind = 'servo'\n\
+         friction = {friction}\ncontrol = {{ xx = {{ stress = 1.3e5 }}, yy = {{ stress = 1e5 }}, zz = {{ rate = -2.0 }} }}\n\
+         until = {{ strain = {{ zz = -0.001 }} }}\n"
+    );
+    let source = Source { name: golden().join("scene.toml").to_string_lossy().into_owned(), text };
+    Draft::of(&source, &|_, _| Err("no base".into())).unwrap()
+}
+
+fn start(draft: &Draft) -> Result<Start, StartError> {
+    import::start(draft, &draft.start().unwrap())
+}
+
+fn begun(mut draft: Draft, found: &Start) -> Result<Simulation, SceneError> {
+    let forces = found.contact_forces.as_ref().map(|path| path.to_string_lossy());
+    draft.start_at(&found.path.to_string_lossy(), forces.as_deref(), found.step);
+    let scene = draft.resolve_from(&found.packing)?.scene;
+    Ok(Simulation::from_packing(scene, &found.packing).unwrap())
+}
+
+const FORCES: &str = "contact_forces = 'forces.dump.gz'";
+const GLASS: &str = "[material]\nshear_modulus = 29e9\npoisson_ratio = 0.2\ndensity = 2500";
+
+#[test]
+fn a_frictional_packing_of_lammps_starts_at_rest_at_its_own_stress_and_goes_along_a_triaxial_path() {
+    let draft = draft(FORCES, GLASS, 0.3);
+    let found = start(&draft).unwrap();
+    assert!(found.notes.is_empty(), "{:?}", found.notes);
+    let mut run = begun(draft, &found).unwrap();
+    let first = run.request().unwrap().observables;
+    assert!(first.unbalanced < 1e-8, "{:e}", first.unbalanced);
+    let known = std::fs::read_to_string(golden().join("stress.txt")).unwrap();
+    let known: Vec<f64> = known.split_whitespace().map(|v| v.parse().unwrap()).collect();
+    // LAMMPS's order is xx yy zz xy xz yz.
+    for (own, k) in first.stress.tensor.voigt().into_iter().zip([0, 1, 2, 5, 4, 3]) {
+        assert!((own - known[k]).abs() < 1e-9 * known[0], "{own} {}", known[k]);
+    }
+    for _ in 0..50 {
+        let request = run.request().unwrap();
+        let answer = grainlab_servo::control(&request.servo_input()).unwrap();
+        run.advance(&answer.rate).unwrap();
+    }
+    let later = run.request().unwrap().observables;
+    let axial = |o: &grainlab_dem::Observables| o.stress.tensor.voigt()[2];
+    assert!(axial(&later) > axial(&first) && later.unbalanced < 0.05, "{later:?}");
+}
+
+#[test]
+fn without_its_forces_the_same_packing_is_far_from_rest() {
+    let draft = draft("", GLASS, 0.3);
+    let found = start(&draft).unwrap();
+    assert!(found.notes.iter().any(|n| n.contains("no tangential forces")), "{:?}", found.notes);
+    assert!(begun(draft, &found).unwrap().request().unwrap().observables.unbalanced > 0.01);
+}
+
+#[test]
+fn forces_that_the_run_would_change_at_once_are_said_or_refused() {
+    let low = draft(FORCES, GLASS, 0.1);
+    let notes = start(&low).unwrap().notes;
+    assert!(notes.iter().any(|n| n.contains("of 847 contacts carry more tangential force")), "{notes:?}");
+    // Another material, and another law.
+    for tables in [
+        GLASS.replace("29e9", "25e9"),
+        format!("{GLASS}\n[contact]\nlaw = 'linear'\nnormal_stiffness = 1e5\nstiffness_ratio = 0.5"),
+    ] {
+        let other = draft(FORCES, &tables, 0.3);
+        let found = start(&other).unwrap();
+        let error = begun(other, &found).unwrap_err().to_string();
+        assert!(error.contains("start.packing: normal forces of the packing differ by"), "{error}");
+    }
+}
+
+#[test]
+fn files_and_columns_that_are_not_there_are_named_by_their_key() {
+    for (lines, expected) in [
+        ("contact_forces = 'nothing.dump'", "start.contact_forces: "),
+        (
+            "contact_forces = 'forces.dump.gz'\ncontact_columns = ['a', 'b', 'x', 'y', 'z']",
+            "there is no column a",
+        ),
+        ("contact_forces = 'forces.dump.gz'\nstep = 3", "start.step: "),
+    ] {
+        let error = start(&draft(lines, GLASS, 0.3)).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
