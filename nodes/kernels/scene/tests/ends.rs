@@ -49,7 +49,6 @@ fn a_phase_that_cannot_end_is_refused_with_the_reason() {
         (GAS, relax("elapsed = 0.1") + "\nrecord = { every_strain = 1e-3 }", "publishes nothing"),
     ] {
         let error = Scene::parse(&scene(gas, &phase)).unwrap_err();
-        assert_eq!(error.faults.len(), 1, "{phase}: {error}");
         assert!(error.to_string().contains(reason), "{phase}: {error}");
     }
 }
