@@ -121,7 +121,7 @@ fn launches_without_a_domain_take_one_each_lose_nothing_and_print_one_screen() {
         let ended = launcher.ended(LIMIT);
         assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
         assert!((5..=20).contains(&ended.stdout.lines().count()), "{}", ended.stdout);
-        for word in ["G12", "inferred k", "relaxed", "0 lost", "summary.json", "analyze"] {
+        for word in ["G12", "est. k", "relaxed", "0 lost", "summary.json", "analyze"] {
             assert!(ended.stdout.contains(word), "{word} is missing from:\n{}", ended.stdout);
         }
     }

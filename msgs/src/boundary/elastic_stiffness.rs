@@ -27,10 +27,11 @@ pub(super) fn elastic_stiffness_message(s: &ElasticStiffness) -> msg::ElasticSti
     }
 }
 
-/// The content of the field `stiffness` of a message.
+/// The content of the field `stiffness` of a message, which says whether it is `smooth`.
 pub(super) fn elastic_stiffness(
     check: Check,
     m: &msg::ElasticStiffness,
+    smooth: bool,
 ) -> Result<ElasticStiffness, BoundaryError> {
     let name = |field: &str| format!("stiffness.{field}");
     let matrix = |field: &str, values: &[f64; 36]| {
@@ -42,6 +43,7 @@ pub(super) fn elastic_stiffness(
     }
     let method = StiffnessMethod::ALL.into_iter().find(|method| code(*method) == m.method);
     Ok(ElasticStiffness {
+        smooth,
         method: method.ok_or_else(|| {
             let known = "0 (frozen network), 2 (probe), 4 (prestressed network)";
             check.code(&name("method"), m.method, known)

@@ -92,7 +92,7 @@ pub fn moduli_message(
         grain_density: report.material.density,
         contact_law: report.law.name().to_owned(),
         contact_law_parameters: report.law.parameters(),
-        smooth: false,
+        smooth: stiffness.smooth,
         stiffness: vec![elastic_stiffness_message(stiffness)],
     };
     ModuliReading::try_from(&message)?;
@@ -130,7 +130,8 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
                 .not_negative("grain_poisson_ratio_stddev", m.grain_poisson_ratio_stddev)?,
             contact_law: CHECK.optional_contact_law(&m.contact_law, &m.contact_law_parameters)?,
             smooth: m.smooth,
-            stiffness: CHECK.optional("stiffness", &m.stiffness, |_, s| elastic_stiffness(CHECK, s))?,
+            stiffness: CHECK
+                .optional("stiffness", &m.stiffness, |_, s| elastic_stiffness(CHECK, s, m.smooth))?,
         })
     }
 }

@@ -25,8 +25,10 @@ pub(crate) fn report() -> PackingReport {
         step: 7,
         material: Material::GLASS,
         law: ContactLaw::default(),
+        friction: 0.3,
         solid_fraction: 0.64,
         size_spread: 0.1,
+        strain: None,
         stress: Stress { tensor: SymTensor::isotropic(5e4), asymmetry: 0.0 },
         unbalanced_force_ratio: None,
         contacts: contacts(),
@@ -62,6 +64,7 @@ fn stiffness() -> ElasticStiffness {
     let uniform_rotation = TransverseIsotropy { c11: 460e6, g13: 199e6, ..relaxed };
     ElasticStiffness {
         method: StiffnessMethod::FrozenNetwork,
+        smooth: false,
         tensor: relaxed.stiffness(),
         stddev: Stiffness::from_row_major(&[0.5; 36]),
         residual: 1e-9,

@@ -100,7 +100,7 @@ pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Resu
         grain_poisson_ratio: packing.material.poisson_ratio,
         grain_poisson_ratio_stddev: 0.0,
         contact_law: Some(packing.law),
-        smooth: false,
+        smooth: found.smooth,
         speeds: found.waves.clone(),
         warnings: found.warnings.iter().map(ToString::to_string).collect(),
     };

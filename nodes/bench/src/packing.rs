@@ -2,7 +2,7 @@
 
 use flate2::read::GzDecoder;
 use grainlab_console::Failure;
-use grainlab_core::{Cell, Material, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Material, Packing, Vec3};
 use grainlab_recordings::import::{ImportOptions, lammps_data, load as load_file};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -75,9 +75,53 @@ pub(crate) fn repeated(packing: &Packing, copies: u32) -> Option<(Cell, Vec<Vec3
     Some((cell, centres))
 }
 
+/// The packing repeated `copies` times along each edge of its cell, with its contacts and their forces.
+pub(crate) fn replicated(packing: &Packing, copies: u32) -> Option<Packing> {
+    let (cell, positions) = repeated(packing, copies)?;
+    let (grains, times) = (packing.grains() as u32, copies.pow(3));
+    let along = i64::from(copies);
+    let mut contacts = Vec::with_capacity(packing.contacts.len() * times as usize);
+    for copy in 0..times {
+        let place = [copy / (copies * copies), copy / copies % copies, copy % copies].map(i64::from);
+        for c in &packing.contacts {
+            let reached: [i64; 3] = std::array::from_fn(|k| place[k] + i64::from(c.image[k]));
+            let [a, b, d] = reached.map(|k| k.rem_euclid(along) as u32);
+            let image = reached.map(|k| k.div_euclid(along) as i8);
+            let (i, j) = (copy * grains + c.i, ((a * copies + b) * copies + d) * grains + c.j);
+            contacts.push(if i < j || (i == j && image > [0; 3]) {
+                Contact { i, j, image, ..*c }
+            } else {
+                let (normal, tangential_force) = (-c.normal, -c.tangential_force);
+                Contact { i: j, j: i, image: image.map(|k| -k), normal, tangential_force, ..*c }
+            });
+        }
+    }
+    contacts.sort_unstable_by_key(|c| (c.i, c.j, c.image));
+    let times = times as usize;
+    Some(Packing {
+        cell,
+        ids: (0..positions.len() as u32).collect(),
+        radii: packing.radii.repeat(times),
+        velocities: packing.velocities.repeat(times),
+        spins: packing.spins.repeat(times),
+        positions,
+        contacts,
+        ..*packing
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn copies_have_the_contacts_and_the_stress_of_the_packing() {
+        let packing = load(None).unwrap();
+        let copies = replicated(&packing, 2).unwrap().validated().unwrap().consistent().unwrap();
+        assert_eq!(copies.contacts.len(), 8 * packing.contacts.len());
+        let [one, eight] = [&packing, &copies].map(|p| grainlab_core::stress::stress(p).tensor.voigt());
+        assert!(one.iter().zip(eight).all(|(a, b)| (a - b).abs() < 1e-9 * one[0]), "{one:?} {eight:?}");
+    }
 
     #[test]
     fn the_packing_built_in_has_the_coordination_that_lammps_found() {

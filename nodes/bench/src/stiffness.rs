@@ -70,7 +70,8 @@ fn replicated(packing: &Packing, copies: u32) -> Result<Packing, Failure> {
         thermostat_speed: None,
     };
     let radii = packing.radii.repeat((copies as usize).pow(3));
-    let mut engine = Engine::new(cell, packing.material, radii, &centres, setting);
+    let mut engine = Engine::new(cell, packing.material, radii, &centres, setting)
+        .map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
     engine.sort_spatially();
     engine.initialise().map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
     Ok(engine.packing(Mat3::identity()))

@@ -2,7 +2,8 @@
 
 use crate::Settings;
 use grainlab_core::Packing;
-use grainlab_core::results::{Elasticity, LeftOut, NotJammed, PackingReport};
+use grainlab_core::results::{Elasticity, NotJammed, PackingReport, SpringNote};
+use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::{MicroError, analyze};
 use grainlab_msgs::boundary::{BoundaryError, fabric_message, moduli_message};
 use grainlab_msgs::std_msgs::Header;
@@ -15,8 +16,8 @@ pub struct Measured {
     pub fabric: msg::Fabric,
     /// Its stiffness, or the reason why it has none.
     pub moduli: Result<msg::Moduli, NotJammed>,
-    /// What the stiffness leaves out of the contact law.
-    pub left_out: Option<LeftOut>,
+    /// What a reader should know about its springs.
+    pub notes: Vec<SpringNote>,
 }
 
 /// Why a packing is not measured.
@@ -50,14 +51,15 @@ pub enum MeasureError {
 pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
-    let found = analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
-    let stiffness = found.report.stiffness();
-    let left_out = stiffness.and_then(|stiffness| stiffness.method.leaves_out(&packing.law));
-    Ok(Measured { left_out, ..messages(&message.header, &found.report)? })
+    let mut found =
+        analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
+    PathPosition::of(&message.run_state).inspect(|position| position.judge_strain(&mut found.report));
+    let notes = found.report.stiffness().map(|s| SpringNote::of(&packing, s.method, s.smooth));
+    Ok(Measured { notes: notes.unwrap_or_default(), ..messages(&message.header, &found.report)? })
 }
 
 /// The messages for a measured packing; `header` is that of the message of the packing. The caller
-/// finds what the stiffness leaves out.
+/// finds the notes.
 pub fn messages(header: &Header, report: &PackingReport) -> Result<Measured, MeasureError> {
     let unfit = |reason| MeasureError::Result { step: report.step, reason };
     let fabric = fabric_message(header.clone(), report).map_err(unfit)?;
@@ -67,5 +69,5 @@ pub fn messages(header: &Header, report: &PackingReport) -> Result<Measured, Mea
             Ok(moduli_message(header.clone(), report, stiffness).map_err(unfit)?)
         }
     };
-    Ok(Measured { fabric, moduli, left_out: None })
+    Ok(Measured { fabric, moduli, notes: Vec::new() })
 }

@@ -53,8 +53,8 @@ impl Measure for Analysis {
         match &measured.moduli {
             Ok(moduli) => {
                 self.moduli.publish_about(bus, moduli, about)?;
-                if let Some(left_out) = measured.left_out {
-                    log::warn!("packing of step {step}: {left_out}");
+                for note in &measured.notes {
+                    log::warn!("packing of step {step}: {note}");
                 }
                 let fabric = &measured.fabric;
                 let (k, z) = (fabric.contacts.coordination, fabric.contacts.mechanical_coordination);

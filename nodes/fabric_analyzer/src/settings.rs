@@ -29,6 +29,13 @@ pub fn parameters() -> Vec<ParameterSpec> {
              term), probe (small strains of the packing itself, a hundred times slower)",
         )
         .within(Range::Choice(&["network", "prestressed", "probe"])),
+        ParameterSpec::new(
+            "springs",
+            "carried",
+            "springs of the contacts: carried (no tangential ones in a packing without friction), both, normal; without \
+             effect on the method prestressed, which has normal ones",
+        )
+        .within(Range::Choice(&["carried", "both", "normal"])),
         ParameterSpec::new("amplitude", StrainProbe::default().amplitude, "strain of the probe, 1")
             .within(Range::Double { min: 1e-12, max: 1e-2 }),
     ]
@@ -53,15 +60,18 @@ impl TryFrom<&Parameters> for Settings {
         let axis = direction.ok_or(SettingsError(axis))?;
         let method: String = parameters.get("method");
         let amplitude = parameters.get("amplitude");
-        let probe = StrainProbe { amplitude, ..StrainProbe::default() };
+        let springs: String = parameters.get("springs");
+        let (springs, friction) = match springs.as_str() {
+            _ if method == "prestressed" => (Springs::PrestressedNormal, None),
+            "both" => (Springs::NormalAndTangential, Some(f64::INFINITY)),
+            "normal" => (Springs::Normal, Some(0.0)),
+            _ => (Springs::Carried, None),
+        };
+        let probe = StrainProbe { amplitude, friction, ..StrainProbe::default() };
         Ok(Self(grainlab_micromechanics::Settings {
             tolerance: parameters.get("tolerance"),
             axis,
-            springs: if method == "prestressed" {
-                Springs::PrestressedNormal
-            } else {
-                Springs::NormalAndTangential
-            },
+            springs,
             probe: (method == "probe").then_some(probe),
             ..grainlab_micromechanics::Settings::default()
         }))

@@ -120,3 +120,27 @@ fn an_interrupted_analysis_prints_what_it_has() {
     assert!((1..FILES).contains(&count), "{count}");
     assert!(err.contains(&format!("interrupted: {count} packing")), "{err}");
 }
+
+/// Moduli, and whether they are those of smooth grains, of 500 grains without friction.
+fn of_smooth_grains(command: &str, flags: &[&str]) -> Value {
+    let file =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/golden/packings/smooth_500.csv.gz");
+    let mut grainlab = Command::new(env!("CARGO_BIN_EXE_grainlab"));
+    let out = grainlab.arg(command).arg(file).args(flags).args(["--format", "json"]).output().unwrap();
+    assert_eq!(out.status.code(), Some(0), "{}", String::from_utf8_lossy(&out.stderr));
+    let mut states: Value = serde_json::from_slice(&out.stdout).unwrap();
+    let state = states[0].take();
+    serde_json::json!([state["smooth"], state["stiffness_pa"], state["theta_bound_pa"], state["g12_pa"]])
+}
+
+#[test]
+fn grains_without_friction_have_no_tangential_springs_in_analyze_and_probe_unless_asked_for() {
+    let smooth = of_smooth_grains("analyze", &[]);
+    assert_eq!(smooth[0], true);
+    assert_eq!(smooth, of_smooth_grains("analyze", &["--smooth"]));
+    assert_eq!(smooth, of_smooth_grains("analyze", &["--springs", "normal"]));
+    assert_eq!(smooth, of_smooth_grains("probe", &["--survey", "three"]));
+    let both = of_smooth_grains("analyze", &["--springs", "both"]);
+    assert_eq!(both[0], false);
+    assert!(both[3].as_f64() > Some(2.0 * smooth[3].as_f64().unwrap()), "{both} {smooth}");
+}

@@ -82,3 +82,48 @@ fn wrong_usage_of_the_bench_is_refused_with_what_would_do() {
         assert!(err.contains(word), "{word:?} is missing for {arguments:?}: {err}");
     }
 }
+
+/// The packing of 500 grains from LAMMPS, as if it had this friction.
+fn with_friction(folder: &std::path::Path, friction: f64) -> String {
+    let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/reference/ref_packing_500");
+    let sidecar = std::fs::read_to_string(format!("{golden}.json")).unwrap();
+    let mut sidecar: Value = serde_json::from_str(&sidecar).unwrap();
+    sidecar["mu_prep"] = friction.into();
+    std::fs::write(folder.join("mine.json"), sidecar.to_string()).unwrap();
+    std::fs::copy(format!("{golden}.csv.gz"), folder.join("mine.csv.gz")).unwrap();
+    folder.join("mine.csv.gz").display().to_string()
+}
+
+#[test]
+fn a_packing_keeps_its_friction_and_one_that_dissolves_has_no_rate() {
+    let folder = tempfile::tempdir().unwrap();
+    let stepped = |friction: f64| {
+        let file = with_friction(folder.path(), friction);
+        let flags = [
+            "--grains",
+            "500",
+            "--threads",
+            "1",
+            "--steps",
+            "4000",
+            "--repetitions",
+            "1",
+            "--format",
+            "json",
+        ];
+        dem(&[&["--packing", &file], &flags[..]].concat())
+    };
+    let kept = stepped(0.5);
+    let err = String::from_utf8_lossy(&kept.stderr);
+    assert_eq!(kept.status.code(), Some(0), "{err}");
+    assert!(err.contains("friction 0.5"), "{err}");
+    let rows: Value = serde_json::from_slice(&kept.stdout).unwrap();
+    let rows = rows["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), &rows[0]["features"]), (1, &"coulomb".into()));
+    assert!((rows[0]["coordination"].as_f64().unwrap() / 5.108 - 1.0).abs() < 0.02, "{rows:?}");
+    let dissolved = stepped(0.001);
+    let err = String::from_utf8_lossy(&dissolved.stderr);
+    assert_eq!(dissolved.status.code(), Some(4), "{err}");
+    assert!(err.contains("coordination number went from 5.108"), "{err}");
+    assert!(dissolved.stdout.is_empty());
+}

@@ -103,6 +103,29 @@ fn a_packing_that_carries_no_wave_is_reported_and_ends_with_exit_code_4() {
 }
 
 #[test]
+fn everything_in_one_answer_is_about_the_axis_asked_for_which_it_names() {
+    let axis = ["--axis=1,0,0", "--survey", "three"];
+    let state = probed(&axis);
+    let about = serde_json::json!([1.0, 0.0, 0.0]);
+    assert_eq!((&state["reference_axis"], &state["acoustic"]["axis"]), (&about, &about));
+    let file = reference();
+    let analysed = grainlab(&["analyze", file.to_str().unwrap(), "--axis=1,0,0", "--format", "json"]);
+    let analysed: Value = serde_json::from_slice(&analysed.stdout).unwrap();
+    for key in ["g12_pa", "g13_pa", "eps", "axial_q_over_p"] {
+        assert_eq!(state[key], analysed[0][key], "{key}");
+    }
+    let text = grainlab(&[&["probe", file.to_str().unwrap()], &axis[..]].concat());
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(text.contains("G12 and G13 are about (1.00, 0.00, 0.00)"), "{text}");
+    assert!(text.contains("moduli about (1.000, 0.000, 0.000)"), "{text}");
+    let unknown = probed(&["--axis", "unknown", "--survey", "everywhere"]);
+    for k in 0..3 {
+        let [packing, waves] = [&unknown["reference_axis"][k], &unknown["acoustic"]["axis"][k]].map(number);
+        assert!((packing - waves).abs() < 1e-12, "{packing} {waves}");
+    }
+}
+
+#[test]
 fn invalid_flags_are_refused_by_name() {
     let file = reference();
     for (flags, word) in [

@@ -25,9 +25,10 @@ fn settings(axis: [f64; 3], solver: &str, springs: &str, tolerance: f64) -> PyRe
             other => return Err(unknown("solver", other, "cg, direct")),
         },
         springs: match springs {
+            "carried" => Springs::Carried,
             "both" => Springs::NormalAndTangential,
             "normal" => Springs::Normal,
-            other => return Err(unknown("springs", other, "both, normal")),
+            other => return Err(unknown("springs", other, "carried, both, normal")),
         },
         tolerance,
         ..Settings::default()
@@ -36,7 +37,7 @@ fn settings(axis: [f64; 3], solver: &str, springs: &str, tolerance: f64) -> PyRe
 
 /// Everything that `grainlab analyze` reports of a packing, by key.
 #[pyfunction]
-#[pyo3(signature = (packing, *, axis=[0.0, 0.0, 1.0], solver="cg", springs="both", tolerance=1e-9))]
+#[pyo3(signature = (packing, *, axis=[0.0, 0.0, 1.0], solver="cg", springs="carried", tolerance=1e-9))]
 pub(crate) fn analyze<'py>(
     py: Python<'py>,
     packing: &Bound<'py, PyPacking>,
@@ -46,14 +47,15 @@ pub(crate) fn analyze<'py>(
     tolerance: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let settings = settings(axis, solver, springs, tolerance)?;
-    let packing = packing.get().packing();
-    let found = py.detach(|| measure(packing, &settings)).map_err(error::physics)?;
+    let (packing, position) = (packing.get().packing(), packing.get().position());
+    let mut found = py.detach(|| measure(packing, &settings)).map_err(error::physics)?;
+    position.inspect(|position| position.judge_strain(&mut found.report));
     values::quantities(py, QUANTITIES, &found.report)
 }
 
 /// The stiffness of the contact network, Pa, shape `(6, 6)`: relaxed, or affine (Voigt).
 #[pyfunction]
-#[pyo3(signature = (packing, *, affine=false, solver="cg", springs="both", tolerance=1e-9))]
+#[pyo3(signature = (packing, *, affine=false, solver="cg", springs="carried", tolerance=1e-9))]
 pub(crate) fn stiffness<'py>(
     py: Python<'py>,
     packing: &Bound<'py, PyPacking>,
@@ -65,7 +67,7 @@ pub(crate) fn stiffness<'py>(
     let settings = settings([0.0, 0.0, 1.0], solver, springs, tolerance)?;
     let packing = packing.get().packing();
     let solve = || {
-        let network = SpringNetwork::new(&PackingView::new(packing), settings.springs)?;
+        let network = SpringNetwork::new(&PackingView::new(packing)?, settings.springs)?;
         relaxed_stiffness(&network, settings.solver, settings.tolerance, settings.max_iterations)
     };
     let found = py.detach(solve).map_err(error::physics)?;

@@ -3,6 +3,7 @@
 use crate::arrays::{copied, field, matrix, one, row, scalars, vectors};
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_experiment::PathPosition;
 use grainlab_recordings::import::{Imported, contacts};
 use numpy::{Ix1, Ix2, PyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
@@ -14,13 +15,24 @@ pub(crate) struct PyPacking {
     packing: Packing,
     source: String,
     notes: Vec<String>,
+    /// On the loading path of its run.
+    position: Option<PathPosition>,
 }
 
 type Array<'py, T, D> = Bound<'py, PyArray<T, D>>;
 
 impl PyPacking {
     pub(crate) fn new(packing: Packing, source: String, notes: Vec<String>) -> Self {
-        Self { packing, source, notes }
+        Self { packing, source, notes, position: None }
+    }
+
+    /// The same with the run state of its run.
+    pub(crate) fn at(self, run_state: &[u8]) -> Self {
+        Self { position: PathPosition::of(run_state), ..self }
+    }
+
+    pub(crate) fn position(&self) -> Option<PathPosition> {
+        self.position
     }
 
     pub(crate) fn packing(&self) -> &Packing {
@@ -30,7 +42,7 @@ impl PyPacking {
 
 impl From<Imported> for PyPacking {
     fn from(imported: Imported) -> Self {
-        Self::new(imported.packing, imported.source, imported.notes)
+        Self::new(imported.packing, imported.source, imported.notes).at(&imported.run_state)
     }
 }
 
@@ -70,7 +82,7 @@ impl PyPacking {
             step: 0,
             time: 0.0,
             cell,
-            deformation: Mat3::identity(),
+            deformation: Packing::no_reference(),
             ids: (0..n as u32).collect(),
             radii,
             positions,
@@ -156,8 +168,8 @@ impl PyPacking {
     }
 
     #[getter]
-    fn deformation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        matrix(py, 3, |i, j| self.packing.deformation[(i, j)])
+    fn deformation<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
+        self.packing.strain().map(|_| matrix(py, 3, |i, j| self.packing.deformation[(i, j)]))
     }
 
     #[getter]

@@ -67,6 +67,8 @@ pub(crate) fn simulate(
     };
     let mut run = py.detach(begin).map_err(error::physics)?;
     run.set_compute(compute);
+    // As the run holds it: at its first step, without the strain of the file.
+    let start = start.is_some().then(|| run.packing());
     Ok(PySimulation(Mutex::new(State { run, name, start, failed: false })))
 }
 
@@ -101,9 +103,9 @@ fn source(name: &str, from: Option<&str>) -> Result<Source, String> {
 
 impl State {
     /// Goes on until a packing is due, `limit` has passed, or the path is done.
-    fn advance(&mut self, limit: Duration) -> Result<Option<Packing>, String> {
+    fn advance(&mut self, limit: Duration) -> Result<Option<(Packing, Vec<u8>)>, String> {
         if let Some(packing) = self.start.take() {
-            return Ok(Some(packing));
+            return Ok(Some((packing, self.run.run_state())));
         }
         let began = Instant::now();
         while began.elapsed() < limit
@@ -112,7 +114,7 @@ impl State {
             let output = grainlab_servo::control(&request.servo_input()).map_err(|e| e.to_string())?;
             let outcome = self.run.advance(&output.rate).map_err(|e| e.to_string())?;
             if outcome.packing_due {
-                return Ok(Some(self.run.packing()));
+                return Ok(Some((self.run.packing(), self.run.run_state())));
             }
         }
         Ok(None)
@@ -140,7 +142,9 @@ impl PySimulation {
             };
             let (found, done, source) = py.detach(step);
             match found.map_err(error::physics)? {
-                Some(packing) => return Ok(Some(PyPacking::new(packing, source, Vec::new()))),
+                Some((packing, run_state)) => {
+                    return Ok(Some(PyPacking::new(packing, source, Vec::new()).at(&run_state)));
+                }
                 None if done => return Ok(None),
                 None => py.check_signals()?,
             }

@@ -122,7 +122,7 @@ impl Timeline {
                 id: "strain",
                 title: "Strain, %",
                 scale: Scale::Linear,
-                caption: "Logarithmic, positive in extension, since the reference state.",
+                caption: "Logarithmic, positive in extension, since the reference state; before a phase sets one, since the first step.",
                 curves: components(&t.strain, "ε", 100.0, 0..6),
             },
             Plot {

@@ -24,10 +24,9 @@ pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
         a.bulk_density,
         scatter(a),
     );
-    if a.reading.axis.is_none() {
-        let [x, y, z]: [f64; 3] = a.medium.axis.into();
-        text += &format!("  moduli about ({x:.3}, {y:.3}, {z:.3}), since no axis was given\n");
-    }
+    let [x, y, z]: [f64; 3] = a.medium.axis.into();
+    let chosen = if a.reading.axis.is_none() { ", the axis that the speeds show" } else { "" };
+    text += &format!("  moduli about ({x:.3}, {y:.3}, {z:.3}){chosen}\n");
     text += &indented(&moduli(a, report.stiffness().map(|s| &s.tensor)).without_empty_columns().text());
     if let Some(shift) = a.mode_shift() {
         text += &format!(

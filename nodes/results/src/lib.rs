@@ -34,5 +34,5 @@ pub use measured_packing::{MeasuredPacking, ORIGIN};
 pub use printer::{Printed, Printer};
 pub use probe::{ProbeView, ScanView};
 pub use probed::Probed;
-pub use state_warnings::state_warnings;
+pub use state_warnings::{of_springs, state_warnings};
 pub use summary::{Launched, NodeEnd, Summary};

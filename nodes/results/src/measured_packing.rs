@@ -56,6 +56,14 @@ impl MeasuredPacking {
             scan: None,
         }
     }
+
+    /// The same at this position of its run, without what its strain does not tell there.
+    #[must_use]
+    pub fn at(mut self, position: Option<PathPosition>) -> Self {
+        self.position = position;
+        position.inspect(|p| p.judge_strain(&mut self.report));
+        self
+    }
 }
 
 impl Serialize for MeasuredPacking {
@@ -83,6 +91,7 @@ pub(crate) fn table(packings: &[MeasuredPacking]) -> Table {
 pub(crate) mod tests {
     use super::*;
     use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+    use grainlab_experiment::StrainOrigin;
     use grainlab_micromechanics::{Settings, analyze};
 
     /// One grain touching its own images along the three edges, or none of them.
@@ -152,6 +161,18 @@ pub(crate) mod tests {
             "p4",
         ] {
             assert!(s[key].is_null(), "{key}");
+        }
+    }
+
+    #[test]
+    fn a_strain_that_was_not_counted_is_unknown() {
+        let at = |strain_origin| {
+            let position = PathPosition { phase: 1, end_of_phase: true, strain_origin };
+            serde_json::to_value(measured(&lattice(true)).at(Some(position))).unwrap()["strain"].clone()
+        };
+        assert!(at(StrainOrigin::Unknown).is_null());
+        for origin in [StrainOrigin::FirstStep, StrainOrigin::Reference] {
+            assert_eq!(at(origin), serde_json::json!([0.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
         }
     }
 

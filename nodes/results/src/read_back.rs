@@ -3,8 +3,9 @@
 use crate::acoustic::AcousticReport;
 use crate::inference::Inference;
 use crate::measured_packing::MeasuredPacking;
-use grainlab_core::Packing;
+use crate::state_warnings::of_springs;
 use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed, PackingReport};
+use grainlab_core::{Packing, PackingError};
 use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::{PackingView, ReportParts, min_contacts, report};
 use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading};
@@ -160,12 +161,16 @@ pub fn read(recording: &Recording) -> ReadBack {
         }
         match (about.packing, about.fabric) {
             (Some(packing), Some(fabric)) => {
-                let report = reported(&packing, fabric, about.stiffness);
-                let mut measured = MeasuredPacking::new(source.clone(), report);
-                measured.position = about.position;
+                let report = match reported(&packing, fabric, about.stiffness) {
+                    Ok(report) => report,
+                    Err(why) => {
+                        back.complaints.push(format!("the packing of step {step}: {why}"));
+                        continue;
+                    }
+                };
+                let mut measured = MeasuredPacking::new(source.clone(), report).at(about.position);
                 measured.warnings.extend(measured.report.elasticity.not_jammed().map(ToString::to_string));
-                let left_out = measured.report.stiffness().and_then(|s| s.method.leaves_out(&packing.law));
-                measured.warnings.extend(left_out.map(|left_out| left_out.to_string()));
+                measured.warnings.extend(of_springs(&packing, &measured.report));
                 let acoustic = about.wave_speeds.map(|reading| AcousticReport::new(&packing, reading));
                 back.states.push(InvertedPacking { packing: measured, acoustic, results: about.results });
             }
@@ -191,7 +196,11 @@ pub fn read(recording: &Recording) -> ReadBack {
 }
 
 /// The report from the messages about a packing.
-fn reported(packing: &Packing, found: FabricReading, stiffness: Option<ElasticStiffness>) -> PackingReport {
+fn reported(
+    packing: &Packing,
+    found: FabricReading,
+    stiffness: Option<ElasticStiffness>,
+) -> Result<PackingReport, PackingError> {
     let FabricReading { contacts, fabric, stress_decomposition, strain_ratios } = found;
     let elasticity = match (stiffness, packing.ids.len()) {
         (Some(stiffness), _) => Elasticity::Jammed(Box::new(stiffness)),
@@ -204,7 +213,7 @@ fn reported(packing: &Packing, found: FabricReading, stiffness: Option<ElasticSt
         }),
     };
     let parts = ReportParts { contacts, fabric, stress_decomposition, strain_ratios, elasticity };
-    report(&PackingView::new(packing), parts)
+    Ok(report(&PackingView::new(packing)?, parts))
 }
 
 /// Adds one message; returns the step of its packing.

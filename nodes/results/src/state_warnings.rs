@@ -1,7 +1,7 @@
 //! Warnings about a measured state.
 
 use grainlab_core::Packing;
-use grainlab_core::results::PackingReport;
+use grainlab_core::results::{PackingReport, SpringNote};
 use grainlab_experiment::PathPosition;
 use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
@@ -27,15 +27,15 @@ pub fn state_warnings(
         below_its_bound(report),
         pulling(packing),
         missing(packing, notes),
-        left_out(packing, report),
     ]
     .into_iter()
     .flatten()
+    .chain(of_springs(packing, report))
     .collect()
 }
 
 fn within_phase(position: PathPosition) -> Option<String> {
-    let PathPosition { phase, end_of_phase } = position;
+    let PathPosition { phase, end_of_phase, .. } = position;
     (!end_of_phase).then(|| {
         format!("recorded within phase {phase}, which had not met its end conditions: the packing need not be at rest")
     })
@@ -73,8 +73,10 @@ fn pulling(packing: &Packing) -> Option<String> {
     Some(format!("{pull} (normal force below 0), the first of grains {i} and {j}: Hertz's law only presses"))
 }
 
-fn left_out(packing: &Packing, report: &PackingReport) -> Option<String> {
-    Some(report.stiffness()?.method.leaves_out(&packing.law)?.to_string())
+/// What a reader should know about the springs of the stiffness.
+pub fn of_springs(packing: &Packing, report: &PackingReport) -> Vec<String> {
+    let notes = report.stiffness().map(|s| SpringNote::of(packing, s.method, s.smooth)).unwrap_or_default();
+    notes.iter().map(|note| format!("stiffness {note}")).collect()
 }
 
 /// Contacts by position that are missing in the list; the readers of some files have already reported them.

@@ -62,7 +62,7 @@ pub fn sidecar(packing: &Packing) -> String {
         "step": packing.step,
         "time": packing.time,
         "time_step": packing.time_step,
-        "deformation": rows(&packing.deformation),
+        "deformation": packing.strain().map(|_| rows(&packing.deformation)),
         "n_contacts": packing.contacts.len(),
     });
     format!("{value:#}\n")

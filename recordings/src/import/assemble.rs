@@ -75,7 +75,7 @@ pub(super) struct State {
 
 impl State {
     pub(super) fn at(step: u64) -> Self {
-        Self { step, time: 0.0, deformation: Mat3::identity(), time_step: 0.0 }
+        Self { step, time: 0.0, deformation: Packing::no_reference(), time_step: 0.0 }
     }
 }
 

@@ -10,7 +10,7 @@ use super::imported::Imported;
 use super::settings::{ImportOptions, Known};
 use super::text::Line;
 use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Mat3, Vec3};
+use grainlab_core::{Mat3, Packing, Vec3};
 use hdf5_pure::{AttrValue, File, H5Element};
 
 /// The first bytes of every HDF5 file.
@@ -52,7 +52,7 @@ pub fn packing(
             step => step.map_or(0, |s| s as u64),
         },
         time: field("TimeValue")?.unwrap_or(0.0),
-        deformation: matrix("deformation")?.unwrap_or_else(Mat3::identity),
+        deformation: matrix("deformation")?.unwrap_or_else(Packing::no_reference),
         time_step: field("time_step")?.unwrap_or(0.0),
     };
     let table = file.grains(options)?;

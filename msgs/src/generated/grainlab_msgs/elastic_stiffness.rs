@@ -11,7 +11,7 @@ pub struct ElasticStiffness {
     /// Pa
     #[serde(with = "crate::fixed_array")]
     pub stiffness: [f64; 36],
-    /// Pa, standard error of each entry as a measurement of this packing
+    /// Pa, error that the solver or the probe left in each entry
     #[serde(with = "crate::fixed_array")]
     pub stddev: [f64; 36],
     /// relative residual of the solve, worst of the six columns

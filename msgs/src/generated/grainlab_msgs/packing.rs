@@ -20,7 +20,7 @@ pub struct Packing {
     pub time: f64,
     /// m, row-major, columns are the cell vectors
     pub cell: [f64; 9],
-    /// row-major deformation gradient since the reference state, all NaN = no reference state
+    /// row-major deformation gradient since the reference state, else the first step of the run, all NaN = neither
     pub deformation: [f64; 9],
     /// persistent
     pub id: Vec<u32>,

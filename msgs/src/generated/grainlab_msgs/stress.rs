@@ -41,7 +41,7 @@ pub struct Stress {
     pub tangent: SymmetricTensor,
     /// s, simulated time until the next request
     pub control_interval: f64,
-    /// logarithmic, extension positive, since the reference state
+    /// logarithmic, extension positive, since the reference state, else the first step of the run
     pub strain: SymmetricTensor,
     /// Dimensionless.
     pub solid_fraction: f64,

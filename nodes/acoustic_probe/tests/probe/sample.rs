@@ -62,6 +62,7 @@ pub(crate) fn measurement() -> Measurement {
     let channel = |distance: f64| Channel { distance, samples: vec![0.0, 1e-6, 0.0, -1e-6] };
     Measurement {
         modes: Vec::new(),
+        smooth: false,
         waves: vec![wave(Vec3::z(), 500.0), wave(Vec3::x(), 300.0)],
         effective_density: EffectiveDensity {
             density: Mat3::identity() * 1500.0,

@@ -10,7 +10,6 @@ use grainlab_acoustics::{
 use grainlab_console::Failure;
 use grainlab_core::{Packing, Stiffness};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
-use grainlab_micromechanics::network::Springs;
 use grainlab_node_kit::Exit;
 use std::time::Instant;
 
@@ -30,9 +29,7 @@ pub(super) fn rows(packing: &Packing, args: &Args) -> Result<Vec<Row>, Failure> 
 /// The stiffness of the frozen network.
 pub(super) fn stiffness(packing: &Packing) -> Result<Stiffness, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
-    let springs = Springs::with_friction(packing.friction);
-    let settings = grainlab_micromechanics::Settings { springs, ..Default::default() };
-    let analysis = grainlab_micromechanics::analyze(packing, &settings).map_err(|e| invalid(&e))?;
+    let analysis = grainlab_micromechanics::analyze(packing, &Default::default()).map_err(|e| invalid(&e))?;
     Ok(analysis.report.elasticity.into_stiffness().map_err(|e| invalid(&e))?.tensor)
 }
 

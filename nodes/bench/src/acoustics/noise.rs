@@ -9,7 +9,6 @@ use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
 use grainlab_core::Packing;
 use grainlab_core::results::InferredQuantity;
 use grainlab_core::results::PackingReport;
-use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::msg::Microstructure;
 use grainlab_node_kit::Exit;
@@ -73,13 +72,8 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let settings = grainlab_acoustics::Settings { survey: args.survey.into(), ..Default::default() };
     let measurement = grainlab_acoustics::measure(packing, &settings).map_err(|e| invalid(&e))?;
-    let springs = Springs::with_friction(packing.friction);
-    let truth = grainlab_micromechanics::analyze(
-        packing,
-        &grainlab_micromechanics::Settings { springs, ..Default::default() },
-    )
-    .map_err(|e| invalid(&e))?
-    .report;
+    let truth =
+        grainlab_micromechanics::analyze(packing, &Default::default()).map_err(|e| invalid(&e))?.report;
     let header = Default::default();
     let analysed = grainlab_fabric_analyzer::messages(&header, &truth).map_err(|e| invalid(&e))?;
     let moduli = analysed.moduli.map_err(|e| invalid(&e))?;

@@ -1,6 +1,6 @@
 //! The timed loop.
 
-use super::super::packing::repeated;
+use super::super::packing::replicated;
 use crate::cpu_time::process_seconds;
 use clap::ValueEnum;
 use grainlab_console::Failure;
@@ -11,12 +11,12 @@ use grainlab_node_kit::Exit;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Friction, as in the runs of the other programs.
-const FRICTION: f64 = 0.1;
 /// Contact damping, share of critical: a coefficient of restitution of about 0.3.
 const DAMPING: f64 = 0.3;
-/// s.
+/// Of a packing that states none, as in the runs of the other programs, s.
 const TIME_STEP: f64 = 3e-8;
+/// Relative change of the number of contacts from which the packing counts as another one.
+const CHANGED: f64 = 0.02;
 /// Verlet skin over the largest diameter: a packing at rest does not use it up.
 const SKIN: f64 = 0.01;
 /// Strain rate limit of the compression without friction, 1/s, and its maximum number of steps.
@@ -46,10 +46,19 @@ impl Features {
         }
     }
 
-    fn friction(self) -> f64 {
+    /// Those that a packing of this friction has.
+    pub(crate) fn of(friction: f64) -> Self {
+        match friction {
+            0.0 => Self::Frictionless,
+            f64::INFINITY => Self::Stuck,
+            _ => Self::Coulomb,
+        }
+    }
+
+    fn friction(self, packing: &Packing) -> f64 {
         match self {
             Self::Frictionless => 0.0,
-            Self::Coulomb => FRICTION,
+            Self::Coulomb => packing.friction,
             Self::Stuck => f64::INFINITY,
         }
     }
@@ -99,7 +108,14 @@ impl Packings {
             let message = format!("the packing carries no pressure ({pressure} Pa); press it first");
             return Err(Failure::new(Exit::PhysicsInvalid, message));
         }
-        let wanted = features.contains(&Features::Frictionless);
+        let own = Features::of(given.friction);
+        if own != Features::Coulomb && features.contains(&Features::Coulomb) {
+            let (friction, own) = (given.friction, own.name());
+            return Err(Failure::usage(format!(
+                "--features coulomb: the packing has friction {friction}, which it keeps; its own features are {own}"
+            )));
+        }
+        let wanted = own != Features::Frictionless && features.contains(&Features::Frictionless);
         let frictionless = if wanted { Some(pressed_without_friction(&given, pressure)?) } else { None };
         Ok(Self { given, frictionless, pressure })
     }
@@ -113,12 +129,12 @@ impl Packings {
 fn setting(features: Features, packing: &Packing) -> EngineSettings {
     let diameter = 2.0 * packing.radii.iter().copied().fold(0.0, f64::max);
     EngineSettings {
-        friction: features.friction(),
+        friction: features.friction(packing),
         damping: DAMPING,
         drag: 0.0,
         spin_drag: 0.0,
         tangential: TangentialLaw::Rescaled,
-        time_step: TimeStep::Fixed(TIME_STEP),
+        time_step: TimeStep::Fixed(if packing.time_step > 0.0 { packing.time_step } else { TIME_STEP }),
         skin: SKIN * diameter,
         thermostat_speed: None,
     }
@@ -134,7 +150,8 @@ fn invalid(error: grainlab_dem::DemError) -> Failure {
 }
 
 fn pressed_without_friction(packing: &Packing, pressure: f64) -> Result<Packing, Failure> {
-    let mut engine = Engine::from_packing(packing, setting(Features::Frictionless, packing));
+    let mut engine =
+        Engine::from_packing(packing, setting(Features::Frictionless, packing)).map_err(invalid)?;
     engine.initialise().map_err(invalid)?;
     while engine.steps() - packing.step < u64::from(PRESS_STEPS) {
         engine.run(PERIOD).map_err(invalid)?;
@@ -143,7 +160,7 @@ fn pressed_without_friction(packing: &Packing, pressure: f64) -> Result<Packing,
         if (stress.mean() / pressure - 1.0).abs() < 0.01 && seen.unbalanced < 0.05 {
             return Ok(engine.packing(Mat3::identity()));
         }
-        let interval = f64::from(PERIOD) * TIME_STEP;
+        let interval = f64::from(PERIOD) * engine.time_step();
         let rate = answered(stress, pressure, engine.rate(), PRESS_RATE, seen.tangent, interval)?;
         engine.set_rate(&rate).map_err(invalid)?;
     }
@@ -179,14 +196,15 @@ fn answered(
 pub(crate) fn run(packings: &Packings, case: &Case) -> Result<Loop, Failure> {
     let packing = packings.of(case.features);
     let compute = Compute::new(case.simd, case.threads as usize).map_err(Failure::usage)?;
-    let (cell, centres) =
-        repeated(packing, case.copies).ok_or_else(|| Failure::failed("the cell of the copies is invalid"))?;
-    let radii = packing.radii.repeat((case.copies as usize).pow(3));
+    let copies = replicated(packing, case.copies)
+        .ok_or_else(|| Failure::failed("the cell of the copies is invalid"))?;
     let before = super::machine::resident_bytes();
-    let mut engine = Engine::new(cell, packing.material, radii, &centres, setting(case.features, packing));
+    let mut engine = Engine::from_packing(&copies, setting(case.features, packing)).map_err(invalid)?;
+    drop(copies);
     engine.set_compute(compute.clone());
     engine.sort_spatially();
     engine.initialise().map_err(invalid)?;
+    let at_first = f64::from(engine.observables().map_err(invalid)?.contacts);
     advance(&mut engine, &compute, case, packings.pressure, case.steps.div_ceil(10))?;
     let bytes = before.zip(super::machine::resident_bytes()).map(|(b, a)| (a - b).max(0.0));
 
@@ -195,7 +213,18 @@ pub(crate) fn run(packings: &Packings, case: &Case) -> Result<Loop, Failure> {
     advance(&mut engine, &compute, case, packings.pressure, case.steps)?;
     let (wall_seconds, cpu_seconds) = (wall.elapsed().as_secs_f64(), process_seconds()? - cpu);
     let seen = engine.observables().map_err(invalid)?;
-    let contacts = 0.5 * (contacts + f64::from(seen.contacts));
+    let at_last = f64::from(seen.contacts);
+    if (at_last / at_first - 1.0).abs() > CHANGED {
+        let [first, last] = [at_first, at_last].map(|contacts| 2.0 * contacts / case.grains as f64);
+        let message = format!(
+            "the packing is not the one given: its coordination number went from {first:.3} to {last:.3} in {} steps, which \
+             is more than {:.0} %, so that no rate is stated; relax it first, or take fewer --steps",
+            case.steps + case.steps.div_ceil(10),
+            100.0 * CHANGED
+        );
+        return Err(Failure::new(Exit::PhysicsInvalid, message));
+    }
+    let contacts = 0.5 * (contacts + at_last);
     Ok(Loop { wall_seconds, cpu_seconds, contacts, pressure: seen.stress.tensor.mean(), bytes })
 }
 
@@ -220,7 +249,7 @@ fn advance(
         for _ in 0..steps {
             let mut stress = SymTensor::isotropic(0.0);
             engine.run_with_stress(1, |s| stress = s).map_err(invalid)?;
-            let rate = answered(stress, pressure, engine.rate(), 1.0, tangent, TIME_STEP)?;
+            let rate = answered(stress, pressure, engine.rate(), 1.0, tangent, engine.time_step())?;
             engine.set_rate(&rate).map_err(invalid)?;
         }
         Ok(())

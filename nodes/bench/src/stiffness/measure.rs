@@ -24,7 +24,8 @@ type Found = Result<(Stiffness, Option<u32>), String>;
 pub(super) fn rows(packing: &Packing, replicated: bool, args: &Args) -> Result<Vec<Row>, Failure> {
     say!("grainlab: {} grains, {} contacts", packing.grains(), packing.contacts.len());
     let springs = if args.frictionless { Springs::Normal } else { Springs::NormalAndTangential };
-    let bench = Bench { view: PackingView::new(packing), springs };
+    let view = PackingView::new(packing).map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
+    let bench = Bench { view, springs };
     let direct = packing.grains() as u64 <= args.direct_up_to;
     let (converged, against) = bench.converged(direct)?;
     let coordination = 2.0 * packing.contacts.len() as f64 / packing.grains() as f64;
@@ -102,7 +103,7 @@ impl Bench<'_> {
     }
 
     fn probed(&self, amplitude: f64) -> Found {
-        let friction = if self.springs.has_tangential() { f64::INFINITY } else { 0.0 };
+        let friction = Some(if self.springs == Springs::Normal { 0.0 } else { f64::INFINITY });
         let settings = StrainProbe { amplitude, friction, ..StrainProbe::default() };
         let found = strain_probe(self.view.packing, &settings).map_err(|e| e.to_string())?;
         Ok((found.stiffness, Some(found.steps())))

@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cell = Cell::cube(CELLS as f64 * edge).ok_or("the cell has no volume")?;
     let settings = EngineSettings { friction: 0.5, skin: 0.1 * RADIUS, ..EngineSettings::default() };
     let radii = vec![RADIUS; positions.len()];
-    let mut engine = Engine::new(cell, Material::GLASS, radii, &positions, settings);
+    let mut engine = Engine::new(cell, Material::GLASS, radii, &positions, settings)?;
     engine.initialise()?;
 
     let found = measure(

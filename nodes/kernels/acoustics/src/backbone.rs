@@ -14,7 +14,7 @@ use cluster::{Cluster, clusters};
 use grainlab_core::results::NotJammed;
 use grainlab_core::{Mat3, Packing, Vec3};
 use grainlab_micromechanics::network::{SpringNetwork, Springs};
-use grainlab_micromechanics::{PackingView, min_contacts, non_rattlers};
+use grainlab_micromechanics::{MicroError, PackingView, min_contacts, non_rattlers};
 
 /// The grains that carry force, with masses and contacts.
 #[derive(Clone, Debug)]
@@ -36,6 +36,7 @@ pub(crate) struct Backbone {
 
 impl Backbone {
     pub(crate) fn new(packing: &Packing) -> Result<Self, AcousticsError> {
+        packing.check().map_err(MicroError::from)?;
         let grains = packing.grains();
         if packing.contacts.is_empty() {
             return Err(NotJammed::NoContacts { grains }.into());
@@ -48,7 +49,7 @@ impl Backbone {
         let mut carrying = packing.clone();
         carrying.contacts.retain(|c| held(c.i) && held(c.j));
         let network =
-            SpringNetwork::new(&PackingView::new(&carrying), Springs::with_friction(packing.friction))?;
+            SpringNetwork::new(&PackingView::new(&carrying).map_err(MicroError::from)?, Springs::Carried)?;
         let a = network.spin_scale();
         let mass: Vec<f64> = packing.radii.iter().map(|r| packing.material.sphere_mass(*r)).collect();
         let bulk = mass.iter().sum::<f64>() / packing.cell.volume();

@@ -12,7 +12,7 @@ use crate::survey::Survey;
 use crate::trace::Trace;
 use crate::warning::Warning;
 use crate::{dispersion, standing_wave, time_of_flight};
-use grainlab_core::results::StiffnessMethod;
+use grainlab_core::results::{SpringNote, StiffnessMethod};
 use grainlab_core::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
 
 /// Relative standard deviation of a speed above which there is a warning.
@@ -34,6 +34,8 @@ pub struct Measurement {
     /// their squares average over azimuths to the moduli of the transversely isotropic projection, those of the modes do
     /// not.
     pub modes: Vec<MeasuredWave>,
+    /// The waves are those of grains without tangential springs.
+    pub smooth: bool,
     /// Density of the mass that moves with them.
     pub effective_density: EffectiveDensity,
     /// Density to use with the speeds, kg/m³.
@@ -70,8 +72,7 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
             let rays = survey.rays(&about, settings.modes);
             let diameter = dispersion::mean_diameter(packing);
             let alignment = if axis.is_some() { Alignment::InPlane } else { Alignment::Free };
-            let (found, mut warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
-            warnings.extend(StiffnessMethod::FrozenNetwork.leaves_out(&packing.law).map(Warning::Springs));
+            let (found, warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
             (found.curves, found.modes, Vec::new(), warnings)
         }
         MethodSettings::StandingWave(of) => {
@@ -83,6 +84,19 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
             (curves, Vec::new(), traces, warnings)
         }
     };
+    let (of_network, friction) = match &settings.method {
+        MethodSettings::Dispersion(_) => (StiffnessMethod::FrozenNetwork, None),
+        MethodSettings::StandingWave(of) => (StiffnessMethod::StrainProbe, of.friction),
+        MethodSettings::TimeOfFlight(of) => (StiffnessMethod::StrainProbe, of.friction),
+    };
+    let smooth = friction.map_or_else(|| backbone.network.smooth(), |friction| friction == 0.0);
+    let mut notes = SpringNote::of(packing, of_network, smooth);
+    // Grains that move slide by themselves.
+    notes.retain(|n| {
+        matches!(settings.method, MethodSettings::Dispersion(_))
+            || !matches!(n, SpringNote::SlidingStuck { .. })
+    });
+    warnings.extend(notes.into_iter().map(Warning::Springs));
     let mut curves = curves;
     let [least, most] = frequencies(&curves);
     let effective_density = backbone.effective_density(least);
@@ -126,6 +140,7 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     Ok(Measurement {
         waves,
         modes,
+        smooth,
         effective_density,
         density,
         density_stddev,

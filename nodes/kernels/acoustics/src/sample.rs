@@ -4,7 +4,7 @@ use crate::error::AcousticsError;
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::results::NotJammed;
 use grainlab_core::{Mat3, Packing, Vec3};
-use grainlab_dem::{Engine, EngineSettings, TimeStep};
+use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
 use grainlab_micromechanics::probe::Relaxation;
 use grainlab_micromechanics::{min_contacts, non_rattlers, unbalanced_force_ratio};
 
@@ -44,6 +44,7 @@ impl Sample {
         friction: Option<f64>,
         tangential: TangentialLaw,
     ) -> Result<Self, AcousticsError> {
+        packing.check().map_err(DemError::from)?;
         let friction = friction.unwrap_or(packing.friction);
         if friction.is_nan() || friction < 0.0 {
             let requirement = "0 or more, infinite for no sliding";
@@ -71,11 +72,11 @@ impl Sample {
             skin: SKIN * diameter,
             thermostat_speed: None,
         };
-        let mut engine = Engine::from_packing(&packing, setting);
+        let mut engine = Engine::from_packing(&packing, setting)?;
         engine.initialise()?;
         engine.update_time_step();
         let setting = EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting };
-        engine.set_settings(setting);
+        engine.set_settings(setting)?;
         let mut rest = Relaxation::new(vec![engine]);
         let not_at_rest = |rest: &Relaxation| {
             let now = rest.engines()[0].packing(Mat3::identity());

@@ -46,6 +46,7 @@ impl Supercell {
 /// The copies are stacked by the lattice vector nearest to the normal, and the edges across it are the shortest
 /// possible, so that the cell has the least skew.
 pub fn supercell(packing: &Packing, indices: [i32; 3], copies: u32) -> Result<Supercell, AcousticsError> {
+    packing.check().map_err(DemError::from)?;
     let n = packing.grains();
     let grains = (copies as usize).saturating_mul(n);
     if copies == 0 || grains > MAX_GRAINS {

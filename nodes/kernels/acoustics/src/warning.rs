@@ -1,7 +1,7 @@
 //! Limitations of a measurement.
 
 use crate::error::{AcousticsError, in_brackets};
-use grainlab_core::results::LeftOut;
+use grainlab_core::results::SpringNote;
 
 /// A limitation of a measurement.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,9 +51,9 @@ pub enum Warning {
         /// Mean net force of the grains that carry force, over the mean contact force.
         unbalanced: f64,
     },
-    /// The waves are those of a network that lacks springs of the contact law.
-    #[error("waves of the contact network: {0}")]
-    Springs(LeftOut),
+    /// The springs of the network are not those of the contact law, or not those that inversions are calibrated for.
+    #[error("waves {0}")]
+    Springs(SpringNote),
     /// The waves are too short for an extrapolation to long ones.
     #[error(
         "the waves along {} are too short: the last term of their series is {ratio:.1} times the one before at the shortest, \

@@ -3,7 +3,7 @@
 use crate::cell::Cell;
 use crate::contact::ContactLaw;
 use crate::material::{Material, effective_radius};
-use crate::tensor::{Mat3, Vec3};
+use crate::tensor::{Mat3, SymTensor, Vec3};
 
 /// One contact between two grains, or between a grain and a periodic image (its own, too).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,7 @@ impl Contact {
 ///
 /// Built by [`Packing::validated`], which is what makes the fields safe to use as they are: `n = radii.len()` in every
 /// per-grain vector, everything finite, indices in range, contacts sorted by `(i, j, image)`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Packing {
     /// Solver steps done.
     pub step: u64,
@@ -51,7 +51,8 @@ pub struct Packing {
     pub time: f64,
     /// The periodic cell.
     pub cell: Cell,
-    /// Deformation gradient since the reference state; all NaN if there is no reference state.
+    /// Deformation gradient since the reference state, or since the first step of a run until a phase sets one; all NaN for
+    /// a packing that has neither ([`Packing::strain`]).
     pub deformation: Mat3,
     /// Persistent ids of the grains.
     pub ids: Vec<u32>,
@@ -73,6 +74,21 @@ pub struct Packing {
     pub friction: f64,
     /// Time step in force, s; 0 if the packing was not made by a simulation of ours.
     pub time_step: f64,
+}
+
+/// Field by field; two deformations without a reference state are equal, although NaN is not.
+impl PartialEq for Packing {
+    fn eq(&self, other: &Self) -> bool {
+        let Self { step, time, cell, deformation, ids, radii, positions, velocities, spins, .. } = self;
+        let Self { contacts, material, law, friction, time_step, .. } = self;
+        let o = other;
+        let unknown = |f: &Mat3| f.iter().all(|v| v.is_nan());
+        (*deformation == o.deformation || unknown(deformation) && unknown(&o.deformation))
+            && (*step, *time, cell, ids) == (o.step, o.time, &o.cell, &o.ids)
+            && (radii, positions, velocities, spins) == (&o.radii, &o.positions, &o.velocities, &o.spins)
+            && (contacts, material, law) == (&o.contacts, &o.material, &o.law)
+            && (*friction, *time_step) == (o.friction, o.time_step)
+    }
 }
 
 /// Why a set of numbers is not a packing.
@@ -162,6 +178,11 @@ pub enum PackingError {
 impl Packing {
     /// The packing itself if it is one, else the first fault found.
     pub fn validated(self) -> Result<Self, PackingError> {
+        self.check().map(|()| self)
+    }
+
+    /// Whether it is one: the first fault found.
+    pub fn check(&self) -> Result<(), PackingError> {
         let n = self.radii.len();
         for (field, found) in [
             ("id", self.ids.len()),
@@ -203,11 +224,10 @@ impl Packing {
             finite3("velocity", i, &self.velocities[i])?;
             finite3("angular_velocity", i, &self.spins[i])?;
         }
-        self.validate_contacts()?;
-        Ok(self)
+        self.check_contacts()
     }
 
-    fn validate_contacts(&self) -> Result<(), PackingError> {
+    fn check_contacts(&self) -> Result<(), PackingError> {
         let n = self.grains();
         for (index, c) in self.contacts.iter().enumerate() {
             for grain in [c.i, c.j] {
@@ -240,6 +260,17 @@ impl Packing {
         self.radii.len()
     }
 
+    /// The deformation of a packing without a reference state.
+    pub fn no_reference() -> Mat3 {
+        Mat3::repeat(f64::NAN)
+    }
+
+    /// Logarithmic strain of the deformation, positive in extension; `None` without a reference state.
+    pub fn strain(&self) -> Option<SymTensor> {
+        let known = self.deformation.iter().all(|v| !v.is_nan());
+        known.then(|| SymTensor::logarithmic_strain(&self.deformation))
+    }
+
     /// Solid fraction φ: volume of the spheres over volume of the cell.
     pub fn solid_fraction(&self) -> f64 {
         let solid: f64 = self.radii.iter().map(|r| r.powi(3)).sum();
@@ -259,6 +290,12 @@ impl Packing {
     /// Branch vector of a contact, from the centre of `i` to the centre of the image of `j`, m.
     pub fn branch(&self, c: &Contact) -> Vec3 {
         self.positions[c.j as usize] - self.positions[c.i as usize] + self.cell.shift(c.image)
+    }
+
+    /// Fraction of contacts that [slide](Contact::slides); 0 without contacts, and without a Coulomb limit (μ = 0 or infinite).
+    pub fn sliding_fraction(&self) -> f64 {
+        let sliding = self.contacts.iter().filter(|c| c.slides(self.friction)).count();
+        sliding as f64 / self.contacts.len().max(1) as f64
     }
 
     /// Effective radius R* of a contact, m.
@@ -319,6 +356,16 @@ mod tests {
             friction: 0.1,
             time_step: 0.0,
         }
+    }
+
+    #[test]
+    fn a_packing_without_a_reference_state_has_no_strain_and_part_of_one_is_refused() {
+        assert_eq!(pair().strain(), Some(SymTensor::default()));
+        let mut p = Packing { deformation: Packing::no_reference(), ..pair() };
+        assert_eq!(p.clone().validated().unwrap().strain(), None);
+        assert!(p == p.clone() && p != pair() && p != Packing { step: 1, ..p.clone() });
+        p.deformation[(2, 1)] = 0.0;
+        assert!(p.validated().is_err());
     }
 
     #[test]

@@ -54,6 +54,15 @@ impl SymTensor {
         }
     }
 
+    /// Logarithmic (Hencky) strain of the deformation gradient `f`: ln V of its left stretch V = √(F Fᵀ), positive in
+    /// extension, on the present axes, like stress and fabric; independent of the rotation of F = V R.
+    pub fn logarithmic_strain(f: &Mat3) -> Self {
+        let left = (f * f.transpose()).symmetric_eigen();
+        let logs = left.eigenvalues.map(|v| 0.5 * v.ln());
+        let q = left.eigenvectors;
+        Self::symmetric_part(&(q * Mat3::from_diagonal(&logs) * q.transpose()))
+    }
+
     /// As a full matrix.
     pub fn matrix(&self) -> Mat3 {
         Mat3::new(
@@ -119,6 +128,17 @@ mod tests {
     fn uniaxial_stress_has_its_own_magnitude_as_deviatoric_invariant() {
         let s = SymTensor { zz: 7.0, ..SymTensor::default() };
         assert!((s.deviatoric_invariant() - 7.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn logarithmic_strain_ignores_the_rotation_before_and_turns_with_the_one_after() {
+        let stretch = Mat3::from_diagonal(&Vec3::new(0.98f64.exp(), (-0.3f64).exp(), 0.1f64.exp()));
+        let r = nalgebra::Rotation3::from_euler_angles(0.4, -0.2, 1.1);
+        let before = SymTensor::logarithmic_strain(&(stretch * r.matrix())).matrix();
+        let expected = Mat3::from_diagonal(&Vec3::new(0.98, -0.3, 0.1));
+        assert!((before - expected).amax() < 1e-14);
+        let after = SymTensor::logarithmic_strain(&(r.matrix() * stretch)).matrix();
+        assert!((after - r.matrix() * expected * r.matrix().transpose()).amax() < 1e-14);
     }
 
     #[test]

@@ -19,8 +19,8 @@ fn main() -> Result<(), DemError> {
         };
         let cell = Cell::cube(20.0 * RADIUS).expect("a cube has a volume");
         let positions = [Vec3::new(8.9, 10.0, 10.0), Vec3::new(11.1, 10.0, 10.0)].map(|x| x * RADIUS);
-        let mut engine = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, settings);
-        engine.set_velocities(&[Vec3::x() * SPEED, -Vec3::x() * SPEED]);
+        let mut engine = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, settings)?;
+        engine.set_velocities(&[Vec3::x() * SPEED, -Vec3::x() * SPEED])?;
         engine.initialise()?;
         while engine.velocities()[0].x > -1e-3 * SPEED || engine.observables()?.contacts > 0 {
             engine.run(10)?;

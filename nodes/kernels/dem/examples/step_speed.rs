@@ -18,8 +18,8 @@ fn main() {
         };
         let gas = gas::random_sequential_addition(GRAINS, 2.0 * RADIUS, 0.35, 0.1, 7).unwrap();
         let radii = vec![RADIUS; GRAINS as usize];
-        let mut engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, settings);
-        engine.set_velocities(&gas.velocities);
+        let mut engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, settings).unwrap();
+        engine.set_velocities(&gas.velocities).unwrap();
         engine.set_rate(&[-900.0, -1100.0, -1000.0, 0.0, 0.0, 0.0]).unwrap();
         engine.sort_spatially();
         engine.initialise().unwrap();

@@ -1,5 +1,8 @@
 //! Errors of the engine.
 
+use grainlab_core::PackingError;
+use grainlab_core::contact::UnknownLaw;
+
 /// Why the engine cannot start or go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DemError {
@@ -79,6 +82,28 @@ pub enum DemError {
     /// The flag of [`Compute::stopping_on`](crate::Compute::stopping_on) was set.
     #[error("the computation was stopped")]
     Stopped,
+    /// Grains, positions or contacts that are no packing.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// Parameters of a contact law out of their range.
+    #[error(transparent)]
+    Law(#[from] UnknownLaw),
+    /// A contact law that replaces the one that contacts already have.
+    #[error("the contact law of an engine with contacts, or after its first step, cannot be replaced")]
+    LawInUse,
+    /// An engine without grains.
+    #[error("there are no grains")]
+    NoGrains,
+    /// A setting out of its range.
+    #[error("{name} is {value:e}; it must be {requirement}")]
+    Setting {
+        /// Which setting.
+        name: &'static str,
+        /// The value found.
+        value: f64,
+        /// What is required.
+        requirement: &'static str,
+    },
     /// The strain rate is not finite.
     #[error("strain rate component {component} is {value}; it must be finite")]
     Rate {

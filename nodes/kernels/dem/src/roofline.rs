@@ -133,7 +133,7 @@ impl SimdF64 for Counted {
 }
 
 /// Floating-point operations (additions, multiplications, divisions, square roots, comparisons; one each) of the force kernel
-/// per sliding contact of grains of one size, counted by running the kernel itself.
+/// per sliding contact of grains of one size, counted by running the kernel itself; 0 for settings or a law out of their range.
 pub fn operations_per_contact(law: ContactLaw, settings: &EngineSettings) -> f64 {
     // A row of grains with one full block of contacts, sheared hard enough to slide.
     let (radius, grains) = (1e-4, BLOCK_SIZE + 1);
@@ -141,13 +141,14 @@ pub fn operations_per_contact(law: ContactLaw, settings: &EngineSettings) -> f64
     let positions: Vec<Vec3> = (0..grains).map(along).collect();
     let Some(cell) = Cell::cube(4.0 * radius * grains as f64) else { return 0.0 };
     let settings = EngineSettings { time_step: TimeStep::Fixed(1e-8), skin: 0.1 * radius, ..*settings };
-    let mut engine =
-        Engine::new(cell, Material::GLASS, vec![radius; grains], &positions, settings).with_law(law);
-    let sideways = |k: usize| Vec3::y() * (100.0 * k as f64);
-    engine.set_velocities(&(0..grains).map(sideways).collect::<Vec<_>>());
-    if engine.initialise().is_err() {
-        return 0.0;
-    }
+    let sideways: Vec<Vec3> = (0..grains).map(|k| Vec3::y() * (100.0 * k as f64)).collect();
+    let ready = || {
+        let engine = Engine::new(cell, Material::GLASS, vec![radius; grains], &positions, settings)?;
+        let mut engine = engine.with_law(law)?;
+        engine.set_velocities(&sideways)?;
+        engine.initialise().map(|()| engine)
+    };
+    let Ok(mut engine) = ready() else { return 0.0 };
     let (law, material) = (engine.state.law, engine.state.material);
     law.visit(&material, CountOperations { engine: &mut engine, settings: &settings })
 }

@@ -1,5 +1,6 @@
 //! What the engine is set to during a phase.
 
+use crate::error::DemError;
 use grainlab_core::contact::TangentialLaw;
 
 /// The parts of the contact law that a phase needs. The force kernel is compiled for each.
@@ -61,6 +62,26 @@ impl Default for EngineSettings {
 }
 
 impl EngineSettings {
+    /// The settings, or the one out of range.
+    pub(crate) fn check(&self) -> Result<(), DemError> {
+        let not_negative = |name, value: f64| {
+            let sound = value >= 0.0 && value.is_finite();
+            if sound { Ok(()) } else { Err(DemError::Setting { name, value, requirement: "0 or more" }) }
+        };
+        // Infinite friction is one without sliding.
+        not_negative("friction", if self.friction == f64::INFINITY { 0.0 } else { self.friction })?;
+        not_negative("damping", self.damping)?;
+        not_negative("drag", self.drag)?;
+        not_negative("spin_drag", self.spin_drag)?;
+        not_negative("skin", self.skin)?;
+        not_negative("thermostat_speed", self.thermostat_speed.unwrap_or(0.0))?;
+        let (TimeStep::FractionOfStable(step) | TimeStep::Fixed(step)) = self.time_step;
+        if step > 0.0 && step.is_finite() {
+            return Ok(());
+        }
+        Err(DemError::Setting { name: "time_step", value: step, requirement: "more than 0" })
+    }
+
     /// The parts of the contact law that these settings need.
     pub fn features(&self) -> Features {
         if self.friction == 0.0 {

@@ -261,8 +261,8 @@ fn collision(law: ContactLaw, damping: f64, speed: f64) -> (f64, f64, f64) {
         time_step: TimeStep::Fixed(1e-10),
         ..EngineSettings::default()
     };
-    let mut e = Engine::new(cell, GLASS, vec![RADIUS; 2], &x, settings).with_law(law);
-    e.set_velocities(&[Vec3::x() * (0.5 * speed), Vec3::x() * (-0.5 * speed)]);
+    let mut e = Engine::new(cell, GLASS, vec![RADIUS; 2], &x, settings).unwrap().with_law(law).unwrap();
+    e.set_velocities(&[Vec3::x() * (0.5 * speed), Vec3::x() * (-0.5 * speed)]).unwrap();
     e.initialise().unwrap();
     let (mut deepest, mut begin, mut end) = (0.0f64, f64::NAN, f64::NAN);
     for _ in 0..2_000_000 {
@@ -330,8 +330,11 @@ fn trajectory(law: ContactLaw) -> u64 {
         time_step: TimeStep::Fixed(2e-8),
         ..EngineSettings::default()
     };
-    let mut e = Engine::new(gas.cell, GLASS, vec![RADIUS; 30], &gas.positions, settings).with_law(law);
-    e.set_velocities(&gas.velocities);
+    let mut e = Engine::new(gas.cell, GLASS, vec![RADIUS; 30], &gas.positions, settings)
+        .unwrap()
+        .with_law(law)
+        .unwrap();
+    e.set_velocities(&gas.velocities).unwrap();
     e.set_rate(&[-500.0, -480.0, -520.0, 30.0, -20.0, 60.0]).unwrap();
     e.initialise().unwrap();
     e.run(20_000).unwrap();

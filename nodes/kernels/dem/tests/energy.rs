@@ -57,8 +57,11 @@ fn pressed(law: ContactLaw, settings: EngineSettings) -> Engine {
     // With resistance to rolling, sizes differ.
     let small = if law.rolling.is_some() { 0.8 * RADIUS } else { RADIUS };
     let radii = (0..40).map(|k| if k % 3 == 0 { small } else { RADIUS }).collect();
-    let mut e = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, settings).with_law(law);
-    e.set_velocities(&gas.velocities);
+    let mut e = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, settings)
+        .unwrap()
+        .with_law(law)
+        .unwrap();
+    e.set_velocities(&gas.velocities).unwrap();
     e.set_rate(&[-150.0, -140.0, -160.0, 10.0, -5.0, 20.0]).unwrap();
     e.initialise().unwrap();
     e
@@ -141,9 +144,10 @@ fn collision(law: ContactLaw, steps: u32) -> EnergyBalance {
     };
     let cell = Cell::cube(20.0 * RADIUS).unwrap();
     let x = [Vec3::zeros(), Vec3::x() * (2.0 * RADIUS)];
-    let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &x, settings).with_law(law);
-    e.set_velocities(&[Vec3::new(0.05, 0.03, 0.0), Vec3::new(-0.05, 0.0, 0.02)]);
-    e.set_spins(&[Vec3::y() * 50.0, Vec3::y() * -50.0]);
+    let mut e =
+        Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &x, settings).unwrap().with_law(law).unwrap();
+    e.set_velocities(&[Vec3::new(0.05, 0.03, 0.0), Vec3::new(-0.05, 0.0, 0.02)]).unwrap();
+    e.set_spins(&[Vec3::y() * 50.0, Vec3::y() * -50.0]).unwrap();
     e.initialise().unwrap();
     e.measure_energy(true);
     e.run(steps).unwrap();

@@ -39,9 +39,9 @@ fn energy(e: &Engine) -> f64 {
 fn a_collision_keeps_momentum_and_energy_and_lasts_as_long_as_hertz_says() {
     let cell = Cell::cube(20.0 * RADIUS).unwrap();
     let positions = [Vec3::new(0.0, 0.0, 0.0), Vec3::new(2.1 * RADIUS, 0.5 * RADIUS, 0.0)];
-    let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, setting(0.0, 2e-10));
+    let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, setting(0.0, 2e-10)).unwrap();
     let speed = 0.5;
-    e.set_velocities(&[Vec3::x() * speed, -Vec3::x() * speed]);
+    e.set_velocities(&[Vec3::x() * speed, -Vec3::x() * speed]).unwrap();
     e.initialise().unwrap();
     let before = energy(&e);
     let mut touching = 0u32;
@@ -65,8 +65,9 @@ fn a_collision_keeps_momentum_and_energy_and_lasts_as_long_as_hertz_says() {
 #[test]
 fn an_undamped_gas_keeps_its_energy() {
     let gas = grainlab_dem::gas::random_sequential_addition(60, 2.0 * RADIUS, 0.3, 0.5, 3).unwrap();
-    let mut e = Engine::new(gas.cell, Material::GLASS, vec![RADIUS; 60], &gas.positions, setting(0.0, 5e-9));
-    e.set_velocities(&gas.velocities);
+    let mut e =
+        Engine::new(gas.cell, Material::GLASS, vec![RADIUS; 60], &gas.positions, setting(0.0, 5e-9)).unwrap();
+    e.set_velocities(&gas.velocities).unwrap();
     e.initialise().unwrap();
     let before = energy(&e);
     for _ in 0..60_000 {
@@ -86,7 +87,8 @@ fn cubic(overlap: f64, friction: f64) -> (Engine, f64) {
         vec![RADIUS],
         &[Vec3::new(0.3, 0.1, -0.2) * RADIUS],
         setting(friction, 1e-9),
-    );
+    )
+    .unwrap();
     e.initialise().unwrap();
     (e, edge)
 }
@@ -118,9 +120,9 @@ fn the_stress_along_the_way_is_the_momentum_that_contacts_carry_dashpots_include
         let positions = x.map(|x| Vec3::new(x, 0.3 * RADIUS, -0.2 * RADIUS));
         let damped = EngineSettings { damping: 0.5, ..setting(0.3, 1e-9) };
         let cell = Cell::cube(edge).unwrap();
-        let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, damped);
+        let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, damped).unwrap();
         let towards = if x[1] < 0.5 * edge { 0.5 } else { -0.5 };
-        e.set_velocities(&[Vec3::x() * towards, -Vec3::x() * towards]);
+        e.set_velocities(&[Vec3::x() * towards, -Vec3::x() * towards]).unwrap();
         let mut stress = 0.0;
         e.run_with_stress(10, |s| stress = s.xx).unwrap();
         let elastic = e.observables().unwrap().stress.tensor.xx;
@@ -175,7 +177,8 @@ fn two_grains_that_touch_only_through_an_image_feel_the_affine_velocity() {
     let top = Vec3::new(0.0, 0.0, height - 2.0 * RADIUS + overlap);
     let positions = [Vec3::zeros(), top];
     let mut e =
-        Engine::new(Cell::cube(height).unwrap(), heavy, vec![RADIUS; 2], &positions, setting(0.5, 1e-9));
+        Engine::new(Cell::cube(height).unwrap(), heavy, vec![RADIUS; 2], &positions, setting(0.5, 1e-9))
+            .unwrap();
     e.initialise().unwrap();
     e.set_rate(&[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]).unwrap();
     for _ in 0..1000 {
@@ -196,8 +199,9 @@ fn pressed(turn: &Rotation3<f64>, time_step: f64) -> Engine {
     let mut s = setting(0.3, time_step);
     s.damping = 0.2;
     s.tangential = TangentialLaw::Rescaled;
-    let mut e = Engine::new(cell.unwrap(), Material::GLASS, vec![RADIUS; 40], &rotate(&gas.positions), s);
-    e.set_velocities(&rotate(&gas.velocities));
+    let mut e =
+        Engine::new(cell.unwrap(), Material::GLASS, vec![RADIUS; 40], &rotate(&gas.positions), s).unwrap();
+    e.set_velocities(&rotate(&gas.velocities)).unwrap();
     e.initialise().unwrap();
     let rate = Mat3::new(-900.0, 100.0, 0.0, 100.0, -700.0, -200.0, 0.0, -200.0, -800.0);
     let rate = grainlab_core::SymTensor::symmetric_part(&(turn.matrix() * rate * turn.matrix().transpose()));
@@ -239,7 +243,7 @@ fn every_contact_is_found_in_thin_and_sheared_cells() {
         // Overlaps of these states are far beyond Hertz's law: only distances matter here.
         let (mut cell, mut positions, mut counts) = (cell, positions, Vec::new());
         for _ in 0..9 {
-            let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; n as usize], &positions, s);
+            let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; n as usize], &positions, s).unwrap();
             e.initialise().unwrap();
             let p = e.packing(Mat3::identity());
             let found: Vec<_> = p.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
@@ -310,8 +314,8 @@ fn a_grain_held_by_two_contacts_spins_for_ever_unless_spins_are_damped() {
         let cell = Cell::new(Mat3::from_diagonal(&Vec3::new(5.0 * RADIUS, 5.0 * RADIUS, height))).unwrap();
         let mut s = setting(0.3, 1e-8);
         (s.spin_drag, s.damping) = (spin_drag, 0.3);
-        let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS], &[Vec3::zeros()], s);
-        e.set_spins(&[Vec3::z() * 1300.0]);
+        let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS], &[Vec3::zeros()], s).unwrap();
+        e.set_spins(&[Vec3::z() * 1300.0]).unwrap();
         e.initialise().unwrap();
         (0..1000).for_each(|_| e.step().map(|_| ()).unwrap());
         e.packing(Mat3::identity()).spins[0]
@@ -330,9 +334,9 @@ fn chain(time_step: TimeStep, damping: f64) -> (Engine, f64) {
     let mut s = setting(0.0, 0.0);
     (s.time_step, s.damping) = (time_step, damping);
     let positions = [Vec3::zeros(), Vec3::z() * (0.5 * height)];
-    let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, s);
+    let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, s).unwrap();
     // An amplitude far below the overlap: linear to 1e-5.
-    e.set_velocities(&[Vec3::z() * 1e-7, -Vec3::z() * 1e-7]);
+    e.set_velocities(&[Vec3::z() * 1e-7, -Vec3::z() * 1e-7]).unwrap();
     e.initialise().unwrap();
     let k_n = Material::GLASS.normal_stiffness(RADIUS / 2.0, overlap);
     let critical = (Material::GLASS.sphere_mass(RADIUS) / k_n).sqrt();

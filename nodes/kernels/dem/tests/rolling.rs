@@ -165,8 +165,8 @@ fn pressed_row(springs: SpringLaw, damping: f64, spin: f64, dt: f64) -> Engine {
         time_step: TimeStep::Fixed(dt),
         ..EngineSettings::default()
     };
-    let mut e = Engine::new(cell, GLASS, vec![RADIUS; 2], &x, settings).with_law(law);
-    e.set_spins(&[Vec3::y() * spin, Vec3::y() * -spin]);
+    let mut e = Engine::new(cell, GLASS, vec![RADIUS; 2], &x, settings).unwrap().with_law(law).unwrap();
+    e.set_spins(&[Vec3::y() * spin, Vec3::y() * -spin]).unwrap();
     e.initialise().unwrap();
     e
 }
@@ -256,10 +256,10 @@ fn start(law: SpringLaw, grains: u32, compute: Compute) -> Engine {
     };
     let gas = gas::random_sequential_addition(grains, 2.0 * RADIUS, 0.35, 0.2, 7).unwrap();
     let radii = (0..grains).map(|i| if i % 3 == 0 { 0.9 * RADIUS } else { RADIUS }).collect();
-    let mut e = Engine::new(gas.cell, GLASS, radii, &gas.positions, settings).with_law(law);
+    let mut e = Engine::new(gas.cell, GLASS, radii, &gas.positions, settings).unwrap().with_law(law).unwrap();
     e.set_compute(compute);
-    e.set_velocities(&gas.velocities);
-    e.set_spins(&gas.velocities.iter().map(|v| v.cross(&Vec3::x()) * 1e4).collect::<Vec<_>>());
+    e.set_velocities(&gas.velocities).unwrap();
+    e.set_spins(&gas.velocities.iter().map(|v| v.cross(&Vec3::x()) * 1e4).collect::<Vec<_>>()).unwrap();
     e.set_rate(&[-900.0, -1100.0, -1000.0, 60.0, -50.0, 90.0]).unwrap();
     e.sort_spatially();
     e.initialise().unwrap();
@@ -308,11 +308,11 @@ fn a_run_that_is_interrupted_goes_on_to_the_same_bits() {
     let mut e = start(SpringLaw::HertzMindlin, 300, Compute::default());
     e.run(6000).unwrap();
     let (checkpoint, packing, rate) = (e.checkpoint(), seen(&e), e.rate());
-    let mut from_packing = Engine::from_packing(&packing, *e.settings());
+    let mut from_packing = Engine::from_packing(&packing, *e.settings()).unwrap();
     from_packing.set_rate(&rate).unwrap();
     e.run(500).unwrap();
     let expected = seen(&e);
-    e.restore(checkpoint);
+    e.restore(checkpoint).unwrap();
     for mut again in [e, from_packing] {
         again.initialise().unwrap();
         assert!(again.packing(Mat3::identity()) == packing, "nothing is lost");
@@ -353,7 +353,7 @@ fn without_friction_nothing_rolls() {
     let mut e = start(SpringLaw::HertzMindlin, 300, Compute::default());
     e.run(6000).unwrap();
     seen(&e);
-    e.set_settings(EngineSettings { friction: 0.0, ..*e.settings() });
+    e.set_settings(EngineSettings { friction: 0.0, ..*e.settings() }).unwrap();
     e.run(10).unwrap();
     let p = e.packing(Mat3::identity());
     assert!(p.contacts.iter().all(|c| c.rolling_force == Vec3::zeros()));

@@ -27,10 +27,10 @@ fn start(grains: u32, setting: EngineSettings, unequal: bool, compute: Compute) 
     let gas = gas::random_sequential_addition(grains, 2.0 * RADIUS, 0.35, 0.2, 7).unwrap();
     let radius = |i: u32| if unequal && i.is_multiple_of(3) { 0.8 * RADIUS } else { RADIUS };
     let radii = (0..grains).map(radius).collect();
-    let mut engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, setting);
+    let mut engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, setting).unwrap();
     engine.set_compute(compute);
-    engine.set_velocities(&gas.velocities);
-    engine.set_spins(&gas.velocities.iter().map(|v| v.cross(&Vec3::x()) * 1e4).collect::<Vec<_>>());
+    engine.set_velocities(&gas.velocities).unwrap();
+    engine.set_spins(&gas.velocities.iter().map(|v| v.cross(&Vec3::x()) * 1e4).collect::<Vec<_>>()).unwrap();
     engine.set_rate(&[-900.0, -1100.0, -1000.0, 60.0, -50.0, 90.0]).unwrap();
     engine.sort_spatially();
     engine.initialise().unwrap();
@@ -104,10 +104,10 @@ fn journey(threads: &[usize], unequal: bool) -> Vec<u64> {
     for leg in 0..12 {
         engine.set_compute(compute(leg));
         match leg {
-            4 => engine.set_settings(setting(0.3, TangentialLaw::Rescaled)),
+            4 => engine.set_settings(setting(0.3, TangentialLaw::Rescaled)).unwrap(),
             6 => {
                 let spins: Vec<Vec3> = (0..PARTS).map(|i| Vec3::y() * f64::from(i % 7)).collect();
-                engine.set_spins(&spins);
+                engine.set_spins(&spins).unwrap();
             }
             8 => engine.sort_spatially(),
             10 => engine.set_rate(&[-500.0, 0.0, 0.0, 0.0, 0.0, 100.0]).unwrap(),
@@ -212,10 +212,10 @@ fn kicked_grains_go_on_as_if_they_had_been_that_fast() {
         let mut set = kicked.clone();
         let by = Vec3::new(1e-3, -2e-3, 5e-4);
         let hit = |grain: &usize| grain.is_multiple_of(5);
-        kicked.add_velocities((0..PARTS as usize).filter(hit).map(|grain| (grain, by)));
+        kicked.add_velocities((0..PARTS as usize).filter(hit).map(|grain| (grain, by))).unwrap();
         let mut velocities = set.velocities();
         velocities.iter_mut().enumerate().filter(|(grain, _)| hit(grain)).for_each(|(_, v)| *v += by);
-        set.set_velocities(&velocities);
+        set.set_velocities(&velocities).unwrap();
         kicked.run(20).unwrap();
         set.run(20).unwrap();
         assert_eq!(kicked.packing(Mat3::identity()), set.packing(Mat3::identity()));

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// All measurements without a stiffness.
 fn structure(packing: &Packing) {
-    let view = PackingView::new(packing);
+    let view = PackingView::new(packing).unwrap();
     let fabric = fabric(&view, &Vec3::z());
     std::hint::black_box((contact_statistics(&view), stress_decomposition(&view, &fabric)));
 }

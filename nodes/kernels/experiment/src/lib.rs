@@ -16,5 +16,5 @@ mod simulation;
 
 pub use error::ExperimentError;
 pub use request::{ServoRequest, StepOutcome};
-pub use run_state::PathPosition;
+pub use run_state::{PathPosition, StrainOrigin};
 pub use simulation::Simulation;

@@ -26,7 +26,7 @@ pub struct ServoRequest {
     pub law: ServoLaw,
     /// Simulated time until the next request, s.
     pub control_interval: f64,
-    /// Logarithmic strain since the reference state.
+    /// Logarithmic strain since the reference state; since the first step of the run until a phase sets one.
     pub strain: SymTensor,
 }
 

@@ -3,6 +3,7 @@
 
 use crate::error::ExperimentError;
 use grainlab_core::Mat3;
+use grainlab_core::results::PackingReport;
 use grainlab_scene::PathState;
 
 const VERSION: u64 = 3;
@@ -19,7 +20,8 @@ pub(crate) struct RunState {
     pub(crate) phase_deformation: Mat3,
     /// Integral over time of the largest component of the strain rate since the start of the phase.
     pub(crate) phase_strain: f64,
-    pub(crate) has_reference: bool,
+    /// What the deformation of the packing counts from.
+    pub(crate) strain_origin: StrainOrigin,
     /// The state is within a phase, not at the end of one.
     pub(crate) within_phase: bool,
     /// Fingerprint of the scene: a state can be resumed only in the scene that it came from.
@@ -38,7 +40,7 @@ impl RunState {
             u64::from(p.holding_since.is_some()),
             p.holding_since.unwrap_or(0.0).to_bits(),
             self.time.to_bits(),
-            u64::from(self.has_reference) | u64::from(self.within_phase) << 1,
+            self.strain_origin.bits() | u64::from(self.within_phase) << 1,
             self.scene,
         ];
         words.extend(self.rate.iter().map(|r| r.to_bits()));
@@ -89,10 +91,40 @@ impl RunState {
             rate,
             phase_deformation,
             phase_strain: real(25),
-            has_reference: words[8] & 1 != 0,
+            strain_origin: StrainOrigin::of(words[8]),
             within_phase: words[8] & 2 != 0,
             scene,
         })
+    }
+}
+
+/// What the strain of a packing counts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StrainOrigin {
+    /// The state that a phase set as the reference.
+    Reference,
+    /// The first step of the run: no phase has set a reference.
+    FirstStep,
+    /// Nothing: an earlier version recorded the packing before a reference was set, as not strained.
+    Unknown,
+}
+
+impl StrainOrigin {
+    /// Bit 0: a reference is set; bit 2: without one, strain counts from the first step.
+    fn bits(self) -> u64 {
+        match self {
+            Self::Reference => 1,
+            Self::FirstStep => 4,
+            Self::Unknown => 0,
+        }
+    }
+
+    fn of(word: u64) -> Self {
+        match (word & 1 != 0, word & 4 != 0) {
+            (true, _) => Self::Reference,
+            (false, true) => Self::FirstStep,
+            (false, false) => Self::Unknown,
+        }
     }
 }
 
@@ -104,6 +136,8 @@ pub struct PathPosition {
     /// The phase met its end conditions at this packing. A packing within a phase, recorded on the way or saved by an
     /// interruption, need not be at rest.
     pub end_of_phase: bool,
+    /// What the strain of the packing counts from.
+    pub strain_origin: StrainOrigin,
 }
 
 impl PathPosition {
@@ -111,6 +145,17 @@ impl PathPosition {
     pub fn of(run_state: &[u8]) -> Option<Self> {
         let state = RunState::decode(run_state).ok()?;
         let (next, end_of_phase) = (state.path.phase, !state.within_phase);
-        Some(Self { phase: if end_of_phase { next } else { next + 1 }, end_of_phase })
+        let phase = if end_of_phase { next } else { next + 1 };
+        Some(Self { phase, end_of_phase, strain_origin: state.strain_origin })
+    }
+    /// Removes from the report of the packing what its strain does not tell: gamma/Delta of the strain from a state that no
+    /// phase has set as the reference, and a strain that was not counted.
+    pub fn judge_strain(&self, report: &mut PackingReport) {
+        if self.strain_origin != StrainOrigin::Reference {
+            report.strain_ratios.total = None;
+        }
+        if self.strain_origin == StrainOrigin::Unknown {
+            report.strain = None;
+        }
     }
 }

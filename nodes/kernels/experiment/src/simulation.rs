@@ -5,7 +5,7 @@ use crate::left_out::left_out;
 use crate::phase_settings::phase_settings;
 use crate::request::{ServoRequest, StepOutcome};
 use crate::rollback::Rollback;
-use crate::run_state::RunState;
+use crate::run_state::{RunState, StrainOrigin};
 use grainlab_core::{Mat3, Packing, ServoLaw, SymTensor};
 use grainlab_dem::gas::{HardSpheres, mean_free_time, random_placement};
 use grainlab_dem::{Compute, DemError, Engine, Observables};
@@ -27,12 +27,12 @@ pub struct Simulation {
     /// Friction coefficient of the present forces. At the end of a phase the engine already has that of the
     /// next one.
     friction: f64,
-    /// Deformation gradient since the reference state; the identity before the reference state.
+    /// Deformation gradient since the reference state; since the first step until a phase sets one.
     deformation: Mat3,
     phase_deformation: Mat3,
     /// Integral over time of the largest component of the strain rate since the phase began.
     phase_strain: f64,
-    has_reference: bool,
+    strain_origin: StrainOrigin,
     /// The present state is within a phase, not at the end of one.
     within_phase: bool,
     observables: Observables,
@@ -59,21 +59,21 @@ impl Simulation {
         let gas = random_placement(&radii, fraction, speed, scene.seed)?;
         let settings = phase_settings(&scene, &scene.phases[0]);
         let mut engine =
-            Engine::new(gas.cell, scene.material, radii, &gas.positions, settings).with_law(scene.law);
-        engine.set_velocities(&gas.velocities);
+            Engine::new(gas.cell, scene.material, radii, &gas.positions, settings)?.with_law(scene.law)?;
+        engine.set_velocities(&gas.velocities)?;
         let friction = engine.settings().friction;
         let mut run = Self::begin(scene, engine, friction)?;
         run.within_phase = true;
         Ok(run)
     }
 
-    /// The start of a scene whose path begins with this packing. Its clock is set to 0.
+    /// The start of a scene whose path begins with this packing. Its clock and its strain are set to 0.
     pub fn from_packing(scene: Scene, packing: &Packing) -> Result<Self, ExperimentError> {
         let phase = scene.phases.first();
         let phase = phase.ok_or(ExperimentError::Resume("the scene has no phases".into()))?;
         // The time step of the packing was set under other settings.
         let start = Packing { step: 0, time: 0.0, time_step: 0.0, ..packing.clone() };
-        let engine = Engine::from_packing(&start, phase_settings(&scene, phase));
+        let engine = Engine::from_packing(&start, phase_settings(&scene, phase))?;
         let mut run = Self::begin(scene, engine, packing.friction)?;
         // It is published before the first request.
         run.packings = 1;
@@ -96,7 +96,7 @@ impl Simulation {
             deformation: Mat3::identity(),
             phase_deformation: Mat3::identity(),
             phase_strain: 0.0,
-            has_reference: false,
+            strain_origin: StrainOrigin::FirstStep,
             within_phase: false,
             observables,
             rollback: None,
@@ -109,10 +109,14 @@ impl Simulation {
         if saved.scene != fingerprint(&scene) {
             return Err(ExperimentError::Resume("the packing belongs to another scene or seed".into()));
         }
+        if saved.strain_origin == StrainOrigin::Unknown || packing.strain().is_none() {
+            let why = "an earlier version recorded the packing, without the strain since the first step; begin the run anew";
+            return Err(ExperimentError::Resume(why.into()));
+        }
         let phase = scene.phases.get(saved.path.phase).or(scene.phases.last());
         let phase = phase.ok_or(ExperimentError::Resume("the scene has no phases".into()))?;
-        let mut engine = Engine::from_packing(packing, phase_settings(&scene, phase));
-        engine.set_time(saved.time);
+        let mut engine = Engine::from_packing(packing, phase_settings(&scene, phase))?;
+        engine.set_time(saved.time)?;
         engine.set_rate(&saved.rate)?;
         engine.initialise()?;
         let observables = engine.observables()?;
@@ -125,7 +129,7 @@ impl Simulation {
             deformation: packing.deformation,
             phase_deformation: saved.phase_deformation,
             phase_strain: saved.phase_strain,
-            has_reference: saved.has_reference,
+            strain_origin: saved.strain_origin,
             within_phase: saved.within_phase,
             observables,
             rollback: None,
@@ -188,7 +192,7 @@ impl Simulation {
             law,
             control_interval: self.event_driven(phase).map_or(self.engine.time_step(), |gas| gas.step)
                 * f64::from(phase.control_period),
-            strain: logarithmic_strain(&self.deformation),
+            strain: SymTensor::logarithmic_strain(&self.deformation),
         })
     }
 
@@ -221,10 +225,10 @@ impl Simulation {
         let input = self.observation();
         let energy = self.engine.energy();
         let index = self.path.phase;
+        let record = self.scene.phases[index].record;
+        let packing_due = record.is_some_and(|r| r.is_due(&before, &self.travelled()));
         match self.path.observe(&self.scene, &input)? {
             PathEvent::Stay => {
-                let record = self.scene.phases[index].record;
-                let packing_due = record.is_some_and(|r| r.is_due(&before, &self.travelled()));
                 self.within_phase = true;
                 if packing_due {
                     self.packings += 1;
@@ -235,6 +239,7 @@ impl Simulation {
             }
             PathEvent::PhaseEnded { reference, publish, finished } => {
                 self.begin_phase(reference)?;
+                let publish = publish || packing_due;
                 // A state that is not published here is saved by an interruption alone, as the first of the next phase.
                 self.within_phase = !publish;
                 self.packings += u64::from(publish);
@@ -249,7 +254,7 @@ impl Simulation {
         Observation {
             time: self.engine.time(),
             stress: self.observables.stress.tensor,
-            strain: logarithmic_strain(&self.phase_deformation),
+            strain: SymTensor::logarithmic_strain(&self.phase_deformation),
             solid_fraction: self.observables.solid_fraction,
             unbalanced: self.observables.unbalanced,
             speed: self.engine.speed(),
@@ -277,9 +282,7 @@ impl Simulation {
     fn accumulate(&mut self, deformation: &Mat3, interval: f64) {
         self.phase_strain += interval * self.engine.rate().iter().fold(0.0f64, |a, r| a.max(r.abs()));
         self.phase_deformation = deformation * self.phase_deformation;
-        if self.has_reference {
-            self.deformation = deformation * self.deformation;
-        }
+        self.deformation = deformation * self.deformation;
     }
 
     /// Parameters of an event-driven phase; `None` in any other phase.
@@ -328,7 +331,7 @@ impl Simulation {
             contacts: Vec::new(),
             ..old
         };
-        self.engine = Engine::from_packing(&packing, *self.engine.settings());
+        self.engine = Engine::from_packing(&packing, *self.engine.settings())?;
         self.engine.set_compute(compute);
         self.engine.set_rate(&rate)?;
         self.engine.initialise()?;
@@ -342,11 +345,11 @@ impl Simulation {
         self.rollback = None;
         (self.phase_deformation, self.phase_strain) = (Mat3::identity(), 0.0);
         if reference {
-            self.has_reference = true;
+            self.strain_origin = StrainOrigin::Reference;
             self.deformation = Mat3::identity();
         }
         if let Some(phase) = self.path.phase(&self.scene) {
-            self.engine.set_settings(phase_settings(&self.scene, phase));
+            self.engine.set_settings(phase_settings(&self.scene, phase))?;
             // A resumed run does not sort here, but its packing has the order of this one.
             self.engine.sort_spatially();
             self.engine.initialise()?;
@@ -372,7 +375,7 @@ impl Simulation {
             rate: self.engine.rate(),
             phase_deformation: self.phase_deformation,
             phase_strain: self.phase_strain,
-            has_reference: self.has_reference,
+            strain_origin: self.strain_origin,
             within_phase: self.within_phase,
             scene: fingerprint(&self.scene),
         }
@@ -400,7 +403,8 @@ impl Simulation {
 
     fn roll_back(&mut self) {
         if let Some(saved) = self.rollback.take() {
-            self.engine.restore(saved.engine);
+            // It is a checkpoint of this engine.
+            let _ = self.engine.restore(saved.engine);
             (self.path, self.sequence, self.friction) = (saved.path, saved.sequence, saved.friction);
             (self.deformation, self.phase_deformation) = (saved.deformation, saved.phase_deformation);
             (self.phase_strain, self.within_phase) = (saved.phase_strain, saved.within_phase);
@@ -416,12 +420,4 @@ fn fingerprint(scene: &Scene) -> u64 {
     let text = format!("{scene:?}");
     text.bytes()
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
-}
-
-/// ln V of F = V R, positive in extension.
-fn logarithmic_strain(f: &Mat3) -> SymTensor {
-    let left = (f * f.transpose()).symmetric_eigen();
-    let logs = left.eigenvalues.map(|v| 0.5 * v.ln());
-    let q = left.eigenvectors;
-    SymTensor::symmetric_part(&(q * Mat3::from_diagonal(&logs) * q.transpose()))
 }

@@ -160,3 +160,83 @@ fn a_run_reports_what_each_phase_leaves_out() {
     let unequal = SCENE.replace("diameter = 2e-4", "diameter = { min = 1.9e-4, max = 2.1e-4 }");
     assert!(!of(&unequal).left_out().contains("unequal"));
 }
+
+fn trace(packing: &Packing) -> f64 {
+    packing.strain().unwrap().trace()
+}
+
+/// Expected: the volumetric strain since the gas was placed, and since the reference state.
+#[test]
+fn strain_counts_from_the_first_step_of_a_run_until_a_phase_sets_the_reference() {
+    let last = |scene: &str| run(of(scene)).1.pop().unwrap().0;
+    let free = last(&SCENE.replace("reference = true\n", ""));
+    assert!((trace(&free) - (0.3 / free.solid_fraction()).ln()).abs() < 1e-12);
+    let referred = last(SCENE);
+    assert!((trace(&referred) - (0.55 / referred.solid_fraction()).ln()).abs() < 1e-3);
+    assert_eq!((&free.positions, free.cell), (&referred.positions, referred.cell));
+}
+
+const PRESSED: &str = "name = \"on\"\nfriction = inf\n[start]\npacking = \"x\"\n\
+    [[phase]]\nkind = \"strain\"\nrate = [0, 0, -1.0, 0, 0, 0]\nuntil = { strain = { zz = -3e-6 } }\n";
+
+/// The packing that [`PRESSED`] starts from, and the run.
+fn pressed(changed: impl Fn(&str) -> String) -> (Packing, Simulation) {
+    let packing = run(of(SCENE)).1.remove(0).0;
+    let scene = Draft::of_text(&changed(PRESSED)).unwrap().resolve_from(&packing).unwrap().scene;
+    let run = Simulation::from_packing(scene, &packing).unwrap();
+    (packing, run)
+}
+
+/// Expected: no strain at the start, although the packing had one, and then that of the phase.
+#[test]
+fn a_run_from_a_packing_counts_its_own_strain() {
+    let (packing, start) = pressed(|text| text.to_owned() + "publish = true\n");
+    assert!(trace(&packing) < -0.01);
+    assert_eq!(trace(&start.packing()), 0.0);
+    let mut straining = start.clone();
+    let rate = grainlab_servo::control(&straining.request().unwrap().servo_input()).unwrap().rate;
+    straining.advance(&rate).unwrap();
+    let elapsed = straining.engine().time();
+    let strain = straining.request().unwrap().strain;
+    assert!(elapsed > 0.0 && (strain.zz + elapsed).abs() < 1e-12 && strain.xx == 0.0, "{strain:?}");
+    let ended = run(start).1.pop().unwrap().0;
+    assert!(trace(&ended) <= -3e-6 && trace(&ended) > -4e-6, "{}", trace(&ended));
+}
+
+/// Expected: a packing for each multiple, the last one at the exchange that ends the phase, and one there where the phase
+/// publishes, too.
+#[test]
+fn a_packing_that_is_due_at_the_end_of_a_phase_is_published() {
+    let period = "control_period = 1\n";
+    for (record, until) in [
+        ("every_strain = 1e-6", "strain = { zz = -3e-6 }"),
+        ("every_time = 1e-6", "elapsed = 3e-6"),
+        ("every_steps = 7", "strain = { zz = -3e-6 }"),
+    ] {
+        let filmed = |publish: &str| {
+            pressed(|text| {
+                text.replace("strain = { zz = -3e-6 }", until)
+                    + period
+                    + &format!("record = {{ {record} }}\n")
+                    + publish
+            })
+        };
+        let (_, published) = run(filmed("").1);
+        let (_, twice) = run(filmed("publish = true\n").1);
+        let (end, state, ended) = published.last().unwrap();
+        if record.starts_with("every_steps") {
+            // The end is a multiple of the steps by chance alone.
+            assert_eq!(published.len() as u64, twice.last().unwrap().0.step / 7, "{record}");
+            continue;
+        }
+        assert_eq!(
+            published.len(),
+            3,
+            "{record}: {:?}",
+            published.iter().map(|p| p.0.step).collect::<Vec<_>>()
+        );
+        assert!(*ended && PathPosition::of(state).unwrap().end_of_phase, "{record}");
+        assert_eq!(twice.len(), 3, "{record}");
+        assert_eq!(&twice.last().unwrap().0, end, "{record}");
+    }
+}

@@ -79,10 +79,12 @@ struct Loop {
 impl Loop {
     fn around(packing: &Engine, servoed: [bool; 6], period: u32) -> Self {
         let mut engine = packing.clone();
-        engine.set_settings(EngineSettings {
-            time_step: TimeStep::Fixed(engine.time_step()),
-            ..*packing.settings()
-        });
+        engine
+            .set_settings(EngineSettings {
+                time_step: TimeStep::Fixed(engine.time_step()),
+                ..*packing.settings()
+            })
+            .unwrap();
         let stress = engine.observables().unwrap().stress.tensor;
         let shade = 1e-4 * stress.mean();
         // Both signs: volume and shape of the cell are off.

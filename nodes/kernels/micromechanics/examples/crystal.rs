@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Friction keeps the tangential springs, without which a crystal does not resist shear.
     let settings = EngineSettings { friction: 0.5, skin: 0.1 * RADIUS, ..EngineSettings::default() };
     let radii = vec![RADIUS; positions.len()];
-    let mut engine = Engine::new(cell, Material::GLASS, radii, &positions, settings);
+    let mut engine = Engine::new(cell, Material::GLASS, radii, &positions, settings)?;
     engine.initialise()?;
 
     let report = analyze(&engine.packing(Mat3::identity()), &Settings::default())?.report;

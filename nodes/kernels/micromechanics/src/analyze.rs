@@ -29,7 +29,7 @@ pub struct Settings {
     /// ([`Fabric::reference_axis`] keeps it). Of any length above zero. The stiffnesses stay in the frame of
     /// the cell.
     pub axis: Vec3,
-    /// Which springs the frozen network has.
+    /// Which springs the frozen network has; a probe has its own friction.
     pub springs: Springs,
     /// With a probe, the stiffness is measured by straining the packing instead of solving the frozen
     /// network.
@@ -43,7 +43,7 @@ impl Default for Settings {
             solver: Solver::Iterative,
             max_iterations: 20_000,
             axis: Vec3::z(),
-            springs: Springs::NormalAndTangential,
+            springs: Springs::Carried,
             probe: None,
         }
     }
@@ -67,7 +67,7 @@ pub struct Analysis {
 /// fails its checks.
 pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, MicroError> {
     let axis = settings.check()?;
-    let view = PackingView::new(packing);
+    let view = PackingView::new(packing)?;
     let (elasticity, probe) = elasticity(&view, settings)?;
     let fabric = fabric(&view, &axis);
     let parts = ReportParts {
@@ -110,8 +110,10 @@ pub fn report(view: &PackingView<'_>, parts: ReportParts) -> PackingReport {
         step: packing.step,
         material: packing.material,
         law: packing.law,
+        friction: packing.friction,
         solid_fraction: packing.solid_fraction(),
         size_spread: packing.size_spread(),
+        strain: packing.strain(),
         stress: view.stress,
         unbalanced_force_ratio: unbalanced_force_ratio(packing, &view.non_rattlers),
         symmetry: elasticity.stiffness().and_then(|s| symmetry(&s.tensor, tolerance)),
@@ -151,6 +153,7 @@ fn elasticity(
     let stiffness = match &probe {
         Some(probe) => ElasticStiffness {
             method: StiffnessMethod::StrainProbe,
+            smooth: probe.smooth,
             tensor: probe.stiffness,
             stddev: probe.stddev(),
             residual: probe.residual(),
@@ -163,6 +166,7 @@ fn elasticity(
             } else {
                 StiffnessMethod::FrozenNetwork
             },
+            smooth: network.smooth(),
             tensor: found.relaxed,
             stddev: found.stddev,
             residual: found.residual,

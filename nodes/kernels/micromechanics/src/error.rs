@@ -5,6 +5,17 @@ use grainlab_core::results::NotJammed;
 /// Why a packing could not be analysed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MicroError {
+    /// Numbers that are no packing.
+    #[error(transparent)]
+    Packing(#[from] grainlab_core::PackingError),
+    /// A network and a packing that do not belong together.
+    #[error("the network has {network} contacts, and the packing {packing}")]
+    OtherPacking {
+        /// Contacts of the network.
+        network: usize,
+        /// Contacts of the packing.
+        packing: usize,
+    },
     /// A setting is out of its range.
     #[error("setting {name} = {value:e} is out of range: {requirement}")]
     Setting {

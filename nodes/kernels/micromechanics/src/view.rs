@@ -2,7 +2,7 @@
 
 use crate::rattlers::non_rattlers;
 use grainlab_core::stress::{Stress, stress};
-use grainlab_core::{Packing, Vec3};
+use grainlab_core::{Packing, PackingError, Vec3};
 
 /// A packing with the data common to all measurements.
 #[derive(Clone, Debug)]
@@ -23,17 +23,21 @@ pub struct PackingView<'a> {
 
 impl<'a> PackingView<'a> {
     /// Computes the data of `packing`.
-    pub fn new(packing: &'a Packing) -> Self {
+    ///
+    /// # Errors
+    /// Numbers that are no packing.
+    pub fn new(packing: &'a Packing) -> Result<Self, PackingError> {
+        packing.check()?;
         let contacts = &packing.contacts;
         let forces: f64 = contacts.iter().map(|c| c.normal_force).sum();
-        Self {
+        Ok(Self {
             packing,
             non_rattlers: non_rattlers(packing),
             branches: contacts.iter().map(|c| packing.branch(c)).collect(),
             contact_stiffnesses: contacts.iter().map(|c| packing.contact_stiffness(c)).collect(),
             stress: stress(packing),
             mean_normal_force: forces / contacts.len().max(1) as f64,
-        }
+        })
     }
 
     /// Number of non-rattlers.

@@ -13,7 +13,8 @@ pub(crate) fn read(r: &mut Reader<'_>, default: &ContactLaw) -> ContactLaw {
     let known = (springs.name() == default.name()).then(|| default.springs.parameters());
     let list = springs.parameter_list();
     let parameters = parameters(r, own.map_or(&[], |(_, keys)| keys), list, known.as_deref());
-    ContactLaw { springs: springs.with_parameters(&parameters), rolling: rolling(r, default.rolling) }
+    let springs = springs.with_parameters(&parameters).unwrap_or(springs);
+    ContactLaw { springs, rolling: rolling(r, default.rolling) }
 }
 
 /// The resistance to rolling, where the scene or the packing that it starts from has any.

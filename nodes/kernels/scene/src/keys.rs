@@ -77,10 +77,10 @@ keys! {
     DRAG = Key { kinds: STEPS, ..number("phase.drag", "1/s", Interval::FROM_ZERO, DefaultValue::Number(0.0), "drag on velocities relative to the affine motion") };
     SPIN_DRAG = Key { kinds: STEPS, ..number("phase.spin_drag", "1/s", Interval::FROM_ZERO, Words("sqrt(G/density)/(1000 diameter) for relax and servo, else 0"), "drag on spins; no contact resists the spin of a grain that two contacts hold") };
     CONTROL_PERIOD = Key { kinds: STEPS, ..whole("phase.control_period", 1, 100_000, Words("10; 20 for an event-driven gas, 200 for a soft one"), "solver steps between two exchanges with the servo; a step of an event-driven gas is a mean free time") };
-    REFERENCE = Key { kinds: STEPS, ..flag("phase.reference", "whether the state at the end is the reference of strains from then on") };
+    REFERENCE = Key { kinds: STEPS, ..flag("phase.reference", "whether the state at the end is the reference of strains from then on; before, they count from the first step of the run") };
     PUBLISH = Key { kinds: STEPS, ..flag("phase.publish", "whether the packing at the end is published") };
 
-    RECORD = Key { kinds: STEPS, ..form("phase.record", "a table with one of every_steps, every_strain and every_time", Words("none"), "how often a packing within the phase is published; the run is the same with and without") };
+    RECORD = Key { kinds: STEPS, ..form("phase.record", "a table with one of every_steps, every_strain and every_time", Words("none"), "how often a packing within the phase is published, also at the exchange that ends the phase; the run is the same with and without") };
     EVERY_STEPS = Key { kinds: STEPS, ..whole("phase.record.every_steps", 1, 1_000_000_000_000, Words("none"), "at the first exchange after each multiple of this number of solver steps of the run") };
     EVERY_STRAIN = Key { kinds: STEPS, ..number("phase.record.every_strain", "", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of this strain in the phase, counted without sign") };
     EVERY_TIME = Key { kinds: STEPS, ..number("phase.record.every_time", "s", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of this simulated time in the phase") };
@@ -104,18 +104,18 @@ keys! {
     CYCLE_PHASES = Key { kinds: CYCLE, ..form("phase.phase", "an array of tables, one per phase", Required, "phases of the cycle: [[phase.phase]]") };
 
     UNTIL = Key { kinds: STEPS, ..form("phase.until", "a table of conditions", Required, "conditions that end the phase once all of them hold; at least one") };
-    UNTIL_SOLID_FRACTION = condition("phase.until.solid_fraction", "", "solid fraction at or above it");
-    UNTIL_ELAPSED = condition("phase.until.elapsed", "s", "simulated time in the phase at or above it");
-    UNTIL_UNBALANCED = condition("phase.until.unbalanced", "", "mean net force of non-rattlers over mean contact force at or below it");
-    UNTIL_SPEED = condition("phase.until.speed", "m/s", "root mean square speed relative to the affine motion at or below it");
-    UNTIL_PRESSURE_BELOW = condition("phase.until.pressure_below", "Pa", "mean stress at or below it");
+    UNTIL_SOLID_FRACTION = Key { domain: Domain::Number(Interval { low: Excluded(0.0), high: Excluded(1.0) }), ..condition("phase.until.solid_fraction", "", "solid fraction at or above it") };
+    UNTIL_ELAPSED = from_zero("phase.until.elapsed", "s", "simulated time in the phase at or above it; below timeout");
+    UNTIL_UNBALANCED = from_zero("phase.until.unbalanced", "", "mean net force of non-rattlers over mean contact force at or below it");
+    UNTIL_SPEED = from_zero("phase.until.speed", "m/s", "root mean square speed relative to the affine motion at or below it");
+    UNTIL_PRESSURE_BELOW = from_zero("phase.until.pressure_below", "Pa", "mean stress at or below it");
     UNTIL_PRESSURE_ABOVE = condition("phase.until.pressure_above", "Pa", "mean stress at or above it");
     UNTIL_DEVIATOR_ABOVE = condition("phase.until.deviator_above", "Pa", "stress zz less the mean of xx and yy at or above it");
     UNTIL_DEVIATOR_BELOW = condition("phase.until.deviator_below", "Pa", "stress zz less the mean of xx and yy at or below it");
     UNTIL_STRAIN = Key { domain: BY_COMPONENT, ..condition("phase.until.strain", "", "logarithmic strain since the phase began, positive in extension, at or beyond these values, seen from 0") };
     UNTIL_STRESS_ABOVE = Key { domain: BY_COMPONENT, ..condition("phase.until.stress_above", "Pa", "stress components at or above these values, positive in compression") };
     UNTIL_STRESS_BELOW = Key { domain: BY_COMPONENT, ..condition("phase.until.stress_below", "Pa", "stress components at or below these values") };
-    UNTIL_ON_TARGET = Key { kinds: SERVO, ..condition("phase.until.on_target", "", "error of every stress component that has a target, over the mean target, at or below it") };
+    UNTIL_ON_TARGET = Key { kinds: SERVO, ..from_zero("phase.until.on_target", "", "error of every stress component that has a target, over the mean target, at or below it") };
     HOLD = Key { kinds: STEPS, ..number("phase.until.hold", "s", Interval::FROM_ZERO, DefaultValue::Number(0.0), "simulated time for which all conditions must hold; below timeout") };
     TIMEOUT = Key { kinds: STEPS, ..number("phase.until.timeout", "s", Interval::POSITIVE, DefaultValue::Number(1.0), "simulated time after which the phase, and with it the run, has failed") };
 }
@@ -173,6 +173,10 @@ const fn number(
 
 const fn condition(path: &'static str, unit: &'static str, meaning: &'static str) -> Key {
     Key { kinds: STEPS, ..number(path, unit, Interval::FINITE, NONE, meaning) }
+}
+
+const fn from_zero(path: &'static str, unit: &'static str, meaning: &'static str) -> Key {
+    Key { domain: Domain::Number(Interval::FROM_ZERO), ..condition(path, unit, meaning) }
 }
 
 const fn whole(path: &'static str, min: u64, max: u64, default: DefaultValue, meaning: &'static str) -> Key {

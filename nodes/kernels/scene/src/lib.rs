@@ -5,6 +5,7 @@
 //! - `compose`: bases and overrides; `assignment`: `KEY=VALUE`
 //! - `parse`, `phases`, `servo`, `until`: a table to [`Scene`], with every fault reported at once
 //! - `canonical`: the scene as text again
+//! - `ends`: phases that cannot end; `notes`: what a reader should know ([`Scene::notes`])
 //! - `path`: the loading path as a state machine; `phase_share`: how much of a phase is done, where its end is known
 //!
 //! A scene is data: the same text and seed always define the same run.
@@ -14,12 +15,14 @@ mod built_in;
 mod canonical;
 mod compose;
 mod contact;
+mod ends;
 mod fault;
 mod grains;
 mod key;
 mod keys;
 mod model;
 mod nearest;
+mod notes;
 mod overlay;
 mod parse;
 mod path;

@@ -73,7 +73,7 @@ pub struct Phase {
     pub reference: bool,
     /// Publish the packing at the end.
     pub publish: bool,
-    /// How often a packing within the phase is published; the one at its end is published by `publish`.
+    /// How often a packing within the phase is published; the one at its end is published by `publish`, or if it is due.
     pub record: Option<Record>,
     /// Conditions that end the phase.
     pub until: Conditions,

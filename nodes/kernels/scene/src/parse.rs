@@ -75,8 +75,12 @@ fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
         r.fault("start.packing", message);
     }
     let numerics = r.section("numerics", read_numerics);
-    let mut inherited =
-        Inherited { friction, taken: false, spin_drag: phases::spin_drag(&material, sizes.mean()) };
+    let mut inherited = Inherited {
+        sizes: &sizes,
+        friction,
+        taken: false,
+        spin_drag: phases::spin_drag(&material, sizes.mean()),
+    };
     let phases = phases::read(r, &mut inherited, start.is_none());
     if let (Some(packing), Some(first)) = (packing, phases.first()) {
         start::refused(first, packing).into_iter().for_each(|m| r.fault("phase", m));

@@ -162,7 +162,7 @@ fn holds(condition: &Condition, phase: &Phase, seen: &Observation, elapsed: f64)
 }
 
 /// The key of a condition on this measure, without its direction.
-fn name(measure: Measure) -> String {
+pub(crate) fn name(measure: Measure) -> String {
     match measure {
         Measure::SolidFraction => "solid_fraction".to_owned(),
         Measure::Elapsed => "elapsed".to_owned(),

@@ -6,7 +6,8 @@ use crate::key::Key;
 use crate::keys;
 use crate::model::{Condition, GasMethod, Measure, Phase, PhaseKind};
 use crate::reader::{Reader, as_number, kind};
-use crate::{record, servo, until};
+use crate::sizes::Sizes;
+use crate::{ends, record, servo, until};
 use grainlab_core::Material;
 use toml::{Table, Value};
 
@@ -24,7 +25,9 @@ const GAS_METHODS: [(&str, GasMethod); 2] =
 const SPIN_CROSSINGS: f64 = 1e3;
 
 /// Values that phases take from the scene by default.
-pub(crate) struct Inherited {
+pub(crate) struct Inherited<'a> {
+    /// Sizes of the grains.
+    pub(crate) sizes: &'a Sizes,
     /// Friction coefficient of the scene.
     pub(crate) friction: Option<f64>,
     /// Whether a phase used it.
@@ -39,7 +42,7 @@ pub(crate) fn spin_drag(material: &Material, diameter: f64) -> f64 {
 }
 
 /// The phases of a scene, with or without a gas at the start.
-pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited, begins_with_gas: bool) -> Vec<Phase> {
+pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited<'_>, begins_with_gas: bool) -> Vec<Phase> {
     let mut phases = Vec::new();
     list(r, &keys::PHASE, "phase", inherited, &mut phases);
     if phases.len() > MAX_PHASES {
@@ -69,7 +72,13 @@ pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited, begins_with_ga
 }
 
 /// Reads the array of phase tables under `key`.
-fn list(r: &mut Reader<'_>, key: &'static Key, place: &str, inherited: &mut Inherited, out: &mut Vec<Phase>) {
+fn list(
+    r: &mut Reader<'_>,
+    key: &'static Key,
+    place: &str,
+    inherited: &mut Inherited<'_>,
+    out: &mut Vec<Phase>,
+) {
     let value = r.get(key);
     let Some(Value::Array(items)) = value else {
         r.refuse(key, value);
@@ -94,7 +103,7 @@ fn list(r: &mut Reader<'_>, key: &'static Key, place: &str, inherited: &mut Inhe
 fn one(
     place: String,
     table: &Table,
-    inherited: &mut Inherited,
+    inherited: &mut Inherited<'_>,
     out: &mut Vec<Phase>,
 ) -> (Entries, Vec<Fault>) {
     let name = table.get("name").and_then(Value::as_str).unwrap_or("");
@@ -117,7 +126,7 @@ fn one(
     r.finish()
 }
 
-fn cycle(r: &mut Reader<'_>, place: &str, inherited: &mut Inherited, out: &mut Vec<Phase>) {
+fn cycle(r: &mut Reader<'_>, place: &str, inherited: &mut Inherited<'_>, out: &mut Vec<Phase>) {
     r.text_or(&keys::PHASE_NAME, Some("cycle"));
     let times = r.whole(&keys::TIMES) as usize;
     let mut body = Vec::new();
@@ -132,7 +141,7 @@ fn cycle(r: &mut Reader<'_>, place: &str, inherited: &mut Inherited, out: &mut V
     }
 }
 
-fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited) -> Phase {
+fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited<'_>) -> Phase {
     let name = r.text_or(&keys::PHASE_NAME, Some(word));
     let kind = match word {
         "gas" => PhaseKind::Gas {
@@ -171,11 +180,15 @@ fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited) -> Phase {
     if hard {
         refuse_contacts(r, &phase);
     }
+    // What is at fault itself is not judged twice.
+    if r.is_sound() {
+        ends::faults(&phase, inherited.sizes).into_iter().for_each(|(key, message)| r.fault(key, message));
+    }
     phase
 }
 
 /// The friction of a phase: its own, else that of the scene, which is in the canonical form once.
-fn friction(r: &mut Reader<'_>, gas: bool, inherited: &mut Inherited) -> f64 {
+fn friction(r: &mut Reader<'_>, gas: bool, inherited: &mut Inherited<'_>) -> f64 {
     if gas || r.has(&keys::PHASE_FRICTION) {
         return r.number_or(&keys::PHASE_FRICTION, gas.then_some(0.0));
     }

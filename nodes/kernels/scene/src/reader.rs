@@ -28,6 +28,11 @@ impl<'a> Reader<'a> {
         self.faults.push(Fault { place, message: message.into() });
     }
 
+    /// Whether no fault was found so far.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.faults.is_empty()
+    }
+
     pub(crate) fn place_of(&self, key: &str) -> String {
         match (self.place.as_str(), key) {
             ("", k) => k.to_string(),

@@ -18,7 +18,9 @@ pub struct Travelled {
 impl Record {
     /// Whether a packing is due between `before` and `now`.
     pub fn is_due(&self, before: &Travelled, now: &Travelled) -> bool {
-        let passed = |from: f64, to: f64, every: f64| (to / every).floor() > (from / every).floor();
+        // The end of a phase is often a multiple, from which a sum of many intervals differs by rounding.
+        let multiples = |travelled: f64, every: f64| (travelled / every + 1e-9).floor();
+        let passed = |from: f64, to: f64, every: f64| multiples(to, every) > multiples(from, every);
         match *self {
             Record::EverySteps(every) => now.steps / every > before.steps / every,
             Record::EveryTime(every) => passed(before.time, now.time, every),

@@ -116,7 +116,7 @@ fn from_positions(packing: &Packing) -> Result<Packing, VerificationError> {
     let settings = EngineSettings { friction: packing.friction, ..EngineSettings::default() };
     let (radii, positions) = (packing.radii.clone(), &packing.positions);
     let mut engine =
-        Engine::new(packing.cell, packing.material, radii, positions, settings).with_law(packing.law);
+        Engine::new(packing.cell, packing.material, radii, positions, settings)?.with_law(packing.law)?;
     engine.initialise()?;
     Ok(engine.packing(Mat3::identity()))
 }

@@ -113,11 +113,11 @@ impl TwoSpheres {
             skin: 0.1 * self.radii[0].min(self.radii[1]),
             ..EngineSettings::default()
         };
-        let engine = Engine::new(cell, self.material, self.radii.to_vec(), &self.positions, settings);
-        let mut engine = engine.with_law(self.law);
-        engine.set_velocities(&self.velocities);
+        let engine = Engine::new(cell, self.material, self.radii.to_vec(), &self.positions, settings)?;
+        let mut engine = engine.with_law(self.law)?;
+        engine.set_velocities(&self.velocities)?;
         if self.friction > 0.0 {
-            engine.set_spins(&self.spins);
+            engine.set_spins(&self.spins)?;
         }
         engine.initialise()?;
         Ok(engine)

@@ -25,7 +25,7 @@ pub fn rows(packing: &Packing, lammps: &str) -> Result<Vec<Row>, VerificationErr
         ..EngineSettings::default()
     };
     let (radii, positions) = (packing.radii.clone(), &packing.positions);
-    let mut engine = Engine::new(packing.cell, packing.material, radii, positions, settings);
+    let mut engine = Engine::new(packing.cell, packing.material, radii, positions, settings)?;
     engine.set_rate(&[0.0, 0.0, RATE, 0.0, 0.0, 0.0])?;
     engine.initialise()?;
     let (mut stress, mut contacts, mut done) = ([const { Vec::new() }; 3], Vec::new(), 0);

@@ -79,8 +79,11 @@ pub(crate) struct Args {
     /// Solver of the equations of the network
     #[arg(long, value_enum, default_value_t)]
     solver: Solver,
-    /// Remove tangential springs: the response of frictionless grains
-    #[arg(long)]
+    /// Springs of the contacts
+    #[arg(long, value_enum, default_value_t)]
+    springs: ContactSprings,
+    /// The same as --springs normal: the response of grains without friction
+    #[arg(long, conflicts_with = "springs")]
     smooth: bool,
     /// Strain of the probe, forward and backward; far below overlap/diameter
     #[arg(long, value_name = "STRAIN", default_value_t = StrainProbe::default().amplitude)]
@@ -105,6 +108,17 @@ enum Method {
     Prestressed,
     /// Explicit: strain the packing slightly, relax it, evaluate the stress
     Probe,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+enum ContactSprings {
+    /// Those that the contacts carry: no tangential ones in a packing without friction
+    #[default]
+    Carried,
+    /// Normal and tangential ones, whatever the friction
+    Both,
+    /// Normal ones alone
+    Normal,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -150,10 +164,17 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     in_range("amplitude", Some(amplitude), "a strain, more than 0 and at most 0.01", |a| {
         a > 0.0 && a <= 0.01
     })?;
-    let springs = match args.method {
-        Method::Prestressed => Springs::PrestressedNormal,
+    let springs = match (args.method, args.springs) {
+        (Method::Prestressed, ContactSprings::Both) => {
+            let message =
+                "--method prestressed is of smooth grains, and --springs both adds tangential springs";
+            return Err(Failure::usage(message));
+        }
+        (Method::Prestressed, _) => Springs::PrestressedNormal,
         _ if args.smooth => Springs::Normal,
-        _ => Springs::NormalAndTangential,
+        (_, ContactSprings::Carried) => Springs::Carried,
+        (_, ContactSprings::Both) => Springs::NormalAndTangential,
+        (_, ContactSprings::Normal) => Springs::Normal,
     };
     let probe =
         (args.method == Method::Probe).then(|| StrainProbe { amplitude, ..measure::explicit(springs) });

@@ -17,7 +17,7 @@ pub(crate) enum Command {
     List,
     /// Show the complete scene: bases applied, every default written out.
     Show(Show),
-    /// Read scenes and list all their faults; exit 2 if there are any.
+    /// Read scenes and list all their faults, and what to know of the others; exit 2 if there are any faults.
     Check(Check),
     /// Write a template of a scene, with comments.
     New(New),
@@ -87,13 +87,14 @@ fn list() -> Result<Exit, Failure> {
 /// Reads every scene, also after one with faults.
 fn check_all(names: &[String]) -> Result<Exit, Failure> {
     let mut table = Table::new(["scene", "grains", "phases", "packings"]);
-    let (mut exit, mut sound) = (Exit::Done, false);
+    let (mut exit, mut sound, mut notes) = (Exit::Done, false, Vec::new());
     for name in names {
         match scenes::load(name, &[], None) {
             Ok(found) => {
                 let (scene, published) = (&found.scene, found.scene.phases.iter().filter(|p| p.publish));
                 let numbers = [scene.grains as usize, scene.phases.len(), published.count()];
                 table.row([name.clone()].into_iter().chain(numbers.map(|n| n.to_string())));
+                notes.extend(scene.notes().into_iter().map(|note| format!("note: {name}, {note}\n")));
                 sound = true;
             }
             Err(failure) => {
@@ -103,7 +104,7 @@ fn check_all(names: &[String]) -> Result<Exit, Failure> {
         }
     }
     if sound {
-        print(&table.text())?;
+        print(&(table.text() + &notes.concat()))?;
     }
     Ok(exit)
 }

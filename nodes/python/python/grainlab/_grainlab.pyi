@@ -81,8 +81,9 @@ class Packing:
     def cell(self) -> NDArray[np.float64]:
         """Edge vectors of the cell as columns, m, (3, 3): a copy."""
     @property
-    def deformation(self) -> NDArray[np.float64]:
-        """Deformation gradient since the reference state, (3, 3): a copy."""
+    def deformation(self) -> NDArray[np.float64] | None:
+        """Deformation gradient since the reference state, or since the first step of the run until a phase sets one,
+        (3, 3): a copy. None for a packing that has neither."""
     @property
     def ids(self) -> NDArray[np.uint32]:
         """Persistent ids, (n,)."""
@@ -178,18 +179,19 @@ def analyze(
     *,
     axis: ArrayLike = (0.0, 0.0, 1.0),
     solver: Literal["cg", "direct"] = "cg",
-    springs: Literal["both", "normal"] = "both",
+    springs: Literal["carried", "both", "normal"] = "carried",
     tolerance: float = 1e-9,
 ) -> dict[str, Any]:
     """Structure, stress and stiffness: all that ``grainlab analyze`` reports, by key (see :func:`quantities`). Unknown values
-    are None, stiffnesses arrays (6, 6), Pa. Raises PhysicsError."""
+    are None, stiffnesses arrays (6, 6), Pa. Springs: "carried" are those that the contacts carry, no tangential ones in a
+    packing without friction. Raises PhysicsError."""
 
 def stiffness(
     packing: Packing,
     *,
     affine: bool = False,
     solver: Literal["cg", "direct"] = "cg",
-    springs: Literal["both", "normal"] = "both",
+    springs: Literal["carried", "both", "normal"] = "carried",
     tolerance: float = 1e-9,
 ) -> NDArray[np.float64]:
     """Stiffness of the contact network, Pa, (6, 6), Voigt order with engineering shear: with relaxation of the grains, or

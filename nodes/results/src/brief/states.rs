@@ -14,8 +14,9 @@ const OUTSIDE: (&str, &str) = ("*", "extrapolated");
 
 /// The table, and below it what is left out of it.
 pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
-    let mut t =
-        Table::new(["step", "p/kPa", "k", "z", "eps", "G12", "G13", "Theta", "inferred k", "z", "eps", "by"]);
+    let mut t = Table::new([
+        "step", "p/kPa", "q/p", "phi", "k", "z", "eps", "G12", "Theta", "est. k", "z", "eps", "by",
+    ]);
     let origins = states.iter().map(|s| by_origin(&s.results).len()).max().unwrap_or(0).max(1);
     let left_out = states.len().saturating_sub(MOST_ROWS / origins);
     let mut notes = Vec::new();
@@ -26,18 +27,19 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
     };
     for state in &states[left_out..] {
         let r = &state.packing.report;
-        let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 1));
+        let [g12, _, theta] = moduli(r).map(|m| fixed(m, 1));
         if g12 != "-" {
-            note("G12, G13 and Theta in MPa".to_owned());
+            note("G12 and Theta in MPa; est.: estimated".to_owned());
         }
         let packing = [
             state.packing.step.to_string(),
-            format!("{:.2}", r.pressure() / 1e3),
+            format!("{:.1}", r.pressure() / 1e3),
+            r.stress_ratio().map_or_else(|| "-".to_owned(), |q| format!("{q:.0e}")),
+            format!("{:.4}", r.solid_fraction),
             format!("{:.3}", r.contacts.coordination),
             format!("{:.3}", r.contacts.mechanical_coordination),
             fixed(eps(r), 4),
             g12,
-            g13,
             theta,
         ];
         let groups = by_origin(&state.results);
@@ -55,12 +57,12 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
             note(format!("step {}: inferred from {other}", state.packing.step));
         }
         let unknown = if groups.is_empty() { "" } else { "unknown" };
-        t.row(packing.into_iter().chain(inferred(first, unknown)));
+        t.row(packing.into_iter().chain(estimated(first, unknown)));
         // The data of a further estimate stand in its first cell.
         for best in found.iter().skip(1) {
             let from = best.source.clone().unwrap_or_default();
             t.row(
-                [from].into_iter().chain((1..8).map(|_| String::new())).chain(inferred(Some(best), unknown)),
+                [from].into_iter().chain((1..9).map(|_| String::new())).chain(estimated(Some(best), unknown)),
             );
         }
     }
@@ -72,7 +74,7 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
 }
 
 /// The recommended estimate; without one, its cell has `unknown`.
-fn inferred(best: Option<&Inference>, unknown: &str) -> [String; 4] {
+fn estimated(best: Option<&Inference>, unknown: &str) -> [String; 4] {
     let Some(b) = best else { return ["", "", "", unknown].map(str::to_owned) };
     let by = match b.status {
         "ok" => b.model.clone(),

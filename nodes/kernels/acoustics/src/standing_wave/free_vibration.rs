@@ -63,11 +63,11 @@ impl<'a> FreeVibration<'a> {
         let velocity = |g: usize| shapes.iter().map(|s| s[g]).sum::<f64>() * excitation.velocity;
         let velocities: Vec<Vec3> =
             (0..supercell.along.len()).map(|g| excitation.polarization * velocity(g)).collect();
-        let mut engine = Engine::from_packing(&supercell.packing, excitation.setting);
+        let mut engine = Engine::from_packing(&supercell.packing, excitation.setting)?;
         engine.update_time_step();
         engine.initialise()?;
         let changes = ContactChanges::since(&engine);
-        engine.set_velocities(&velocities);
+        engine.set_velocities(&velocities)?;
         let channels = vec![Vec::new(); excitation.waves as usize];
         let mut vibration = Self { excitation, engine, weights, channels, transverse: 0.0, changes };
         vibration.sample();

@@ -60,7 +60,7 @@ impl BurstRun<'_> {
     pub(crate) fn response(&self) -> Result<BurstResponse, AcousticsError> {
         let source = self.slab(0.0)?;
         let receivers: Vec<Slab> = self.receivers.iter().map(|d| self.slab(*d)).collect::<Result<_, _>>()?;
-        let mut engine = Engine::from_packing(&self.supercell.packing, self.setting);
+        let mut engine = Engine::from_packing(&self.supercell.packing, self.setting)?;
         engine.update_time_step();
         engine.initialise()?;
         let step = engine.time_step();
@@ -79,7 +79,7 @@ impl BurstRun<'_> {
                 for k in 0..stride {
                     let time = elapsed + f64::from(k) * step;
                     let by = self.polarization * (acceleration * step * self.burst.at(time));
-                    engine.add_velocities(source.kicks(by));
+                    engine.add_velocities(source.kicks(by))?;
                     engine.step()?;
                 }
             } else {

@@ -138,7 +138,8 @@ fn dashpots(packing: &Packing, c: &ContactSpring) -> [f64; 2] {
 fn long_waves_lose_what_the_dashpots_dissipate_under_a_static_strain() {
     // 1/Q = ω p·η·p/(p·Γ·p), with the viscosity of the motions that balance the springs under unit strains.
     let packing = sample::anisotropic();
-    let network = SpringNetwork::new(&PackingView::new(&packing), Springs::NormalAndTangential).unwrap();
+    let network =
+        SpringNetwork::new(&PackingView::new(&packing).unwrap(), Springs::NormalAndTangential).unwrap();
     let (loads, scale) = network.affine_loads();
     let motion: Vec<GrainDofs<6>> = solve(&network, &loads, &scale, 1e-9, 20_000).unwrap().motion;
     let ray = along(Vec3::z(), &[Vec3::z(), Vec3::x(), Vec3::y()]);

@@ -36,12 +36,12 @@ fn in_the_engine(
             ..EngineSettings::default()
         };
         let still = Packing { friction: f64::INFINITY, ..repeated.packing.clone() };
-        let mut engine = Engine::from_packing(&still, settings);
+        let mut engine = Engine::from_packing(&still, settings).unwrap();
         engine.update_time_step();
         engine.initialise().unwrap();
         let first: Vec<Vec3> = shape.iter().map(|s| repeated.normal * (amplitude * s)).collect();
-        engine.set_velocities(&first);
-        engine.set_spins(&vec![Vec3::zeros(); first.len()]);
+        engine.set_velocities(&first).unwrap();
+        engine.set_spins(&vec![Vec3::zeros(); first.len()]).unwrap();
         let stride = (interval / engine.time_step()).max(1.0) as u32;
         let interval = f64::from(stride) * engine.time_step();
         let mut amplitudes = Vec::new();

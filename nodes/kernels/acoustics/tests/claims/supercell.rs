@@ -80,7 +80,7 @@ fn a_repeated_packing_has_the_stress_and_the_stiffness_of_the_packing() {
 fn the_engine_finds_the_same_contacts_and_forces_in_it() {
     let packing = sample::isotropic();
     let look = |packing: &Packing| {
-        let mut engine = Engine::from_packing(packing, quiet(packing));
+        let mut engine = Engine::from_packing(packing, quiet(packing)).unwrap();
         engine.initialise().unwrap();
         engine.observables().unwrap()
     };

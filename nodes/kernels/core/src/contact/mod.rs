@@ -117,7 +117,9 @@ impl ContactLaw {
         if complete && all.iter().zip(parameters).all(|(parameter, value)| parameter.admits(*value)) {
             let (springs, rolling) = parameters.split_at(own.len());
             let rolling = rolling.try_into().ok().map(RollingResistance::from_parameters);
-            return Ok(Self { springs: kind.with_parameters(springs), rolling });
+            if let Some(springs) = kind.with_parameters(springs) {
+                return Ok(Self { springs, rolling });
+            }
         }
         let keys = |list: &[LawParameter]| list.iter().map(|p| p.key).collect::<Vec<_>>().join(", ");
         Err(UnknownLaw::Parameters {

@@ -5,7 +5,8 @@ use crate::stiffness::Stiffness;
 /// How a stiffness was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StiffnessMethod {
-    /// Linear response of the frozen contact network: normal and tangential springs, no rolling springs.
+    /// Linear response of the frozen contact network: normal springs and, unless it is smooth, tangential ones; no rolling
+    /// springs.
     FrozenNetwork,
     /// The same with the prestress term.
     PrestressedNetwork,
@@ -32,10 +33,12 @@ impl StiffnessMethod {
 pub struct ElasticStiffness {
     /// How [`ElasticStiffness::tensor`] was found.
     pub method: StiffnessMethod,
+    /// No contact has a tangential spring: that of smooth grains.
+    pub smooth: bool,
     /// The stiffness: grains relax under the strain.
     pub tensor: Stiffness,
-    /// Standard error of each entry, Pa, as a measurement of this packing: what the solve or the probe left open. How much
-    /// packings of one kind differ is not in it.
+    /// Error of the solver in each entry, Pa, as a standard deviation: what the solve or the probe left open, estimated from
+    /// above. How much packings of one kind differ is not in it.
     pub stddev: Stiffness,
     /// Relative residual of the solve, or of the probe's relaxation; the worst of the six columns.
     pub residual: f64,

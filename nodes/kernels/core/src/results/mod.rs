@@ -15,10 +15,10 @@
 mod contact_statistics;
 mod elastic_stiffness;
 mod fabric;
-mod left_out;
 mod microstructure;
 mod packing_report;
 mod quantities;
+mod spring_notes;
 mod strain_ratios;
 mod stress_decomposition;
 
@@ -30,9 +30,9 @@ pub use fabric::{
     Fabric, FourthOrderFabric, ORIENTATION_BINS, OrientationFit, OrientationHistogram, OverlapAnisotropyFit,
     PrincipalAxis, contact_anisotropy,
 };
-pub use left_out::LeftOut;
 pub use microstructure::{InferredQuantity, Microstructure, MicrostructureCovariance};
 pub use packing_report::PackingReport;
 pub use quantities::QUANTITIES;
+pub use spring_notes::SpringNote;
 pub use strain_ratios::StrainRatios;
 pub use stress_decomposition::{StressDecomposition, StressForceFabric, SubNetwork};

@@ -10,6 +10,7 @@ use crate::material::Material;
 use crate::stiffness::TransverseIsotropy;
 use crate::stress::Stress;
 use crate::symmetry::{Symmetry, SymmetryClass};
+use crate::tensor::SymTensor;
 
 /// Everything that is measured on one packing. [`super::QUANTITIES`] lists it by number.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,10 +21,15 @@ pub struct PackingReport {
     pub material: Material,
     /// Contact law of the grains.
     pub law: ContactLaw,
+    /// Friction coefficient in force when it was measured; may be infinite.
+    pub friction: f64,
     /// Solid fraction φ.
     pub solid_fraction: f64,
     /// Standard deviation of the radii over their mean.
     pub size_spread: f64,
+    /// Logarithmic strain, positive in extension, since the reference state, or since the first step of the run until a phase
+    /// sets one; `None` for a packing that has neither.
+    pub strain: Option<SymTensor>,
     /// Stress of the elastic contact forces.
     pub stress: Stress,
     /// Mean net force of non-rattlers over mean contact force; `None` without forces.

@@ -18,12 +18,16 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
         Scalar, |r| r.pressure(), or "p_pa" x 1.0, or "p_kpa" x 1e3;
     "stress_pa" "σ" "Pa" "Love-Weber stress of the elastic contact forces, positive in compression"
         Tensor, |r| r.stress.tensor;
+    "strain" "E" "1" "logarithmic strain since the reference state, else since the first step of the run, positive in extension; unknown for a packing from elsewhere"
+        Tensor, |r| r.strain;
     "unbalanced" "" "1" "mean net force of the grains that carry force, over the mean contact force"
         Scalar, |r| r.unbalanced_force_ratio;
     "grain_shear_modulus_pa" "G_g" "Pa" "shear modulus of the grains" Scalar, |r| r.material.shear_modulus;
     "poisson" "ν_g" "1" "Poisson ratio of the grains" Scalar, |r| r.material.poisson_ratio;
     "contact_law" "" "" "contact law, with the parameters that do not follow from the material"
         Scalar, |r| r.law.to_string();
+    "friction" "μ" "1" "friction coefficient in force at the measurement; infinite (null in JSON) where no contact can slide"
+        Scalar, |r| r.friction;
     "reference_axis" "h" "1" "unit axis that eps, p4, g, G12, G13 and the ti_ moduli are about"
         Vector, |r| r.fabric.reference_axis;
     // Contacts.
@@ -69,7 +73,7 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
     "orientation_chi2_per_dof" "" "1" "chi^2 of orientation_contacts over its 8 degrees of freedom"
         Scalar, |r| orientation(r).map(|f| f.chi2_per_dof);
     // Strain ratios.
-    "g_total" "γ/Δ" "1" "gamma/Delta of the strain since the reference state" Scalar, |r| r.strain_ratios.total;
+    "g_total" "γ/Δ" "1" "gamma/Delta of that strain, where it began as a packing, not as a gas" Scalar, |r| r.strain_ratios.total;
     "g_elastic" "γ/Δ" "1" "gamma/Delta of an isotropic stress increment on the frozen network"
         Scalar, |r| r.strain_ratios.elastic;
     "g_contact" "γ/Δ" "1" "gamma/Delta fitted to the overlaps (Eq. 10)" Scalar, |r| r.strain_ratios.contact;
@@ -148,6 +152,8 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
     // Stiffness.
     "method" "" "" "how the stiffness was found: frozen_network, prestressed_network, probe"
         Scalar, |r| r.stiffness().map(|s| s.method.name());
+    "smooth" "" "" "whether the stiffness is without tangential springs, as that of grains without friction"
+        Scalar, |r| r.stiffness().map(|s| s.smooth);
     "g12_pa" "G12" "Pa" "shear modulus in the plane of isotropy"
         Scalar, |r| r.projected().map(|t| t.g12), or "c66_pa" x 1.0;
     "g13_pa" "G13" "Pa" "shear modulus along the axis h" Scalar, |r| r.projected().map(|t| t.g13), or "c44_pa" x 1.0;
@@ -166,7 +172,7 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
         Scalar, |r| r.stiffness().map(|s| s.residual);
     "stiffness_pa" "C" "Pa" "stiffness in the frame of the cell, engineering shear"
         Stiffness(""), |r| r.stiffness().map(|s| s.tensor);
-    "stiffness_stddev_pa" "" "Pa" "standard error of each entry, as a measurement of this packing"
+    "stiffness_stddev_pa" "" "Pa" "error that the solver, or the probe, left in each entry; how much packings of one kind differ is not in it"
         Stiffness("stddev_"), |r| r.stiffness().map(|s| s.stddev);
     "stiffness_affine_pa" "" "Pa" "affine stiffness: every grain moves with the mean deformation"
         Stiffness("affine_"), |r| r.stiffness().map(|s| s.bounds.affine);

@@ -39,6 +39,11 @@ impl Checkpoint {
         self.step
     }
 
+    /// Number of grains.
+    pub(super) fn grains(&self) -> usize {
+        self.position.len()
+    }
+
     /// Restores the state, and returns its contacts.
     pub(super) fn restore(self, state: &mut State) -> Contacts {
         (state.step, state.time, state.time_step) = (self.step, self.time, self.time_step);

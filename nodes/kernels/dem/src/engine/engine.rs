@@ -14,7 +14,7 @@ use crate::pairs::displacement_bound::DisplacementBound;
 use crate::pairs::neighbours::Neighbours;
 use crate::settings::{EngineSettings, Features};
 use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
+use grainlab_core::{Cell, Mat3, Material, Packing, PackingError, SymTensor, Vec3};
 use std::borrow::Cow;
 
 /// Grains in a deforming periodic cell, stepped at a given strain rate.
@@ -39,27 +39,61 @@ pub struct Engine {
 
 impl Engine {
     /// Grains at rest at `positions` (m), without contact history. Their contact law is the default, Hertz–Mindlin.
+    ///
+    /// # Errors
+    /// Arrays of different lengths, numbers out of their range, no grains. [`Engine::initialise`] finds overlaps beyond
+    /// the contact law, and grains too many cells away.
     pub fn new(
         cell: Cell,
         material: Material,
         radii: Vec<f64>,
         positions: &[Vec3],
         settings: EngineSettings,
-    ) -> Self {
-        let ids = (0..radii.len() as u32).collect();
-        let state = State::new(cell, material, ids, radii, positions);
-        let contacts = Contacts::empty(&state);
-        Self::from_state(state, contacts, settings)
+    ) -> Result<Self, DemError> {
+        let n = radii.len();
+        let at_rest = Packing {
+            step: 0,
+            time: 0.0,
+            cell,
+            deformation: Mat3::identity(),
+            ids: (0..n as u32).collect(),
+            radii,
+            positions: positions.to_vec(),
+            velocities: vec![Vec3::zeros(); n],
+            spins: vec![Vec3::zeros(); n],
+            contacts: Vec::new(),
+            material,
+            law: ContactLaw::default(),
+            friction: settings.friction,
+            time_step: 0.0,
+        };
+        Self::from_packing(&at_rest, settings)
     }
 
-    /// The same grains under another contact law. Call it before the first step.
-    pub fn with_law(mut self, law: ContactLaw) -> Self {
+    /// The same grains under another contact law, before the first step.
+    ///
+    /// # Errors
+    /// A law with parameters out of their range, and an engine with contacts or forces.
+    pub fn with_law(mut self, law: ContactLaw) -> Result<Self, DemError> {
+        ContactLaw::new(law.name(), &law.parameters())?;
+        if self.has_forces || self.contacts.touching().next().is_some() {
+            return Err(DemError::LawInUse);
+        }
         self.state.law = law;
-        self
+        Ok(self)
     }
 
     /// Grains as they are in `packing`, contact law and history included.
-    pub fn from_packing(packing: &Packing, settings: EngineSettings) -> Self {
+    ///
+    /// # Errors
+    /// Numbers that are no packing, settings out of their range, no grains.
+    pub fn from_packing(packing: &Packing, settings: EngineSettings) -> Result<Self, DemError> {
+        packing.check()?;
+        ContactLaw::new(packing.law.name(), &packing.law.parameters())?;
+        settings.check()?;
+        if packing.radii.is_empty() {
+            return Err(DemError::NoGrains);
+        }
         let mut state = State::new(
             packing.cell,
             packing.material,
@@ -73,7 +107,7 @@ impl Engine {
         state.time = packing.time;
         state.time_step = packing.time_step;
         let contacts = Contacts::from_packing(packing, &state);
-        Self::from_state(state, contacts, settings)
+        Ok(Self::from_state(state, contacts, settings))
     }
 
     fn from_state(state: State, contacts: Contacts, settings: EngineSettings) -> Self {
@@ -90,7 +124,7 @@ impl Engine {
             has_forces: false,
             energy: None,
         };
-        engine.set_settings(settings);
+        engine.adopt(settings);
         engine
     }
 
@@ -106,24 +140,47 @@ impl Engine {
         &self.compute
     }
 
-    /// Sets velocities relative to the affine motion, m/s, one per grain.
-    pub fn set_velocities(&mut self, velocities: &[Vec3]) {
+    /// Sets velocities relative to the affine motion, m/s, one per grain, all finite.
+    pub fn set_velocities(&mut self, velocities: &[Vec3]) -> Result<(), DemError> {
+        self.one_per_grain("velocity", velocities)?;
         self.reclaim_state();
         self.state.twist.iter_mut().zip(velocities).for_each(|(t, v)| t.0[..3].copy_from_slice(v.as_slice()));
+        Ok(())
     }
 
-    /// Sets spins, rad/s, one per grain.
-    pub fn set_spins(&mut self, spins: &[Vec3]) {
+    /// Sets spins, rad/s, one per grain, all finite.
+    pub fn set_spins(&mut self, spins: &[Vec3]) -> Result<(), DemError> {
+        self.one_per_grain("angular_velocity", spins)?;
         self.reclaim_state();
         self.state.twist.iter_mut().zip(spins).for_each(|(t, w)| t.0[4..7].copy_from_slice(w.as_slice()));
+        Ok(())
     }
 
-    /// Adds to the velocities of some grains, m/s.
-    pub fn add_velocities(&mut self, increments: impl IntoIterator<Item = (usize, Vec3)>) {
+    /// Adds to the velocities of some grains, m/s, all finite.
+    pub fn add_velocities(
+        &mut self,
+        increments: impl IntoIterator<Item = (usize, Vec3)>,
+    ) -> Result<(), DemError> {
         self.reclaim_state();
+        let grains = self.state.len();
         for (grain, increment) in increments {
-            self.state.twist[grain].0[..3].iter_mut().zip(increment.iter()).for_each(|(v, dv)| *v += dv);
+            let Some(twist) = self.state.twist.get_mut(grain) else {
+                return Err(
+                    PackingError::Length { field: "velocity", expected: grains, found: grain + 1 }.into()
+                );
+            };
+            finite("velocity", grain, &increment)?;
+            twist.0[..3].iter_mut().zip(increment.iter()).for_each(|(v, dv)| *v += dv);
         }
+        Ok(())
+    }
+
+    fn one_per_grain(&self, field: &'static str, vectors: &[Vec3]) -> Result<(), DemError> {
+        let (expected, found) = (self.state.len(), vectors.len());
+        if expected != found {
+            return Err(PackingError::Length { field, expected, found }.into());
+        }
+        vectors.iter().enumerate().try_for_each(|(index, v)| finite(field, index, v))
     }
 
     /// Velocities relative to the affine motion, m/s, one per grain: those half a step before the positions.
@@ -137,7 +194,16 @@ impl Engine {
     }
 
     /// Changes the settings, from the next step on. Without friction, spins and tangential forces become zero.
-    pub fn set_settings(&mut self, settings: EngineSettings) {
+    ///
+    /// # Errors
+    /// A setting out of its range; nothing has changed.
+    pub fn set_settings(&mut self, settings: EngineSettings) -> Result<(), DemError> {
+        settings.check()?;
+        self.adopt(settings);
+        Ok(())
+    }
+
+    fn adopt(&mut self, settings: EngineSettings) {
         if settings.features() == Features::Frictionless {
             self.reclaim_state();
             self.state.twist.iter_mut().for_each(|t| t.0[4..].fill(0.0));
@@ -179,9 +245,13 @@ impl Engine {
         self.state.time
     }
 
-    /// Sets the simulated time, s: that of a run which is resumed.
-    pub fn set_time(&mut self, time: f64) {
+    /// Sets the simulated time, s, finite: that of a run which is resumed.
+    pub fn set_time(&mut self, time: f64) -> Result<(), DemError> {
+        if !time.is_finite() {
+            return Err(DemError::Setting { name: "time", value: time, requirement: "finite" });
+        }
         self.state.time = time;
+        Ok(())
     }
 
     /// Time step in force, s.
@@ -225,11 +295,19 @@ impl Engine {
     }
 
     /// Returns to a checkpoint, with the energy balance off. Call [`Engine::initialise`] before the next step.
-    pub fn restore(&mut self, checkpoint: Checkpoint) {
+    ///
+    /// # Errors
+    /// A checkpoint of another number of grains; nothing has changed.
+    pub fn restore(&mut self, checkpoint: Checkpoint) -> Result<(), DemError> {
+        let (expected, found) = (self.state.len(), checkpoint.grains());
+        if expected != found {
+            return Err(PackingError::Length { field: "position", expected, found }.into());
+        }
         self.reclaim_state();
         self.contacts = checkpoint.restore(&mut self.state);
         self.energy = None;
         (self.has_neighbours, self.has_forces) = (false, false);
+        Ok(())
     }
 
     /// Stress, tangent stiffness and force balance of the present contacts.
@@ -276,5 +354,12 @@ impl Engine {
             friction: self.settings.friction,
             time_step: s.time_step,
         }
+    }
+}
+
+fn finite(field: &'static str, index: usize, v: &Vec3) -> Result<(), DemError> {
+    match v.iter().find(|c| !c.is_finite()) {
+        Some(value) => Err(PackingError::NotFinite { field, index, value: *value }.into()),
+        None => Ok(()),
     }
 }

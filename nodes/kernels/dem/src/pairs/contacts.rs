@@ -22,11 +22,6 @@ pub(crate) struct Contacts {
 }
 
 impl Contacts {
-    /// No pairs.
-    pub(crate) fn empty(state: &State) -> Self {
-        Self::from_saved(state, std::iter::empty(), 0)
-    }
-
     /// These contacts, which must come sorted, in one subdomain.
     pub(crate) fn from_saved(
         state: &State,

@@ -32,9 +32,9 @@ fn settings() -> Vec<EngineSettings> {
 
 /// A packing on its way: pressed on from a loose one, so that contacts come, go and slide.
 fn start(p: &Packing, s: EngineSettings) -> Engine {
-    let mut e = Engine::from_packing(p, s);
+    let mut e = Engine::from_packing(p, s).unwrap();
     let mut random = Random(1);
-    e.set_velocities(&(0..p.grains()).map(|_| random.vector(0.02)).collect::<Vec<_>>());
+    e.set_velocities(&(0..p.grains()).map(|_| random.vector(0.02)).collect::<Vec<_>>()).unwrap();
     e.set_rate(&RATE).unwrap();
     e.initialise().unwrap();
     e
@@ -58,7 +58,7 @@ fn run(e: &mut Engine, drive: Drive, origin: u64, end: u64, look: bool) {
 /// What is saved of a run: the packing, and the rate that its forces arose under.
 fn reloaded(e: &Engine, s: EngineSettings) -> Engine {
     let (saved, rate) = (packing(e).validated().unwrap(), e.rate());
-    let mut loaded = Engine::from_packing(&saved, s);
+    let mut loaded = Engine::from_packing(&saved, s).unwrap();
     loaded.set_rate(&rate).unwrap();
     loaded.initialise().unwrap();
     loaded
@@ -119,8 +119,8 @@ fn an_agitated_gas_saved_and_loaded_goes_on_bit_for_bit() {
     let mut s = setting(0.0, 0.0);
     (s.time_step, s.thermostat_speed, s.damping) = (TimeStep::FractionOfStable(0.8), Some(0.5), 0.002);
     let begin = || {
-        let mut e = Engine::new(gas.cell, GLASS, vec![RADIUS; 40], &gas.positions, s);
-        e.set_velocities(&gas.velocities);
+        let mut e = Engine::new(gas.cell, GLASS, vec![RADIUS; 40], &gas.positions, s).unwrap();
+        e.set_velocities(&gas.velocities).unwrap();
         e.set_rate(&[-60.0, -60.0, -60.0, 0.0, 0.0, 0.0]).unwrap();
         e.initialise().unwrap();
         e

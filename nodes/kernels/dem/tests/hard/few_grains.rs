@@ -11,7 +11,7 @@ fn one_grain_that_touches_nothing_flies_freely() {
     let cell = Cell::cube(10.0 * RADIUS).unwrap();
     let start = Vec3::new(0.3, -0.2, 0.1);
     let mut e = engine(cell, GLASS, &[RADIUS], &[Vec3::zeros()], setting(0.3, 1e-6));
-    e.set_velocities(&[start]);
+    e.set_velocities(&[start]).unwrap();
     e.set_rate(&[10.0, -20.0, 30.0, 0.0, 0.0, 0.0]).unwrap();
     steps(&mut e, 1000);
     let p = packing(&e);
@@ -29,7 +29,7 @@ fn one_grain_swings_on_the_contact_with_its_own_image() {
     let overlap = 4e-8;
     let cell = box_of(5.0 * RADIUS, 5.0 * RADIUS, 2.0 * RADIUS - overlap);
     let mut e = engine(cell, GLASS, &[RADIUS], &[Vec3::zeros()], setting(f64::INFINITY, 1e-9));
-    e.set_spins(&[Vec3::x()]);
+    e.set_spins(&[Vec3::x()]).unwrap();
     let lever = RADIUS - 0.5 * overlap;
     let inertia = 0.4 * GLASS.sphere_mass(RADIUS) * RADIUS * RADIUS;
     let k_t = GLASS.tangential_stiffness(0.5 * RADIUS, overlap);
@@ -58,8 +58,8 @@ fn two_grains_collide_obliquely_with_friction_and_keep_angular_momentum() {
             (s.tangential, s.damping) = (tangential, damping);
             let x = [Vec3::zeros(), Vec3::new(2.001, 0.9, -0.4).normalize() * (2.001 * RADIUS)];
             let mut e = engine(Cell::cube(30.0 * RADIUS).unwrap(), GLASS, &[RADIUS; 2], &x, s);
-            e.set_velocities(&[Vec3::x(), Vec3::zeros()]);
-            e.set_spins(&[Vec3::new(900.0, -2000.0, 500.0), Vec3::new(0.0, 3000.0, 800.0)]);
+            e.set_velocities(&[Vec3::x(), Vec3::zeros()]).unwrap();
+            e.set_spins(&[Vec3::new(900.0, -2000.0, 500.0), Vec3::new(0.0, 3000.0, 800.0)]).unwrap();
             let angular = |e: &grainlab_dem::Engine| {
                 let p = packing(e);
                 let (m, r) = (GLASS.sphere_mass(RADIUS), RADIUS);
@@ -106,7 +106,7 @@ fn a_box_barely_above_two_diameters_is_a_box_like_any_other() {
     // The list reaches further than half the box.
     s.skin = 0.5 * RADIUS;
     let mut e = engine(Cell::cube(edge).unwrap(), GLASS, &[RADIUS; 5], &x, s);
-    e.set_velocities(&gas.velocities);
+    e.set_velocities(&gas.velocities).unwrap();
     let before = energy(&packing(&e));
     let (mut collisions, mut last) = (0, 0);
     for step in 0..200_000 {

@@ -10,7 +10,7 @@ fn at_rest(tangential: TangentialLaw) -> Engine {
     let p = Sample::Few.packing();
     let mut s = setting(0.3, p.time_step);
     (s.tangential, s.damping, s.drag, s.spin_drag) = (tangential, 0.3, 2e4, 2e4);
-    let mut e = Engine::from_packing(&p, s);
+    let mut e = Engine::from_packing(&p, s).unwrap();
     e.initialise().unwrap();
     steps(&mut e, 100_000);
     e
@@ -50,7 +50,7 @@ fn an_undamped_packing_at_rest_trembles_at_the_last_bit_and_does_not_heat() {
         let mut e = at_rest(tangential);
         let mut s = *e.settings();
         (s.damping, s.drag, s.spin_drag) = (0.0, 0.0, 0.0);
-        e.set_settings(s);
+        e.set_settings(s).unwrap();
         let start = packing(&e);
         steps(&mut e, 1_000_000);
         let end = packing(&e);

@@ -13,7 +13,7 @@ fn a_frictionless_packing_at_ten_pascal_has_just_the_contacts_that_balance_needs
     let mut s = setting(0.0, 0.0);
     s.time_step = TimeStep::FractionOfStable(0.8);
     (s.damping, s.drag) = (0.3, 2e3);
-    let mut e = Engine::from_packing(&pressed, s);
+    let mut e = Engine::from_packing(&pressed, s).unwrap();
     e.initialise().unwrap();
     let mut excess = Vec::new();
     for pressure in [1e5, 1e3, 10.0] {

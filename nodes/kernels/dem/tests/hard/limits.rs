@@ -49,14 +49,14 @@ fn as_pressure_goes_to_zero_stress_follows_hertz_until_the_last_bit() {
 #[test]
 fn without_friction_there_is_neither_spin_nor_tangential_force() {
     let p = Sample::Pressed.packing();
-    let mut e = Engine::from_packing(&p, setting(0.3, 2e-8));
+    let mut e = Engine::from_packing(&p, setting(0.3, 2e-8)).unwrap();
     e.initialise().unwrap();
     e.set_rate(&[0.0, 0.0, 0.0, 0.0, 1.0, 0.5]).unwrap();
     steps(&mut e, 100);
     let loaded = packing(&e);
     assert!(loaded.contacts.iter().any(|c| c.tangential_force.norm() > 0.0));
     assert!(loaded.spins.iter().any(|w| w.norm() > 0.0));
-    e.set_settings(setting(0.0, 2e-8));
+    e.set_settings(setting(0.0, 2e-8)).unwrap();
     steps(&mut e, 100);
     let p = packing(&e);
     assert!(!p.contacts.is_empty() && p.contacts.iter().all(|c| c.tangential_force == Vec3::zeros()));
@@ -67,7 +67,7 @@ fn without_friction_there_is_neither_spin_nor_tangential_force() {
 #[test]
 fn a_frictional_packing_taken_up_without_friction_drops_its_tangential_forces() {
     let p = Sample::Pressed.packing();
-    let mut e = Engine::from_packing(&p, setting(0.0, 2e-8));
+    let mut e = Engine::from_packing(&p, setting(0.0, 2e-8)).unwrap();
     e.initialise().unwrap();
     let mut bare = p.clone();
     bare.contacts.iter_mut().for_each(|c| c.tangential_force = Vec3::zeros());
@@ -86,7 +86,7 @@ fn infinite_friction_is_the_limit_of_large_friction_and_none_of_small() {
         let mut q = p.clone();
         // Small friction would cut off the history of this packing at once.
         q.contacts.iter_mut().for_each(|c| c.tangential_force = Vec3::zeros());
-        let mut e = Engine::from_packing(&q, setting(friction, 2e-8));
+        let mut e = Engine::from_packing(&q, setting(friction, 2e-8)).unwrap();
         e.initialise().unwrap();
         e.set_rate(&[-1.0, 0.5, 0.2, 0.0, 1.0, 0.5]).unwrap();
         steps(&mut e, 300);

@@ -90,7 +90,7 @@ fn no_contact_is_missed_in_a_fast_gas() {
         let mut e = ghosts(Cell::new(shape).unwrap(), 14, 0.6, 4, setting(0.0, 1e-3));
         // Up to 0.05 R a step: half of what is refused as unstable, half of the skin.
         let velocities: Vec<Vec3> = (0..14).map(|_| random.vector(0.03 * RADIUS / 1e-3)).collect();
-        e.set_velocities(&velocities);
+        e.set_velocities(&velocities).unwrap();
         e.set_rate(&[-0.3, 0.2, -0.1, 0.4, -0.2, 0.3]).unwrap();
         let mut changes = 0;
         let mut last = 0;
@@ -137,7 +137,7 @@ fn no_contact_is_missed_where_travel_and_strain_conspire() {
             e.set_rate(&[-strain / (dt * count as f64), 0.0, 0.0, 0.0, 0.0, 0.0]).unwrap();
             let v = Vec3::x() * (by / (dt * count as f64));
             for _ in 0..count {
-                e.set_velocities(&[-v, v]);
+                e.set_velocities(&[-v, v]).unwrap();
                 e.step().unwrap();
                 check(e, "conspiring");
             }

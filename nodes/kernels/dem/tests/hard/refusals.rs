@@ -1,8 +1,9 @@
 //! What no law covers is refused with grains and numbers named, never answered with numbers that are not.
 
 use crate::support::*;
-use grainlab_core::{Cell, Vec3};
-use grainlab_dem::{DemError, Engine};
+use grainlab_core::contact::{ContactLaw, Linear, SpringLaw};
+use grainlab_core::{Cell, Material, PackingError, Vec3};
+use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
 
 /// Expected: two grains at one point overlap by a diameter, without a normal: the look at the stress refuses them by
 /// their ids, and so does the first step.
@@ -41,15 +42,23 @@ fn an_overlap_above_a_tenth_of_the_smaller_diameter_is_refused() {
     }
 }
 
-/// Expected: a velocity that is not a number is caught by the step that would use it, and named.
+/// Expected: a velocity or a spin that is not a number is refused with its grain, and the engine is as before.
 #[test]
-fn a_velocity_that_is_not_finite_is_refused_by_the_next_step() {
+fn a_velocity_that_is_not_finite_is_refused() {
     for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
         let x = [Vec3::zeros(), Vec3::z() * (3.0 * RADIUS)];
         let mut e = engine(Cell::cube(20.0 * RADIUS).unwrap(), GLASS, &[RADIUS; 2], &x, setting(0.3, 1e-9));
-        e.set_velocities(&[Vec3::zeros(), Vec3::y() * bad]);
-        let refused = e.step().unwrap_err();
-        assert!(matches!(refused, DemError::Unstable { grain: 1, .. }), "{refused}");
+        let motion = [Vec3::zeros(), Vec3::new(0.0, bad, 0.0)];
+        for refused in [
+            e.set_velocities(&motion),
+            e.set_spins(&motion),
+            e.add_velocities(motion.into_iter().enumerate()),
+        ] {
+            let named =
+                |e: &DemError| matches!(e, DemError::Packing(PackingError::NotFinite { index: 1, .. }));
+            assert!(refused.as_ref().is_err_and(named), "{refused:?}");
+        }
+        assert!(e.step().is_ok() && e.speed() == 0.0);
     }
 }
 
@@ -81,10 +90,105 @@ fn a_grain_more_than_a_hundred_cells_away_is_refused() {
     let cell = Cell::cube(4.0 * RADIUS).unwrap();
     let prepare = |far: f64| {
         let x = [Vec3::zeros(), Vec3::x() * (far * 4.0 * RADIUS)];
-        Engine::new(cell, GLASS, vec![RADIUS; 2], &x, setting(0.0, 1e-9)).initialise()
+        Engine::new(cell, GLASS, vec![RADIUS; 2], &x, setting(0.0, 1e-9)).unwrap().initialise()
     };
     assert_eq!(prepare(98.4), Ok(()));
     assert_eq!(prepare(-98.4), Ok(()));
     assert_eq!(prepare(101.0), Err(DemError::Image { grain: 1 }));
     assert_eq!(prepare(-101.0), Err(DemError::Image { grain: 1 }));
+}
+
+/// Expected: arrays of different lengths, numbers out of their range and no grains at all are refused by name.
+#[test]
+fn grains_that_are_none_are_refused() {
+    let cell = Cell::cube(20.0 * RADIUS).unwrap();
+    let x = [Vec3::zeros(), Vec3::z() * (3.0 * RADIUS)];
+    let refused = |material, radii: &[f64], x: &[Vec3]| {
+        Engine::new(cell, material, radii.to_vec(), x, setting(0.3, 1e-9)).unwrap_err().to_string()
+    };
+    for (radii, part) in [
+        (&[RADIUS][..], "position has 2 entries, but there are 1 grains"),
+        (&[RADIUS; 3], "position has 2 entries, but there are 3 grains"),
+        (&[RADIUS, -RADIUS], "radius[1] = -1e-4"),
+        (&[RADIUS, 0.0], "radius[1]"),
+        (&[RADIUS, f64::NAN], "radius[1] is not finite"),
+    ] {
+        let refused = refused(GLASS, radii, &x);
+        assert!(refused.contains(part), "{refused}");
+    }
+    assert!(refused(GLASS, &[RADIUS; 2], &[x[0], Vec3::y() * f64::INFINITY]).contains("position[1]"));
+    assert!(refused(Material { density: -1.0, ..GLASS }, &[RADIUS; 2], &x).contains("density"));
+    assert_eq!(refused(GLASS, &[], &[]), "there are no grains");
+}
+
+/// Expected: every setting out of its range is refused by its name, in the constructor and later, and nothing changes.
+#[test]
+fn settings_out_of_their_range_are_refused() {
+    let cell = Cell::cube(20.0 * RADIUS).unwrap();
+    let x = [Vec3::zeros(), Vec3::z() * (3.0 * RADIUS)];
+    let sound = setting(0.3, 1e-9);
+    let mut e = engine(cell, GLASS, &[RADIUS; 2], &x, sound);
+    for bad in [-1.0, f64::NAN] {
+        for (name, settings) in [
+            ("friction", EngineSettings { friction: bad, ..sound }),
+            ("damping", EngineSettings { damping: bad, ..sound }),
+            ("drag", EngineSettings { drag: bad, ..sound }),
+            ("spin_drag", EngineSettings { spin_drag: bad, ..sound }),
+            ("skin", EngineSettings { skin: bad, ..sound }),
+            ("thermostat_speed", EngineSettings { thermostat_speed: Some(bad), ..sound }),
+            ("time_step", EngineSettings { time_step: TimeStep::Fixed(bad), ..sound }),
+            ("time_step", EngineSettings { time_step: TimeStep::FractionOfStable(bad), ..sound }),
+        ] {
+            let new = Engine::new(cell, GLASS, vec![RADIUS; 2], &x, settings).map(|_| ());
+            for refused in [new, e.set_settings(settings)] {
+                let Err(DemError::Setting { name: named, .. }) = refused else {
+                    panic!("{name}: {refused:?}")
+                };
+                assert_eq!(named, name);
+            }
+        }
+        assert!(e.set_time(f64::NAN).is_err() && e.set_rate(&[bad.ln(); 6]).is_err());
+    }
+    assert_eq!(*e.settings(), sound);
+    assert!(e.step().is_ok());
+}
+
+/// Expected: velocities and spins are one per grain.
+#[test]
+fn motions_of_another_number_of_grains_are_refused() {
+    let cell = Cell::cube(20.0 * RADIUS).unwrap();
+    let x = [Vec3::zeros(), Vec3::z() * (3.0 * RADIUS)];
+    let mut e = engine(cell, GLASS, &[RADIUS; 2], &x, setting(0.3, 1e-9));
+    for motion in [&[Vec3::x()][..], &[Vec3::x(); 3]] {
+        let wrong = |r: Result<(), DemError>| matches!(r, Err(DemError::Packing(PackingError::Length { expected: 2, found, .. })) if found == motion.len());
+        assert!(wrong(e.set_velocities(motion)) && wrong(e.set_spins(motion)));
+    }
+    assert!(e.add_velocities([(2, Vec3::x())]).is_err());
+    assert_eq!(e.speed(), 0.0);
+}
+
+/// Expected: a law out of its range, and one that would replace the law of contacts, are refused.
+#[test]
+fn a_contact_law_is_set_before_the_first_step_or_not_at_all() {
+    let cell = Cell::cube(20.0 * RADIUS).unwrap();
+    let new = || {
+        Engine::new(
+            cell,
+            GLASS,
+            vec![RADIUS; 2],
+            &[Vec3::zeros(), Vec3::z() * (1.99 * RADIUS)],
+            setting(0.3, 1e-9),
+        )
+        .unwrap()
+    };
+    let law = |normal_stiffness| {
+        ContactLaw::of(SpringLaw::Linear(Linear { normal_stiffness, stiffness_ratio: 0.5 }))
+    };
+    for bad in [0.0, -1.0, f64::NAN] {
+        assert!(matches!(new().with_law(law(bad)), Err(DemError::Law(_))), "{bad}");
+    }
+    assert!(new().with_law(law(1e4)).is_ok());
+    let mut e = new();
+    e.initialise().unwrap();
+    assert_eq!(e.with_law(law(1e4)).err(), Some(DemError::LawInUse));
 }

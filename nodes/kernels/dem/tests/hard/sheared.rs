@@ -11,7 +11,7 @@ fn recombined(p: &Packing, u: &Mat3) -> Engine {
     let cell = Cell::new(p.cell.matrix() * u).unwrap();
     let mut s = setting(0.3, 2e-8);
     s.damping = 0.1;
-    Engine::new(cell, GLASS, p.radii.clone(), &p.positions, s)
+    Engine::new(cell, GLASS, p.radii.clone(), &p.positions, s).unwrap()
 }
 
 fn shear(xy: f64, xz: f64, yz: f64) -> Mat3 {

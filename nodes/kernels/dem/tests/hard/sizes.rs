@@ -43,7 +43,7 @@ fn mixture(seed: u64, friction: f64, time_step: f64) -> Engine {
     let mut s = setting(friction, time_step);
     s.tangential = TangentialLaw::Rescaled;
     let mut e = engine(cell, GLASS, &radii, &x, s);
-    e.set_velocities(&(0..60).map(|_| random.vector(1.0)).collect::<Vec<_>>());
+    e.set_velocities(&(0..60).map(|_| random.vector(1.0)).collect::<Vec<_>>()).unwrap();
     e
 }
 

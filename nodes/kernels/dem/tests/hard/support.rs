@@ -32,7 +32,7 @@ pub(crate) fn engine(
     x: &[Vec3],
     setting: EngineSettings,
 ) -> Engine {
-    let mut e = Engine::new(cell, material, radii.to_vec(), x, setting);
+    let mut e = Engine::new(cell, material, radii.to_vec(), x, setting).unwrap();
     e.initialise().unwrap();
     e
 }

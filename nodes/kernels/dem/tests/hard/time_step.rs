@@ -26,7 +26,7 @@ fn pair(share: f64, damping: f64) -> Engine {
     let cell = box_of(5.0 * RADIUS, 5.0 * RADIUS, height);
     let mut e = engine(cell, GLASS, &[large, small], &[Vec3::zeros(), Vec3::z() * (0.5 * height)], s);
     // In the normal mode, with an amplitude far below the overlap: linear to 1e-8.
-    e.set_velocities(&[Vec3::z() * (1e-7 * n / m), -Vec3::z() * 1e-7]);
+    e.set_velocities(&[Vec3::z() * (1e-7 * n / m), -Vec3::z() * 1e-7]).unwrap();
     e
 }
 
@@ -149,9 +149,9 @@ fn shaken(share: f64) -> Engine {
     p.time_step = share * critical(&p);
     let mut s = setting(f64::INFINITY, p.time_step);
     s.tangential = TangentialLaw::Incremental;
-    let mut e = Engine::from_packing(&p, s);
+    let mut e = Engine::from_packing(&p, s).unwrap();
     let mut random = Random(7);
-    e.set_velocities(&(0..48).map(|_| random.vector(1e-8)).collect::<Vec<_>>());
+    e.set_velocities(&(0..48).map(|_| random.vector(1e-8)).collect::<Vec<_>>()).unwrap();
     e.initialise().unwrap();
     e
 }
@@ -270,7 +270,7 @@ fn the_time_step_with_resistance_to_rolling_is_below_the_true_limit_and_not_far_
             let law = p.law.with_rolling(rolling);
             let mut s = setting(0.3, 0.0);
             (s.time_step, s.damping) = (TimeStep::FractionOfStable(1.0), damping);
-            let mut e = Engine::from_packing(&Packing { time_step: 0.0, law, ..p.clone() }, s);
+            let mut e = Engine::from_packing(&Packing { time_step: 0.0, law, ..p.clone() }, s).unwrap();
             e.initialise().unwrap();
             let critical = Linear { packing: &packing(&e), frictional: true, damping }.critical();
             let share = e.time_step() / critical;
@@ -295,8 +295,8 @@ fn damping_of_any_strength_stops_a_packing_at_the_bound() {
         let mut s = setting(f64::INFINITY, 0.0);
         (s.tangential, s.damping, s.time_step) =
             (TangentialLaw::Incremental, damping, TimeStep::FractionOfStable(1.0));
-        let mut e = Engine::from_packing(&Packing { time_step: 0.0, ..p.clone() }, s);
-        e.set_velocities(&v);
+        let mut e = Engine::from_packing(&Packing { time_step: 0.0, ..p.clone() }, s).unwrap();
+        e.set_velocities(&v).unwrap();
         e.initialise().unwrap();
         let start = e.speed();
         for _ in 0..20_000 {

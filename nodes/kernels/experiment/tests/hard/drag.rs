@@ -12,7 +12,7 @@ const DRAG: f64 = 4e5;
 fn left(e: &mut Engine) -> f64 {
     let mut s = *e.settings();
     (s.damping, s.drag, s.spin_drag) = (0.3, 0.0, 0.0);
-    e.set_settings(s);
+    e.set_settings(s).unwrap();
     e.set_rate(&[0.0; 6]).unwrap();
     steps(e, 100_000);
     e.observables().unwrap().stress.tensor.mean()
@@ -74,7 +74,7 @@ until = {{ on_target = 0.05, unbalanced = 1e-4, timeout = 0.2 }}
         run.advance(&answer.rate).unwrap();
     }
     let p = run.packing();
-    let mut e = Engine::from_packing(&p, setting(0.1, p.time_step));
+    let mut e = Engine::from_packing(&p, setting(0.1, p.time_step)).unwrap();
     e.initialise().unwrap();
     let kept = left(&mut e);
     assert!((kept / target - 1.0).abs() < 0.06, "on target to 5 %: {kept}");

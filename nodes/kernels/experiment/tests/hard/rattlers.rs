@@ -30,8 +30,8 @@ fn turn(e: &mut Engine, rate: f64) {
     let m = p.radii.iter().map(|r| GLASS.sphere_mass(*r)).collect::<Vec<_>>();
     let axis = (p.positions[0] * m[0] + p.positions[1] * m[1]) / (m[0] + m[1]);
     let spin = Vec3::z() * rate;
-    e.set_velocities(&p.positions.iter().map(|x| spin.cross(&(x - axis))).collect::<Vec<_>>());
-    e.set_spins(&[spin; 2]);
+    e.set_velocities(&p.positions.iter().map(|x| spin.cross(&(x - axis))).collect::<Vec<_>>()).unwrap();
+    e.set_spins(&[spin; 2]).unwrap();
 }
 
 /// Expected: a column that rotates as a whole does not slip, so that contact damping alone leaves it rotating
@@ -43,7 +43,7 @@ fn two_contact_grains_hold_the_unbalanced_force_up_unless_spins_are_damped() {
         turn(&mut e, 1300.0);
         let mut s = calm();
         (s.drag, s.spin_drag) = (0.0, spin_drag);
-        e.set_settings(s);
+        e.set_settings(s).unwrap();
         steps(&mut e, 1_000_000);
         e
     };
@@ -76,7 +76,7 @@ fn a_turning_column_of_unequal_grains_carries_its_tangential_forces_along() {
     let rate = 200.0;
     turn(&mut e, rate);
     (s.drag, s.spin_drag, s.damping) = (0.0, 0.0, 0.0);
-    e.set_settings(s);
+    e.set_settings(s).unwrap();
     let quarter = (0.25 * std::f64::consts::TAU / rate / 5e-9).round() as usize;
     for quarters in 1..=4 {
         steps(&mut e, quarter);

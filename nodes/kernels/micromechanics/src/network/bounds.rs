@@ -37,7 +37,7 @@ pub fn bulk_reuss_bound(view: &PackingView<'_>, springs: Springs) -> Option<f64>
     let mut compliance = 0.0;
     for (c, (k_n, k_t)) in packing.contacts.iter().zip(&view.contact_stiffnesses) {
         compliance += c.normal_force * c.normal_force / k_n;
-        if springs.has_tangential() {
+        if springs.has_tangential(packing.friction) {
             compliance += c.tangential_force.norm_squared() / k_t;
         }
     }

@@ -2,10 +2,11 @@
 
 use super::bounds::uniform_rotation_stiffness;
 use super::direct;
-use super::solve::{Solver, solve};
-use super::spring_network::SpringNetwork;
+use super::solve::{Solution, Solver, solve};
+use super::spring_network::{GrainDofs, SpringNetwork};
 use crate::error::MicroError;
 use grainlab_core::Stiffness;
+use nalgebra::Matrix6;
 
 /// Eigenvalues of C and of A − C may be this far below zero, as a fraction of the largest entry of A:
 /// rounding of a sum over contacts, far below any tolerance of the solve.
@@ -25,12 +26,15 @@ const FINEST: f64 = 1e-14;
 /// Difference of the two evaluations, as a fraction of the largest entry of A, above which a solve counts as failed.
 const COARSEST: f64 = 1e-4;
 
+/// Share of its residual to which a solution is corrected, in order to measure its error.
+const CORRECTED: f64 = 0.1;
+
 /// The stiffness of a spring network.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetworkStiffness {
     /// Grains relax under the strain.
     pub relaxed: Stiffness,
-    /// Standard error of each entry of `relaxed`, Pa.
+    /// Error that the solver left in each entry of `relaxed`, Pa, as a standard deviation.
     pub stddev: Stiffness,
     /// Affine (Voigt) stiffness: every grain moves with the mean deformation.
     pub affine: Stiffness,
@@ -47,9 +51,12 @@ pub struct NetworkStiffness {
 /// network resists no strain.
 ///
 /// The relaxed stiffness is evaluated by energy, with an error of second order in the residual and from
-/// above, and by stress, with an error of first order. Their agreement checks the solve; their difference is
-/// an upper bound of the error and taken as the standard error. 0 ≤ C ≤ B ≤ A is checked by eigenvalues, with
-/// the stiffness B of affine motion and a uniform rotation.
+/// above, and by stress, with an error of first order. Their agreement checks the solve. 0 ≤ C ≤ B ≤ A is checked by
+/// eigenvalues, with the stiffness B of affine motion and a uniform rotation.
+///
+/// The error of C is eᵀ K e/V, with e the error of the motion. Conjugate gradients leave a residual r at right angles to the
+/// motion, so that both evaluations agree far better than either with the exact C. Therefore e is solved for, K e = r, to a
+/// tenth of r.
 pub fn relaxed_stiffness(
     network: &SpringNetwork,
     solver: Solver,
@@ -68,7 +75,7 @@ pub fn relaxed_stiffness(
         }?;
         let (relaxed, by_stress) = network.stiffness_with(&solution.motion);
         let relative = (relaxed - by_stress).amax() / scale;
-        Ok((solution, relaxed, by_stress, relative))
+        Ok::<_, MicroError>((solution, relaxed, by_stress, relative))
     };
     let mut found = at(tolerance)?;
     if found.1.amax() <= FLOPPY.max(tolerance) * scale {
@@ -94,12 +101,47 @@ pub fn relaxed_stiffness(
             return Err(MicroError::OutOfBounds { what, eigenvalue });
         }
     }
+    let left = match solver {
+        Solver::Iterative => left_by_iterations(network, &loads, &norms, &solution, max_iterations),
+        // Its residual is at no right angle to the motion.
+        Solver::Direct => Matrix6::zeros(),
+    };
+    let stddev = (relaxed - by_stress).zip_map(&left, |d, left| d.abs().max(left).max(ROUNDING * scale));
     Ok(Some(NetworkStiffness {
         relaxed: Stiffness(relaxed),
-        stddev: Stiffness((relaxed - by_stress).map(|d| d.abs().max(ROUNDING * scale))),
+        stddev: Stiffness(stddev),
         affine,
         uniform_rotation,
         residual: solution.residual,
         iterations: solution.iterations,
     }))
+}
+
+/// Error of each entry of C by energy, Pa: √(e_aᵀ K e_a · e_bᵀ K e_b)/V with the errors e of the motions, at least |e_aᵀ K e_b|/V.
+/// Where they cannot be solved for, they are taken to be as large as the motions.
+fn left_by_iterations(
+    network: &SpringNetwork,
+    loads: &[GrainDofs<6>],
+    norms: &[f64; 6],
+    solution: &Solution<6>,
+    max_iterations: u32,
+) -> Matrix6<f64> {
+    let mut rest = vec![[[0.0; 6]; 6]; loads.len()];
+    network.apply(&solution.motion, &mut rest);
+    for (rest, load) in rest.iter_mut().zip(loads) {
+        for (rest, load) in rest.iter_mut().zip(load) {
+            (0..6).for_each(|l| rest[l] = if norms[l] > 0.0 { load[l] - rest[l] } else { 0.0 });
+        }
+    }
+    let square = |x: &[GrainDofs<6>], y: &[GrainDofs<6>], l: usize| -> f64 {
+        x.iter().zip(y).map(|(x, y)| (0..6).map(|k| x[k][l] * y[k][l]).sum::<f64>()).sum()
+    };
+    let tolerance = (CORRECTED * solution.residual).max(FINEST);
+    let energies: [f64; 6] = match solve(network, &rest, norms, tolerance, max_iterations) {
+        Ok(error) => std::array::from_fn(|l| square(&error.motion, &rest, l).max(0.0)),
+        Err(_) => std::array::from_fn(|l| {
+            (square(&solution.motion, &solution.motion, l) * square(&rest, &rest, l)).sqrt()
+        }),
+    };
+    Matrix6::from_fn(|a, b| (energies[a] * energies[b]).sqrt() / network.volume())
 }

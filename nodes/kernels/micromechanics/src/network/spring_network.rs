@@ -35,8 +35,11 @@ const UNIT: GrainDofs<6> = {
 /// Springs of the contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Springs {
-    /// k_n and k_t: no contact slides ("friction set very high").
+    /// Those that the contacts carry: k_n, and k_t where the packing has friction. No contact slides, also none that is at
+    /// the Coulomb limit.
     #[default]
+    Carried,
+    /// k_n and k_t, whatever the friction ("friction set very high").
     NormalAndTangential,
     /// k_n alone: frictionless.
     Normal,
@@ -46,14 +49,9 @@ pub enum Springs {
 }
 
 impl Springs {
-    /// Those of contacts with this friction coefficient, at small strains.
-    pub fn with_friction(friction: f64) -> Self {
-        if friction > 0.0 { Self::NormalAndTangential } else { Self::Normal }
-    }
-
-    /// Whether contacts have a k_t.
-    pub fn has_tangential(self) -> bool {
-        self == Self::NormalAndTangential
+    /// Whether contacts of this friction coefficient have a k_t.
+    pub fn has_tangential(self, friction: f64) -> bool {
+        self == Self::NormalAndTangential || (self == Self::Carried && friction > 0.0)
     }
 }
 
@@ -124,7 +122,7 @@ impl SpringNetwork {
                 return Err(MicroError::Normal { contact: index, i: c.i, j: c.j, cosine });
             }
             let (k_n, k_t) = view.contact_stiffnesses[index];
-            let k_t = if kind.has_tangential() { k_t } else { 0.0 };
+            let k_t = if kind.has_tangential(packing.friction) { k_t } else { 0.0 };
             let skew = (packing.radii[c.i as usize] - packing.radii[c.j as usize]) / length;
             springs.push(Spring {
                 i: c.i,
@@ -153,7 +151,7 @@ impl SpringNetwork {
             order,
             prestressed: false,
         };
-        Ok(if kind == Springs::PrestressedNormal { network.with_prestress(view) } else { network })
+        if kind == Springs::PrestressedNormal { network.with_prestress(view) } else { Ok(network) }
     }
 
     /// The same with the prestress term −(F_n/|l|)(1 − nn) on the displacement of the centres: a normal force
@@ -162,21 +160,27 @@ impl SpringNetwork {
     /// dropped: under its force a grain on one contact rolls off, while without the term it just follows.
     /// `view` is that of the same packing. Terms of the order of the pressure that depend on the choice of
     /// strain and stress measures are left out.
-    #[must_use]
-    pub fn with_prestress(mut self, view: &PackingView<'_>) -> Self {
+    pub fn with_prestress(mut self, view: &PackingView<'_>) -> Result<Self, MicroError> {
         let contacts = &view.packing.contacts;
-        assert_eq!(self.springs.len(), contacts.len(), "the packing of the network");
+        if self.springs.len() != contacts.len() {
+            return Err(MicroError::OtherPacking { network: self.springs.len(), packing: contacts.len() });
+        }
         for (s, c) in self.springs.iter_mut().zip(contacts) {
             s.geometric = c.normal_force / (2.0 * s.half_branch);
         }
         self.springs.retain(|s| view.carries_force(s.i, s.j));
         self.prestressed = true;
-        self
+        Ok(self)
     }
 
     /// Whether the prestress term is included.
     pub fn prestressed(&self) -> bool {
         self.prestressed
+    }
+
+    /// Whether no contact has a tangential spring.
+    pub fn smooth(&self) -> bool {
+        self.springs.iter().all(|s| s.tangential == 0.0)
     }
 
     /// Number of grains, including those without contacts.

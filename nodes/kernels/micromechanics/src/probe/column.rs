@@ -132,7 +132,8 @@ pub(crate) fn strained(
                 let (opened, closed) = changes(&at_rest.contacts, &strained);
                 column.opened += opened;
                 column.closed += closed;
-                column.sliding += strained.iter().filter(|c| c.slides(settings.friction)).count() as u32;
+                column.sliding +=
+                    strained.iter().filter(|c| c.slides(engine.settings().friction)).count() as u32;
             }
             return Ok((entries, column));
         }

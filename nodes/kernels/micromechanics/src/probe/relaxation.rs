@@ -53,7 +53,7 @@ impl Relaxation {
         let mut square_speed = 0.0;
         for engine in &mut self.engines {
             let drag = R / ((f64::from(self.since) + R - 1.0) * engine.time_step());
-            engine.set_settings(EngineSettings { drag, spin_drag: drag, ..*engine.settings() });
+            engine.set_settings(EngineSettings { drag, spin_drag: drag, ..*engine.settings() })?;
             engine.step()?;
             square_speed += engine.speed().powi(2);
         }

@@ -1,6 +1,7 @@
 //! Settings of the probe.
 
 use crate::error::ProbeError;
+use grainlab_core::Packing;
 use grainlab_core::contact::TangentialLaw;
 
 /// Settings of the probe.
@@ -18,8 +19,8 @@ pub struct StrainProbe {
     /// Maximum number of steps of a relaxation.
     pub max_steps: u32,
     /// Friction while probing: infinite ("set very high") prevents all sliding, 0 removes tangential springs;
-    /// other values let contacts slide.
-    pub friction: f64,
+    /// other values let contacts slide. `None`: infinite, but 0 for a packing without friction.
+    pub friction: Option<f64>,
     /// How the tangential force follows a change of normal stiffness. [`TangentialLaw::Incremental`] has the
     /// frozen network as its linear limit. The other law depends on the direction of the strain, however
     /// small.
@@ -33,7 +34,7 @@ impl Default for StrainProbe {
             sides: DifferenceScheme::Central,
             tolerance: 1e-5,
             max_steps: 50_000,
-            friction: f64::INFINITY,
+            friction: None,
             tangential: TangentialLaw::Incremental,
         }
     }
@@ -49,12 +50,18 @@ pub enum DifferenceScheme {
 }
 
 impl StrainProbe {
+    /// Friction while `packing` is probed.
+    pub(super) fn friction_of(&self, packing: &Packing) -> f64 {
+        let carried = if packing.friction > 0.0 { f64::INFINITY } else { 0.0 };
+        self.friction.unwrap_or(carried)
+    }
+
     /// The settings, or the one out of range.
     pub(super) fn check(&self) -> Result<(), ProbeError> {
         let range = |name, value: f64, accept: bool, requirement| {
             if accept { Ok(()) } else { Err(ProbeError::Setting { name, value, requirement }) }
         };
-        let (a, t, f) = (self.amplitude, self.tolerance, self.friction);
+        let (a, t, f) = (self.amplitude, self.tolerance, self.friction.unwrap_or(0.0));
         range("amplitude", a, a > 0.0 && a <= 0.01, "a strain above 0 and at most 0.01")?;
         range("tolerance", t, (1e-8..=1e-2).contains(&t), "between 1e-8 and 1e-2")?;
         range("friction", f, f >= 0.0, "0 or more; inf is allowed")

@@ -32,6 +32,8 @@ const SKIN: f64 = 0.01;
 pub struct StrainProbeResult {
     /// The measured stiffness, not symmetrised.
     pub stiffness: Stiffness,
+    /// The probe was without friction, and so without tangential springs.
+    pub smooth: bool,
     /// Largest |C_ab − C_ba| over the largest entry of C.
     pub asymmetry: f64,
     /// Steps that brought the packing to rest before it was strained.
@@ -99,7 +101,8 @@ pub fn strain_probe(packing: &Packing, settings: &StrainProbe) -> Result<StrainP
         stiffness.set_column(c, &entries.into());
     }
     let asymmetry = (stiffness - stiffness.transpose()).amax() / stiffness.amax();
-    Ok(StrainProbeResult { stiffness: Stiffness(stiffness), asymmetry, rest_steps, columns })
+    let smooth = settings.friction_of(packing) == 0.0;
+    Ok(StrainProbeResult { stiffness: Stiffness(stiffness), smooth, asymmetry, rest_steps, columns })
 }
 
 /// Mean change of a contact force by the affine strain over the mean contact force: the scale of unbalanced
@@ -109,8 +112,9 @@ fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeEr
     if packing.contacts.is_empty() {
         return Err(NotJammed::NoContacts { grains }.into());
     }
-    let needed = min_contacts(settings.friction);
-    if non_rattlers(&Packing { friction: settings.friction, ..packing.clone() }).iter().all(|p| !p) {
+    let friction = settings.friction_of(packing);
+    let needed = min_contacts(friction);
+    if non_rattlers(&Packing { friction, ..packing.clone() }).iter().all(|p| !p) {
         return Err(NotJammed::OnlyRattlers { grains, needed }.into());
     }
     let (mut change, mut force) = (0.0, 0.0);
@@ -125,7 +129,7 @@ fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeEr
 fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engine, u32), ProbeError> {
     let smallest = packing.radii.iter().copied().fold(f64::INFINITY, f64::min);
     let setting = EngineSettings {
-        friction: settings.friction,
+        friction: settings.friction_of(packing),
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
@@ -136,12 +140,12 @@ fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engi
     };
     let still = vec![Vec3::zeros(); packing.grains()];
     // Without its own time step, the engine takes the longest stable one.
-    let mut engine = Engine::from_packing(&Packing { time_step: 0.0, ..packing.clone() }, setting);
-    engine.set_settings(setting);
-    engine.set_velocities(&still);
-    engine.set_spins(&still);
+    let mut engine = Engine::from_packing(&Packing { time_step: 0.0, ..packing.clone() }, setting)?;
+    engine.set_settings(setting)?;
+    engine.set_velocities(&still)?;
+    engine.set_spins(&still)?;
     engine.initialise()?;
-    engine.set_settings(EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting });
+    engine.set_settings(EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting })?;
     let target = REST * settings.tolerance * load;
     let mut unbalanced = engine.observables()?.unbalanced;
     let mut relaxation = Relaxation::new(vec![engine]);
@@ -157,7 +161,7 @@ fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engi
         unbalanced = relaxation.engines()[0].observables()?.unbalanced;
     }
     let mut engine = relaxation.engines()[0].clone();
-    engine.set_velocities(&still);
-    engine.set_spins(&still);
+    engine.set_velocities(&still)?;
+    engine.set_spins(&still)?;
     Ok((engine, steps))
 }

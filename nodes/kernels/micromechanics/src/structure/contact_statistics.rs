@@ -17,7 +17,7 @@ pub fn contact_statistics(view: &PackingView<'_>) -> ContactStatistics {
         rattlers: (grains - carrying) as u32,
         coordination: coordination(packing.contacts.len(), grains),
         mechanical_coordination: coordination(inner, carrying),
-        sliding_fraction: sliding_fraction(packing),
+        sliding_fraction: packing.sliding_fraction(),
         forces: force_statistics(view),
         friction: mobilised_friction(packing),
     }
@@ -25,15 +25,6 @@ pub fn contact_statistics(view: &PackingView<'_>) -> ContactStatistics {
 
 fn coordination(contacts: usize, grains: usize) -> f64 {
     if grains == 0 { 0.0 } else { 2.0 * contacts as f64 / grains as f64 }
-}
-
-/// Fraction of contacts with |F_t| ≥ 0.999 μ F_n; 0 without a Coulomb limit (μ = 0 or infinite).
-fn sliding_fraction(packing: &Packing) -> f64 {
-    if packing.contacts.is_empty() {
-        return 0.0;
-    }
-    let at_limit = packing.contacts.iter().filter(|c| c.slides(packing.friction));
-    at_limit.count() as f64 / packing.contacts.len() as f64
 }
 
 /// Distribution of normal forces; `None` without contacts, or if their mean is not positive.

@@ -22,6 +22,6 @@ pub use fabric::fabric;
 pub use fourth_order::fourth_order_fabric;
 pub use orientation::{orientation_fit, orientation_histogram};
 pub use principal_axis::{fabric_stddev, principal_axis};
-pub use strain_ratios::{logarithmic_strain, overlap_anisotropy_fit, strain_ratio, total_strain_ratio};
+pub use strain_ratios::{overlap_anisotropy_fit, strain_ratio, total_strain_ratio};
 pub use stress_decomposition::stress_decomposition;
 pub use stress_force_fabric::stress_force_fabric;

@@ -1,7 +1,7 @@
 //! The three ratios γ/Δ of deviatoric to volumetric strain.
 
 use grainlab_core::results::OverlapAnisotropyFit;
-use grainlab_core::{Mat3, Packing, SymTensor, Vec3};
+use grainlab_core::{Packing, SymTensor, Vec3};
 
 /// γ/Δ of a strain about the unit vector `axis`: γ = (E_aa − (tr E − E_aa)/2)/2, Δ = −tr E. `None` if the volume does
 /// not change (|Δ| below 10⁻⁹ of the largest component).
@@ -21,23 +21,14 @@ pub fn strain_ratio(strain: &SymTensor, axis: &Vec3) -> Option<f64> {
     (trace.abs() > 1e-9 * largest && g.is_finite()).then_some(g)
 }
 
-/// Logarithmic (Hencky) strain of a deformation gradient F: ln V of the left stretch V = √(F Fᵀ), on the
-/// present axes, like stress and fabric; independent of the rotation of F = V R.
-pub fn logarithmic_strain(deformation: &Mat3) -> SymTensor {
-    let eigen = (deformation * deformation.transpose()).symmetric_eigen();
-    let logs = eigen.eigenvalues.map(|v| 0.5 * v.ln());
-    SymTensor::symmetric_part(
-        &(eigen.eigenvectors * Mat3::from_diagonal(&logs) * eigen.eigenvectors.transpose()),
-    )
-}
+/// Solid fraction below which spheres are a gas: no packing is as loose.
+const GAS: f64 = 0.5;
 
-/// γ/Δ of the strain since the reference state. `None` without a reference state, or if the volume is
-/// unchanged.
+/// γ/Δ of the strain of a packing. `None` if it has no strain, if the strain counts from a gas, whose grains do not touch
+/// (a run without a reference state), and if the volume is unchanged.
 pub fn total_strain_ratio(packing: &Packing, axis: &Vec3) -> Option<f64> {
-    if packing.deformation == Mat3::identity() || packing.deformation.iter().any(|v| v.is_nan()) {
-        return None;
-    }
-    strain_ratio(&logarithmic_strain(&packing.deformation), axis)
+    let before = packing.solid_fraction() * packing.deformation.determinant();
+    strain_ratio(&packing.strain().filter(|_| before >= GAS)?, axis)
 }
 
 /// Least squares of √overlap to A(1 + g − 3 g x²), x = n·`axis` (Eq. 10), with the standard error of g for independent
@@ -80,18 +71,6 @@ pub fn overlap_anisotropy_fit(packing: &Packing, axis: &Vec3) -> Option<OverlapA
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Rotation3;
-
-    #[test]
-    fn logarithmic_strain_ignores_the_rotation_before_and_turns_with_the_one_after() {
-        let stretch = Mat3::from_diagonal(&Vec3::new(0.98f64.exp(), (-0.3f64).exp(), 0.1f64.exp()));
-        let r = Rotation3::from_euler_angles(0.4, -0.2, 1.1);
-        let before = logarithmic_strain(&(stretch * r.matrix())).matrix();
-        let expected = Mat3::from_diagonal(&Vec3::new(0.98, -0.3, 0.1));
-        assert!((before - expected).amax() < 1e-14);
-        let after = logarithmic_strain(&(r.matrix() * stretch)).matrix();
-        assert!((after - r.matrix() * expected * r.matrix().transpose()).amax() < 1e-14);
-    }
 
     #[test]
     fn isochoric_strain_has_no_ratio() {

@@ -18,8 +18,8 @@ fn moduli(p: &Packing, settings: &Settings) -> ElasticStiffness {
 }
 
 fn prestressed(p: &Packing, springs: Springs) -> SpringNetwork {
-    let view = PackingView::new(p);
-    SpringNetwork::new(&view, springs).unwrap().with_prestress(&view)
+    let view = PackingView::new(p).unwrap();
+    SpringNetwork::new(&view, springs).unwrap().with_prestress(&view).unwrap()
 }
 
 /// One grain in a cell of three different edges, so that the springs along x and z differ.
@@ -61,7 +61,7 @@ fn a_mean_spin_lies_between_relaxed_and_affine_and_is_affine_without_tangential_
             assert!((above.0 - below.0).symmetric_eigenvalues().min() > -1e-12 * m.bounds.affine.0.amax());
         }
         assert!((m.bounds.affine.0 - m.bounds.uniform_rotation.0).amax() > 1e-6 * m.bounds.affine.0.amax());
-        let smooth = SpringNetwork::new(&PackingView::new(&p), Springs::Normal).unwrap();
+        let smooth = SpringNetwork::new(&PackingView::new(&p).unwrap(), Springs::Normal).unwrap();
         let affine = smooth.affine_stiffness();
         assert_eq!(uniform_rotation_stiffness(&smooth, &affine), affine);
     }
@@ -163,7 +163,7 @@ fn a_chain_that_buckles_is_an_error_by_name() {
     let refused = relaxed_stiffness(&network, Solver::Iterative, 1e-9, 20_000);
     assert!(matches!(refused, Err(MicroError::Unstable { .. })), "{refused:?}");
     // Without prestress, straightening the chain costs no energy.
-    let network = SpringNetwork::new(&PackingView::new(&p), Springs::Normal).unwrap();
+    let network = SpringNetwork::new(&PackingView::new(&p).unwrap(), Springs::Normal).unwrap();
     assert_eq!(network.contacts(), grains);
     assert_eq!(relaxed_stiffness(&network, Solver::Iterative, 1e-9, 20_000), Ok(None));
 }

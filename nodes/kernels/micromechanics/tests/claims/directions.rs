@@ -9,7 +9,7 @@ use grainlab_micromechanics::structure::{contact_statistics, fabric, orientation
 use nalgebra::Rotation3;
 
 fn along_z(p: &Packing) -> Fabric {
-    fabric(&PackingView::new(p), &Vec3::z())
+    fabric(&PackingView::new(p).unwrap(), &Vec3::z())
 }
 
 fn of_directions(directions: &[Vec3], seed: u64) -> Packing {
@@ -246,7 +246,7 @@ fn turning_packing_and_axis_changes_no_number() {
     }
     let r = Rotation3::from_euler_angles(0.5, 0.8, -0.3);
     let measured = |p: &Packing, h: Vec3| {
-        let view = PackingView::new(p);
+        let view = PackingView::new(p).unwrap();
         let fabric = fabric(&view, &h);
         (contact_statistics(&view), stress_decomposition(&view, &fabric), fabric)
     };

@@ -15,7 +15,7 @@ struct Structure {
 }
 
 fn structure(p: &Packing) -> Structure {
-    let view = PackingView::new(p);
+    let view = PackingView::new(p).unwrap();
     let fabric = fabric(&view, &Vec3::z());
     Structure { contacts: contact_statistics(&view), stress: stress_decomposition(&view, &fabric), fabric }
 }

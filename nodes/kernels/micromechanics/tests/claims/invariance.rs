@@ -43,7 +43,7 @@ fn rigid_motion_costs_nothing() {
     let mut p = random(30, 1.2, 13);
     p.contacts.retain(|c| c.image == [0, 0, 0]);
     assert!(p.contacts.len() > 30);
-    let network = SpringNetwork::new(&PackingView::new(&p), Springs::NormalAndTangential).unwrap();
+    let network = SpringNetwork::new(&PackingView::new(&p).unwrap(), Springs::NormalAndTangential).unwrap();
     let (shift, spin) = (Vec3::new(1.0, -2.0, 0.5) * 1e-5, Vec3::new(0.3, 0.2, -0.4));
     let phi = spin * network.spin_scale();
     let moved = |with_spin: bool| {
@@ -64,7 +64,7 @@ fn rigid_motion_costs_nothing() {
 #[test]
 fn operator_is_symmetric_and_reports_its_energy() {
     let p = random(30, 1.1, 14);
-    let network = SpringNetwork::new(&PackingView::new(&p), Springs::NormalAndTangential).unwrap();
+    let network = SpringNetwork::new(&PackingView::new(&p).unwrap(), Springs::NormalAndTangential).unwrap();
     let x: Vec<GrainDofs<2>> = (0..p.grains())
         .map(|g| std::array::from_fn(|r| std::array::from_fn(|l| ((g * 7 + r * 3 + l * 11) as f64).sin())))
         .collect();
@@ -111,33 +111,4 @@ fn error_of_the_stiffness_is_second_order_in_the_tolerance_and_from_above() {
         let error = difference.amax() / scale;
         assert!(error < 10.0 * tolerance * tolerance.sqrt(), "{tolerance:e}: {error:e}");
     }
-}
-
-/// From the two evaluations of a solve: for any tolerance, the error of each entry is at most twice the
-/// standard error, which is never zero.
-#[test]
-fn the_standard_error_of_a_stiffness_covers_its_error() {
-    let p = random(60, 1.2, 17);
-    let with = |tolerance| {
-        analyze(&p, &Settings { tolerance, ..Settings::default() })
-            .unwrap()
-            .report
-            .stiffness()
-            .copied()
-            .unwrap()
-    };
-    let exact = with(1e-13).tensor.0;
-    for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
-        let m = with(tolerance);
-        assert!(m.stddev.0.min() > 0.0);
-        let off = (m.tensor.0 - exact).abs();
-        // Entries that cancel in one evaluation are covered by the largest of their row.
-        for (a, row) in off.row_iter().enumerate() {
-            assert!(row.amax() <= 2.0 * m.stddev.0.row(a).amax(), "{tolerance:e}, row {a}: {row}");
-        }
-    }
-    assert!(
-        with(1e-2).stddev.0.amax() > 1e3 * with(1e-6).stddev.0.amax(),
-        "it says nothing of the tolerance"
-    );
 }

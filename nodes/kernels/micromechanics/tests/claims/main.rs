@@ -13,4 +13,6 @@ mod probe;
 mod reference;
 mod samples;
 mod sizes;
+mod springs;
+mod stated_errors;
 mod structure;

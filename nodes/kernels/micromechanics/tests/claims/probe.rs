@@ -90,7 +90,12 @@ fn a_scan_of_amplitudes_finds_the_linear_regime() {
 fn contacts_that_slide_under_the_strain_are_counted() {
     let packing = reference();
     let sliding = |friction| {
-        let settings = StrainProbe { friction, amplitude: 1e-6, tolerance: 1e-3, ..StrainProbe::default() };
+        let settings = StrainProbe {
+            friction: Some(friction),
+            amplitude: 1e-6,
+            tolerance: 1e-3,
+            ..StrainProbe::default()
+        };
         strain_probe(&packing, &settings).unwrap().columns[1].sliding
     };
     assert!(sliding(packing.friction) > 0);
@@ -171,9 +176,11 @@ fn stuck(packing: &Packing) -> Engine {
         skin: 1e-2 * packing.radii[0],
         thermostat_speed: None,
     };
-    let mut engine = Engine::from_packing(packing, setting);
+    let mut engine = Engine::from_packing(packing, setting).unwrap();
     engine.initialise().unwrap();
-    engine.set_settings(EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting });
+    engine
+        .set_settings(EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting })
+        .unwrap();
     engine
 }
 
@@ -286,7 +293,7 @@ fn packings_that_cannot_be_probed_are_refused_with_the_reason() {
         (StrainProbe { amplitude: 0.0, ..StrainProbe::default() }, "amplitude"),
         (StrainProbe { amplitude: f64::NAN, ..StrainProbe::default() }, "amplitude"),
         (StrainProbe { tolerance: 1.0, ..StrainProbe::default() }, "tolerance"),
-        (StrainProbe { friction: -1.0, ..StrainProbe::default() }, "friction"),
+        (StrainProbe { friction: Some(-1.0), ..StrainProbe::default() }, "friction"),
     ] {
         match strain_probe(&gas, &settings) {
             Err(ProbeError::Setting { name: found, .. }) => assert_eq!(found, name),

@@ -44,7 +44,7 @@ fn prepared(grains: usize, spread: f64, pressure: f64, seed: u64) -> Packing {
         skin: 0.1 * DIAMETER,
         thermostat_speed: None,
     };
-    let mut engine = Engine::new(cell, Material::GLASS, radii, &positions, setting);
+    let mut engine = Engine::new(cell, Material::GLASS, radii, &positions, setting).unwrap();
     let mut strain = |rate: f64, done: &dyn Fn(&Observables) -> bool| {
         engine.set_rate(&[-rate, -rate, -rate, 0.0, 0.0, 0.0]).unwrap();
         while !done(&engine.observables().unwrap()) {
@@ -60,7 +60,9 @@ fn prepared(grains: usize, spread: f64, pressure: f64, seed: u64) -> Packing {
     engine.initialise().unwrap();
     // Without sliding: sliding contacts relax slowly.
     let time_step = TimeStep::Fixed(0.8 * engine.time_step());
-    engine.set_settings(EngineSettings { time_step, friction: f64::INFINITY, damping: 0.0, ..setting });
+    engine
+        .set_settings(EngineSettings { time_step, friction: f64::INFINITY, damping: 0.0, ..setting })
+        .unwrap();
     let mut relaxation = Relaxation::new(vec![engine]);
     for _ in 0..400 {
         (0..100).for_each(|_| relaxation.step().unwrap());

@@ -43,9 +43,9 @@ impl Measure for Analysis {
         let packing = &imported.packing;
         let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
         let found = analyze(packing, &self.settings).map_err(|e| named(&e))?;
-        let mut measured = MeasuredPacking::new(source.to_owned(), found.report);
+        let position = PathPosition::of(&imported.run_state);
+        let mut measured = MeasuredPacking::new(source.to_owned(), found.report).at(position);
         measured.step = imported.step;
-        measured.position = PathPosition::of(&imported.run_state);
         measured.seconds = Some(began.elapsed().as_secs_f64());
         let (report, probe) = (&measured.report, found.probe.as_ref());
         measured.probe = probe.zip(self.settings.probe).map(|(p, set)| ProbeView::new(set.amplitude, p));
@@ -67,7 +67,7 @@ impl Analysis {
     fn scanned(&self, packing: &Packing) -> Result<ScanView, MicroError> {
         let set = &self.settings;
         let sweep = amplitude_sweep(packing, &explicit(set.springs), &self.scan, AGREEMENT)?;
-        let network = SpringNetwork::new(&PackingView::new(packing), set.springs)?;
+        let network = SpringNetwork::new(&PackingView::new(packing)?, set.springs)?;
         let found = relaxed_stiffness(&network, set.solver, set.tolerance, set.max_iterations)?;
         Ok(ScanView::new(&sweep, found.map(|s| s.relaxed).as_ref()))
     }
@@ -86,8 +86,12 @@ fn one_sided(probe: &StrainProbeResult) -> Option<String> {
     })
 }
 
-/// A probe with infinite or zero friction.
+/// A probe with the friction that leaves these springs.
 pub(super) fn explicit(springs: Springs) -> StrainProbe {
-    let probe = StrainProbe::default();
-    StrainProbe { friction: if springs.has_tangential() { probe.friction } else { 0.0 }, ..probe }
+    let friction = match springs {
+        Springs::Carried => None,
+        Springs::NormalAndTangential => Some(f64::INFINITY),
+        Springs::Normal | Springs::PrestressedNormal => Some(0.0),
+    };
+    StrainProbe { friction, ..StrainProbe::default() }
 }

@@ -31,6 +31,9 @@ pub(super) fn conduct(
         run.id,
         directory.display()
     );
+    for note in scene.scene.notes() {
+        grainlab_console::say!("grainlab: note: {note}");
+    }
     let supervised = supervise(plans, run, directory, &scene.scene);
     drop(lock);
     let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;

@@ -4,11 +4,11 @@ use crate::commands::packings::Measure;
 use grainlab_acoustic_probe::{Measured, Settings, messages};
 use grainlab_acoustics::dispersion::AttenuationSettings;
 use grainlab_acoustics::{AcousticsError, measure_attenuation};
+use grainlab_core::Vec3;
 use grainlab_micromechanics::analyze;
-use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_recordings::import::Imported;
-use grainlab_results::{AcousticReport, AttenuationReport, MeasuredPacking, Probed};
+use grainlab_results::{AcousticReport, AttenuationReport, MeasuredPacking, Probed, of_springs};
 
 /// Settings of the measurement.
 #[derive(Clone, Debug)]
@@ -32,14 +32,19 @@ impl Measure for Probe {
     fn measure(&self, source: &str, imported: &Imported) -> Result<Found, String> {
         let packing = &imported.packing;
         let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
-        let springs = Springs::with_friction(packing.friction);
-        let network = analyze(packing, &grainlab_micromechanics::Settings { springs, ..Default::default() });
-        let mut measured = MeasuredPacking::new(source.to_owned(), network.map_err(|e| named(&e))?.report);
-        measured.step = imported.step;
-        measured.warnings.clone_from(&imported.notes);
+        let measured = |axis: Vec3| {
+            let settings = grainlab_micromechanics::Settings { axis, ..Default::default() };
+            let report = analyze(packing, &settings).map_err(|e| named(&e))?.report;
+            let mut measured = MeasuredPacking::new(source.to_owned(), report);
+            measured.step = imported.step;
+            measured.warnings.clone_from(&imported.notes);
+            measured.warnings.extend(of_springs(packing, &measured.report));
+            Ok::<_, String>(measured)
+        };
         let found = match grainlab_acoustics::measure(packing, &self.settings.0) {
             Ok(found) => found,
             Err(AcousticsError::NotJammed(why)) => {
+                let mut measured = measured(self.settings.0.axis.unwrap_or_else(Vec3::z))?;
                 measured.warnings.push(why.to_string());
                 return Ok(Found { probed: Probed { packing: measured, acoustic: None }, messages: None });
             }
@@ -53,6 +58,8 @@ impl Measure for Probe {
             let curves = measure_attenuation(packing, &self.settings.0, settings).map_err(|e| named(&e))?;
             acoustic.attenuation = Some(AttenuationReport::new(packing, settings, curves));
         }
+        // The axis of the rays, or the one inferred from the speeds.
+        let measured = measured(acoustic.medium.axis)?;
         let acoustic = Some(acoustic);
         Ok(Found { probed: Probed { packing: measured, acoustic }, messages: Some(messages) })
     }

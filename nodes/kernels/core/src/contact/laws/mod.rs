@@ -55,15 +55,15 @@ impl SpringLaw {
         }
     }
 
-    /// Springs of the same kind with these parameters, unchecked.
-    ///
-    /// # Panics
-    /// Where there are fewer parameters than in the list.
-    #[must_use]
-    pub fn with_parameters(&self, p: &[f64]) -> Self {
-        match self {
-            Self::HertzMindlin => Self::HertzMindlin,
-            Self::Linear(_) => Self::Linear(Linear { normal_stiffness: p[0], stiffness_ratio: p[1] }),
+    /// Springs of the same kind with these parameters, whose range is not checked; `None` where they are not as many as in the
+    /// list.
+    pub fn with_parameters(&self, p: &[f64]) -> Option<Self> {
+        match (self, p) {
+            (Self::HertzMindlin, []) => Some(Self::HertzMindlin),
+            (Self::Linear(_), &[normal_stiffness, stiffness_ratio]) => {
+                Some(Self::Linear(Linear { normal_stiffness, stiffness_ratio }))
+            }
+            _ => None,
         }
     }
 

@@ -1,0 +1,35 @@
+//! The error of the solver that a stiffness states, against the factorisation.
+
+use crate::golden::reference;
+use crate::samples::{random, thinned};
+use grainlab_core::Packing;
+use grainlab_core::results::ElasticStiffness;
+use grainlab_micromechanics::network::{Solver, Springs};
+use grainlab_micromechanics::{Settings, analyze};
+
+fn measured(packing: &Packing, springs: Springs, solver: Solver, tolerance: f64) -> ElasticStiffness {
+    let settings = Settings { springs, solver, tolerance, ..Settings::default() };
+    analyze(packing, &settings).unwrap().report.stiffness().copied().unwrap()
+}
+
+/// Expected: every entry within three of its stated errors, at any tolerance, also near isostaticity.
+#[test]
+fn every_entry_is_within_its_stated_error_at_any_tolerance() {
+    let both = Springs::NormalAndTangential;
+    for (name, packing, springs) in [
+        ("of LAMMPS", reference(), both),
+        ("dense", random(200, 1.3, 4), both),
+        ("loose", thinned(&random(300, 1.25, 4), 4.6), both),
+        ("nearly isostatic", thinned(&random(100, 1.25, 21), 4.1), both),
+        ("smooth", random(300, 1.3, 5), Springs::Normal),
+    ] {
+        let exact = measured(&packing, springs, Solver::Direct, 1e-12);
+        let rounding = 1e-14 * exact.bounds.affine.0.amax();
+        for exponent in 2..=9 {
+            let found = measured(&packing, springs, Solver::Iterative, 10f64.powi(-exponent));
+            let errors = (found.tensor.0 - exact.tensor.0).abs();
+            let excess = errors.zip_map(&found.stddev.0, |error, stddev| (error - rounding) / stddev);
+            assert!(excess.max() < 3.0, "{name}, 1e-{exponent}: {:.1} stated errors", excess.max());
+        }
+    }
+}

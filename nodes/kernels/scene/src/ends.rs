@@ -1,0 +1,151 @@
+//! Whether a phase can end: conditions that exclude each other, that nothing imposed can meet, or that come too late.
+
+use crate::model::{Condition, Conditions, GasMethod, Measure, Phase, PhaseKind, Record};
+use crate::path::name;
+use crate::sizes::Sizes;
+use grainlab_core::ComponentControl;
+
+/// Solid fraction of random close packing: no disordered packing of equal hard spheres is denser.
+const CLOSEST_EQUAL: f64 = 0.64;
+
+/// The same of spheres of two sizes, where the small ones fill the voids of the large ones: 1 − (1 − 0.64)².
+const CLOSEST: f64 = 0.87;
+
+/// Why the phase cannot end, or cannot publish the packings that it records: the key at fault, and the message.
+pub(crate) fn faults(phase: &Phase, sizes: &Sizes) -> Vec<(&'static str, String)> {
+    let mut found = Vec::new();
+    let all = &phase.until.all;
+    for (n, condition) in all.iter().enumerate() {
+        let excluded = all[n + 1..].iter().filter_map(|other| excluding(condition, other));
+        let other = excluded.chain(never(condition, phase)).chain(too_dense(condition, phase, sizes));
+        found.extend(other.map(|message| ("until", message)));
+    }
+    found.extend(too_late(phase).map(|message| ("until", message)));
+    let strains = phase.controls().iter().any(|c| match c {
+        ComponentControl::StrainRate(rate) => *rate != 0.0,
+        ComponentControl::Stress(_) => true,
+        ComponentControl::Held => false,
+    });
+    if matches!(phase.record, Some(Record::EveryStrain(_))) && !strains {
+        found.push(("record.every_strain", "publishes nothing: the phase has no strain".to_owned()));
+    }
+    found
+}
+
+/// Two conditions on one quantity that no value meets.
+fn excluding(one: &Condition, other: &Condition) -> Option<String> {
+    let ((&Condition::AtLeast(low, above), &Condition::AtMost(high, below))
+    | (&Condition::AtMost(high, below), &Condition::AtLeast(low, above))) = (one, other)
+    else {
+        return None;
+    };
+    (low == high && above > below).then(|| {
+        format!("{} is to be at least {above:e} and at most {below:e}: both never hold at once", name(low))
+    })
+}
+
+/// A condition that what the phase imposes does not lead to.
+fn never(condition: &Condition, phase: &Phase) -> Option<String> {
+    let (measure, bound, upwards) = match *condition {
+        Condition::AtLeast(measure, bound) => (measure, bound, 1.0),
+        Condition::AtMost(measure, bound) => (measure, bound, -1.0),
+        Condition::OnTarget { .. } => return None,
+    };
+    let name = name(measure);
+    match measure {
+        Measure::Strain(_) if bound != 0.0 => {
+            let rate = imposed_rate(measure, phase)?;
+            (rate * upwards <= 0.0).then(|| {
+                format!("{name} = {bound}, but the phase strains it at {rate} 1/s: it is never there")
+            })
+        }
+        Measure::SolidFraction => {
+            let rate = imposed_rate(measure, phase)?;
+            (rate * upwards <= 0.0).then(|| {
+                format!(
+                    "{name} = {bound}, but the phase does not compress: it holds from the start, or never"
+                )
+            })
+        }
+        Measure::Stress(_) | Measure::Pressure | Measure::Deviator => {
+            let target = target(measure, phase)?;
+            ((bound - target) * upwards > 0.0).then(|| {
+                format!("{name} {bound:e} Pa is beyond the {target:e} Pa that the phase controls it to")
+            })
+        }
+        _ => None,
+    }
+}
+
+/// A solid fraction that hard spheres do not reach.
+fn too_dense(condition: &Condition, phase: &Phase, sizes: &Sizes) -> Option<String> {
+    let PhaseKind::Gas { method: GasMethod::EventDriven, .. } = phase.kind else { return None };
+    let &Condition::AtLeast(Measure::SolidFraction, wanted) = condition else { return None };
+    let closest = if sizes.ratio() > 1.0 { CLOSEST } else { CLOSEST_EQUAL };
+    (wanted >= closest).then(|| {
+        format!("solid_fraction = {wanted}: a gas of hard spheres of these sizes jams below {closest}")
+    })
+}
+
+/// Conditions that are met too late, where the time is known.
+fn too_late(phase: &Phase) -> Option<String> {
+    let Conditions { all, hold, timeout } = &phase.until;
+    let times = all.iter().filter_map(|c| Some((c, least_time(c, phase)?)));
+    let (condition, time) = times.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let held = if *hold > 0.0 { format!(" and hold for {hold} s") } else { String::new() };
+    (time + hold >= *timeout).then(|| {
+        let (Condition::AtLeast(measure, _) | Condition::AtMost(measure, _)) = condition else {
+            return String::new();
+        };
+        format!(
+            "{} takes {time:.4} s of simulated time{held}, and the phase fails at its timeout of {timeout} s; raise the timeout",
+            name(*measure)
+        )
+    })
+}
+
+/// Least simulated time until a condition holds, s, at the imposed rates; `None` where these do not determine it.
+fn least_time(condition: &Condition, phase: &Phase) -> Option<f64> {
+    let time = match (*condition, &phase.kind) {
+        (Condition::AtLeast(Measure::Elapsed, time), _) => time,
+        (Condition::AtLeast(m @ Measure::Strain(_), v) | Condition::AtMost(m @ Measure::Strain(_), v), _) => {
+            v / imposed_rate(m, phase)?
+        }
+        (
+            Condition::AtLeast(m @ Measure::SolidFraction, wanted),
+            PhaseKind::Gas { initial_solid_fraction, .. },
+        ) => (wanted / initial_solid_fraction).ln() / imposed_rate(m, phase)?,
+        _ => return None,
+    };
+    time.is_finite().then_some(time.max(0.0))
+}
+
+/// Rate of a strain component, or of the logarithm of the solid fraction, 1/s; `None` where a stress is controlled instead.
+fn imposed_rate(measure: Measure, phase: &Phase) -> Option<f64> {
+    let controls = phase.controls();
+    let of = |component: usize| match controls[component] {
+        ComponentControl::StrainRate(rate) => Some(rate),
+        ComponentControl::Held => Some(0.0),
+        ComponentControl::Stress(_) => None,
+    };
+    match measure {
+        Measure::Strain(component) => of(component),
+        Measure::SolidFraction => Some(-(of(0)? + of(1)? + of(2)?)),
+        _ => None,
+    }
+}
+
+/// Value that the phase controls a stress to, Pa; `None` where it does not determine it.
+fn target(measure: Measure, phase: &Phase) -> Option<f64> {
+    let controls = phase.controls();
+    let of = |component: usize| match controls[component] {
+        ComponentControl::Stress(target) => Some(target),
+        _ => None,
+    };
+    match measure {
+        Measure::Stress(component) => of(component),
+        Measure::Pressure => Some((of(0)? + of(1)? + of(2)?) / 3.0),
+        Measure::Deviator => Some(of(2)? - 0.5 * (of(0)? + of(1)?)),
+        _ => None,
+    }
+}
