@@ -14,8 +14,8 @@ mod network_likelihood;
 mod scan;
 mod state;
 
-use crate::checks::FALSE_ALARM;
 use crate::calibration::{Calibration, Outside, Reach, RelaxationCalibration};
+use crate::checks::FALSE_ALARM;
 use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;

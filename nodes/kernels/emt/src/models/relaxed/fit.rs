@@ -109,7 +109,10 @@ impl Fit {
                 .map(|input| {
                     let slopes = input.slopes(network, z, eps, &data.value);
                     let moduli = data.masked(slopes.moduli);
-                    (moduli * moduli.transpose() * input.variance, slopes.following * moduli.transpose() * input.variance)
+                    (
+                        moduli * moduli.transpose() * input.variance,
+                        slopes.following * moduli.transpose() * input.variance,
+                    )
                 })
                 .fold((Square::zeros(), WithFollowing::zeros()), |(a, b), (c, d)| (a + c, b + d))
         };
@@ -239,8 +242,8 @@ impl Fit {
             0.0,
         );
         // The scatter of these two is correlated with that of the moduli, and so are errors of the state: regression on the residual.
-        let with_moduli =
-            scatter.fixed_view::<2, INVARIANTS>(INVARIANTS, 0) * self.by_invariants.transpose() + self.with_following;
+        let with_moduli = scatter.fixed_view::<2, INVARIANTS>(INVARIANTS, 0) * self.by_invariants.transpose()
+            + self.with_following;
         let regression = with_moduli * self.weight;
         let residual_gain = SMatrix::<f64, MODULI, MODULI>::identity() - self.by_unknowns * gain;
         let following = follows * gain + regression * residual_gain;

@@ -65,9 +65,8 @@ impl UncertainInput {
     ) -> Slopes {
         let [(unit_above, above), (unit_below, below)] = &self.sides;
         let moduli = |laws| SVector::<f64, MODULI>::from(invariants(network, laws, z, eps).moduli());
-        let following = |laws| {
-            Vector2::new(network.eps_stiffness.value(z, eps, laws), network.rattlers.value(z, laws))
-        };
+        let following =
+            |laws| Vector2::new(network.eps_stiffness.value(z, eps, laws), network.rattlers.value(z, laws));
         let by = 0.5 / STEP;
         Slopes {
             moduli: (moduli(above) - moduli(below) + observed * (unit_above - unit_below)) * by,
