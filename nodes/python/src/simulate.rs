@@ -10,7 +10,7 @@ use grainlab_recordings::{import, input};
 use grainlab_scene::{BUILT_IN, Draft, Source, built_in};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 

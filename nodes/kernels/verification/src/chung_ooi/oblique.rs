@@ -71,7 +71,8 @@ pub(super) fn rows(
     let points = |quantity: Quantity, curve: usize, data: &mut dyn Iterator<Item = (f64, f64)>| {
         data.map(|(angle, theirs)| {
             let ours = quantity.of(impact(case, angle)?, angle);
-            let by = |law| Ok(quantity.of(impacts.find([4, material, curve], angle, law)?, angle));
+            let by =
+                |law| impacts.find([4, material, curve], angle, law).map(|after| quantity.of(after, angle));
             Ok(Point::explained(angle, theirs, ours, by(Law::Incremental)?, by(Law::Secant)?))
         })
         .collect::<Result<Vec<_>, VerificationError>>()
