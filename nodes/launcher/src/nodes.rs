@@ -160,8 +160,8 @@ impl NodeKind {
             // It finds its topics by itself.
             Self::FoxgloveBridge => &[],
         };
-        let all = own.iter().chain(&[topics::DIAGNOSTICS, topics::ROSOUT]);
-        all.filter(|topic| topic.is_recorded()).copied().collect()
+        let of_every_node = [topics::DIAGNOSTICS, topics::ROSOUT].into_iter().filter(|t| !own.contains(t));
+        own.iter().copied().filter(Topic::is_recorded).chain(of_every_node).collect()
     }
 
     /// Number of such nodes that a run may have, as a range and as text: a second one of a unique node would
