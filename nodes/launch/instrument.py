@@ -71,7 +71,7 @@ def main():
     if "--json" in sys.argv:
         return print(json.dumps({"sent": asdict(sent), "received": asdict(found)}))
     print(f"{'inferred by':<17} {'k':>15} {'z':>15} {'eps':>17}  status")
-    status = ["ok", "extrapolated", "undetermined", "failed"]
+    status = ["ok", "extrapolated", "contradictory", "unknown"]
     for e in found.estimates:
         sigma = lambda i: e.covariance[i]**0.5 if e.covariance else float("nan")
         values = [(e.k, 0), (e.z, 12), (e.eps, 18)]

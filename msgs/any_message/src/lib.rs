@@ -2,6 +2,8 @@
 //!
 //! - [`Schema`]: the types of a schema text, as MCAP files contain it
 //! - [`Schema::decode`]: bytes to a [`Message`], a tree of [`Value`]s
+//! - [`Schema::compare`]: a definition beside the one that is wanted, and [`Mapping`]: messages of the one as those of the other
+//! - [`Message::encode`]: values to bytes
 //! - [`Shown`]: a message as JSON, or as the text of `ros2 topic echo`
 //!
 //! Bytes are CDR (XCDR1) of either byte order, with their encapsulation header. No bytes and no schema cause a panic; memory
@@ -18,8 +20,10 @@
 
 mod cursor;
 mod decode;
+mod encode;
 mod lines;
 mod literals;
+mod mapping;
 mod names;
 mod schema;
 mod shown;
@@ -27,6 +31,7 @@ mod types;
 mod value;
 
 pub use decode::DecodeError;
+pub use mapping::{Comparison, Mapping};
 pub use schema::{Schema, SchemaError};
 pub use shown::Shown;
 pub use types::{Constant, Element, Field, FieldType, Length, MessageType, Primitive};

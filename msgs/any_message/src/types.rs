@@ -1,5 +1,6 @@
 //! The types of a schema.
 
+use std::fmt;
 use std::sync::Arc;
 
 /// A message type: its fields in order.
@@ -118,6 +119,23 @@ impl Primitive {
         })
     }
 
+    /// Its name in a message file.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Bool => "bool",
+            Self::I8 => "int8",
+            Self::U8 => "uint8",
+            Self::I16 => "int16",
+            Self::U16 => "uint16",
+            Self::I32 => "int32",
+            Self::U32 => "uint32",
+            Self::I64 => "int64",
+            Self::U64 => "uint64",
+            Self::F32 => "float32",
+            Self::F64 => "float64",
+        }
+    }
+
     /// Bytes of a value, which is also its alignment.
     pub const fn size(self) -> usize {
         match self {
@@ -146,6 +164,24 @@ impl FieldType {
             Length::One => self.element.least(),
             Length::Fixed(n) => self.element.least().saturating_mul(u64::from(n)),
             Length::Any(_) => 4,
+        }
+    }
+}
+
+/// The type as in a message file.
+impl fmt::Display for FieldType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let bound = |bound: &Option<u32>| bound.map_or_else(String::new, |n| format!("<={n}"));
+        match &self.element {
+            Element::Primitive(primitive) => f.write_str(primitive.name())?,
+            Element::String(most) => write!(f, "string{}", bound(most))?,
+            Element::WString(most) => write!(f, "wstring{}", bound(most))?,
+            Element::Message(kind) => f.write_str(&kind.name)?,
+        }
+        match self.length {
+            Length::One => Ok(()),
+            Length::Fixed(n) => write!(f, "[{n}]"),
+            Length::Any(most) => write!(f, "[{}]", bound(&most)),
         }
     }
 }

@@ -109,6 +109,18 @@ fn every_type_in_both_byte_orders_is_the_golden_json() {
 }
 
 #[test]
+fn every_type_is_encoded_as_the_golden_bytes() {
+    let golden = every_type(false);
+    for big in [false, true] {
+        let encoded = schema().decode(&every_type(big)).unwrap().encode();
+        assert_eq!(encoded.len(), golden.len());
+        // Padding is zero, and marked in the golden bytes.
+        let differs = |(own, golden): &(&u8, &u8)| own != golden && !(**own == 0 && **golden == 0xaa);
+        assert_eq!(encoded.iter().zip(&golden).position(|pair| differs(&pair)), None, "big endian: {big}");
+    }
+}
+
+#[test]
 fn a_shortened_array_states_what_is_left_out_and_text_is_yaml() {
     let message = schema().decode(&every_type(false)).unwrap();
     let json = Shown::new(&message).shortened(1).json();

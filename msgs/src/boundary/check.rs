@@ -90,6 +90,12 @@ impl Check {
         Ok(Some(self.not_negative(field, value)?).filter(|v| *v > 0.0))
     }
 
+    /// A standard deviation with 0 for exact or not stated; it must be 0 where the value is unknown.
+    pub(super) fn stddev(self, field: &str, stddev: f64, is_known: bool) -> Checked<f64> {
+        let stddev = self.not_negative(field, stddev)?;
+        self.that(is_known || stddev == 0.0, field, stddev, "0 where the quantity is not known")
+    }
+
     pub(super) fn code(self, field: &str, value: u8, allowed: &'static str) -> BoundaryError {
         BoundaryError::Code { message: self.0, field: field.to_owned(), value, allowed }
     }

@@ -11,7 +11,7 @@ const CHECK: Check = Check("EnergyBalance");
 pub struct EnergyReading {
     /// Solver steps done.
     pub step: u64,
-    /// Index into the loading path.
+    /// Number of the phase in the loading path, from 1.
     pub phase: u32,
     /// Name of the phase.
     pub phase_name: String,

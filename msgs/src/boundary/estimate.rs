@@ -6,8 +6,21 @@ use crate::msg::Estimate;
 use grainlab_core::results::InferredQuantity;
 
 /// The data, in the order of every row of [`Inferred::information`].
-pub const DATA: [&str; 10] =
-    ["G12", "G13", "Theta", "C11", "C33", "C13", "pressure", "gamma/Delta", "solid fraction", "q/p"];
+pub const DATA: [&str; 13] = [
+    "G12",
+    "G13",
+    "Theta",
+    "C11",
+    "C33",
+    "C13",
+    "pressure",
+    "gamma/Delta",
+    "solid fraction",
+    "q/p",
+    "size spread",
+    "grain shear modulus",
+    "grain Poisson ratio",
+];
 
 /// The checked result of one model.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +33,7 @@ pub struct EstimateReading {
     pub status: EstimateStatus,
     /// The strain ratio γ/Δ that the model used; `None` if it uses none.
     pub strain_ratio: Option<StrainRatio>,
-    /// The values; `None` unless the status is `Ok` or `Extrapolated`.
+    /// The values; `None` where the status is `Unknown`.
     pub inferred: Option<Inferred>,
     /// Notes.
     pub warnings: Vec<String>,
@@ -29,14 +42,14 @@ pub struct EstimateReading {
 /// Status of an inversion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EstimateStatus {
-    /// Inside the range of the model.
+    /// All unknowns of the model, inside its range.
     Ok,
-    /// A solution outside that range.
+    /// A solution outside that range, or some unknowns of the model alone.
     Extrapolated,
-    /// The data do not determine the answer.
-    Undetermined,
-    /// No solution.
-    Failed,
+    /// The data contradict each other or the model.
+    Contradictory,
+    /// No answer.
+    Unknown,
 }
 
 /// A strain ratio γ/Δ with its source.
@@ -95,20 +108,19 @@ impl TryFrom<&Estimate> for EstimateReading {
         let status = match m.status {
             Estimate::STATUS_OK => EstimateStatus::Ok,
             Estimate::STATUS_EXTRAPOLATED => EstimateStatus::Extrapolated,
-            Estimate::STATUS_UNDETERMINED => EstimateStatus::Undetermined,
-            Estimate::STATUS_FAILED => EstimateStatus::Failed,
+            Estimate::STATUS_CONTRADICTORY => EstimateStatus::Contradictory,
+            Estimate::STATUS_UNKNOWN => EstimateStatus::Unknown,
             other => {
-                let allowed = "0 (ok), 1 (extrapolated), 2 (undetermined), 3 (failed)";
+                let allowed = "0 (ok), 1 (extrapolated), 2 (contradictory), 3 (unknown)";
                 return Err(CHECK.code("status", other, allowed));
             }
         };
-        let has_values = matches!(status, EstimateStatus::Ok | EstimateStatus::Extrapolated);
         Ok(Self {
             model: m.model.clone(),
             calibration: m.calibration.clone(),
             status,
             strain_ratio: strain_ratio(m)?,
-            inferred: if has_values { Some(inferred(m)?) } else { None },
+            inferred: if status == EstimateStatus::Unknown { None } else { Some(inferred(m)?) },
             warnings: m.warnings.clone(),
         })
     }
@@ -145,12 +157,7 @@ fn values(m: &Estimate) -> Result<[Option<f64>; 5], BoundaryError> {
         values[i] = CHECK.optional_finite(InferredQuantity::ALL[i].name(), value)?;
     }
     let any = values.iter().any(Option::is_some);
-    CHECK.that(
-        any,
-        "number of known quantities",
-        0.0,
-        "1 or more where the status is 0 (ok) or 1 (extrapolated)",
-    )?;
+    CHECK.that(any, "number of known quantities", 0.0, "1 or more unless the status is 3 (unknown)")?;
     Ok(values)
 }
 

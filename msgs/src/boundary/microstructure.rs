@@ -11,6 +11,8 @@ use crate::msg::Microstructure;
 pub struct MicrostructureReading {
     /// Stamp of the data.
     pub stamp: Time,
+    /// Name of the sample or the measurement; empty: none.
+    pub name: String,
     /// Step of the packing of the data.
     pub source_step: u64,
     /// Topic of the data.
@@ -26,6 +28,7 @@ impl TryFrom<&Microstructure> for MicrostructureReading {
         Check("Microstructure").header(&m.header)?;
         Ok(Self {
             stamp: m.header.stamp,
+            name: m.name.clone(),
             source_step: m.source_step,
             source: m.source.clone(),
             estimates: m.estimates.iter().map(EstimateReading::try_from).collect::<Result<_, _>>()?,

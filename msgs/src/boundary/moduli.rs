@@ -29,10 +29,14 @@ pub struct ModuliReading {
     pub covariance: Option<[f64; 9]>,
     /// Confining pressure, Pa, 0 or more.
     pub pressure: f64,
+    /// Its standard deviation, Pa; 0: exact, or not stated.
+    pub pressure_stddev: f64,
     /// Solid fraction φ.
     pub solid_fraction: Option<f64>,
     /// Axial stress less the lateral one over pressure, (σ_hh − (tr σ − σ_hh)/2)/p, about the reference axis.
     pub stress_ratio: Option<f64>,
+    /// Its standard deviation; 0: exact, or not stated.
+    pub stress_ratio_stddev: f64,
     /// Standard deviation of the radii over their mean.
     pub size_spread: Option<f64>,
     /// Unit axis of symmetry that was found.
@@ -41,8 +45,14 @@ pub struct ModuliReading {
     pub strain_ratios: StrainRatios,
     /// Material of the grains.
     pub material: Material,
+    /// Standard deviation of its shear modulus, Pa; 0: exact, or not stated.
+    pub shear_modulus_stddev: f64,
+    /// Standard deviation of its Poisson ratio; 0: exact, or not stated.
+    pub poisson_ratio_stddev: f64,
     /// Contact law of the grains.
     pub contact_law: Option<ContactLaw>,
+    /// Whether the moduli are those without tangential springs.
+    pub smooth: bool,
     /// The full stiffness, of a packing.
     pub stiffness: Option<ElasticStiffness>,
 }
@@ -59,6 +69,7 @@ pub fn moduli_message(
     let projected = stiffness.tensor.transverse_isotropy_about(&axis);
     let message = msg::Moduli {
         header,
+        name: String::new(),
         source_step: report.step,
         grains: report.contacts.grains,
         reference_axis: vector_message(&axis),
@@ -67,16 +78,21 @@ pub fn moduli_message(
         theta: vec![stiffness.tensor.bulk_voigt()],
         covariance: Vec::new(),
         pressure: report.pressure(),
+        pressure_stddev: 0.0,
         solid_fraction: vec![report.solid_fraction],
         stress_ratio: report.axial_stress_ratio().into_iter().collect(),
+        stress_ratio_stddev: 0.0,
         size_spread: vec![report.size_spread],
         axis: vector_message(&report.fabric.principal_axis.direction),
         strain_ratios: strain_ratios_message(&report.strain_ratios),
         grain_shear_modulus: report.material.shear_modulus,
+        grain_shear_modulus_stddev: 0.0,
         grain_poisson_ratio: report.material.poisson_ratio,
+        grain_poisson_ratio_stddev: 0.0,
         grain_density: report.material.density,
         contact_law: report.law.name().to_owned(),
         contact_law_parameters: report.law.parameters(),
+        smooth: false,
         stiffness: vec![elastic_stiffness_message(stiffness)],
     };
     ModuliReading::try_from(&message)?;
@@ -96,13 +112,24 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
             theta: CHECK.optional_finite("theta", &m.theta)?,
             covariance: CHECK.covariance("covariance", &m.covariance)?,
             pressure: CHECK.not_negative("pressure", m.pressure)?,
+            pressure_stddev: CHECK.not_negative("pressure_stddev", m.pressure_stddev)?,
             solid_fraction: CHECK.optional_positive("solid_fraction", &m.solid_fraction)?,
             stress_ratio: CHECK.optional_finite("stress_ratio", &m.stress_ratio)?,
+            stress_ratio_stddev: CHECK.stddev(
+                "stress_ratio_stddev",
+                m.stress_ratio_stddev,
+                !m.stress_ratio.is_empty(),
+            )?,
             size_spread: CHECK.optional_not_negative("size_spread", &m.size_spread)?,
             axis: CHECK.direction("axis", &m.axis)?,
             strain_ratios: CHECK.strain_ratios(&m.strain_ratios)?,
             material: material(m)?,
+            shear_modulus_stddev: CHECK
+                .not_negative("grain_shear_modulus_stddev", m.grain_shear_modulus_stddev)?,
+            poisson_ratio_stddev: CHECK
+                .not_negative("grain_poisson_ratio_stddev", m.grain_poisson_ratio_stddev)?,
             contact_law: CHECK.optional_contact_law(&m.contact_law, &m.contact_law_parameters)?,
+            smooth: m.smooth,
             stiffness: CHECK.optional("stiffness", &m.stiffness, |_, s| elastic_stiffness(CHECK, s))?,
         })
     }

@@ -25,7 +25,7 @@ pub struct RunStateReading {
     pub stamp: Time,
     /// Status of the run.
     pub status: RunStatus,
-    /// Index into the loading path.
+    /// Number of the phase in the loading path, from 1.
     pub phase: u32,
     /// Name of the phase.
     pub phase_name: String,

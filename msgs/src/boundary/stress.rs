@@ -16,7 +16,7 @@ pub struct StressRequest {
     pub sequence: u64,
     /// Solver steps done.
     pub step: u64,
-    /// Index into the loading path.
+    /// Number of the phase in the loading path, from 1.
     pub phase: u32,
     /// 10⁹ s + simulated time.
     pub stamp: Time,

@@ -1,6 +1,6 @@
 use super::refuses;
 use grainlab_core::results::InferredQuantity;
-use grainlab_msgs::boundary::{EstimateStatus, Interval, MicrostructureReading, Misfit, StrainRatio};
+use grainlab_msgs::boundary::{DATA, EstimateStatus, Interval, MicrostructureReading, Misfit, StrainRatio};
 use grainlab_msgs::msg::{Estimate, Microstructure};
 use grainlab_msgs::{from_cdr, to_cdr};
 
@@ -33,7 +33,8 @@ fn estimate() -> Estimate {
     }
     (e.covariance[1], e.covariance[5]) = (0.004, 0.004);
     // ε: contributions of G12 and G13, reduced by their correlation.
-    (e.information[30], e.information[31], e.information[32]) = (0.75, 0.5, -0.25);
+    let of_eps = 3 * DATA.len();
+    (e.information[of_eps], e.information[of_eps + 1], e.information[of_eps + 2]) = (0.75, 0.5, -0.25);
     e
 }
 
@@ -58,7 +59,8 @@ fn an_estimate_has_none_where_the_model_gives_no_value() {
     assert_eq!(found.interval, Some(Interval { level: 0.68, bounds }));
     assert_eq!(found.misfit, Some(Misfit { chi_square: 1.5, degrees_of_freedom: 2 }));
     assert_eq!(found.condition_number, Some(12.0));
-    let of_eps = [0.75, 0.5, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut of_eps = [0.0; DATA.len()];
+    of_eps[..3].copy_from_slice(&[0.75, 0.5, -0.25]);
     assert_eq!(found.information, [None, None, None, Some(of_eps), None]);
 }
 
@@ -94,15 +96,17 @@ fn each_quantity_is_read_from_its_own_field() {
 }
 
 #[test]
-fn estimates_without_an_answer_have_no_values() {
+fn an_estimate_has_values_unless_it_is_unknown() {
     for (status, expected) in [
-        (Estimate::STATUS_UNDETERMINED, EstimateStatus::Undetermined),
-        (Estimate::STATUS_FAILED, EstimateStatus::Failed),
+        (Estimate::STATUS_EXTRAPOLATED, EstimateStatus::Extrapolated),
+        (Estimate::STATUS_CONTRADICTORY, EstimateStatus::Contradictory),
     ] {
-        let e = read(Estimate { status, k: vec![NAN], ..estimate() });
-        assert_eq!((e.status, e.inferred), (expected, None));
-        assert_eq!(e.strain_ratio.map(|g| g.value), Some(-0.0623), "what it was fed with stays");
+        let e = read(Estimate { status, ..estimate() });
+        assert_eq!((e.status, e.inferred.map(|i| i.values[0])), (expected, Some(Some(5.2))));
     }
+    let e = read(Estimate { status: Estimate::STATUS_UNKNOWN, k: vec![NAN], ..estimate() });
+    assert_eq!((e.status, e.inferred), (EstimateStatus::Unknown, None));
+    assert_eq!(e.strain_ratio.map(|g| g.value), Some(-0.0623), "what it was fed with stays");
 }
 
 #[test]
@@ -160,14 +164,14 @@ fn each_fault_of_an_estimate_is_refused_by_name() {
             ),
             (|m| m.estimates[0].condition_number[0] = 0.5, "Estimate.condition_number = 0.5 is refused"),
             (|m| m.estimates[0].condition_number[0] = NAN, "Estimate.condition_number = NaN is refused"),
-            (|m| m.estimates[0].information[49] = NAN, "Estimate.information[49] = NaN is refused"),
+            (|m| m.estimates[0].information[64] = NAN, "Estimate.information[64] = NaN is refused"),
             (
-                |m| m.estimates[0].information[22] = 1.0,
-                "Estimate.information[22] = 1.0 is refused: it must be 0, because",
+                |m| m.estimates[0].information[28] = 1.0,
+                "Estimate.information[28] = 1.0 is refused: it must be 0, because",
             ),
             (
-                |m| m.estimates[0].information[34] = 0.5,
-                "Estimate.sum of information[30..40] = 1.5 is refused: it must be 1",
+                |m| m.estimates[0].information[43] = 0.5,
+                "Estimate.sum of information[39..52] = 1.5 is refused: it must be 1",
             ),
         ],
         |m| MicrostructureReading::try_from(m),

@@ -103,6 +103,14 @@ fn matrix_of(cell: &Mat3) -> Mat3 {
     cell * (0.9 / cell.determinant().cbrt())
 }
 
+#[test]
+fn a_packing_without_a_reference_state_has_no_deformation() {
+    let message = msg::Packing { deformation: [NAN; 9], ..pair() };
+    let packing = Packing::try_from(&message).unwrap();
+    assert!(packing.deformation.iter().all(|v| v.is_nan()));
+    assert_eq!(to_cdr(&packing_message(&packing, "pair", vec![1, 2])), to_cdr(&message));
+}
+
 proptest! {
     #[test]
     fn a_packing_crosses_the_wire_and_back_bit_for_bit(packing in packing(), state in vec(any::<u8>(), 0..20)) {
@@ -179,6 +187,7 @@ fn each_fault_of_a_packing_is_refused_by_name() {
             (|m| m.cell[4] = NAN, "Packing.cell[4] = NaN is refused: it must be finite"),
             (|m| m.cell[8] = -1.0, "Packing.cell (volume) = -1.0 is refused"),
             (|m| m.cell = [0.0; 9], "Packing.cell (volume) = 0.0 is refused"),
+            (|m| m.deformation[1..].fill(NAN), "Packing is refused: deformation[0] is not finite (NaN)"),
             (|m| m.deformation[0] = INF, "Packing is refused: deformation[0] is not finite (inf)"),
             (|m| m.deformation[0] = -1.0, "Packing is refused: deformation[0] = -1e0 is out of range"),
             (|m| m.time = NAN, "Packing is refused: time[0] is not finite (NaN)"),

@@ -141,16 +141,24 @@ fn fields_unknown_to_an_instrument_are_none() {
         g12: vec![140e6],
         g13: vec![150e6],
         theta: vec![170e6],
+        name: "sand 4".to_owned(),
         pressure: 5e4,
+        pressure_stddev: 500.0,
         solid_fraction: vec![0.64],
         stress_ratio: vec![0.0],
+        stress_ratio_stddev: 0.05,
         size_spread: vec![0.1],
         grain_shear_modulus: 29e9,
+        grain_shear_modulus_stddev: 1e9,
         grain_poisson_ratio: 0.2,
+        grain_poisson_ratio_stddev: 0.02,
         grain_density: 2500.0,
+        smooth: true,
         ..msg::Moduli::default()
     };
     let r = ModuliReading::try_from(&message).unwrap();
+    assert_eq!((r.pressure_stddev, r.stress_ratio_stddev), (500.0, 0.05));
+    assert_eq!((r.shear_modulus_stddev, r.poisson_ratio_stddev, r.smooth), (1e9, 0.02, true));
     assert_eq!(r.contact_law, None);
     assert_eq!((r.grains, r.stiffness, r.axis, r.strain_ratios), (None, None, None, StrainRatios::default()));
     assert_eq!(r.covariance.unwrap().to_vec(), message.covariance);
@@ -197,7 +205,15 @@ fn each_fault_of_the_moduli_is_refused_by_name() {
             (|m| m.covariance[3] = 1.0, "Moduli.covariance[3] = 1.0 is refused: it must be symmetric"),
             (|m| m.pressure = -5e4, "Moduli.pressure = -50000.0 is refused"),
             (|m| m.solid_fraction[0] = 0.0, "Moduli.solid_fraction = 0.0 is refused"),
+            (|m| m.pressure_stddev = NAN, "Moduli.pressure_stddev = NaN is refused"),
             (|m| m.stress_ratio[0] = NAN, "Moduli.stress_ratio = NaN is refused"),
+            (|m| m.stress_ratio_stddev = -1.0, "Moduli.stress_ratio_stddev = -1.0 is refused"),
+            (
+                |m| (m.stress_ratio, m.stress_ratio_stddev) = (vec![], 0.1),
+                "Moduli.stress_ratio_stddev = 0.1 is refused: it must be 0 where the quantity is not known",
+            ),
+            (|m| m.grain_shear_modulus_stddev = INF, "Moduli.grain_shear_modulus_stddev = inf is refused"),
+            (|m| m.grain_poisson_ratio_stddev = -0.1, "Moduli.grain_poisson_ratio_stddev = -0.1 is refused"),
             (
                 |m| m.contact_law = "hooke".into(),
                 "Moduli.contact_law is refused: unknown contact law \"hooke\"",

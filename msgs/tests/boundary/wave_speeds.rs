@@ -29,19 +29,25 @@ fn sent() -> msg::WaveSpeeds {
     };
     msg::WaveSpeeds {
         header: header(),
+        name: "beads 3".to_owned(),
         source_step: 7,
         grains: 500,
         density: 1550.0,
         density_stddev: 8.0,
         pressure: 5e4,
+        pressure_stddev: 500.0,
         solid_fraction: 0.64,
         stress_ratio: vec![-0.1],
+        stress_ratio_stddev: 0.02,
         size_spread: vec![0.2],
         axis: z,
         grain_shear_modulus: 29e9,
+        grain_shear_modulus_stddev: 1.5e9,
         grain_poisson_ratio: 0.2,
+        grain_poisson_ratio_stddev: 0.01,
         contact_law: "linear".to_owned(),
         contact_law_parameters: vec![1e5, 0.5],
+        smooth: true,
         speeds: vec![compression, shear],
         warnings: vec!["send less".to_owned()],
     }
@@ -55,6 +61,9 @@ fn an_inversion_reads_the_speeds_that_were_sent() {
     assert_eq!((r.density, r.density_stddev, r.pressure), (1550.0, Some(8.0), 5e4));
     assert_eq!((r.solid_fraction, r.grain_shear_modulus, r.grain_poisson_ratio), (Some(0.64), 29e9, 0.2));
     assert_eq!((r.stress_ratio, r.size_spread), (Some(-0.1), Some(0.2)));
+    assert_eq!((r.name.as_str(), r.smooth), ("beads 3", true));
+    assert_eq!((r.pressure_stddev, r.stress_ratio_stddev), (500.0, 0.02));
+    assert_eq!((r.grain_shear_modulus_stddev, r.grain_poisson_ratio_stddev), (1.5e9, 0.01));
     assert_eq!((r.contact_law, r.grains), (Some("linear:1e5,0.5".parse().unwrap()), Some(500)));
     let compression =
         WaveSpeed { direction: Vec3::z(), polarization: Vec3::z(), speed: 500.0, stddev: Some(1.5) };
@@ -86,6 +95,7 @@ fn zeros_of_an_instrument_are_unknown() {
         density_stddev: 0.0,
         solid_fraction: 0.0,
         stress_ratio: vec![],
+        stress_ratio_stddev: 0.0,
         size_spread: vec![],
         contact_law: String::new(),
         contact_law_parameters: vec![],
@@ -121,7 +131,21 @@ fn each_fault_of_the_wave_speeds_is_refused_by_name() {
             (|m| m.density_stddev = -1.0, "WaveSpeeds.density_stddev = -1.0 is refused"),
             (|m| m.pressure = -5e4, "WaveSpeeds.pressure = -50000.0 is refused"),
             (|m| m.solid_fraction = 1.5, "WaveSpeeds.solid_fraction = 1.5 is refused"),
+            (|m| m.pressure_stddev = -1.0, "WaveSpeeds.pressure_stddev = -1.0 is refused"),
             (|m| m.stress_ratio[0] = f64::NAN, "WaveSpeeds.stress_ratio = NaN is refused"),
+            (|m| m.stress_ratio_stddev = INF, "WaveSpeeds.stress_ratio_stddev = inf is refused"),
+            (
+                |m| m.stress_ratio.clear(),
+                "WaveSpeeds.stress_ratio_stddev = 0.02 is refused: it must be 0 where the quantity is not known",
+            ),
+            (
+                |m| m.grain_shear_modulus_stddev = NAN,
+                "WaveSpeeds.grain_shear_modulus_stddev = NaN is refused",
+            ),
+            (
+                |m| m.grain_poisson_ratio_stddev = -0.1,
+                "WaveSpeeds.grain_poisson_ratio_stddev = -0.1 is refused",
+            ),
             (|m| m.contact_law_parameters[1] = NAN, "WaveSpeeds.contact_law is refused: parameters"),
             (|m| m.size_spread[0] = -0.1, "WaveSpeeds.size_spread = -0.1 is refused"),
             (|m| m.axis.z = 0.5, "WaveSpeeds.|axis| = 0.5 is refused: it must be 1"),

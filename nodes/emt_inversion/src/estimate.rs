@@ -2,14 +2,11 @@
 
 use crate::observed::{Observed, Unobservable};
 use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Misfit, Model, Status, StrainRatio};
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Status, StrainRatio};
 use grainlab_msgs::boundary::EstimateReading;
 use grainlab_msgs::msg;
 
-/// Columns of `information`: the first inputs of an inversion.
-const COLUMNS: usize = 10;
-
-/// The message of an estimate. An invalid estimate is sent as a failure with the reason.
+/// The message of an estimate. An invalid estimate is sent as unknown, with the reason.
 pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let message = as_it_is(estimate, observed);
     match EstimateReading::try_from(&message) {
@@ -17,7 +14,7 @@ pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg:
         Err(error) => msg::Estimate {
             model: message.model,
             calibration: message.calibration,
-            status: msg::Estimate::STATUS_FAILED,
+            status: msg::Estimate::STATUS_UNKNOWN,
             gamma_over_delta: message.gamma_over_delta,
             gamma_over_delta_source: message.gamma_over_delta_source,
             warnings: vec![error.to_string()],
@@ -30,9 +27,11 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let structure = &estimate.structure;
     let [k, k_hat, z, eps, eps_stiffness] = structure.values().map(|v| v.into_iter().collect());
     let status = match estimate.status {
-        Status::Unknown => msg::Estimate::STATUS_UNDETERMINED,
-        Status::Ok if !observed.in_conflict => msg::Estimate::STATUS_OK,
-        Status::Ok | Status::Extrapolated | Status::Contradictory => msg::Estimate::STATUS_EXTRAPOLATED,
+        Status::Unknown => msg::Estimate::STATUS_UNKNOWN,
+        _ if observed.in_conflict => msg::Estimate::STATUS_CONTRADICTORY,
+        Status::Ok => msg::Estimate::STATUS_OK,
+        Status::Extrapolated => msg::Estimate::STATUS_EXTRAPOLATED,
+        Status::Contradictory => msg::Estimate::STATUS_CONTRADICTORY,
     };
     let misfit = both(observed.misfit, estimate.misfit);
     let covariance = known_covariance(estimate.covariance());
@@ -58,7 +57,7 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
         chi_square: misfit.chi_square,
         degrees_of_freedom: misfit.degrees_of_freedom as u32,
         condition_number: estimate.condition_number().into_iter().collect(),
-        information: std::array::from_fn(|i| shares[i / COLUMNS].map_or(0.0, |s| s[i % COLUMNS])),
+        information: std::array::from_fn(|i| shares[i / INPUTS].map_or(0.0, |s| s[i % INPUTS])),
         warnings: observed
             .notes
             .iter()
@@ -110,27 +109,25 @@ pub(crate) fn failure(
 ) -> msg::Estimate {
     let gamma = observed.observation.conditions.gamma;
     let reasons = std::iter::once(error.to_string()).chain(observed.notes.iter().cloned()).collect();
-    without_values(model, calibration, gamma, error.is_input_error(), reasons)
+    without_values(model, calibration, gamma, reasons)
 }
 
 /// The message of a model that was not applied, because there were no moduli.
 pub(crate) fn unobserved(model: &dyn Model, calibration: &str, nothing: &Unobservable) -> msg::Estimate {
-    without_values(model, calibration, StrainRatio::ZERO, nothing.is_input_error(), vec![nothing.to_string()])
+    without_values(model, calibration, StrainRatio::ZERO, vec![nothing.to_string()])
 }
 
 fn without_values(
     model: &dyn Model,
     calibration: &str,
     gamma: StrainRatio,
-    of_input: bool,
     reasons: Vec<String>,
 ) -> msg::Estimate {
     let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(model.uses_gamma().then_some(gamma));
-    let status = if of_input { msg::Estimate::STATUS_UNDETERMINED } else { msg::Estimate::STATUS_FAILED };
     msg::Estimate {
         model: model.name().to_owned(),
         calibration: calibration.to_owned(),
-        status,
+        status: msg::Estimate::STATUS_UNKNOWN,
         gamma_over_delta,
         gamma_over_delta_source,
         warnings: reasons,

@@ -17,7 +17,8 @@ pub fn microstructure_message(
     settings: &Settings,
 ) -> Result<msg::Microstructure, BoundaryError> {
     let observed = of_moduli(&ModuliReading::try_from(moduli)?, settings);
-    Ok(microstructure(&moduli.header, moduli.source_step, &topics::MODULI, &observed, settings))
+    let of = About { header: &moduli.header, name: &moduli.name, source_step: moduli.source_step };
+    Ok(microstructure(of, &topics::MODULI, &observed, settings))
 }
 
 /// The same for one set of wave speeds.
@@ -26,12 +27,19 @@ pub fn microstructure_of_speeds(
     settings: &Settings,
 ) -> Result<msg::Microstructure, BoundaryError> {
     let observed = of_speeds(&WaveSpeedsReading::try_from(speeds)?, settings);
-    Ok(microstructure(&speeds.header, speeds.source_step, &topics::WAVE_SPEEDS, &observed, settings))
+    let of = About { header: &speeds.header, name: &speeds.name, source_step: speeds.source_step };
+    Ok(microstructure(of, &topics::WAVE_SPEEDS, &observed, settings))
+}
+
+/// What an answer copies from the data.
+struct About<'a> {
+    header: &'a Header,
+    name: &'a str,
+    source_step: u64,
 }
 
 fn microstructure(
-    header: &Header,
-    source_step: u64,
+    of: About<'_>,
     source: &Topic,
     observed: &Result<Observed, Unobservable>,
     settings: &Settings,
@@ -48,8 +56,9 @@ fn microstructure(
         }
     });
     msg::Microstructure {
-        header: header.clone(),
-        source_step,
+        header: of.header.clone(),
+        name: of.name.to_owned(),
+        source_step: of.source_step,
         // The name in the contract, not the resolved one: the bytes must not depend on a namespace or a
         // remap.
         source: source.name.to_owned(),

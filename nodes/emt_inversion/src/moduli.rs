@@ -28,17 +28,22 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
         return Err(Unobservable::OtherAxis { stated: stated.into(), asked: axis.into() });
     }
     let conditions = Conditions {
-        pressure: Measured::exact(reading.pressure),
+        pressure: Measured { value: reading.pressure, stddev: reading.pressure_stddev },
         gamma: {
             let gamma = StrainRatio::of(&reading.strain_ratios, settings.gamma);
             if as_stated { gamma } else { about(&axis, gamma) }
         },
         solid_fraction: reading.solid_fraction.map(Measured::exact),
-        stress_ratio: reading.stress_ratio.filter(|_| as_stated).map(Measured::exact),
+        stress_ratio: reading
+            .stress_ratio
+            .filter(|_| as_stated)
+            .map(|value| Measured { value, stddev: reading.stress_ratio_stddev }),
         size_spread: reading.size_spread,
         material: Some(reading.material),
+        shear_modulus_stddev: reading.shear_modulus_stddev,
+        poisson_ratio_stddev: reading.poisson_ratio_stddev,
         contact_law: reading.contact_law,
-        ..Conditions::at(reading.pressure)
+        smooth: reading.smooth,
     };
     // The covariance of the message refers to the moduli about the axis stated.
     let covariance = reading.covariance.filter(|_| as_stated).map(|c| Mat3::from_row_slice(&c));

@@ -98,8 +98,7 @@ impl Tally {
         self.inverted += 1;
         self.last_step = Some(message.source_step);
         self.trouble = None;
-        let solved = |e: &&Estimate| matches!(e.status, Estimate::STATUS_OK | Estimate::STATUS_EXTRAPOLATED);
-        for unsolved in message.estimates.iter().filter(|e| !solved(e)) {
+        for unsolved in message.estimates.iter().filter(|e| e.status == Estimate::STATUS_UNKNOWN) {
             self.without_solution += 1;
             let (source, step, model) = (&message.source, message.source_step, &unsolved.model);
             let trouble = format!("{source} of step {step}, model {model}: {}", unsolved.warnings.join("; "));

@@ -51,18 +51,6 @@ pub(crate) enum Unobservable {
     Axis(#[from] AxisError),
 }
 
-impl Unobservable {
-    /// Whether the data are too few or invalid, rather than inconsistent with every medium.
-    pub(crate) fn is_input_error(&self) -> bool {
-        match self {
-            Unobservable::Speeds(error) | Unobservable::Axis(AxisError::Speeds(error)) => {
-                error.is_input_error()
-            }
-            _ => true,
-        }
-    }
-}
-
 /// The moduli, unchanged.
 impl From<Observation> for Observed {
     fn from(observation: Observation) -> Self {

@@ -26,11 +26,14 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
     let along_stated = axis.cross(&reading.axis.unwrap_or_else(Vec3::z)).norm() < APART;
     let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
     let conditions = Conditions {
-        pressure: Measured::exact(reading.pressure),
+        pressure: Measured { value: reading.pressure, stddev: reading.pressure_stddev },
         gamma: StrainRatio::ZERO,
         solid_fraction: reading.solid_fraction.map(Measured::exact),
         // That of the message is about its own axis.
-        stress_ratio: reading.stress_ratio.filter(|_| along_stated).map(Measured::exact),
+        stress_ratio: reading
+            .stress_ratio
+            .filter(|_| along_stated)
+            .map(|value| Measured { value, stddev: reading.stress_ratio_stddev }),
         size_spread: reading.size_spread,
         material: Some(Material {
             shear_modulus: reading.grain_shear_modulus,
@@ -38,8 +41,10 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
             // An instrument measures the density of the sample; no model needs that of a grain.
             ..Material::GLASS
         }),
+        shear_modulus_stddev: reading.grain_shear_modulus_stddev,
+        poisson_ratio_stddev: reading.grain_poisson_ratio_stddev,
         contact_law: reading.contact_law,
-        ..Conditions::at(reading.pressure)
+        smooth: reading.smooth,
     };
     let grains = reading.grains.map(f64::from);
     let fitted = christoffel::moduli_of_sample(&speeds, density, Some(axis), conditions, grains)?;

@@ -124,7 +124,7 @@ fn moduli_that_no_packing_has_end_with_exit_code_4() {
     ]);
     assert_eq!(output.status.code(), Some(4));
     let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(answer["results"][0]["status"], "failed");
+    assert_eq!(answer["results"][0]["status"], "unknown");
     assert!(answer["results"][0]["k"].is_null());
 }
 

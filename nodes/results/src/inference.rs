@@ -34,7 +34,7 @@ pub struct Inference {
     pub(crate) degrees_of_freedom: Option<usize>,
     /// Condition number: how much the effects of errors of the data differ between combinations.
     pub(crate) condition_number: Option<f64>,
-    /// `ok`, `extrapolated`, `undetermined` or `failed`.
+    /// `ok`, `extrapolated`, `contradictory` or `unknown`.
     pub status: &'static str,
     /// The strain ratio that the model used, and its source; null if it uses none.
     pub gamma_over_delta: Option<f64>,
@@ -114,7 +114,7 @@ impl Inference {
     }
 
     /// A model without an estimate, and the reason.
-    pub fn failed(model: &str, calibration: &str, status: &'static str, warnings: Vec<String>) -> Self {
+    pub fn unknown(model: &str, calibration: &str, warnings: Vec<String>) -> Self {
         Self {
             by: None,
             source: None,
@@ -127,7 +127,7 @@ impl Inference {
             chi_square: None,
             degrees_of_freedom: None,
             condition_number: None,
-            status,
+            status: "unknown",
             gamma_over_delta: None,
             gamma_over_delta_source: None,
             warnings,
@@ -139,14 +139,15 @@ impl Inference {
         let status = match e.status {
             EstimateStatus::Ok => "ok",
             EstimateStatus::Extrapolated => "extrapolated",
-            EstimateStatus::Undetermined => "undetermined",
-            EstimateStatus::Failed => "failed",
+            EstimateStatus::Contradictory => "contradictory",
+            EstimateStatus::Unknown => "unknown",
         };
         let without_values = Self {
             source: Some(source.to_owned()),
             gamma_over_delta: e.strain_ratio.map(|g| g.value),
             gamma_over_delta_source: e.strain_ratio.map(|g| g.source.to_owned()),
-            ..Self::failed(&e.model, &e.calibration, status, e.warnings.clone())
+            status,
+            ..Self::unknown(&e.model, &e.calibration, e.warnings.clone())
         };
         let Some(found) = &e.inferred else { return without_values };
         let value = |q: InferredQuantity| found.values[q as usize];
@@ -172,7 +173,7 @@ impl Inference {
     pub fn of(model: &str, calibration: &str, outcome: &Result<Estimate, EmtError>) -> Self {
         let estimate = match outcome {
             Ok(estimate) => estimate,
-            Err(e) => return Self::failed(model, calibration, "failed", vec![e.to_string()]),
+            Err(e) => return Self::unknown(model, calibration, vec![e.to_string()]),
         };
         let known = estimate.covariance().is_some();
         let of_model = |q: InferredQuantity| {
@@ -244,9 +245,9 @@ mod tests {
 
     #[test]
     fn the_keys_of_a_result_are_the_agreed_ones() {
-        let failed = Inference::failed("ratio", "paper", "failed", vec!["why".into()]);
+        let unknown = Inference::unknown("ratio", "paper", vec!["why".into()]);
         let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
-        let value = serde_json::to_value(&failed).unwrap();
+        let value = serde_json::to_value(&unknown).unwrap();
         let quantities = ["eps", "eps_stiffness", "k", "k_hat", "z"];
         let mut expected = vec![
             "model",

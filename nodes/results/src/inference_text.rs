@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn the_text_table_leaves_out_what_no_model_infers() {
-        let failed = || Inference::failed("ours", "paper", "failed", vec!["because".into()]);
+        let failed = || Inference::unknown("ours", "paper", vec!["because".into()]);
         let text = table(&[s1(0.01), failed()]);
         let words: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();
         assert_eq!(words, ["model", "calibration", "k", "sigma", "k_hat", "sigma", "eps", "sigma", "status"]);

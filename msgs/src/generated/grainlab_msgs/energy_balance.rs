@@ -12,7 +12,7 @@ pub struct EnergyBalance {
     pub header: Header,
     /// solver steps done
     pub step: u64,
-    /// index into the loading path
+    /// number of the phase in the loading path, from 1
     pub phase: u32,
     /// as the scene names it
     pub phase_name: String,

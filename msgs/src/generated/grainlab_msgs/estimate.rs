@@ -3,9 +3,10 @@
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
-/// What one model infers. Numbers hold for STATUS_OK and STATUS_EXTRAPOLATED. What may be missing is an array of one entry, or of none.
+/// What one model infers. Numbers hold unless the status is STATUS_UNKNOWN. What may be missing is an array of one entry, or of none.
 /// Arrays have the quantities in the order k, k_hat, z, eps, eps_stiffness.
-/// The columns of information are G12, G13, Theta, C11, C33, C13, pressure, gamma/Delta, solid fraction, q/p.
+/// The columns of information are G12, G13, Theta, C11, C33, C13, pressure, gamma/Delta, solid fraction, q/p, size spread, grain shear
+/// modulus, grain Poisson ratio.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// for example "ratio"
@@ -44,23 +45,23 @@ pub struct Estimate {
     pub condition_number: Vec<f64>,
     /// share of each datum in the variance that the data cause, a row per quantity, all 0 = unknown
     #[serde(with = "crate::fixed_array")]
-    pub information: [f64; 50],
+    pub information: [f64; 65],
     /// for a reader, empty if there is nothing to say
     pub warnings: Vec<String>,
 }
 
 impl Estimate {
-    /// inside the range the model was made for
+    /// all unknowns of the model, inside the range it was made for
     pub const STATUS_OK: u8 = 0;
 
-    /// a solution outside that range
+    /// outside that range, or some unknowns of the model alone: the reason is in warnings
     pub const STATUS_EXTRAPOLATED: u8 = 1;
 
-    /// the data do not determine the answer
-    pub const STATUS_UNDETERMINED: u8 = 2;
+    /// the data contradict each other or the model: the reason is in warnings
+    pub const STATUS_CONTRADICTORY: u8 = 2;
 
-    /// no solution
-    pub const STATUS_FAILED: u8 = 3;
+    /// no answer: the reason is in warnings
+    pub const STATUS_UNKNOWN: u8 = 3;
 }
 
 impl Default for Estimate {
@@ -83,7 +84,7 @@ impl Default for Estimate {
             chi_square: Default::default(),
             degrees_of_freedom: Default::default(),
             condition_number: Default::default(),
-            information: [f64::default(); 50],
+            information: [f64::default(); 65],
             warnings: Default::default(),
         }
     }
@@ -93,7 +94,7 @@ impl Message for Estimate {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Estimate";
     const TYPE: &'static str = "grainlab_msgs/msg/Estimate";
-    const HASH: &'static str = "RIHS01_6bfb6bb547edd24a33c3fa7465efcfaaa9f00943a5ce62e6b166fd00c976a436";
+    const HASH: &'static str = "RIHS01_b3b26c89cbb3e60cfc7c8a7ef437a95e65be68914e892a772bb74ef82bcccd65";
     const FIELDS: &'static [FieldInfo] = fields!(
         "model" => (17, 0, ""),
         "calibration" => (17, 0, ""),
@@ -112,7 +113,7 @@ impl Message for Estimate {
         "chi_square" => (11, 0, ""),
         "degrees_of_freedom" => (7, 0, ""),
         "condition_number" => (155, 0, ""),
-        "information" => (59, 50, ""),
+        "information" => (59, 65, ""),
         "warnings" => (161, 0, ""),
     );
     const DEFINITION: &'static str = definition!("msg/Estimate.msg");

@@ -8,8 +8,10 @@ use serde::{Deserialize, Serialize};
 /// What the moduli, or the wave speeds, say about the packing.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Microstructure {
-    /// copied from the Moduli or WaveSpeeds used
+    /// copied from the Moduli or WaveSpeeds used, also where these are refused
     pub header: Header,
+    /// copied from the Moduli or WaveSpeeds used
+    pub name: String,
     /// copied from the Moduli or WaveSpeeds used
     pub source_step: u64,
     /// topic the data came from
@@ -22,9 +24,10 @@ impl Message for Microstructure {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Microstructure";
     const TYPE: &'static str = "grainlab_msgs/msg/Microstructure";
-    const HASH: &'static str = "RIHS01_805de0ee416d16dbd0c050fd89e67b541a5c60560720bcff13afc2c9b0c8c133";
+    const HASH: &'static str = "RIHS01_5697420c04fcdcc5f63a104194596ea06fadf28b0d14bc8d37b715d50522492f";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
+        "name" => (17, 0, ""),
         "source_step" => (9, 0, ""),
         "source" => (17, 0, ""),
         "estimates" => (145, 0, "grainlab_msgs/msg/Estimate"),

@@ -13,6 +13,8 @@ use serde::{Deserialize, Serialize};
 pub struct Moduli {
     /// copied from the source
     pub header: Header,
+    /// of the sample or the measurement, copied into the answer, empty = none
+    pub name: String,
     /// step of the Packing measured, 0 = not from a simulation
     pub source_step: u64,
     /// 0 = unknown
@@ -29,10 +31,14 @@ pub struct Moduli {
     pub covariance: Vec<f64>,
     /// Pa, confining, compression positive
     pub pressure: f64,
+    /// Pa, 0 = exact, or not stated
+    pub pressure_stddev: f64,
     /// Dimensionless.
     pub solid_fraction: Vec<f64>,
     /// axial stress less the lateral one over pressure, about h, one or none
     pub stress_ratio: Vec<f64>,
+    /// 0 = exact, or not stated
+    pub stress_ratio_stddev: f64,
     /// standard deviation of the radii over their mean, one or none
     pub size_spread: Vec<f64>,
     /// unit axis of symmetry found
@@ -41,14 +47,20 @@ pub struct Moduli {
     pub strain_ratios: StrainRatios,
     /// Pa
     pub grain_shear_modulus: f64,
+    /// Pa, 0 = exact, or not stated
+    pub grain_shear_modulus_stddev: f64,
     /// Dimensionless.
     pub grain_poisson_ratio: f64,
+    /// 0 = exact, or not stated
+    pub grain_poisson_ratio_stddev: f64,
     /// kg/m3
     pub grain_density: f64,
     /// name, as in Packing, empty = unknown
     pub contact_law: String,
     /// as in Packing
     pub contact_law_parameters: Vec<f64>,
+    /// measured without tangential springs
+    pub smooth: bool,
     /// one, or none where only the moduli are known
     pub stiffness: Vec<ElasticStiffness>,
 }
@@ -57,9 +69,10 @@ impl Message for Moduli {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Moduli";
     const TYPE: &'static str = "grainlab_msgs/msg/Moduli";
-    const HASH: &'static str = "RIHS01_a7be8a313b41734c7f28f5e5b9cac1f128b94d0faf6d10b22f2413bbd440921c";
+    const HASH: &'static str = "RIHS01_3703faec30db594e1322ecd39a234f079f1ff4645a09fced32d7356abbcffc84";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
+        "name" => (17, 0, ""),
         "source_step" => (9, 0, ""),
         "grains" => (7, 0, ""),
         "reference_axis" => (1, 0, "geometry_msgs/msg/Vector3"),
@@ -68,16 +81,21 @@ impl Message for Moduli {
         "theta" => (155, 0, ""),
         "covariance" => (155, 0, ""),
         "pressure" => (11, 0, ""),
+        "pressure_stddev" => (11, 0, ""),
         "solid_fraction" => (155, 0, ""),
         "stress_ratio" => (155, 0, ""),
+        "stress_ratio_stddev" => (11, 0, ""),
         "size_spread" => (155, 0, ""),
         "axis" => (1, 0, "geometry_msgs/msg/Vector3"),
         "strain_ratios" => (1, 0, "grainlab_msgs/msg/StrainRatios"),
         "grain_shear_modulus" => (11, 0, ""),
+        "grain_shear_modulus_stddev" => (11, 0, ""),
         "grain_poisson_ratio" => (11, 0, ""),
+        "grain_poisson_ratio_stddev" => (11, 0, ""),
         "grain_density" => (11, 0, ""),
         "contact_law" => (17, 0, ""),
         "contact_law_parameters" => (155, 0, ""),
+        "smooth" => (15, 0, ""),
         "stiffness" => (145, 0, "grainlab_msgs/msg/ElasticStiffness"),
     );
     const DEFINITION: &'static str = definition!(

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Lengths: radius and id n; position, velocity, angular_velocity 3 n; contact_overlap and contact_normal_force m;
 /// contact_pair 2 m; contact_image, contact_normal, contact_tangential_force 3 m;
 /// contact_rolling_force 3 m, or 0 where the contact law has no resistance to rolling.
-/// Everything is finite, except friction, which may be +inf.
+/// Everything is finite, except friction, which may be +inf, and deformation, which is NaN where there is no reference state.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Packing {
     /// stamp: 1e9 s + simulated time, rounded to 1 ns; frame: cell
@@ -20,7 +20,7 @@ pub struct Packing {
     pub time: f64,
     /// m, row-major, columns are the cell vectors
     pub cell: [f64; 9],
-    /// row-major deformation gradient since the reference state
+    /// row-major deformation gradient since the reference state, all NaN = no reference state
     pub deformation: [f64; 9],
     /// persistent
     pub id: Vec<u32>,

@@ -11,7 +11,7 @@ pub struct RunState {
     pub header: Header,
     /// RUNNING, FINISHED or FAILED
     pub state: u8,
-    /// index into the loading path
+    /// number of the phase in the loading path, from 1
     pub phase: u32,
     /// as the scene names it
     pub phase_name: String,

@@ -15,7 +15,7 @@ pub struct Stress {
     pub sequence: u64,
     /// solver steps done
     pub step: u64,
-    /// index into the loading path
+    /// number of the phase in the loading path, from 1
     pub phase: u32,
     /// Pa, compression positive, Love-Weber over contacts
     pub stress: SymmetricTensor,

@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct WaveSpeeds {
     /// copied from the Packing probed, or the instrument's time
     pub header: Header,
+    /// of the sample or the measurement, copied into the answer, empty = none
+    pub name: String,
     /// step of the Packing probed, 0 = not from a simulation
     pub source_step: u64,
     /// 0 = unknown
@@ -21,22 +23,32 @@ pub struct WaveSpeeds {
     pub density_stddev: f64,
     /// Pa, confining, compression positive
     pub pressure: f64,
+    /// Pa, 0 = exact, or not stated
+    pub pressure_stddev: f64,
     /// 0 = unknown
     pub solid_fraction: f64,
     /// axial stress less the lateral one over pressure, about the axis (e3 if unknown), one or none
     pub stress_ratio: Vec<f64>,
+    /// 0 = exact, or not stated
+    pub stress_ratio_stddev: f64,
     /// standard deviation of the radii over their mean, one or none
     pub size_spread: Vec<f64>,
     /// symmetry axis, zero = unknown
     pub axis: Vector3,
     /// Pa
     pub grain_shear_modulus: f64,
+    /// Pa, 0 = exact, or not stated
+    pub grain_shear_modulus_stddev: f64,
     /// Dimensionless.
     pub grain_poisson_ratio: f64,
+    /// 0 = exact, or not stated
+    pub grain_poisson_ratio_stddev: f64,
     /// name, as in Packing, empty = unknown
     pub contact_law: String,
     /// as in Packing
     pub contact_law_parameters: Vec<f64>,
+    /// measured without tangential springs
+    pub smooth: bool,
     /// one per mode and direction
     pub speeds: Vec<WaveSpeed>,
     /// what a reader should know, empty if there is nothing to say
@@ -47,22 +59,28 @@ impl Message for WaveSpeeds {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "WaveSpeeds";
     const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeeds";
-    const HASH: &'static str = "RIHS01_0e926029c19fb7b42444c201cc9bf4f02cad25db9cac6f039c64851df0d98907";
+    const HASH: &'static str = "RIHS01_0ccdc60aa7a8d973209d0bdae05b3533630b5193f091d91b65d686681272e0f7";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
+        "name" => (17, 0, ""),
         "source_step" => (9, 0, ""),
         "grains" => (7, 0, ""),
         "density" => (11, 0, ""),
         "density_stddev" => (11, 0, ""),
         "pressure" => (11, 0, ""),
+        "pressure_stddev" => (11, 0, ""),
         "solid_fraction" => (11, 0, ""),
         "stress_ratio" => (155, 0, ""),
+        "stress_ratio_stddev" => (11, 0, ""),
         "size_spread" => (155, 0, ""),
         "axis" => (1, 0, "geometry_msgs/msg/Vector3"),
         "grain_shear_modulus" => (11, 0, ""),
+        "grain_shear_modulus_stddev" => (11, 0, ""),
         "grain_poisson_ratio" => (11, 0, ""),
+        "grain_poisson_ratio_stddev" => (11, 0, ""),
         "contact_law" => (17, 0, ""),
         "contact_law_parameters" => (155, 0, ""),
+        "smooth" => (15, 0, ""),
         "speeds" => (145, 0, "grainlab_msgs/msg/WaveSpeed"),
         "warnings" => (161, 0, ""),
     );

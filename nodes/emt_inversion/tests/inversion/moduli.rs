@@ -28,7 +28,7 @@ fn with_error(modulus_error: f64) -> Settings {
 
 #[test]
 fn names_in_messages_are_those_of_the_kernel() {
-    assert_eq!(grainlab_emt::INPUT_NAMES[..DATA.len()], DATA);
+    assert_eq!(grainlab_emt::INPUT_NAMES, DATA);
 }
 
 #[test]
@@ -120,12 +120,13 @@ fn the_uncertainty_is_that_of_the_data_else_that_of_the_parameter_else_unknown()
 #[test]
 fn an_estimate_has_the_contribution_of_each_datum() {
     let e = corrected(&s1(), &with_error(0.01));
-    let of_eps = &e.information[30..40];
+    let row = |n: usize| &e.information[n * DATA.len()..(n + 1) * DATA.len()];
+    let of_eps = row(3);
     // ε follows only from G13/G12: half of the variance from each.
     assert!((of_eps[0] - 0.5).abs() < 1e-6 && (of_eps[1] - 0.5).abs() < 1e-6, "{of_eps:?}");
-    let of_k_hat = &e.information[10..20];
+    let of_k_hat = row(1);
     assert!(of_k_hat[2] > 0.3 && (of_k_hat.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{of_k_hat:?}");
-    assert_eq!(e.information[20..30], [0.0; 10], "nothing is known of z");
+    assert_eq!(row(2), [0.0; DATA.len()], "nothing is known of z");
     assert!(e.condition_number[0] > 1.0 && e.degrees_of_freedom == 0 && e.chi_square == 0.0);
 }
 
@@ -150,20 +151,20 @@ fn data_without_a_solution_have_a_reason_and_no_values() {
         change(&mut moduli);
         let e = corrected(&moduli, &Settings::default());
         assert!(e.k.is_empty() && e.k_hat.is_empty() && e.eps.is_empty() && e.covariance.is_empty());
-        assert_eq!(e.information, [0.0; 50]);
+        assert_eq!(e.information, [0.0; 65]);
         assert_eq!(e.warnings.len(), 1);
         (e.status, e.warnings[0].clone())
     };
     let (status, why) = of(|m| m.g12.clear());
-    assert!(status == Estimate::STATUS_UNDETERMINED && why.contains("G12"), "{status} {why}");
+    assert!(status == Estimate::STATUS_UNKNOWN && why.contains("G12"), "{status} {why}");
     let (status, why) = of(|m| m.g12 = vec![-1e8]);
-    assert!(status == Estimate::STATUS_UNDETERMINED && why.contains("G12"), "{status} {why}");
+    assert!(status == Estimate::STATUS_UNKNOWN && why.contains("G12"), "{status} {why}");
     let (status, why) = of(|m| m.pressure = 0.0);
-    assert!(status == Estimate::STATUS_UNDETERMINED && why.contains("pressure"), "{status} {why}");
+    assert!(status == Estimate::STATUS_UNKNOWN && why.contains("pressure"), "{status} {why}");
     let (status, why) = of(|m| m.g13 = vec![2.5 * m.g12[0]]);
-    assert!(status == Estimate::STATUS_FAILED && why.contains("G13/G12"), "{status} {why}");
+    assert!(status == Estimate::STATUS_UNKNOWN && why.contains("G13/G12"), "{status} {why}");
     let (status, why) = of(|m| m.theta = vec![10e6]);
-    assert!(status == Estimate::STATUS_FAILED && why.contains("G12/Theta"), "{status} {why}");
+    assert!(status == Estimate::STATUS_UNKNOWN && why.contains("G12/Theta"), "{status} {why}");
 }
 
 #[test]
@@ -287,7 +288,7 @@ fn moduli_and_strain_ratio_about_another_axis_are_taken_as_they_are() {
     assert_eq!(e.eps, corrected(&s1(), &Settings::default()).eps);
     for about in [Axis::E3, Axis::Given(Vec3::x())] {
         let e = corrected(&lying, &Settings { axis: about, ..Settings::default() });
-        assert_eq!((e.status, !e.k.is_empty()), (Estimate::STATUS_UNDETERMINED, false));
+        assert_eq!((e.status, !e.k.is_empty()), (Estimate::STATUS_UNKNOWN, false));
         let why = e.warnings.join("; ");
         assert!(why.contains("are about (0.6000, -0.4800, 0.6400)") && why.contains("stated"), "{why}");
     }
@@ -299,7 +300,7 @@ fn an_axis_that_the_data_cannot_be_turned_to_leaves_them_undetermined() {
         let e = corrected(moduli, &Settings { axis, ..Settings::default() });
         assert_eq!(
             (e.status, !e.k.is_empty(), e.gamma_over_delta_source.as_str()),
-            (Estimate::STATUS_UNDETERMINED, false, "zero")
+            (Estimate::STATUS_UNKNOWN, false, "zero")
         );
         e.warnings.join("; ")
     };

@@ -126,14 +126,14 @@ fn a_missing_speed_leaves_what_hangs_on_it_unknown_and_the_rest_known() {
     );
     // Without the S wave across the plane G12 is undetermined, and `ratio` has no result.
     let e = without(&[4]);
-    assert_eq!((e.status, !e.k.is_empty(), !e.eps.is_empty()), (Estimate::STATUS_UNDETERMINED, false, false));
+    assert_eq!((e.status, !e.k.is_empty(), !e.eps.is_empty()), (Estimate::STATUS_UNKNOWN, false, false));
     assert!(
         e.warnings[0].contains("needs G12") && e.warnings[1].contains("do not determine"),
         "{:?}",
         e.warnings
     );
     let e = without(&[0, 1, 2, 3, 4, 5]);
-    assert!(e.status == Estimate::STATUS_UNDETERMINED && e.warnings[0].contains("no wave speeds"), "{e:?}");
+    assert!(e.status == Estimate::STATUS_UNKNOWN && e.warnings[0].contains("no wave speeds"), "{e:?}");
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn speeds_that_contradict_each_other_say_so_and_name_the_worst() {
     let conflict =
         e.warnings.iter().find(|w| w.contains("contradict each other")).unwrap_or_else(|| panic!("{e:?}"));
     assert!(conflict.contains("speeds[2]") || conflict.contains("speeds[3]"), "{conflict}");
-    assert_eq!((e.status, e.degrees_of_freedom), (Estimate::STATUS_EXTRAPOLATED, 1));
+    assert_eq!((e.status, e.degrees_of_freedom), (Estimate::STATUS_CONTRADICTORY, 1));
     // (8 sigma)² between two equal weights.
     assert!((e.chi_square - 32.0).abs() < 2.0, "{}", e.chi_square);
     // Within two standard deviations there is no warning.
@@ -171,10 +171,7 @@ fn a_sample_on_its_side_is_heard_about_its_own_axis() {
     assert_eq!(answer(&nameless, &Settings::default()), expected, "e3 is e3");
     let e = answer(&nameless, &Settings { axis: Axis::Found, ..Settings::default() });
     let said = &e.warnings[0];
-    assert!(
-        e.status == Estimate::STATUS_UNDETERMINED && said.contains("cannot determine 7 unknowns"),
-        "{e:?}"
-    );
+    assert!(e.status == Estimate::STATUS_UNKNOWN && said.contains("cannot determine 7 unknowns"), "{e:?}");
     assert!(said.contains("no axis was named, and none was found"), "{said}");
 }
 
@@ -193,7 +190,7 @@ fn speeds_of_no_medium_fail_and_malformed_ones_are_refused_by_name() {
     let mut swapped = upright();
     swapped.speeds[1].speed = 150.0;
     let e = answer(&swapped, &Settings::default());
-    assert!(e.status == Estimate::STATUS_FAILED && !e.warnings.is_empty(), "{e:?}");
+    assert!(e.status == Estimate::STATUS_UNKNOWN && !e.warnings.is_empty(), "{e:?}");
     let mut broken = upright();
     broken.speeds[2].speed = -1.0;
     let refused = microstructure_of_speeds(&broken, &Settings::default()).unwrap_err().to_string();

@@ -51,7 +51,7 @@ pub struct Packing {
     pub time: f64,
     /// The periodic cell.
     pub cell: Cell,
-    /// Deformation gradient since the reference state; the identity if no reference was set.
+    /// Deformation gradient since the reference state; all NaN if there is no reference state.
     pub deformation: Mat3,
     /// Persistent ids of the grains.
     pub ids: Vec<u32>,
@@ -188,12 +188,14 @@ impl Packing {
         if self.time_step < 0.0 {
             return Err(range("time_step", 0, self.time_step, "0 or more"));
         }
-        for v in self.deformation.iter() {
-            finite("deformation", 0, *v)?;
-        }
-        let stretch = self.deformation.determinant();
-        if stretch <= 0.0 {
-            return Err(range("deformation", 0, stretch, "a positive determinant"));
+        if !self.deformation.iter().all(|v| v.is_nan()) {
+            for v in self.deformation.iter() {
+                finite("deformation", 0, *v)?;
+            }
+            let stretch = self.deformation.determinant();
+            if stretch <= 0.0 {
+                return Err(range("deformation", 0, stretch, "a positive determinant"));
+            }
         }
         for i in 0..n {
             positive("radius", i, self.radii[i])?;

@@ -68,8 +68,8 @@ columns are ignored. The pressure and at least one modulus are required; k, z an
   sample, or source and step         kept with the result
   c11_pa c12_pa ... c66_pa           all 36, or one half: a stiffness, projected on the medium isotropic about
   reference_axis_x _y _z             this axis, to which all other columns refer, too; default e3
-{COLUMNS}An invalid row, or one without an estimate of a model, is reported with its line number and has the status failed or
-undetermined in the results; the other rows are processed. The exit code is that of the worst row.";
+{COLUMNS}An invalid row, or one without an estimate of a model, is reported with its line number and has the status unknown in the
+results; the other rows are processed. The exit code is that of the worst row.";
 
 /// The data to invert. All quantities in SI units.
 #[derive(Debug, clap::Args)]

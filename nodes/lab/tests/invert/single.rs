@@ -29,7 +29,7 @@ fn every_model_with_its_inputs_has_a_result_and_the_others_name_what_they_need()
         (&"paper".into(), &"ok".into())
     );
     let without_phi = result("emt");
-    assert_eq!(without_phi["status"], "undetermined");
+    assert_eq!(without_phi["status"], "unknown");
     assert!(without_phi["warnings"][0].as_str().unwrap().contains("solid fraction"), "{without_phi}");
     let with_phi = json(&[&S1[..], &["--phi=0.636", "--model=emt"]].concat());
     assert!(with_phi["results"][0]["k"].as_f64().is_some(), "{with_phi}");

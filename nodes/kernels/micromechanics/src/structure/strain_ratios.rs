@@ -31,10 +31,10 @@ pub fn logarithmic_strain(deformation: &Mat3) -> SymTensor {
     )
 }
 
-/// γ/Δ of the strain since the reference state. `None` if no reference was set (the deformation is the
-/// identity) or if the volume is unchanged.
+/// γ/Δ of the strain since the reference state. `None` without a reference state, or if the volume is
+/// unchanged.
 pub fn total_strain_ratio(packing: &Packing, axis: &Vec3) -> Option<f64> {
-    if packing.deformation == Mat3::identity() {
+    if packing.deformation == Mat3::identity() || packing.deformation.iter().any(|v| v.is_nan()) {
         return None;
     }
     strain_ratio(&logarithmic_strain(&packing.deformation), axis)

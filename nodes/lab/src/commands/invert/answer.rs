@@ -79,15 +79,13 @@ impl Answer {
         match (&self.state, outcome) {
             (Ok(_), Some(outcome)) => {
                 let mut inference = Inference::of(way.model.name(), name, outcome);
-                match outcome {
-                    Ok(estimate) => inference.warnings.extend(undetermined(estimate)),
-                    Err(error) if error.is_input_error() => inference.status = "undetermined",
-                    Err(_) => {}
+                if let Ok(estimate) = outcome {
+                    inference.warnings.extend(undetermined(estimate));
                 }
                 inference
             }
-            (Err(row), _) => Inference::failed(way.model.name(), name, "failed", vec![row.fault.clone()]),
-            (Ok(_), None) => Inference::failed(way.model.name(), name, "failed", Vec::new()),
+            (Err(row), _) => Inference::unknown(way.model.name(), name, vec![row.fault.clone()]),
+            (Ok(_), None) => Inference::unknown(way.model.name(), name, Vec::new()),
         }
     }
 

@@ -28,8 +28,7 @@ impl Printer<'_> {
         let line = answer.line.map_or_else(String::new, |l| l.to_string());
         let mut text = CsvText::new();
         for (result, way) in answer.inferences(self.ways).iter().zip(self.ways) {
-            let without = matches!(result.status, "failed" | "undetermined");
-            let reason = if without { result.warnings.join("; ") } else { String::new() };
+            let reason = if result.status == "unknown" { result.warnings.join("; ") } else { String::new() };
             let gamma =
                 [exact(result.gamma_over_delta), state.map_or("", |s| s.gamma_source(way)).to_owned()];
             let (cells, end) = (result.exact_cells(), [&line, &reason]);
