@@ -130,7 +130,8 @@ fn draws_are_written_in_both_forms_and_a_seed_repeats_them() {
 
 #[test]
 fn probabilities_are_of_models_with_the_same_moduli_and_follow_the_prior_odds() {
-    let flags = ["--calibration=grainlab", "--evidence", "--model=relaxed,ratio,ratio-volume,directional"];
+    let flags =
+        ["--calibration=grainlab", "--evidence", "--model=relaxed,ratio,ratio-as-printed,directional"];
     let probabilities = |flags: &[&str]| {
         let answer = json(flags);
         let models = answer["evidence"].as_array().unwrap().clone();
@@ -143,7 +144,7 @@ fn probabilities_are_of_models_with_the_same_moduli_and_follow_the_prior_odds() 
             let found = models.iter().find(|m| m["model"] == model).unwrap();
             [found["ln_evidence"].as_f64().unwrap(), found["probability"].as_f64().unwrap()]
         };
-        ["relaxed", "ratio", "ratio-volume"].map(of)
+        ["relaxed", "ratio", "ratio-as-printed"].map(of)
     };
     let even = probabilities(&flags);
     assert!((even.iter().map(|m| m[1]).sum::<f64>() - 1.0).abs() < 1e-9);

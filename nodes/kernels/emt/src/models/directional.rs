@@ -80,12 +80,17 @@ impl Model for Directional {
             }
         })?;
         let (k, eps) = (found[0], found[1]);
+        let nu = observation.conditions.material.unwrap_or(*calibration.material()).poisson_ratio;
         let mut jacobian = Jacobian::zeros();
         for (row, quantity) in [isotropic.coordination_kind, InferredQuantity::Eps].into_iter().enumerate() {
             for i in 0..3 {
                 jacobian[(quantity as usize, i)] = gain[(row, i)];
                 // All moduli are proportional to the cube root of the pressure.
                 jacobian[(quantity as usize, MODULI)] -= gain[(row, i)] / 3.0;
+                // And to E*^⅔, with E* = G/(1 − ν).
+                let by_young = gain[(row, i)] * 2.0 / 3.0;
+                jacobian[(quantity as usize, MODULI + 5)] -= by_young;
+                jacobian[(quantity as usize, MODULI + 6)] -= by_young / (1.0 - nu);
             }
         }
         let structure =

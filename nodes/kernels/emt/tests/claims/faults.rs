@@ -167,7 +167,6 @@ fn strain_ratios_that_open_contacts_are_refused() {
 }
 
 /// At g = −0.9 the formula has its pole at a = 0.89; beyond it the solution is not a contact distribution.
-/// `sqrt` has no such state.
 #[test]
 fn ratios_that_no_anisotropy_gives_at_that_strain_are_refused() {
     let mut o = Observation::from_g12_g13_theta(100.0e6, 195.0e6, 144.4e6, 50.0e3, StrainRatio::given(-0.9));

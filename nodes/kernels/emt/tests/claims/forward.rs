@@ -1,8 +1,8 @@
 //! The predictions of every model against a sum over contacts in every direction of the sphere.
 
 use crate::cases::calibrations;
+use crate::model;
 use crate::sphere::{contact_density, directions, stiffness};
-use crate::{PAPER_MODELS, model};
 use grainlab_core::results::Microstructure;
 use grainlab_core::{Material, Stiffness, Vec3};
 use grainlab_emt::{Conditions, Measured, Moduli, Modulus, StrainRatio};

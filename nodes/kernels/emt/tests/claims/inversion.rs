@@ -2,7 +2,6 @@
 
 use crate::{PAPER_MODELS, model, table3};
 use grainlab_core::Material;
-use grainlab_core::results::Microstructure;
 use grainlab_emt::{Calibration, Eq16Reading, Measured, Medium, Observation, StrainRatio, models};
 
 /// The accuracy claimed is 1e-6; the moduli are stored to 1 mPa, which adds at most 1e-9.

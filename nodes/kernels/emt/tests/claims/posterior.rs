@@ -155,9 +155,6 @@ fn models_that_state_no_error_of_these_moduli_say_so() {
             other => panic!("{:?}", other.map(|_| ())),
         }
     };
-    assert!(
-        reason("ratio", &paper_moduli(), Calibration::builtin("paper").unwrap()).contains("--calibration")
-    );
     assert!(reason("directional", &paper_moduli(), ours()).contains("fewer"));
     let two = Observation { moduli: paper_moduli().moduli.without(Modulus::Theta), ..paper_moduli() };
     assert!(reason("ratio", &two, ours()).contains("give more"));
@@ -204,6 +201,7 @@ fn ranks_of_true_values_among_draws_are_uniform_for_the_scatter_that_the_model_s
     for (histogram, q) in histograms.iter().zip(["z", "eps", "eps_stiffness", "k"]) {
         let (chi_square, p) = histogram.uniformity();
         eprintln!("{q}: chi-square {chi_square:.1}, p {p:.3}, {:?}", histogram.counts());
-        assert!(p > 0.05, "{q}: {p}");
+        // Of four quantities.
+        assert!(p > 0.0125, "{q}: {p}");
     }
 }

@@ -117,12 +117,15 @@ fn a_prior_of_what_the_data_do_not_determine_is_said_to_be_unused() {
     assert!(with.warnings.contains(&unused) && with.structure == estimate.structure, "{:?}", with.warnings);
 }
 
+/// A calibration without errors of its own has those of the models with the constants of the paper.
 #[test]
-fn without_any_error_a_prior_cannot_be_weighed() {
+fn exact_moduli_are_weighed_against_a_prior_by_the_error_of_the_model() {
     let exact = Observation { covariance: None, ..observation() };
     let estimate = grainlab_emt::model("ratio").unwrap().infer(&exact, &Calibration::PAPER).unwrap();
     let prior = Prior::default().with(InferredQuantity::K, Density::normal(5.0, 1.0).unwrap());
-    assert!(matches!(estimate.with_prior(&prior), Err(EmtError::NoLikelihood { model: "ratio", .. })));
+    let with = estimate.with_prior(&prior).unwrap();
+    let sigma = |e: &Estimate| e.stddev(InferredQuantity::K).unwrap();
+    assert!(sigma(&with) < sigma(&estimate) && sigma(&estimate) > 0.05);
 }
 
 #[test]

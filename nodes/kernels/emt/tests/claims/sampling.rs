@@ -94,10 +94,7 @@ fn at_30_percent_samples_and_slopes_differ() {
             linear.interval(InferredQuantity::KHat).unwrap(),
         );
         let skewness = sampled.skewness(InferredQuantity::KHat).unwrap();
-        assert!(
-            skewness > 0.3 && low > 3.66 && high > taken + 1.0,
-            "{name}: {skewness} {low} {high} {taken}"
-        );
+        assert!(skewness > 0.3 && high > taken + 1.0, "{name}: {skewness} {low} {high} {taken}");
         let share = sampled.unsolved as f64 / sampled.draws as f64;
         assert_eq!(sampled.failed_fraction(), share);
     }
@@ -114,17 +111,18 @@ fn the_same_seed_gives_the_same_samples_and_another_one_others() {
 }
 
 #[test]
-fn without_errors_there_is_nothing_to_sample_and_exact_data_give_one_value() {
+fn without_errors_there_is_nothing_to_sample_and_exact_data_leave_the_error_of_the_model() {
     let o = table3::rows()[0].observation();
     let of = |o: &Observation| {
         monte_carlo(model("ratio"), o, &Calibration::PAPER, SamplingSettings { draws: 50, seed: 0 })
     };
     let missing = EmtError::Missing { model: "ratio", missing: "the covariance of the moduli" };
     assert_eq!(of(&o).unwrap_err(), missing);
-    let exact = of(&o.with_relative_error(0.0)).unwrap();
-    let [low, high] = exact.interval(InferredQuantity::K).unwrap();
-    assert_eq!((high - low, exact.skewness(InferredQuantity::K)), (0.0, Some(0.0)));
-    assert!((low - 5.73).abs() < 1e-6 && exact.stddev(InferredQuantity::K).unwrap() < 1e-14);
+    // Only the error of the model is left.
+    let exact = of(&o.clone().with_relative_error(0.0)).unwrap();
+    let stated = model("ratio").infer(&o, &Calibration::PAPER).unwrap().stddev(InferredQuantity::K).unwrap();
+    assert!((exact.mean.k.unwrap() - 5.73).abs() < 3.0 * stated / 50f64.sqrt());
+    assert!((exact.stddev(InferredQuantity::K).unwrap() / stated - 1.0).abs() < 0.3);
     let mut none = table3::rows()[0].observation().with_relative_error(0.01);
     none.moduli = none.moduli.with(Modulus::G13, 1e9);
     assert!(matches!(of(&none), Err(EmtError::RatioOutOfRange { .. })));

@@ -11,6 +11,10 @@ const GRID: usize = 24;
 /// Maximum number of Gauss–Newton steps; three or four suffice for data that fit.
 const STEPS: usize = 60;
 
+/// Change of (z, ε) at which the steps end; larger where the weights depend on derivatives by the state, which are numerical.
+const SETTLED: f64 = 1e-13;
+const SETTLED_WITH_ERRORS: f64 = 1e-9;
+
 /// Difference of twice the log-likelihood below which two solutions are equally good (two sigma).
 const AMBIGUOUS: f64 = 4.0;
 
@@ -24,6 +28,8 @@ pub(super) fn best(
 ) -> Result<Fit, EmtError> {
     let [low, high] = network.domain();
     let fits_eps = !coordination_alone;
+    let uncertain = state.inputs.iter().any(|input| input.variance > 0.0);
+    let settled = if uncertain { SETTLED_WITH_ERRORS } else { SETTLED };
     let at = |z: f64, eps: Option<f64>| Fit::at(data, network, state, z, eps, fits_eps);
     let z_of = |i: usize| low + (high - low) * i as f64 / (GRID - 1) as f64;
     let mut objective = [f64::INFINITY; GRID];
@@ -36,7 +42,7 @@ pub(super) fn best(
         if !objective[i].is_finite() || (i > 0 && lower(i - 1)) || (i + 1 < GRID && lower(i + 1)) {
             continue;
         }
-        let Some(fit) = refined(&at, z_of(i), [low, high]) else { continue };
+        let Some(fit) = refined(&at, z_of(i), [low, high], settled) else { continue };
         if found.iter().all(|other| (other.z - fit.z).abs() > 1e-6) {
             found.push(fit);
         }
@@ -54,7 +60,12 @@ pub(super) fn best(
 }
 
 /// Gauss–Newton from a point of the grid; `None` if it leaves the domain or does not converge.
-fn refined(at: &impl Fn(f64, Option<f64>) -> Option<Fit>, start: f64, [low, high]: [f64; 2]) -> Option<Fit> {
+fn refined(
+    at: &impl Fn(f64, Option<f64>) -> Option<Fit>,
+    start: f64,
+    [low, high]: [f64; 2],
+    settled: f64,
+) -> Option<Fit> {
     let spacing = (high - low) / (GRID - 1) as f64;
     let mut fit = at(start, None)?;
     let mut outside = 0;
@@ -63,7 +74,7 @@ fn refined(at: &impl Fn(f64, Option<f64>) -> Option<Fit>, start: f64, [low, high
         if !(dz.is_finite() && deps.is_finite()) {
             return None;
         }
-        if dz.abs() < 1e-12 * fit.z && deps.abs() < 1e-13 {
+        if dz.abs() < 10.0 * settled * fit.z && deps.abs() < settled {
             let inside = (low - 1e-9..=high + 1e-9).contains(&fit.z);
             return inside.then_some(fit);
         }
