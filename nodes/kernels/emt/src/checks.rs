@@ -1,7 +1,7 @@
 //! The warnings that apply to the estimate of any model.
 
-use crate::calibration::Calibration;
-use crate::conditions::StrainRatioSource;
+use crate::calibration::{Calibration, NetworkState, Outside};
+use crate::conditions::{Conditions, StrainRatioSource};
 use crate::moduli::Modulus;
 use crate::observation::Observation;
 use crate::warning::Warning;
@@ -60,6 +60,11 @@ pub(crate) fn common(
         add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
     }
     add(conditions.contact_law.is_none(), Warning::ContactLawAssumed);
+    if !compares_state {
+        for Outside { quantity, value, range, .. } in outside_errors(conditions, calibration) {
+            add(true, Warning::StateOutsideFit { quantity, value, range });
+        }
+    }
     let rolls = conditions.contact_law.is_some_and(|law| law.rolling.is_some());
     add(rolls, Warning::RollingResistance);
     if let Some(asymmetry) = observation.asymmetry {
@@ -92,6 +97,18 @@ pub(crate) fn common(
         add(conditions.gamma.source == StrainRatioSource::Zero, Warning::GammaAssumedZero);
     }
     warnings
+}
+
+/// What of the state is outside the packings on which the errors of the models were learned.
+fn outside_errors(conditions: &Conditions, calibration: &Calibration) -> Vec<Outside> {
+    let learned = calibration.network().or_else(|| Calibration::builtin("grainlab")?.network());
+    let Some(network) = learned else { return Vec::new() };
+    let grains = conditions.material.as_ref().unwrap_or(calibration.material());
+    let stress_ratio = conditions.stress_ratio.map_or(0.0, |ratio| ratio.value);
+    let size_spread = conditions.size_spread.unwrap_or(0.0);
+    let pressure = conditions.pressure.value;
+    let state = NetworkState::of(pressure, grains, size_spread, stress_ratio);
+    network.reach.outside(pressure / grains.effective_young(), &state)
 }
 
 /// The modulus with the largest relative error, and this error.

@@ -240,10 +240,15 @@ pub(crate) fn assemble(
 ) -> Result<Estimate, EmtError> {
     let PointEstimate { structure, discrepancy, misfit, mut warnings, .. } = point;
     let inputs = observation.input_covariance(calibration.material());
-    let data_covariance = inputs.map(|input| jacobian * input * jacobian.transpose());
+    // Where only errors of the state are known and the model does not use it, the error of the data is not known.
+    let data_covariance = inputs
+        .map(|input| jacobian * input * jacobian.transpose())
+        .filter(|c| observation.covariance.is_some() || c.amax() > 0.0);
+    let inputs = inputs.filter(|_| data_covariance.is_some());
     let gamma = observation.conditions.gamma;
-    let model_covariance = discrepancy
-        .or_else(|| calibration.discrepancy(model, uses_gamma.then_some(gamma.source), structure.eps));
+    let model_covariance = discrepancy.or_else(|| {
+        calibration.discrepancy(model, uses_gamma.then_some(gamma.source), &structure, observation.grains)
+    });
     let model_covariance = model_covariance.map(|c| of_determined(c, &structure));
     // Finite inputs of extreme scale can still overflow.
     let values = structure.values();

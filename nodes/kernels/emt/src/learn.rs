@@ -36,9 +36,19 @@ pub fn learn(
     if !anisotropic.is_empty() {
         let all: Vec<&CalibrationSample> = own.into_iter().chain(others).collect();
         calibration.network = Some(Box::new(network(&all)?));
-        calibration.discrepancies = discrepancies(isotropic, anisotropic, &calibration);
+        calibration.discrepancies = discrepancies(&all, &calibration);
     }
     Ok(calibration)
+}
+
+/// The same constants, with the errors that the models have with them on these packings.
+pub fn with_errors(
+    constants: &Calibration,
+    samples: &[CalibrationSample],
+) -> Result<Calibration, CalibrationError> {
+    samples.iter().try_for_each(check)?;
+    let all: Vec<&CalibrationSample> = samples.iter().collect();
+    Ok(Calibration { discrepancies: discrepancies(&all, constants), ..constants.clone() })
 }
 
 /// Refuses numbers that are not finite.

@@ -11,8 +11,7 @@
 //! - `registry`: the list of the models
 //! - `models`: one file per model
 //!   - `effective_medium`: the plain theory, at given pressure
-//!   - `ratio`: the paper's model, corrected, as printed, and at fixed volume
-//!   - `unequal_springs`: the same with K_N ≠ K_T, and with the overlap law linear in g or not
+//!   - `ratio`: the paper's model, corrected and as printed
 //!   - `directional`: each modulus with its own coordination number
 //!   - `relaxed`: the relaxed network
 //!   - `hertz_mindlin`, `johnson`: packs with contacts in all directions alike, as in rock physics
@@ -81,7 +80,7 @@ pub use eq16::Eq16Reading;
 pub use error::EmtError;
 pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
 pub use invariants::Invariants;
-pub use learn::{CalibrationSample, learn};
+pub use learn::{CalibrationSample, learn, with_errors};
 pub use likelihood::{Likelihood, Predicted};
 pub use medium::{Medium, MediumModuli};
 pub use model::Model;

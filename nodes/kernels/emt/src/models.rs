@@ -8,5 +8,4 @@ pub(crate) mod johnson;
 pub(crate) mod ratio;
 pub(crate) mod relaxed;
 mod shear_ratio;
-pub(crate) mod unequal_springs;
 mod uniform_strain;

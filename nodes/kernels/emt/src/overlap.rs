@@ -17,12 +17,6 @@ pub(crate) fn check_eq_10(g: f64) -> Result<f64, EmtError> {
     Err(EmtError::GammaOutOfRange { g, range: "(-1, 1/2)", law: "Eq. 10" })
 }
 
-/// Of Eq. 10, s = 1 + g − 3gx².
-pub(crate) fn linear(g: f64) -> Result<Integrals, EmtError> {
-    check_eq_10(g)?;
-    Ok([1.0, 3.0, 5.0, 7.0].map(|n| (1.0 + g) / n - 3.0 * g / (n + 2.0)))
-}
-
 /// Of the root itself, s = (1 + 2g − 6gx²)^½, in closed form, to rounding up to the ends of the range of g. Outside it
 /// contacts near the equator or near the poles would be open.
 pub(crate) fn nonlinear(g: f64) -> Result<Integrals, EmtError> {

@@ -5,10 +5,9 @@ use crate::model::Model;
 use crate::models::directional::Directional;
 use crate::models::effective_medium::EffectiveMedium;
 use crate::models::hertz_mindlin::HertzMindlin;
-use crate::models::johnson;
+use crate::models::johnson::Johnson;
 use crate::models::ratio;
 use crate::models::relaxed::Relaxed;
-use crate::models::unequal_springs;
 
 /// Every model, in the order of every list of results.
 pub fn models() -> &'static [&'static dyn Model] {
@@ -16,14 +15,10 @@ pub fn models() -> &'static [&'static dyn Model] {
         &EffectiveMedium,
         &ratio::CORRECTED,
         &ratio::AS_PRINTED,
-        &ratio::FIXED_VOLUME,
-        &unequal_springs::LINEAR,
-        &unequal_springs::NONLINEAR,
         &Directional,
         &Relaxed,
         &HertzMindlin,
-        &johnson::ROUGH,
-        &johnson::SLIP,
+        &Johnson,
     ]
 }
 
@@ -36,11 +31,10 @@ pub fn model(name: &str) -> Option<&'static dyn Model> {
 /// `tests/golden/ensembles/held_out.csv`, each model with the calibration `grainlab` and, where it takes one,
 /// with γ/Δ of the contacts: `relaxed` 0.007, `directional` 0.025, those of the paper 0.06. The error of k of
 /// the plain theory is 3.
-const BY_ERROR: [&str; 8] =
-    ["relaxed", "directional", "full", "sqrt", "ratio", "ratio-volume", "ratio-as-printed", "emt"];
+const BY_ERROR: [&str; 5] = ["relaxed", "directional", "ratio", "ratio-as-printed", "emt"];
 
 /// Names of the models that infer no ε, by their error of k over the same packings, 0.86 for each.
-const WITHOUT_EPS: [&str; 3] = ["johnson-slip", "johnson", "hertz-mindlin"];
+const WITHOUT_EPS: [&str; 2] = ["johnson", "hertz-mindlin"];
 
 /// The model that is recommended.
 const RECOMMENDED: &str = "relaxed";

@@ -1,17 +1,19 @@
 //! Propagation of distributions by sampling (JCGM 101:2008), where errors are too large for a linear propagation.
 //!
-//! Moduli, pressure, γ/Δ, solid fraction and q/p are drawn from normal distributions, each draw is inverted, and a
+//! Moduli and all inputs of the state that have an error are drawn from normal distributions, each draw is inverted, and a
 //! draw of the model's error is added. With small errors this agrees with [`crate::Estimate`]. With large
 //! ones intervals become asymmetric, and some draws have no solution. These are counted. Every number here
 //! refers to the draws with a solution, and is not meaningful if many draws have none.
 
 use crate::calibration::Calibration;
+use crate::conditions::STATE_INPUTS;
 use crate::error::EmtError;
 use crate::estimate::CREDIBLE_LEVEL;
 use crate::model::Model;
 use crate::moduli::MODULI;
 use crate::normal::Random;
 use crate::observation::Observation;
+use grainlab_core::Material;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{SMatrix, SVector};
 
@@ -111,7 +113,7 @@ pub fn monte_carlo(
     let mut first_fault = None;
     for _ in 0..settings.draws {
         // All numbers are drawn before the inversion can fail, so that no draw depends on the outcome of another.
-        let drawn = draw(&observation, &of_data, &mut random);
+        let drawn = draw(&observation, &of_data, &mut random, calibration.material());
         let left_out = of_model * random.normal();
         match solve(model, &drawn, calibration, &estimate.structure) {
             Ok(found) => solved.push(found + left_out),
@@ -152,21 +154,24 @@ fn draw(
     observation: &Observation,
     of_data: &SMatrix<f64, MODULI, MODULI>,
     random: &mut Random,
+    material: &Material,
 ) -> Observation {
     let mut drawn = observation.clone();
     let errors = of_data * random.normal();
     for (modulus, value) in observation.moduli.known() {
         drawn.moduli = drawn.moduli.with(modulus, value + errors[modulus as usize]);
     }
-    let [pressure, gamma, phi, ratio] = random.normal::<4>().into();
-    let conditions = &mut drawn.conditions;
-    conditions.pressure.value += pressure * conditions.pressure.stddev;
-    conditions.gamma.value += gamma * conditions.gamma.stddev;
-    if let Some(fraction) = &mut conditions.solid_fraction {
-        fraction.value += phi * fraction.stddev;
-    }
-    if let Some(measured) = &mut conditions.stress_ratio {
-        measured.value += ratio * measured.stddev;
+    let stddevs = observation.conditions.stddevs(material);
+    let errors: [f64; STATE_INPUTS] = random.normal::<STATE_INPUTS>().into();
+    for (input, (error, stddev)) in errors.into_iter().zip(stddevs).enumerate() {
+        // An unknown one stays unknown where it is not moved.
+        if stddev > 0.0
+            && let Some(moved) = drawn.conditions.moved(input, error * stddev, material)
+        {
+            drawn.conditions = moved;
+            // The laws take its square.
+            drawn.conditions.size_spread = moved.size_spread.map(f64::abs);
+        }
     }
     drawn
 }

@@ -1,6 +1,7 @@
 //! The calibrations that come with the crate.
 
 use super::constants::Calibration;
+use super::discrepancy::ModelDiscrepancy;
 use grainlab_core::results::InferredQuantity;
 use std::borrow::Cow;
 use std::sync::LazyLock;
@@ -26,5 +27,12 @@ impl Calibration {
             "grainlab-z" => BY_Z.as_ref(),
             _ => None,
         }
+    }
+
+    /// The errors of the models with the constants of the paper, on the packings of the calibration `grainlab`.
+    pub(super) fn errors_with_paper() -> &'static [ModelDiscrepancy] {
+        static ERRORS: LazyLock<Option<Calibration>> =
+            LazyLock::new(|| Calibration::parse(include_str!("paper.toml")).ok());
+        ERRORS.as_ref().map_or(&[], |calibration| &calibration.discrepancies)
     }
 }

@@ -5,7 +5,7 @@ use super::isotropic::IsotropicCalibration;
 use super::relaxation::RelaxationCalibration;
 use crate::conditions::StrainRatioSource;
 use grainlab_core::Material;
-use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
+use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use std::borrow::Cow;
 
 /// Constants of the models, measured on packings of one material.
@@ -98,22 +98,32 @@ impl Calibration {
         Some(Self { isotropic, other: Some(self.isotropic.clone()), ..self.clone() })
     }
 
-    /// Covariance of the error of a model that takes this γ/Δ and infers this ε; `None` if it was not
-    /// learned.
+    /// Covariance of the error of a model that takes this γ/Δ and infers this structure; `None` if it was not learned. A γ/Δ of
+    /// unknown origin counts as that of the total strain, with which errors are largest. A calibration without errors of its
+    /// own has those that the models have with the constants of the paper.
     pub(crate) fn discrepancy(
         &self,
         model: &str,
         gamma: Option<StrainRatioSource>,
-        eps: Option<f64>,
+        structure: &Microstructure,
+        grains: Option<u32>,
     ) -> Option<MicrostructureCovariance> {
-        let kind = self.isotropic.coordination_kind;
-        let learned = self
-            .discrepancies
-            .iter()
-            .find(|d| d.model == model && d.gamma == gamma && d.coordination_kind == kind)?;
+        let learned_from = gamma.map(|source| match source {
+            StrainRatioSource::Given => StrainRatioSource::Total,
+            other => other,
+        });
+        let all = if self.discrepancies.is_empty() { Self::errors_with_paper() } else { &self.discrepancies };
+        let of_model = || all.iter().filter(|d| d.model == model && d.gamma == learned_from);
+        let of_kind = of_model().find(|d| d.coordination_kind == self.isotropic.coordination_kind);
+        let learned = of_kind.or_else(|| of_model().next())?;
+        let coordination = if structure.z.is_some() { InferredQuantity::Z } else { InferredQuantity::K };
+        // Smaller samples than those of the packings scatter more.
+        let packings = self.network().or_else(|| Self::builtin("grainlab")?.network());
+        let ratio = grains.zip(packings).map(|(n, p)| f64::from(p.grains) / f64::from(n.max(1)));
+        let scatter = ratio.map_or(1.0, |ratio| ratio.max(1.0));
         let mut covariance = MicrostructureCovariance::zeros();
-        let order = [kind, InferredQuantity::KHat, InferredQuantity::Eps];
-        for (a, row) in order.into_iter().zip(learned.at(eps)) {
+        let order = [coordination, InferredQuantity::KHat, InferredQuantity::Eps];
+        for (a, row) in order.into_iter().zip(learned.at(structure.eps, scatter)) {
             for (b, value) in order.into_iter().zip(row) {
                 covariance[(a as usize, b as usize)] = value;
             }

@@ -1,5 +1,6 @@
 //! The errors of the models on the packings.
 
+use super::relaxation::student;
 use super::sample::CalibrationSample;
 use crate::calibration::{Calibration, ModelDiscrepancy};
 use crate::conditions::{StrainRatio, StrainRatioSource};
@@ -7,12 +8,18 @@ use crate::error::EmtError;
 use crate::model::Model;
 use crate::registry::models;
 use grainlab_core::results::InferredQuantity;
+use std::collections::BTreeMap;
 
-/// The errors of every model without its own error estimate, for each γ/Δ and coordination number. Isotropic
-/// packings contribute only errors of ε, because every model is fitted to their moduli.
+/// Share of the packings of recipes left out that may be more than [`FAR`] standard deviations off.
+const BEYOND: f64 = 3e-3;
+
+/// Number of standard deviations that nearly no error may exceed: errors of a model are not normal.
+const FAR: f64 = 3.0;
+
+/// The errors of every model without its own error estimate, for each γ/Δ and coordination number. Every recipe counts alike.
+/// The errors of each recipe are judged by those of the others, and all are enlarged until nearly none is [`FAR`] off.
 pub(super) fn discrepancies(
-    isotropic: &[CalibrationSample],
-    anisotropic: &[CalibrationSample],
+    samples: &[&CalibrationSample],
     calibration: &Calibration,
 ) -> Vec<ModelDiscrepancy> {
     const SOURCES: [StrainRatioSource; 4] = [
@@ -27,17 +34,22 @@ pub(super) fn discrepancies(
         for model in models() {
             let sources = if model.uses_gamma() { &SOURCES[..] } else { &SOURCES[..1] };
             for source in sources {
-                let errors = |samples| errors(*model, samples, *source, kind, &calibration);
-                let Some((without, errors)) = errors(isotropic).zip(errors(anisotropic)) else { continue };
-                let mean = |i: usize, j: usize| {
-                    errors.iter().map(|(_, e)| e[i] * e[j]).sum::<f64>() / errors.len() as f64
-                };
+                let Some(errors) = errors(*model, samples, *source, kind, &calibration) else { continue };
+                let by_eps = by_eps(&errors);
+                let all = mean_square(&errors, None);
+                // The recipes are a sample of all recipes.
+                let of_recipes = student(errors.len() - 1);
+                let enlarged = enlarged(&errors, by_eps).map(|factor| factor * of_recipes);
+                let bias = bias(&errors);
                 learned.push(ModelDiscrepancy {
                     model: model.name().to_owned(),
                     coordination_kind: kind,
                     gamma: model.uses_gamma().then_some(*source),
-                    mean_square: std::array::from_fn(|i| std::array::from_fn(|j| mean(i, j))),
-                    by_eps: by_eps(&without, &errors),
+                    mean_square: std::array::from_fn(|i| {
+                        std::array::from_fn(|j| all[i][j] * (enlarged[i] * enlarged[j]))
+                    }),
+                    bias: std::array::from_fn(|i| bias[i] * enlarged[i]),
+                    by_eps,
                 });
             }
         }
@@ -45,17 +57,17 @@ pub(super) fn discrepancies(
     learned
 }
 
-/// ε inferred, and the errors of coordination number, k̂ and ε.
-type Errors = Vec<(f64, [f64; 3])>;
+/// Of each recipe: ε inferred, and the errors of coordination number, k̂ and ε.
+type Errors<'a> = BTreeMap<&'a str, Vec<(f64, [f64; 3])>>;
 
 /// Errors on the packings that the model solves; `None` if these are fewer than nine in ten.
-fn errors(
+fn errors<'a>(
     model: &dyn Model,
-    samples: &[CalibrationSample],
+    samples: &[&'a CalibrationSample],
     gamma: StrainRatioSource,
     kind: InferredQuantity,
     calibration: &Calibration,
-) -> Option<Errors> {
+) -> Option<Errors<'a>> {
     let error = |s: &CalibrationSample| -> Result<Option<(f64, [f64; 3])>, EmtError> {
         let point = model.solve(&s.observation(gamma).checked()?, calibration)?;
         if point.discrepancy.is_some() {
@@ -68,20 +80,68 @@ fn errors(
         Ok(both.map(|(n, eps)| (eps, [n - truth, k_hat, eps - s.eps])))
     };
     let known =
-        |s: &&CalibrationSample| gamma == StrainRatioSource::Zero || StrainRatio::is_known(&s.gamma, gamma);
-    let asked: Vec<_> = samples.iter().filter(known).collect();
-    let errors: Errors = asked.iter().filter_map(|s| error(s).ok().flatten()).collect();
-    (!errors.is_empty() && errors.len() * 10 >= asked.len() * 9).then_some(errors)
+        |s: &CalibrationSample| gamma == StrainRatioSource::Zero || StrainRatio::is_known(&s.gamma, gamma);
+    let (mut errors, mut asked, mut solved) = (Errors::new(), 0, 0);
+    for sample in samples.iter().filter(|s| known(s)) {
+        asked += 1;
+        if let Some(found) = error(sample).ok().flatten() {
+            solved += 1;
+            errors.entry(sample.preparation.as_str()).or_default().push(found);
+        }
+    }
+    (solved > 0 && solved * 10 >= asked * 9).then_some(errors)
 }
 
-/// How the square of the error of ε grows with the inferred ε: f0 + f1 ε², with f0 from isotropic packings and a mean
-/// of 1 over anisotropic ones.
-fn by_eps(without: &Errors, with: &Errors) -> [f64; 2] {
-    let mean = |errors: &Errors, f: fn(f64, f64) -> f64| {
-        errors.iter().map(|(eps, e)| f(*eps, e[2])).sum::<f64>() / errors.len() as f64
+/// Means of the products of the errors, first over each recipe and then over the recipes but one.
+fn mean_square(errors: &Errors<'_>, without: Option<&str>) -> [[f64; 3]; 3] {
+    let kept = errors.iter().filter(|(recipe, _)| Some(**recipe) != without).map(|(_, all)| all);
+    let recipes = kept.clone().count() as f64;
+    let mean = |i: usize, j: usize| {
+        let of_recipe =
+            |all: &Vec<(f64, [f64; 3])>| all.iter().map(|(_, e)| e[i] * e[j]).sum::<f64>() / all.len() as f64;
+        kept.clone().map(of_recipe).sum::<f64>() / recipes
     };
-    let error = mean(with, |_, e| e * e);
-    let square = mean(with, |eps, _| eps * eps);
-    let constant = (mean(without, |_, e| e * e) / error).min(1.0);
-    if constant.is_finite() && square > 0.0 { [constant, (1.0 - constant) / square] } else { [1.0, 0.0] }
+    std::array::from_fn(|i| std::array::from_fn(|j| mean(i, j)))
+}
+
+/// Means of the errors, as [`mean_square`].
+fn bias(errors: &Errors<'_>) -> [f64; 3] {
+    let of_recipe =
+        |all: &Vec<(f64, [f64; 3])>, i: usize| all.iter().map(|(_, e)| e[i]).sum::<f64>() / all.len() as f64;
+    std::array::from_fn(|i| errors.values().map(|all| of_recipe(all, i)).sum::<f64>() / errors.len() as f64)
+}
+
+/// Factor, 1 or more, of the standard deviation of each error.
+fn enlarged(errors: &Errors<'_>, by_eps: [f64; 2]) -> [f64; 3] {
+    let mut off: [Vec<f64>; 3] = Default::default();
+    for (recipe, all) in errors {
+        let others = if errors.len() > 1 { Some(*recipe) } else { None };
+        let stated = mean_square(errors, others);
+        for (eps, error) in all {
+            let scale = [1.0, 1.0, by_eps[0] + by_eps[1] * eps * eps];
+            for i in 0..3 {
+                let variance = stated[i][i] * scale[i];
+                off[i].push(if variance > 0.0 { error[i].abs() / variance.sqrt() } else { 0.0 });
+            }
+        }
+    }
+    off.map(|mut off| {
+        off.sort_by(f64::total_cmp);
+        let last = ((1.0 - BEYOND) * off.len() as f64) as usize;
+        off.get(last).map_or(1.0, |furthest| (furthest / FAR).max(1.0))
+    })
+}
+
+/// How the square of the error of ε grows with the inferred ε: f0 + f1 ε² by least squares, with a mean of 1.
+fn by_eps(errors: &Errors<'_>) -> [f64; 2] {
+    let all = || errors.values().flatten();
+    let count = all().count() as f64;
+    let mean =
+        |f: &dyn Fn(f64, f64) -> f64| all().map(|(eps, e)| f(eps * eps, e[2] * e[2])).sum::<f64>() / count;
+    let (square, error) = (mean(&|x, _| x), mean(&|_, y| y));
+    let variance = mean(&|x, _| (x - square).powi(2));
+    let slope = mean(&|x, y| (x - square) * (y - error)) / variance / error;
+    // Not below a quarter of the mean at ε = 0, and not falling.
+    let slope = slope.clamp(0.0, 0.75 / square);
+    if slope.is_finite() { [1.0 - slope * square, slope] } else { [1.0, 0.0] }
 }

@@ -180,7 +180,7 @@ fn scatter(
 
 /// Half width of the central 95 % of Student's distribution over that of a normal one (Abramowitz & Stegun 26.7.5, to 2e-3
 /// from five degrees of freedom on).
-fn student(degrees_of_freedom: usize) -> f64 {
+pub(super) fn student(degrees_of_freedom: usize) -> f64 {
     const Z: f64 = crate::estimate::HALF_WIDTH;
     let n = degrees_of_freedom.max(1) as f64;
     let (z2, z4, z6) = (Z.powi(2), Z.powi(4), Z.powi(6));

@@ -1,6 +1,6 @@
 //! The equivalent isotropic packing, to which the ratio models compare a packing.
 //!
-//! Moduli of an anisotropic packing over those of an isotropic one with coordination number k̂ are (k/k̂)^power times
+//! Moduli of an anisotropic packing over those of an isotropic one with coordination number k̂ are k/k̂ times
 //! factors that depend on the contact distribution alone. With G and Θ of Eqs. 21 and 22, G12/Θ gives k̂, and Θ then
 //! gives k: closed and unique.
 
@@ -36,14 +36,13 @@ impl Factors {
     pub(super) fn moduli(
         &self,
         found: &[f64; InferredQuantity::COUNT],
-        power: f64,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Moduli {
         let isotropic = calibration.isotropic_for(conditions.material);
         let [k, k_hat] = [isotropic.coordination_kind, InferredQuantity::KHat].map(|q| found[q as usize]);
         let pressure = conditions.pressure.value;
-        let denser = (k / k_hat).powf(power);
+        let denser = k / k_hat;
         let shear = denser * isotropic.shear_modulus(k_hat, pressure);
         let bulk = denser * isotropic.bulk_modulus(k_hat, pressure);
         Moduli::paper(self.g12 * shear, self.g13 * shear, self.bulk * bulk)
@@ -54,7 +53,6 @@ impl Factors {
     pub(super) fn point_estimate(
         &self,
         eps: f64,
-        power: f64,
         observation: &Observation,
         calibration: &Calibration,
     ) -> Result<PointEstimate, EmtError> {
@@ -77,7 +75,7 @@ impl Factors {
         }
         let k_hat = isotropic.coordination(s);
         let denser = theta / (isotropic.bulk_modulus(k_hat, observation.pressure()) * self.bulk);
-        let k = k_hat * if power == 1.0 { denser } else { denser.powf(1.0 / power) };
+        let k = k_hat * denser;
         warnings.extend(outside_fit(InferredQuantity::KHat, k_hat, calibration));
         let structure = structure.with(isotropic.coordination_kind, k).with(InferredQuantity::KHat, k_hat);
         Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) })

@@ -4,9 +4,8 @@
 //! unique, Θ then gives k. ε is not inferred: the model takes it as 0. ε weighted by contact stiffness follows from q/p.
 //! At isotropic stress this is Hertz–Mindlin without slip.
 //!
-//! Without slip the stress depends on the path of strain, here first along all axes, then along e3. `johnson-slip` takes the
-//! tangential forces as relaxed by slip, as Khidas & Jia, Phys. Rev. E 81, 021303 (2010), had to do for the measured
-//! stress ratio; small waves still find contacts that stick.
+//! Without slip the stress depends on the path of strain, here first along all axes, then along e3. [`crate::PackShape`] also has
+//! the stress after slip.
 
 use super::equivalent::MAX_COORDINATION;
 use super::uniform_strain::own_error;
@@ -24,18 +23,14 @@ use crate::warning::Warning;
 use grainlab_core::Material;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 
-/// The pack under unequal strain. It uses only the material of the calibration, where that of the grains is not known.
+/// The pack under unequal strain, without slip: model `johnson`. It uses only the material of the calibration, where that of the
+/// grains is not known.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Johnson {
-    name: &'static str,
-    history: ContactHistory,
-}
+pub(crate) struct Johnson;
 
-/// Without slip: model `johnson`.
-pub(crate) const ROUGH: Johnson = Johnson { name: "johnson", history: ContactHistory::HydrostaticFirst };
+const NAME: &str = "johnson";
 
-/// With tangential forces relaxed by slip: model `johnson-slip`.
-pub(crate) const SLIP: Johnson = Johnson { name: "johnson-slip", history: ContactHistory::Slip };
+const HISTORY: ContactHistory = ContactHistory::HydrostaticFirst;
 
 /// Range of g in which every contact is closed.
 const SHAPES: [f64; 2] = [-0.5, 0.25];
@@ -46,7 +41,7 @@ const STRESS_RATIOS: [f64; 2] = [-0.74, 1.49];
 
 impl Model for Johnson {
     fn name(&self) -> &'static str {
-        self.name
+        NAME
     }
 
     fn uses_gamma(&self) -> bool {
@@ -60,7 +55,7 @@ impl Model for Johnson {
     fn domain(&self, _: &Calibration) -> Domain {
         let mut structure = [None; InferredQuantity::COUNT];
         structure[InferredQuantity::K as usize] = Some([0.1, MAX_COORDINATION]);
-        let domain = Domain::new(self.name, structure);
+        let domain = Domain::new(NAME, structure);
         Domain { needs_solid_fraction: true, stress_ratio: STRESS_RATIOS, ..domain }
     }
 
@@ -73,7 +68,7 @@ impl Model for Johnson {
         let found = self.domain(calibration).validate(structure, conditions)?;
         let material = conditions.material.unwrap_or(*calibration.material());
         let phi = conditions.solid_fraction.map_or(f64::NAN, |phi| phi.value);
-        let shape = self.shape(conditions, &material)?;
+        let shape = shape(conditions, &material)?;
         let unit = shape.unit(found[InferredQuantity::K as usize], phi, &material, conditions.pressure.value);
         let moduli = Moduli::of_medium(&shape.stiffness()).values();
         Ok(Moduli::of_values(moduli.map(|m| m.map(|m| m * unit))))
@@ -81,12 +76,11 @@ impl Model for Johnson {
 
     fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError> {
         let conditions = &observation.conditions;
-        let missing = EmtError::Missing { model: self.name, missing: "the solid fraction" };
+        let missing = EmtError::Missing { model: NAME, missing: "the solid fraction" };
         let phi = conditions.solid_fraction.ok_or(missing)?.value;
-        let theta =
-            observation.moduli.get(Modulus::Theta).ok_or(EmtError::missing(self.name, Modulus::Theta))?;
+        let theta = observation.moduli.get(Modulus::Theta).ok_or(EmtError::missing(NAME, Modulus::Theta))?;
         let material = conditions.material.unwrap_or(*calibration.material());
-        let shape = self.shape(conditions, &material)?;
+        let shape = shape(conditions, &material)?;
         let dimensionless = Moduli::of_medium(&shape.stiffness()).get(Modulus::Theta);
         let unit = theta / dimensionless.unwrap_or(f64::NAN);
         let k = shape.coordination(unit, phi, &material, observation.pressure());
@@ -102,17 +96,14 @@ impl Model for Johnson {
     }
 }
 
-impl Johnson {
-    /// The shape of the strain that has the stress ratio of `conditions`.
-    fn shape(&self, conditions: &Conditions, material: &Material) -> Result<PackShape, EmtError> {
-        let ratio = conditions.stress_ratio.map_or(0.0, |ratio| ratio.value);
-        let stiffness_ratio = mindlin(material);
-        let excess = |g: f64| {
-            PackShape::new(g, stiffness_ratio).map_or(f64::NAN, |s| s.stress_ratio(self.history) - ratio)
-        };
-        let [low, high] = STRESS_RATIOS;
-        let g = bracketed(excess, SHAPES).filter(|_| (low..=high).contains(&ratio));
-        let outside = EmtError::OutsideDomain { model: self.name, quantity: "q/p", value: ratio, low, high };
-        PackShape::new(g.ok_or(outside)?, stiffness_ratio)
-    }
+/// The shape of the strain that has the stress ratio of `conditions`.
+fn shape(conditions: &Conditions, material: &Material) -> Result<PackShape, EmtError> {
+    let ratio = conditions.stress_ratio.map_or(0.0, |ratio| ratio.value);
+    let stiffness_ratio = mindlin(material);
+    let excess =
+        |g: f64| PackShape::new(g, stiffness_ratio).map_or(f64::NAN, |s| s.stress_ratio(HISTORY) - ratio);
+    let [low, high] = STRESS_RATIOS;
+    let g = bracketed(excess, SHAPES).filter(|_| (low..=high).contains(&ratio));
+    let outside = EmtError::OutsideDomain { model: NAME, quantity: "q/p", value: ratio, low, high };
+    PackShape::new(g.ok_or(outside)?, stiffness_ratio)
 }

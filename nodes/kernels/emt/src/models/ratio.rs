@@ -24,21 +24,13 @@ use grainlab_core::results::{InferredQuantity, Microstructure};
 pub(crate) struct Ratio {
     name: &'static str,
     reading: Eq16Reading,
-    /// Power of k/k̂ in Eqs. 16–18.
-    power: f64,
 }
 
 /// Eq. 16 with its missing factor: model `ratio`.
-pub(crate) const CORRECTED: Ratio = Ratio { name: "ratio", reading: Eq16Reading::Corrected, power: 1.0 };
+pub(crate) const CORRECTED: Ratio = Ratio { name: "ratio", reading: Eq16Reading::Corrected };
 
 /// Eq. 16 as it is printed: model `ratio-as-printed`.
-pub(crate) const AS_PRINTED: Ratio =
-    Ratio { name: "ratio-as-printed", reading: Eq16Reading::AsPrinted, power: 1.0 };
-
-/// With moduli ∝ k^⅔ instead of ∝ k, as for Hertz contacts at the same pressure and volume, the case that the
-/// text of the paper compares: model `ratio-volume`.
-pub(crate) const FIXED_VOLUME: Ratio =
-    Ratio { name: "ratio-volume", reading: Eq16Reading::Corrected, power: 2.0 / 3.0 };
+pub(crate) const AS_PRINTED: Ratio = Ratio { name: "ratio-as-printed", reading: Eq16Reading::AsPrinted };
 
 impl Model for Ratio {
     fn name(&self) -> &'static str {
@@ -58,7 +50,7 @@ impl Model for Ratio {
         let found = self.domain(calibration).validate(structure, conditions)?;
         let (eps, g) = (found[InferredQuantity::Eps as usize], conditions.gamma.value);
         let factors = self.factors(eps, Moments::new(eps, g).spin(), g);
-        Ok(factors.moduli(&found, self.power, conditions, calibration))
+        Ok(factors.moduli(&found, conditions, calibration))
     }
 
     fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError> {
@@ -71,7 +63,7 @@ impl Model for Ratio {
         if factors.bulk <= 0.0 {
             return Err(no_anisotropy);
         }
-        factors.point_estimate(eps, self.power, observation, calibration)
+        factors.point_estimate(eps, observation, calibration)
     }
 }
 

@@ -18,7 +18,7 @@ mod sphere_pack;
 mod table3;
 
 /// The models of the paper, with its errata and approximations: all that use G12, G13 and γ/Δ.
-const PAPER_MODELS: [&str; 6] = ["emt", "ratio", "ratio-as-printed", "ratio-volume", "full", "sqrt"];
+const PAPER_MODELS: [&str; 3] = ["emt", "ratio", "ratio-as-printed"];
 
 /// The model of this name.
 fn model(name: &str) -> &'static dyn grainlab_emt::Model {

@@ -5,7 +5,8 @@ use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_core::{Material, Stiffness, TransverseIsotropy};
 use grainlab_emt::Relaxed;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Warning,
+    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation,
+    UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO, Warning,
 };
 use nalgebra::Matrix6;
 
@@ -213,16 +214,109 @@ fn an_orthotropic_medium_is_no_transversely_isotropic_one() {
     assert!(warned(orthotropic));
 }
 
+/// Integrated over the priors, as an estimate for each q/p and each spread: what is unknown is in value and error, and said.
 #[test]
-fn unknown_stress_and_sizes_are_taken_as_isotropic_and_equal_and_said() {
+fn unknown_stress_and_sizes_are_marginalised_and_said() {
     let o = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.002);
     let known = Relaxed.infer(&o, ours()).unwrap();
     let unknown = Conditions { stress_ratio: None, size_spread: None, ..conditions() };
-    let assumed = Relaxed.infer(&Observation { conditions: unknown, ..o }, ours()).unwrap();
-    assert_eq!(assumed.structure, known.structure);
+    let assumed = Relaxed.infer(&Observation { conditions: unknown, ..o.clone() }, ours()).unwrap();
     let told = |w: &Warning| matches!(w, Warning::StressRatioUnknown | Warning::SizesUnknown);
     assert_eq!(assumed.warnings.iter().filter(|w| told(w)).count(), 2);
     assert!(!known.warnings.iter().any(told), "{:?}", known.warnings);
+    // ε follows q/p linearly: its error by q/p is its range over that of q/p, times the standard deviation.
+    let at = |q: f64, stddev: f64| {
+        let stress_ratio = Some(Measured { value: q, stddev });
+        Relaxed
+            .infer(
+                &Observation { conditions: Conditions { stress_ratio, ..conditions() }, ..o.clone() },
+                ours(),
+            )
+            .unwrap()
+    };
+    let eps = InferredQuantity::Eps;
+    let slope = (at(0.05, 0.0).structure.eps.unwrap() - at(-0.05, 0.0).structure.eps.unwrap()) / 0.1;
+    let uncertain = at(0.0, UNKNOWN_STRESS_RATIO.stddev);
+    let expected =
+        (at(0.0, 0.0).stddev(eps).unwrap().powi(2) + (slope * UNKNOWN_STRESS_RATIO.stddev).powi(2)).sqrt();
+    let (found, all) = (uncertain.stddev(eps).unwrap(), assumed.stddev(eps).unwrap());
+    // Less than by the fixed weights: moduli that q/p moves get less of it.
+    assert!(
+        found <= 1.01 * expected && found > 0.8 * expected && all > 0.99 * found,
+        "{found} {expected} {all}"
+    );
+    let widest = assumed.widest().unwrap();
+    assert!(
+        widest.2 > 0.5
+            && assumed
+                .warnings
+                .iter()
+                .any(|w| matches!(w, Warning::WidenedMost { input, .. } if *input == widest.0))
+    );
+}
+
+/// The prior of q/p: normal, cut at two standard deviations. That of the sizes: uniform, in the moments of the square.
+#[test]
+fn the_moments_of_what_is_unknown_are_those_of_the_stated_distributions() {
+    let n = 200_000;
+    let (mut total, mut square) = (0.0, 0.0);
+    let (mut of_s2, mut of_s4) = (0.0, 0.0);
+    for i in 0..n {
+        let share = (f64::from(i) + 0.5) / f64::from(n);
+        let q = 0.6 * share - 0.3;
+        let weight = (-0.5 * (q / 0.15).powi(2)).exp();
+        total += weight;
+        square += weight * q * q;
+        let s2 = (0.3 * share).powi(2);
+        of_s2 += s2 / f64::from(n);
+        of_s4 += s2 * s2 / f64::from(n);
+    }
+    assert!(
+        UNKNOWN_STRESS_RATIO.value == 0.0
+            && (UNKNOWN_STRESS_RATIO.stddev / (square / total).sqrt() - 1.0).abs() < 1e-4
+    );
+    let Measured { value, stddev } = UNKNOWN_SIZE_SPREAD;
+    let of_square = 2.0 * value * stddev;
+    assert!(
+        (value * value / of_s2 - 1.0).abs() < 1e-3
+            && (of_square / (of_s4 - of_s2 * of_s2).sqrt() - 1.0).abs() < 1e-3
+    );
+}
+
+/// The ends as README states them, each with the others in the middle.
+#[test]
+fn the_ends_of_the_stated_domain_belong_to_it() {
+    type At = fn(Conditions, f64) -> Conditions;
+    let glass = |nu: f64| Material { poisson_ratio: nu, ..Material::GLASS };
+    let young = Material::GLASS.effective_young();
+    let pressure: At =
+        |c, p| Conditions { pressure: Measured::exact(p * Material::GLASS.effective_young()), ..c };
+    let kpa: At = |c, p| Conditions { pressure: Measured::exact(1e3 * p), ..c };
+    let nu: At =
+        |c, nu| Conditions { material: Some(Material { poisson_ratio: nu, ..Material::GLASS }), ..c };
+    let sizes: At = |c, s| Conditions { size_spread: Some(s), ..c };
+    let stress: At = |c, q| Conditions { stress_ratio: Some(Measured::exact(q)), ..c };
+    let ends: [(At, [f64; 2]); 5] = [
+        (pressure, [2e-8, 1.6e-4]),
+        (kpa, [1.0, 5e3]),
+        (nu, [0.0, 0.45]),
+        (sizes, [0.0, 0.3]),
+        (stress, [-0.2, 0.3]),
+    ];
+    let inside = |z: f64, eps: f64, conditions: Conditions| {
+        let moduli = Relaxed.predict(&structure(z, eps), &conditions, ours()).unwrap();
+        let e =
+            Relaxed.infer(&Observation::new(moduli, conditions).with_relative_error(0.01), ours()).unwrap();
+        assert_eq!(e.status, grainlab_emt::Status::Ok, "{z} {eps} {conditions:?}: {:?}", e.warnings);
+    };
+    for (at, ends) in ends {
+        ends.into_iter().for_each(|end| inside(5.3, 0.02, at(conditions(), end)));
+    }
+    for (z, eps) in [(4.2, 0.02), (6.4, 0.02), (5.3, -0.08), (5.3, 0.13)] {
+        inside(z, eps, conditions());
+    }
+    // Grains of any Poisson ratio at 5 MPa.
+    inside(5.3, 0.02, Conditions { material: Some(glass(0.0)), ..pressure(conditions(), 5e6 / young) });
 }
 
 /// Inside the packings taught nothing is said; beyond them there is a warning and a wider interval; further away no number.

@@ -1,87 +1,279 @@
-//! Packings of recipes that teach nothing: every model is judged by them.
+//! Every model on packings of recipes that teach nothing (`judged.csv`): what is called `ok` holds, and consistent data raise
+//! no alarm. `--nocapture` prints what was found.
+
 use crate::csv;
 use crate::left_out::truth;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, CalibrationSample, Modulus, Observation, Status, StrainRatioSource, Warning, models,
+    Calibration, CalibrationSample, EmtError, Estimate, MODULI, Measured, Model, ModuliCovariance, Modulus,
+    Observation, Relaxed, Status, StrainRatioSource, UNKNOWN_STRESS_RATIO, Warning, models,
 };
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 
-fn name(s: &CalibrationSample) -> String {
-    format!(
-        "{} {:.3} s {:.2} q {:.2} nu {:.2} z {:.2}",
-        s.packing,
-        s.pressure / s.material.effective_young() * 1e6,
-        s.size_spread,
-        s.stress_ratio,
-        s.material.poisson_ratio,
-        s.z
-    )
+/// The recipe without friction to the end, whose contacts have no tangential springs.
+const SMOOTH: &str = "smooth";
+
+const QUANTITIES: [InferredQuantity; 4] =
+    [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness];
+
+fn judged() -> Vec<CalibrationSample> {
+    csv::samples("judged.csv").into_iter().filter(|s| s.preparation != SMOOTH).collect()
+}
+
+fn ours() -> &'static Calibration {
+    Calibration::builtin("grainlab").unwrap()
+}
+
+struct Random(Pcg64Mcg);
+
+impl Random {
+    fn uniform(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+}
+
+/// Error of each quantity in stated standard deviations.
+fn pulls(e: &Estimate, s: &CalibrationSample) -> Vec<(InferredQuantity, f64)> {
+    let pull = |q: InferredQuantity| Some((q, (e.structure.get(q)? - truth(s, q)) / e.stddev(q)?));
+    QUANTITIES.into_iter().filter_map(pull).collect()
+}
+
+/// Whether the sample is in the domain of `relaxed` that README states.
+fn inside(s: &CalibrationSample) -> bool {
+    let within = |v: f64, [low, high]: [f64; 2]| (low..=high).contains(&v);
+    within(s.z, [4.2, 6.4])
+        && within(s.eps, [-0.08, 0.13])
+        && within(s.pressure / s.material.effective_young(), [2e-8, 1.6e-4])
+        && within(s.material.poisson_ratio, [0.0, 0.45])
+        && within(s.size_spread, [0.0, 0.3])
+        && within(s.stress_ratio, [-0.2005, 0.3005])
 }
 
 #[test]
-fn explore() {
+fn the_packings_are_many_and_of_many_recipes_that_taught_nothing() {
     let all = csv::samples("judged.csv");
-    for calibration in ["paper", "grainlab"] {
-        let c = Calibration::builtin(calibration).unwrap();
-        for m in models() {
-            let sources = if m.uses_gamma() {
-                vec![
-                    StrainRatioSource::Zero,
-                    StrainRatioSource::Total,
-                    StrainRatioSource::Elastic,
-                    StrainRatioSource::Contact,
-                ]
-            } else {
-                vec![StrainRatioSource::Zero]
-            };
-            for g in sources {
-                let mut count = std::collections::BTreeMap::new();
-                let mut pulls: Vec<Vec<f64>> = vec![Vec::new(); 5];
-                let mut sig: Vec<Vec<f64>> = vec![Vec::new(); 5];
-                for s in &all {
-                    if s.preparation == "smooth" {
+    let recipes = |all: &[CalibrationSample]| -> std::collections::BTreeSet<String> {
+        all.iter().map(|s| s.preparation.clone()).collect()
+    };
+    assert!(all.len() >= 500 && recipes(&all).len() >= 25);
+    for taught in ["isotropic.csv", "anisotropic.csv", "wide.csv"] {
+        assert!(recipes(&all).is_disjoint(&recipes(&csv::samples(taught))), "{taught}");
+    }
+}
+
+#[test]
+fn packings_without_tangential_springs_have_no_estimate() {
+    let all = csv::samples("judged.csv");
+    for s in all.iter().filter(|s| s.preparation == SMOOTH) {
+        let mut observation = s.observation(StrainRatioSource::Zero);
+        observation.conditions.smooth = true;
+        for model in models() {
+            assert_eq!(model.infer(&observation, ours()), Err(EmtError::SmoothGrains));
+        }
+    }
+}
+
+/// Answers of the models of the paper are called extrapolated for grains of another Poisson ratio alone: they are judged, too.
+fn is_answer(e: &Estimate) -> bool {
+    let only_grains = || {
+        let ranges = e.warnings.iter().filter(|w| w.is_extrapolation());
+        ranges.clone().count() > 0 && ranges.clone().all(|w| matches!(w, Warning::OtherGrains { .. }))
+    };
+    e.status == Status::Ok || (e.status == Status::Extrapolated && only_grains())
+}
+
+#[test]
+fn at_most_one_in_a_hundred_answers_of_any_model_is_more_than_three_stated_sigmas_off() {
+    const SOURCES: [StrainRatioSource; 4] = [
+        StrainRatioSource::Zero,
+        StrainRatioSource::Total,
+        StrainRatioSource::Elastic,
+        StrainRatioSource::Contact,
+    ];
+    let packings = judged();
+    let mut faults = Vec::new();
+    for name in Calibration::BUILTIN {
+        let calibration = Calibration::builtin(name).unwrap();
+        for model in models() {
+            for source in if model.uses_gamma() { &SOURCES[..] } else { &SOURCES[..1] } {
+                let (mut ok, mut off, mut worst, mut without) = (0, 0, 0.0f64, 0);
+                for s in &packings {
+                    let Ok(e) = model.infer(&s.observation(*source), calibration) else { continue };
+                    if !is_answer(&e) {
                         continue;
                     }
-                    let r = m.infer(&s.observation(g), c);
-                    *count.entry(format!("{:?}", Status::of(&r))).or_insert(0) += 1;
-                    let Ok(e) = r else { continue };
-                    if e.status != Status::Ok {
-                        continue;
-                    }
-                    for (i, q) in InferredQuantity::ALL.into_iter().enumerate() {
-                        if q == InferredQuantity::KHat {
-                            continue;
-                        }
-                        if let (Some(v), Some(d)) = (e.structure.get(q), e.stddev(q)) {
-                            let p = (v - truth(s, q)) / d;
-                            pulls[i].push(p);
-                            sig[i].push(d);
-                            if m.name() == "relaxed" && p.abs() > 2.7 {
-                                eprintln!("   {q} {p:.2} {}", name(s));
-                            }
-                        }
-                    }
+                    let pulls = pulls(&e, s);
+                    let determined = QUANTITIES.iter().filter(|q| e.structure.get(**q).is_some()).count();
+                    without += usize::from(pulls.len() < determined);
+                    let furthest = pulls.iter().map(|(_, p)| p.abs()).fold(0.0, f64::max);
+                    (ok, off, worst) = (ok + 1, off + usize::from(furthest > 3.0), worst.max(furthest));
                 }
-                eprint!("{calibration} {} {:?} {:?}:", m.name(), g, count);
-                for (i, q) in InferredQuantity::ALL.into_iter().enumerate() {
-                    let p = &pulls[i];
-                    if p.is_empty() {
-                        continue;
-                    }
-                    let n = p.len() as f64;
-                    let mean = p.iter().sum::<f64>() / n;
-                    let rms = (p.iter().map(|p| p * p).sum::<f64>() / n).sqrt();
-                    let mut s = sig[i].clone();
-                    s.sort_by(f64::total_cmp);
-                    eprint!(
-                        "  {q}: n {n} mean {mean:.2} rms {rms:.2} >3 {} in95 {:.3} sig {:.4}",
-                        p.iter().filter(|p| p.abs() > 3.0).count(),
-                        p.iter().filter(|p| p.abs() < 1.96).count() as f64 / n,
-                        s[s.len() / 2]
-                    );
+                eprintln!(
+                    "{name} {} {}: {off} of {ok} beyond 3 sigma, furthest {worst:.1}",
+                    model.name(),
+                    source.name()
+                );
+                if off * 100 > ok || without > 0 {
+                    faults.push((name, model.name(), source.name(), off, ok, without));
                 }
-                eprintln!();
             }
         }
     }
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+/// Medians of the standard deviations of k, z, ε and ε weighted by stiffness before unknown inputs were part of them.
+const MEDIANS: [f64; 4] = [0.09957, 0.05788, 0.01465, 0.00771];
+
+#[test]
+fn relaxed_answers_inside_its_domain_as_accurately_as_before() {
+    let inside: Vec<_> = judged().into_iter().filter(inside).collect();
+    let estimates: Vec<Estimate> = inside
+        .iter()
+        .filter_map(|s| Relaxed.infer(&s.observation(StrainRatioSource::Zero), ours()).ok())
+        .filter(|e| e.status == Status::Ok)
+        .collect();
+    let median = |q: InferredQuantity| {
+        let mut all: Vec<f64> = estimates.iter().map(|e| e.stddev(q).unwrap()).collect();
+        all.sort_by(f64::total_cmp);
+        all[all.len() / 2]
+    };
+    let found = QUANTITIES.map(median);
+    eprintln!(
+        "ok on {} of {}, median sigma of k, z, eps, eps_stiffness {found:?}",
+        estimates.len(),
+        inside.len()
+    );
+    assert!(estimates.len() * 10 >= inside.len() * 9);
+    for (found, before) in found.into_iter().zip(MEDIANS) {
+        assert!(found <= 1.15 * before, "{found} {before}");
+    }
+}
+
+/// q/p, pressure and shear modulus of the grains stated with errors drawn from the stated distributions.
+#[test]
+fn intervals_hold_the_truth_where_the_state_is_uncertain() {
+    const REPEATED: usize = 4;
+    let mut random = Random(Pcg64Mcg::seed_from_u64(5));
+    let (mut inside_95, mut count) = ([0usize; 4], [0usize; 4]);
+    for s in judged().iter().filter(|s| inside(s)).flat_map(|s| [s; REPEATED]) {
+        let mut o = s.observation(StrainRatioSource::Zero);
+        let q = loop {
+            let q = 0.15 * random.normal();
+            if q.abs() <= 0.3 {
+                break q;
+            }
+        };
+        let c = &mut o.conditions;
+        c.stress_ratio = Some(Measured { value: s.stress_ratio + q, stddev: UNKNOWN_STRESS_RATIO.stddev });
+        c.pressure =
+            Measured { value: s.pressure * (1.0 + 0.05 * random.normal()), stddev: 0.05 * s.pressure };
+        let mut grains = s.material;
+        grains.shear_modulus *= 1.0 + 0.05 * random.normal();
+        c.material = Some(grains);
+        c.shear_modulus_stddev = 0.05 * s.material.shear_modulus;
+        let Ok(e) = Relaxed.infer(&o, ours()) else { continue };
+        if e.status != Status::Ok {
+            continue;
+        }
+        for (i, q) in QUANTITIES.into_iter().enumerate() {
+            let Some([low, high]) = e.interval(q) else { continue };
+            count[i] += 1;
+            inside_95[i] += usize::from((low..=high).contains(&truth(s, q)));
+        }
+    }
+    let share: [f64; 4] = std::array::from_fn(|i| inside_95[i] as f64 / count[i] as f64);
+    eprintln!("inside 95 % of k, z, eps, eps_stiffness: {share:?} of {count:?}");
+    // k and ε of 600 grains scatter less than those of the packings taught by the inverse of the number of grains.
+    let most = [0.99, 0.98, 0.99, 0.98];
+    assert!(share.iter().zip(most).all(|(share, most)| (0.93..=most).contains(share)), "{share:?}");
+}
+
+/// The moduli with independent errors of this relative size, stated; one of them off by so many of its errors.
+fn with_errors(
+    s: &CalibrationSample,
+    relative: f64,
+    noise: &[f64; MODULI],
+    fault: (Modulus, f64),
+) -> Observation {
+    let mut o = s.observation(StrainRatioSource::Zero);
+    let mut covariance = ModuliCovariance::zeros();
+    for (m, value) in s.moduli.known() {
+        let sigma = relative * value.abs();
+        covariance[(m as usize, m as usize)] = sigma * sigma;
+        let by = noise[m as usize] + if fault.0 == m { fault.1 } else { 0.0 };
+        o.moduli = o.moduli.with(m, value + by * sigma);
+    }
+    o.with_covariance(covariance)
+}
+
+fn estimate(
+    s: &CalibrationSample,
+    relative: f64,
+    noise: &[f64; MODULI],
+    fault: (Modulus, f64),
+) -> Option<Estimate> {
+    Relaxed.infer(&with_errors(s, relative, noise, fault), ours()).ok()
+}
+
+const NO_FAULT: (Modulus, f64) = (Modulus::G12, 0.0);
+
+#[test]
+fn at_most_one_in_a_hundred_consistent_packings_raises_an_alarm() {
+    let mut random = Random(Pcg64Mcg::seed_from_u64(6));
+    for relative in [0.0, 0.003, 0.01, 0.03] {
+        let (mut flagged, mut all) = (0, 0);
+        for s in judged().iter().filter(|s| inside(s)).flat_map(|s| [s; 4]) {
+            let noise = std::array::from_fn(|_| random.normal());
+            let Some(e) = estimate(s, relative, &noise, NO_FAULT) else { continue };
+            (flagged, all) = (flagged + usize::from(e.status == Status::Contradictory), all + 1);
+        }
+        eprintln!("errors of {relative}: {flagged} of {all} flagged");
+        assert!(flagged * 100 <= all, "{relative}: {flagged} of {all}");
+    }
+}
+
+/// Where the scatter of packings hides a fault of five stated errors, no test finds it: half the sum of χ² with the fault to
+/// either side, less that without, is the square of its distance in standard deviations. The best test, of a known modulus and
+/// sign and at a false alarm in a hundred, finds nine in ten only in Θ, and in C11 at large errors.
+#[test]
+fn most_faults_of_five_stated_errors_are_flagged_where_the_scatter_of_packings_does_not_hide_them() {
+    let mut random = Random(Pcg64Mcg::seed_from_u64(7));
+    let packings: Vec<_> = judged().into_iter().filter(inside).collect();
+    let mut visible = 0;
+    for relative in [0.003, 0.01, 0.03] {
+        for modulus in Modulus::ALL {
+            let (mut flagged, mut all, mut best) = (0.0, 0.0, 0.0);
+            for s in &packings {
+                let noise = std::array::from_fn(|_| random.normal());
+                let of = |by: f64| estimate(s, relative, &noise, (modulus, by));
+                let (Some(without), Some(above), Some(below)) = (of(0.0), of(5.0), of(-5.0)) else {
+                    continue;
+                };
+                let chi_square = |e: &Estimate| e.misfit.unwrap().chi_square;
+                let square = 0.5 * (chi_square(&above) + chi_square(&below)) - chi_square(&without);
+                let distance = square.max(0.0).sqrt();
+                let alarm = above.status == Status::Contradictory;
+                all += 1.0;
+                flagged += f64::from(u8::from(alarm));
+                // The most powerful test of a known modulus and sign at a false alarm in a hundred.
+                best += 0.5 * libm::erfc((2.326 - distance) / std::f64::consts::SQRT_2);
+            }
+            eprintln!(
+                "{modulus} off by five errors of {relative}: {:.2} flagged, {:.2} by the best test",
+                flagged / all,
+                best / all
+            );
+            if best >= 0.9 * all {
+                visible += 1;
+                assert!(flagged >= 0.6 * all, "{modulus} {relative}");
+            }
+        }
+    }
+    assert!(visible >= 3);
 }
