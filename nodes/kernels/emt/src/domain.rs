@@ -110,3 +110,24 @@ impl Domain {
         Err(EmtError::OutsideDomain { model: self.model, quantity, value, low, high })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conditions::Measured;
+
+    #[test]
+    fn a_solid_fraction_that_no_jammed_packing_has_is_refused_by_models_that_use_it() {
+        let none = [None; InferredQuantity::COUNT];
+        let uses = Domain { needs_solid_fraction: true, ..Domain::new("emt", none) };
+        let at = |phi| Conditions { solid_fraction: Some(Measured::exact(phi)), ..Conditions::at(5e4) };
+        for phi in [0.5, 0.55, 0.64, 0.74, 0.8] {
+            assert_eq!(uses.validate_solid_fraction(&at(phi)), Ok(()), "{phi}");
+        }
+        for phi in [0.2, 0.499, 0.81, 0.99] {
+            let refused = uses.validate_solid_fraction(&at(phi)).unwrap_err().to_string();
+            assert!(refused.contains("the solid fraction") && refused.contains("[0.5, 0.8]"), "{refused}");
+            assert_eq!(Domain::new("relaxed", none).validate_solid_fraction(&at(phi)), Ok(()));
+        }
+    }
+}

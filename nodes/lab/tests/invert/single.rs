@@ -215,3 +215,18 @@ fn a_stated_error_of_pressure_grains_or_stress_widens_the_answer() {
         assert!(with > 1.001 * without, "{flag}: {with} {without}");
     }
 }
+
+#[test]
+fn an_answer_without_one_of_the_unknowns_is_not_ok() {
+    let flags = ["--error=1", "--stress-ratio=0", "--size-spread=0", "--model=relaxed", "--format=json"];
+    let output = grainlab(&[&S1[..], &flags].concat(), b"");
+    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let result = &answer["results"][0];
+    assert!(result["eps"].is_null(), "{result}");
+    assert_ne!(result["status"], "ok");
+    let warnings = result["warnings"].as_array().unwrap();
+    assert!(
+        warnings.iter().any(|w| w.as_str().unwrap().contains("the data do not determine eps")),
+        "{result}"
+    );
+}

@@ -88,7 +88,8 @@ fn results_come_in_the_order_of_the_rows_however_many() {
 fn what_is_missing_leaves_undetermined_what_needs_it_and_no_more() {
     let input = "g12_pa,g13_pa,theta_pa,c33_pa,pressure_pa\n1e8,1.1e8,,,5e4\n1e8,1.1e8,1.3e8,,5e4\n1e8,,1.3e8,2e8,5e4\n";
     let (code, rows, err) = table(input, &RATIO);
-    assert_eq!((rows[0]["status"].as_str(), rows[0]["k"].as_str()), (Some("ok"), Some("")));
+    assert_eq!((rows[0]["status"].as_str(), rows[0]["k"].as_str()), (Some("extrapolated"), Some("")));
+    assert!(rows[0]["reason"].as_str().unwrap().contains("do not determine k"), "{}", rows[0]);
     assert_eq!(rows[0]["eps"], rows[1]["eps"]);
     assert!(number(&rows[1], "k") > 4.0);
     assert_eq!((rows[2]["status"].as_str(), rows[2]["eps"].as_str()), (Some("unknown"), Some("")));

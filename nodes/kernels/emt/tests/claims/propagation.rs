@@ -112,7 +112,7 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
                 );
                 let conditions = Conditions {
                     gamma: StrainRatio::given(random.within(inner(domain.gamma))),
-                    solid_fraction: Some(Measured::exact(random.within([0.5, 0.7]))),
+                    solid_fraction: Some(Measured::exact(random.within([0.52, 0.7]))),
                     stress_ratio: Some(Measured::exact(random.within([-0.15, 0.25]))),
                     size_spread: Some(random.within([0.0, 0.2])),
                     ..Conditions::at(random.pressure(&domain, calibration.material()))

@@ -260,10 +260,9 @@ fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), 
         let Some(meant) = slips::meant(name, &read) else { continue };
         // An analysis prints q_over_p beside axial_q_over_p: alone it is probably meant for that.
         let is_there = |alias: &str| names.iter().any(|n| n == alias);
-        let meant_is_there = INPUTS.iter().any(|input| {
-            let aliases = input.names();
-            aliases.iter().any(|a| a.name == meant) && aliases.iter().any(|a| is_there(a.name))
-        });
+        let names_of_meant = INPUTS.iter().map(|i| i.names()).find(|all| all.iter().any(|a| a.name == meant));
+        let meant_is_there =
+            is_there(meant) || names_of_meant.is_some_and(|all| all.iter().any(|a| is_there(a.name)));
         if !(printed.contains(name) && meant_is_there) {
             return Err(format!(
                 "column {name} is not read, and its name is almost {meant}: rename it, to _{name} if it is something else"

@@ -44,16 +44,18 @@ pub(super) fn meant<'a>(column: &str, known: &[&'a str]) -> Option<&'a str> {
     if let Some((_, meant)) = SYNONYMS.iter().find(|(synonym, _)| *synonym == whole) {
         return known.iter().copied().find(|name| name == meant);
     }
-    let alike = |name: &&str| {
-        let of_name = words(name);
-        let (short, full) = (bare(&written), bare(&of_name));
+    let (short, joined) = (bare(&written), written.concat());
+    let same = |name: &&str| {
+        let full = bare(&words(name));
         let without_first = full.get(1..).filter(|rest| rest.len() > 1 && rest[0] != "sigma");
-        let (a, b) = (written.concat(), of_name.concat());
         !short.is_empty() && (short == full || short.concat() == full.concat())
             || without_first == Some(&short[..])
-            || a.len() >= LONG && b.len() >= LONG && one_letter_apart(&a, &b)
     };
-    known.iter().copied().find(alike)
+    let nearly = |name: &&str| {
+        let of_name = words(name).concat();
+        joined.len() >= LONG && of_name.len() >= LONG && one_letter_apart(&joined, &of_name)
+    };
+    known.iter().copied().find(same).or_else(|| known.iter().copied().find(nearly))
 }
 
 /// Whether one letter is added, missing or another, or two are exchanged.
@@ -75,8 +77,9 @@ fn one_letter_apart(a: &str, b: &str) -> bool {
 mod tests {
     use super::*;
 
-    const KNOWN: [&str; 12] = [
+    const KNOWN: [&str; 13] = [
         "g12_pa",
+        "g13_pa",
         "g12_sigma_pa",
         "pressure_pa",
         "p_kpa",
@@ -94,6 +97,7 @@ mod tests {
     fn a_slip_of_a_name_is_that_name() {
         for (column, name) in [
             ("G12_PA", "g12_pa"),
+            ("G13_PA", "g13_pa"),
             ("g12", "g12_pa"),
             ("g12-pa", "g12_pa"),
             ("g12_mpa", "g12_pa"),
