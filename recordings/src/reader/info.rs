@@ -152,6 +152,10 @@ impl fmt::Display for Info {
         writeln!(f, "profile      {} ({})", self.profile, self.library)?;
         writeln!(f, "attachments  {}", list(&self.attachments))?;
         writeln!(f, "metadata     {}", list(&self.metadata))?;
+        let same = self.definitions.is_empty();
+        let definitions =
+            if same { "none of a type of this program differs" } else { "differ, as listed below" };
+        writeln!(f, "definitions  {definitions}")?;
         let width = |text: &dyn Fn(&TopicInfo) -> usize, least: usize| {
             self.topics.iter().map(text).max().unwrap_or(0).max(least)
         };
