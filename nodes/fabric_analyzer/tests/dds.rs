@@ -20,7 +20,7 @@ const TIME_LIMIT: Duration = Duration::from_secs(60);
 /// A fabric with the step of the packing, without moduli; the gate sets the duration.
 fn measured(packing: &Packing) -> Result<Measured, MeasureError> {
     let fabric = Fabric { source_step: packing.step, ..Fabric::default() };
-    Ok(Measured { fabric, moduli: Err(NotJammed::NoContacts { grains: 0 }), left_out: None })
+    Ok(Measured { fabric, moduli: Err(NotJammed::NoContacts { grains: 0 }), notes: Vec::new() })
 }
 
 /// An analyzer whose measurements wait for its gate, and the messages received from it.

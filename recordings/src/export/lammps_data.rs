@@ -45,8 +45,7 @@ pub fn lammps_data(packing: &Packing) -> String {
         );
     }
     text.push_str("\nVelocities\n\n");
-    for k in 0..packing.grains() {
-        let (id, v, w) = (ids[k], &packing.velocities[k], &packing.spins[k]);
+    for ((id, v), w) in ids.iter().zip(&packing.velocities).zip(&packing.spins) {
         let _ = writeln!(text, "{id} {:e} {:e} {:e} {:e} {:e} {:e}", v.x, v.y, v.z, w.x, w.y, w.z);
     }
     text

@@ -13,7 +13,7 @@ fn start() -> Engine {
     let mut s = setting(0.3, 0.0);
     s.time_step = TimeStep::FractionOfStable(0.8);
     (s.damping, s.drag, s.spin_drag) = (0.3, 2e4, 2e4);
-    let mut e = Engine::from_packing(&Sample::Pressed.packing(), s);
+    let mut e = Engine::from_packing(&Sample::Pressed.packing(), s).unwrap();
     e.initialise().unwrap();
     e
 }
