@@ -117,7 +117,7 @@ fn a_refused_launch_leaves_no_folder() {
     let built_in = include_str!("../../nodes/launch/demo.launch.yaml");
     let large = "#".repeat(2 << 20);
     for (name, text, code, word) in [
-        ("empty.launch.yaml", "launch: []", 2, "declares no arg"),
+        ("empty.launch.yaml", "launch: []", 2, "does not declare the arg"),
         ("evil.launch.yaml", &built_in.replace("name: recorder", "name: ../../evil"), 2, "../../evil"),
         ("unknown.launch.yaml", &built_in.replace("run servo_controller", "run servo"), 2, "servo"),
         ("foreign.launch.yaml", &built_in.replace("grainlab run servo", "missing run servo"), 2, "missing"),

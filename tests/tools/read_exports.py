@@ -136,6 +136,7 @@ print(f"LAMMPS normal forces, computed from positions: {worst:.1e} of the mean")
 # The dump has the same ids: read onto the data file, it moves no grain.
 if general == "no":
     step = (folder / "lammps/packings.dump").read_text().split("ITEM: TIMESTEP\n")[1].split()[0]
+    program.command("undump back")
     program.command(f"read_dump {folder}/lammps/packings.dump {step} x y z replace yes box no")
     now = program.numpy.extract_atom("id")[: len(ids)]
     moved = program.numpy.extract_atom("x")[: len(ids)][np.argsort(now)] - positions[by_id]

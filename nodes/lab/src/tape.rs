@@ -53,7 +53,9 @@ impl Tape {
         *count += 1;
         let seconds = u64::try_from(header.stamp.sec).unwrap_or(0);
         let time = seconds * 1_000_000_000 + u64::from(header.stamp.nanosec);
-        let payload = to_cdr(message);
+        let mut payload = to_cdr(message);
+        // The bytes of the bus, which sends whole words.
+        payload.resize(payload.len().next_multiple_of(4), 0);
         let sample = Incoming {
             guid: self.guid,
             sequence: *count,

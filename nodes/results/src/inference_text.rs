@@ -104,7 +104,7 @@ mod tests {
     fn every_exact_cell_stands_under_its_name() {
         let mut r = s1(0.01);
         (r.values.z, r.values.eps_stiffness) = (Some(5.9), Some(0.02));
-        r.sigma_model.z = Some(0.04);
+        (r.sigma_model.z, r.sigma_model.eps_stiffness) = (Some(0.04), None);
         r.interval.bounds.eps_stiffness = Some([-0.01, 0.05]);
         (r.chi_square, r.degrees_of_freedom) = (Some(1.5), Some(2));
         let cells = r.exact_cells();
@@ -113,7 +113,7 @@ mod tests {
         let cell = |name| cells[columns.iter().position(|c| *c == name).unwrap()].as_str();
         assert_eq!((cell("model"), cell("status")), ("ratio", "ok"));
         assert_eq!((cell("z"), cell("sigma_z"), cell("eps_stiffness")), ("5.9", "", "0.02"));
-        assert_eq!((cell("sigma_model_z"), cell("sigma_model_eps")), ("0.04", ""));
+        assert_eq!((cell("sigma_model_z"), cell("sigma_model_eps_stiffness")), ("0.04", ""));
         assert_eq!((cell("eps_stiffness_low"), cell("eps_stiffness_high")), ("-0.01", "0.05"));
         assert_eq!((cell("chi_square"), cell("degrees_of_freedom")), ("1.5", "2"));
         assert_eq!(cell("k_low").parse::<f64>().ok(), r.interval.bounds.k.map(|b| b[0]));

@@ -40,6 +40,11 @@ fn corrected(moduli: &Moduli, settings: &Settings) -> Estimate {
     of_ratio(microstructure_message(moduli, settings).message)
 }
 
+/// An entry of the covariance, without the part that the model leaves out.
+fn of_data(e: &Estimate, at: usize) -> f64 {
+    e.covariance[at] - e.covariance_model.get(at).copied().unwrap_or_default()
+}
+
 fn of_ratio(message: Microstructure) -> Estimate {
     assert!(MicrostructureReading::try_from(&message).is_ok(), "a reader refuses {message:?}");
     message.estimates.into_iter().find(|e| e.model == "ratio").unwrap()

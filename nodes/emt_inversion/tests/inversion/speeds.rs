@@ -1,7 +1,7 @@
 //! S1 as measured by an acoustic instrument.
 
 use crate::moduli::{s1_medium, s1_stiffness};
-use crate::{corrected, of_ratio, s1};
+use crate::{corrected, of_data, of_ratio, s1};
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt_inversion::{Axis, Settings, microstructure_of_speeds};
 use grainlab_msgs::boundary::MicrostructureReading;
@@ -83,21 +83,22 @@ fn the_error_is_that_of_the_speeds_and_the_density_else_that_of_the_settings() {
     let stated = answer(&upright(), &none);
     let mut twice = upright();
     twice.speeds.iter_mut().for_each(|s| s.speed_stddev *= 2.0);
-    let ratio = answer(&twice, &none).covariance[0] / stated.covariance[0];
+    let ratio = of_data(&answer(&twice, &none), 0) / of_data(&stated, 0);
     assert!((ratio - 4.0).abs() < 1e-6, "{ratio}");
     // The density changes all moduli together: k follows them, and ε and k̂ depend only on ratios.
     let dense = answer(&WaveSpeeds { density_stddev: 0.02 * DENSITY, ..upright() }, &none);
     assert!(dense.covariance[0] > stated.covariance[0] + 0.9 * (0.02 * dense.k[0]).powi(2), "{dense:?}");
     for at in [6, 18] {
-        assert!((dense.covariance[at] / stated.covariance[at] - 1.0).abs() < 1e-6, "{at}");
+        assert!((of_data(&dense, at) / of_data(&stated, at) - 1.0).abs() < 1e-6, "{at}");
     }
     let mut unknown = upright();
     unknown.speeds.iter_mut().for_each(|s| s.speed_stddev = 0.0);
-    assert_eq!(answer(&unknown, &none).credible_level, 0.0);
+    let exact = answer(&unknown, &none);
+    assert_eq!(exact.covariance, exact.covariance_model, "the error of the model alone");
     let assumed = answer(&unknown, &Settings::default());
     let of_moduli = corrected(&s1_stiffness(), &Settings::default());
     assert!(
-        (assumed.covariance[6] / of_moduli.covariance[6] - 1.0).abs() < 1e-4,
+        (of_data(&assumed, 6) / of_data(&of_moduli, 6) - 1.0).abs() < 1e-4,
         "as for moduli without errors"
     );
     // A single speed without an error gets the largest one of the others, and there is a note.

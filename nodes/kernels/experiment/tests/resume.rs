@@ -3,7 +3,7 @@
 use grainlab_core::Packing;
 use grainlab_dem::{Compute, DemError};
 use grainlab_experiment::{ExperimentError, Simulation};
-use grainlab_scene::Scene;
+use grainlab_scene::{Condition, Measure, Scene};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -202,7 +202,9 @@ fn an_event_driven_gas_accepts_isotropic_rates_only_and_reports_jamming() {
     assert!(run.engine().steps() <= before.0.step);
     assert!(advance(&mut run));
 
-    let mut run = begin(&event_driven().replace("solid_fraction = 0.55", "solid_fraction = 0.76"));
+    let mut dense = Scene::parse(&event_driven()).unwrap();
+    dense.phases[0].until.all = vec![Condition::AtLeast(Measure::SolidFraction, 0.76)];
+    let mut run = Simulation::new(dense).unwrap();
     let error = loop {
         let rate = run.request().unwrap().controls.map(|c| match c {
             grainlab_core::ComponentControl::StrainRate(rate) => rate,

@@ -87,7 +87,7 @@ fn the_canonical_text_of_a_scene_means_the_same_and_is_its_own() {
         [[phase]]\nkind = 'cycle'\nname = 'c'\ntimes = 3\n\
         [[phase.phase]]\nkind = 'servo'\nname = 'a'\nlaw = 'integral'\ngain = 1e-3\n\
         control = { xx = { stress = 1e5 }, xy = { rate = -0.5 } }\nuntil = { on_target = 0.1, strain = { xx = -1 } }\n\
-        [[phase.phase]]\nkind = 'strain'\nrate = [0, 0, 1, 0, 0, 1e22]\nfriction = 0.5\nuntil = { elapsed = 1 }\n";
+        [[phase.phase]]\nkind = 'strain'\nrate = [0, 0, 1, 0, 0, 1e22]\nfriction = 0.5\nuntil = { elapsed = 0.5 }\n";
     let resolved = Draft::of_text(awkward).unwrap().resolve().unwrap();
     let again = Draft::of_text(&resolved.toml).unwrap_or_else(|e| panic!("{e}\n{}", resolved.toml));
     assert_eq!(again.resolve().unwrap(), resolved, "{}", resolved.toml);
@@ -127,7 +127,7 @@ fn phases_within_a_cycle_are_found_by_name_too() {
     let cyclic = "base = 'demo'\nname = 'c'\nfriction = 0.1\n[[phase]]\nkind = 'gas'\nrate = -1\nuntil.elapsed = 1e-6\n\
         [[phase]]\nkind = 'cycle'\ntimes = 2\n[[phase.phase]]\nkind = 'relax'\nname = 'in'\nuntil.elapsed = 1e-6\n";
     let over = "base = 'c'\nname = 'd'\nphase.in.drag = 3\nphase.cycle.times = 1\n\
-        [[append]]\nafter = 'in'\nkind = 'relax'\nname = 'next'\nuntil.elapsed = 1\n";
+        [[append]]\nafter = 'in'\nkind = 'relax'\nname = 'next'\nuntil.elapsed = 0.5\n";
     let d = scene(&[("c", cyclic), ("d", over)], "d");
     let phases: Vec<(&str, f64)> = d.phases.iter().map(|p| (p.name.as_str(), p.drag)).collect();
     assert_eq!(phases, [("gas", 0.0), ("in#1", 3.0), ("next#1", 0.0)]);

@@ -43,12 +43,12 @@ fn bias_and_scatter_are_those_of_the_estimates_less_the_truth() {
     let k_hat = of(&judged, "k_hat");
     assert_eq!(k_hat["truth"], "k", "k_hat stands for the coordination of the calibration");
     near(&k_hat["bias"], -0.1);
-    assert!(k["covered"].is_null(), "without errors there is no interval");
+    assert_eq!((&k["intervals"], &k["covered"]), (&3.into(), &1.0.into()), "the error of the model alone");
 }
 
 #[test]
 fn intervals_that_have_the_truth_in_them_are_counted() {
-    let input = said(&[(5.73, 0.016), (5.75, 0.02), (5.0, 0.016), (6.5, 0.3)]);
+    let input = said(&[(5.73, 0.016), (5.75, 0.02), (2.0, 0.016), (9.5, 0.9)]);
     let judged = judge(&input, &["--model=ratio", "--error=0.01"]);
     assert_eq!(of(&judged, "k")["intervals"], 4);
     near(&of(&judged, "k")["covered"], 0.5);
