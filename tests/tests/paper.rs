@@ -85,9 +85,14 @@ fn analyze_by_probe_gives_the_columns_of_lammps_and_warns_where_contacts_open() 
             assert!((ours - theirs).abs() < 1e-3 * c(lammps, 0, 0), "C[{i}][{j}] {ours} {theirs}");
         }
     }
-    assert_eq!(found["warnings"].as_array().unwrap().len(), 0, "{}", found["warnings"]);
+    let about_amplitude = |of: &Value| {
+        of["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains("--amplitude"))
+    };
+    // The only note is on contacts at the Coulomb limit.
+    let notes = found["warnings"].as_array().unwrap();
+    assert!(notes.len() == 1 && !about_amplitude(&found), "{notes:?}");
     let far = by_probe("1e-5");
-    assert!(far["warnings"][0].as_str().unwrap().contains("--amplitude"), "{}", far["warnings"]);
+    assert!(about_amplitude(&far), "{}", far["warnings"]);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use grainlab_console::Failure;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Mat3, Vec3};
+use grainlab_msgs::topics;
 use grainlab_recordings::import::ImportOptions;
 use std::path::PathBuf;
 
@@ -91,7 +92,9 @@ impl Args {
             friction: self.friction,
             law: self.contact_law,
             radius: self.radius,
-            topic: Some(self.topic.clone()).filter(|topic| !topic.is_empty()),
+            // The default name means the packings of the recording, whatever their topic is called.
+            topic: Some(self.topic.clone())
+                .filter(|topic| !topic.is_empty() && topic != topics::PACKING.name),
             contact_forces,
             contact_columns: self.contact_columns.clone(),
         })
