@@ -117,3 +117,25 @@ fn a_run_interrupted_before_it_has_a_state_says_that_nothing_was_saved_and_begin
     assert_eq!(resumed.code, Some(0), "{}\n{}", resumed.stdout, resumed.stderr);
     assert!(distinct(&expected, "/stress") == distinct(&run, "/stress"));
 }
+
+#[test]
+fn a_run_that_lacks_a_measurement_of_its_last_packing_makes_it_when_it_is_resumed() {
+    let lab = Lab::new();
+    let scene = golden("scenes/tiny.toml");
+    let mut launcher = lab.start(&["launch", "acoustic", "--scene", &scene.to_string_lossy()]);
+    lab.until_recorded(20);
+    let run = lab.last_run();
+    let begin = Instant::now();
+    // The inversion of the moduli is the first answer, that of the slower waves the second.
+    while distinct(&run, "/microstructure").len() < 3 && launcher.runs() {
+        assert!(begin.elapsed() < LIMIT);
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    send(launcher.pid(), libc::SIGINT);
+    let ended = launcher.ended(LIMIT);
+    let resumed = lab.run(&["launch", "--resume", &run.to_string_lossy()]);
+    // Interrupted too late, it was complete.
+    let expected = if ended.code == Some(0) { 2 } else { 0 };
+    assert_eq!(resumed.code, Some(expected), "{}\n{}", resumed.stdout, resumed.stderr);
+    assert_eq!((distinct(&run, "/wave_speeds").len(), distinct(&run, "/microstructure").len()), (2, 4));
+}

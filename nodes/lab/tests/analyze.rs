@@ -144,3 +144,13 @@ fn grains_without_friction_have_no_tangential_springs_in_analyze_and_probe_unles
     assert_eq!(both[0], false);
     assert!(both[3].as_f64() > Some(2.0 * smooth[3].as_f64().unwrap()), "{both} {smooth}");
 }
+
+#[test]
+fn warnings_that_a_table_has_no_column_for_are_printed_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pair.dump");
+    std::fs::write(&path, dump(0.19, &[7])).unwrap();
+    let output = analyze().arg(&path).args(GLASS).args(["--format", "csv"]).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("pair.dump, step 7: contacts were found from positions"), "{said}");
+}

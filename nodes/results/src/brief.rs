@@ -31,7 +31,7 @@ pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
     let mut lines: Vec<String> =
         ended(s.exit, s.reason.as_deref(), s.saved_step).map(|why| row("Ended", &why)).into_iter().collect();
     match s.states.as_slice() {
-        [] => lines.push(row("Prepared", "no packing at the end of a phase")),
+        [] => lines.push(row("Prepared", "no packing of the end of a phase was measured")),
         [state] => lines.extend(one(state)),
         several => lines.extend(states::lines(several)),
     }
@@ -39,7 +39,9 @@ pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
     let folder = quoted(&directory.display().to_string());
     lines.push(row("Files", &format!("{folder}: recording, summary.json, scene.toml, logs")));
     let next = [
-        (s.exit == Exit::Interrupted.code())
+        [Exit::Interrupted, Exit::DataLoss]
+            .iter()
+            .any(|exit| s.exit == exit.code())
             .then(|| format!("launch --resume {folder}    # {}", goes_on(s.saved_step))),
         (!s.states.is_empty()).then(|| format!("analyze {folder}    # all that is measured")),
         Some(format!("bag info {folder}    # what was recorded")),
@@ -218,7 +220,11 @@ fn pace(s: &Summary) -> String {
         text += &format!(", {}{in_all}", count(n, "exchange"));
     }
     let (messages, lost) = s.topics.iter().fold((0, 0), |(m, l), t| (m + t.recorded, l + t.lost));
-    text += &format!("; {} recorded, {lost} lost", count(messages, "message"));
+    // A killed recorder leaves no counts.
+    text += &match s.topics.is_empty() {
+        true => "; messages were not counted".to_owned(),
+        false => format!("; {} recorded, {lost} lost", count(messages, "message")),
+    };
     if s.film.packings > 0 {
         text += &format!(", {} within phases", count(s.film.packings, "packing"));
     }

@@ -7,6 +7,10 @@ use grainlab_core::results::{PackingReport, StressForceFabric};
 use grainlab_core::{Stiffness, Symmetry, Vec3};
 
 impl Printed for MeasuredPacking {
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.iter().map(|w| format!("{}, step {}: {w}", self.source, self.step)).collect()
+    }
+
     fn text(&self) -> String {
         format!("{}, step {}\n{}", self.source, self.step, text(self))
     }

@@ -12,6 +12,9 @@ pub trait Printed: Serialize + Sized {
 
     /// Results as a table, one per row, at full precision.
     fn table(results: &[Self]) -> Table;
+
+    /// What a reader of a table must know, each with its packing. CSV has no place for it: it goes to stderr.
+    fn warnings(&self) -> Vec<String>;
 }
 
 /// Prints results one after the other.
@@ -46,6 +49,7 @@ impl<R: Printed> Printer<R> {
         Ok(match self.format {
             Format::Table => result.text(),
             Format::Csv => {
+                result.warnings().iter().for_each(|warning| grainlab_console::say!("grainlab: {warning}"));
                 let text = self.csv(std::slice::from_ref(result))?;
                 match text.split_once('\n') {
                     Some((_, row)) if !first => row.to_owned(),

@@ -23,7 +23,7 @@ pub struct Probed {
 
 /// Quantities of the packing in CSV: the inputs of an inversion besides the speeds, and its truth. The moduli
 /// are those from the speeds, under the names that `grainlab invert --table` reads.
-const BESIDE: [&str; 13] = [
+const BESIDE: [&str; 14] = [
     "grains",
     "phi",
     "axial_q_over_p",
@@ -32,6 +32,7 @@ const BESIDE: [&str; 13] = [
     "grain_shear_modulus_pa",
     "poisson",
     "contact_law",
+    "smooth",
     "k",
     "z",
     "eps",
@@ -44,6 +45,15 @@ fn beside() -> impl Iterator<Item = &'static Quantity<PackingReport>> {
 }
 
 impl Printed for Probed {
+    fn warnings(&self) -> Vec<String> {
+        let p = &self.packing;
+        let of_waves = self.acoustic.iter().flat_map(AcousticReport::warnings);
+        p.warnings()
+            .into_iter()
+            .chain(of_waves.map(|w| format!("{}, step {}: {w}", p.source, p.step)))
+            .collect()
+    }
+
     fn text(&self) -> String {
         let p = &self.packing;
         let mut text = format!("{}, step {}\n{}", p.source, p.step, packing_text::text(p));

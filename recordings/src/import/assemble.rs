@@ -225,8 +225,10 @@ pub(super) fn packing(
     })?;
     packing.contacts = match listed {
         None => {
-            notes
-                .push("contacts were found from positions: Hertz normal forces, no tangential forces".into());
+            notes.push(
+                "contacts were found from positions: normal forces by the contact law, no tangential forces"
+                    .into(),
+            );
             found
         }
         Some(listed) => {

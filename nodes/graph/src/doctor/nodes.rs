@@ -35,17 +35,13 @@ pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
         let single = SINGLE.iter().find(|(kind, _)| topic.types().contains(kind));
         let Some((_, what)) = single else { continue };
         // Runs with an identity of their own share a domain without mixing.
-        let by_hand: BTreeSet<&[u8]> = topic
-            .publishers
-            .iter()
-            .filter(|p| run_of_endpoint(p).is_none())
-            .map(|p| p.participant())
-            .collect();
-        if by_hand.len() > 1 {
-            let owners: BTreeSet<String> = topic.publishers.iter().map(|e| graph.owner(e)).collect();
+        let by_hand = || topic.publishers.iter().filter(|p| run_of_endpoint(p).is_none());
+        let count = by_hand().map(|p| p.participant()).collect::<BTreeSet<&[u8]>>().len();
+        if count > 1 {
+            let owners: BTreeSet<String> = by_hand().map(|e| graph.owner(e)).collect();
             found.push(Finding::error(
                 "duplicate_publisher",
-                format!("{} {what} publish {name}: {}", by_hand.len(),
+                format!("{count} {what} publish {name}: {}",
                     owners.into_iter().collect::<Vec<_>>().join(", ")),
                 "end one of them, give each lab a namespace (-r __ns:=) or a domain (ROS_DOMAIN_ID) of its own, or name their \
                  runs (GRAINLAB_RUN)",

@@ -54,9 +54,8 @@ pub(super) fn finish(
         missing.extend(exchanges.missing());
     }
     let topics = recording.as_ref().map_or_else(|_| Vec::new(), |recording| recording.info().topics);
-    // Without processes, a run that was finished before is reported.
-    let (children, is_old) = (&supervised.children, supervised.children.is_empty());
-    let has = |node: NodeKind| is_old || children.iter().any(|c| c.plan.is(node));
+    let children = &supervised.children;
+    let has = |node: NodeKind| children.iter().any(|c| c.plan.is(node));
     let unanswered = (has(NodeKind::FabricAnalyzer) && back.not_analysed > 0)
         || (has(NodeKind::EmtInversion) && back.not_inverted > 0);
     if !missing.is_empty() || unanswered {

@@ -8,7 +8,7 @@ use grainlab_core::Vec3;
 use grainlab_micromechanics::analyze;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_recordings::import::Imported;
-use grainlab_results::{AcousticReport, AttenuationReport, MeasuredPacking, Probed, of_springs};
+use grainlab_results::{AcousticReport, AttenuationReport, MeasuredPacking, Probed, state_warnings};
 
 /// Settings of the measurement.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ impl Measure for Probe {
             let mut measured = MeasuredPacking::new(source.to_owned(), report);
             measured.step = imported.step;
             measured.warnings.clone_from(&imported.notes);
-            measured.warnings.extend(of_springs(packing, &measured.report));
+            measured.warnings.extend(state_warnings(packing, &measured.report, None, &imported.notes));
             Ok::<_, String>(measured)
         };
         let found = match grainlab_acoustics::measure(packing, &self.settings.0) {
