@@ -114,7 +114,7 @@ impl Measured {
 /// q/p that is not known: a normal distribution of mean 0 and standard deviation 0.15, cut at ±0.3. Its moments.
 pub const UNKNOWN_STRESS_RATIO: Measured = Measured { value: 0.0, stddev: 0.131_94 };
 
-/// A spread of the sizes that is not known: uniform from 0 to [`LARGEST_SPREAD`]. The laws take its square s², whose mean is
+/// A spread of the sizes that is not known: uniform from 0 to 0.3. The laws take its square s², whose mean is
 /// 0.03 and standard deviation 0.0268: here as a spread and its standard deviation that give the same.
 pub const UNKNOWN_SIZE_SPREAD: Measured = Measured { value: 0.173_2, stddev: 0.077_46 };
 
