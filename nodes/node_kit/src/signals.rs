@@ -1,7 +1,7 @@
 //! SIGINT, SIGTERM and SIGHUP: the first signal stops the node, the second ends the process at once.
 //!
-//! A node obeys its launcher alone. A service manager or a batch system sends its signal to all processes of a run at once:
-//! the recorder and the readers of the simulator would end before its state is saved.
+//! A node of a launched run is ended by its launcher alone. A service manager or a batch system sends its signal to all
+//! processes of a run at once: the recorder and the readers of the simulator would end before its state is saved.
 
 use crate::exit::Exit;
 use mio::net::UnixStream;
