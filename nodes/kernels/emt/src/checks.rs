@@ -108,7 +108,9 @@ fn outside_errors(conditions: &Conditions, calibration: &Calibration) -> Vec<Out
     let size_spread = conditions.size_spread.unwrap_or(0.0);
     let pressure = conditions.pressure.value;
     let state = NetworkState::of(pressure, grains, size_spread, stress_ratio);
-    network.reach.outside(pressure / grains.effective_young(), &state)
+    let mut outside = network.reach.outside(pressure / grains.effective_young(), &state);
+    outside.retain(Outside::is_extrapolation);
+    outside
 }
 
 /// The modulus with the largest relative error, and this error.

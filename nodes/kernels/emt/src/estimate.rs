@@ -55,7 +55,7 @@ impl Status {
         result.as_ref().map_or(Status::Unknown, |estimate| estimate.status)
     }
 
-    fn of_estimate(structure: &Microstructure, warnings: &[Warning]) -> Self {
+    pub(crate) fn of_estimate(structure: &Microstructure, warnings: &[Warning]) -> Self {
         if structure.values().iter().all(Option::is_none) {
             Status::Unknown
         } else if warnings.iter().any(Warning::is_contradiction) {

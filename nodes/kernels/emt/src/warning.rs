@@ -165,12 +165,23 @@ pub enum Warning {
         /// The modulus furthest from its prediction by the others, and the difference in standard deviations.
         worst: (Modulus, f64),
     },
+    /// The moduli are improbable under the posterior, although their χ² about the estimate is ordinary.
+    Improbable {
+        /// Probability of the whole, or of the least probable modulus times their number.
+        probability: f64,
+    },
 }
 
 impl Warning {
     /// Whether the data contradict each other or the model.
     pub fn is_contradiction(&self) -> bool {
-        matches!(self, Warning::NotOneMedium | Warning::Imbalance { .. } | Warning::Conflict { .. })
+        matches!(
+            self,
+            Warning::NotOneMedium
+                | Warning::Imbalance { .. }
+                | Warning::Conflict { .. }
+                | Warning::Improbable { .. }
+        )
     }
 
     /// Whether the model or the calibration is used outside its range.
@@ -331,6 +342,11 @@ impl fmt::Display for Warning {
                 f,
                 "the moduli contradict each other or the model: chi-square {chi_square:.1} for {degrees_of_freedom} \
                  degrees of freedom, {modulus} is {sigma:.1} sigma from its prediction by the others"
+            ),
+            Warning::Improbable { probability } => write!(
+                f,
+                "the moduli are improbable under the posterior (p = {probability:.0e}): the sample is unlike the packings of the \
+                 calibration, or the errors are larger than given"
             ),
         }
     }

@@ -253,7 +253,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         drawn::write(&state, &ways, drawn::Number { chains, per_chain, seed: args.seed }, path)?;
     }
     let evidence = args.evidence.then(|| evidence::of_ways(&state, &ways, &args.prior_odds, args.seed));
-    let answer = Answer::of(state, None, &ways);
+    let mut answer = Answer::of(state, None, &ways);
+    let predictive = args.explain.then(|| predictive::of_answer(&mut answer, &ways)).flatten();
     for fault in answer.faults(&ways) {
         say!("grainlab: {fault}");
     }
@@ -263,12 +264,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             sampled::sampled(state, &answer.outcomes, &ways, draws as usize, args.seed)
         }),
         evidence: evidence.transpose()?,
-        predictive: answer
-            .state
-            .as_ref()
-            .ok()
-            .filter(|_| args.explain)
-            .map(|state| predictive::of_ways(state, &ways)),
+        predictive,
     };
     print(&match args.format {
         Format::Json => printer.json(&answer, more)?,

@@ -10,11 +10,11 @@ const UNKNOWN: f64 = 0.5;
 /// extrapolation: packings outside the packings taught (`tests/ensembles`) need it.
 const GROWTH: f64 = 12.0;
 
-/// Factor of the variance just outside.
+/// Factor of the variance just outside, at the distance [`TOLERANCE`].
 const OUTSIDE: f64 = 1.8;
 
 /// Share of a range beyond its ends that still counts as inside: random packings do not reach the ends of the ranges that
-/// they were drawn from, which are those stated.
+/// they were drawn from, which are those stated. The variance grows from the outermost packing.
 const TOLERANCE: f64 = 0.02;
 
 /// Least width of a range by which distances from it are measured: of ln p, of z, and of the others.
@@ -40,7 +40,7 @@ pub struct Reach {
     pub stress_ratio: [f64; 2],
 }
 
-/// One quantity outside its range.
+/// One quantity beyond its range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Outside {
     pub(crate) quantity: &'static str,
@@ -51,6 +51,11 @@ pub(crate) struct Outside {
 }
 
 impl Outside {
+    /// Whether it is an extrapolation, and not one of the ends of the range.
+    pub(crate) fn is_extrapolation(&self) -> bool {
+        self.distance.is_nan() || self.distance > TOLERANCE
+    }
+
     /// Whether it is too far for an estimate.
     pub(crate) fn is_too_far(&self) -> bool {
         self.distance.is_nan() || self.distance > UNKNOWN
@@ -58,12 +63,13 @@ impl Outside {
 
     /// Factor of the variances of an estimate.
     pub(crate) fn growth(&self) -> f64 {
-        OUTSIDE + GROWTH * (self.distance / UNKNOWN).powi(2)
+        let step = (OUTSIDE - 1.0) * (self.distance / TOLERANCE).min(1.0);
+        1.0 + step + GROWTH * (self.distance / UNKNOWN).powi(2)
     }
 }
 
 impl Reach {
-    /// The quantities of this state that are outside.
+    /// The quantities of this state that are beyond the ranges.
     pub(crate) fn outside(&self, pressure: f64, state: &NetworkState) -> Vec<Outside> {
         let size_spread = state.size_variance.max(0.0).sqrt();
         let stiffness_ratio = state.stiffness_ratio + REFERENCE_STIFFNESS_RATIO;
@@ -115,14 +121,14 @@ impl Reach {
         [low - wider, high + wider]
     }
 
-    /// The inferred structure, if it is outside; ε `None` is inside.
+    /// The inferred structure, if it is beyond the ranges; ε `None` is inside.
     pub(crate) fn outside_structure(&self, z: f64, eps: Option<f64>) -> Vec<Outside> {
         let of_eps = eps.and_then(|eps| beyond("eps", eps, self.eps, |v| v, WIDTH));
         beyond("z", z, self.z, |v| v, Z_WIDTH).into_iter().chain(of_eps).collect()
     }
 }
 
-/// The value, if it is outside: the distance is measured on the given scale, in widths of the range or of `least`, if that is
+/// The value, if it is beyond the range: the distance is measured on the given scale, in widths of the range or of `least`, if that is
 /// wider.
 fn beyond(
     quantity: &'static str,
@@ -135,8 +141,8 @@ fn beyond(
     let width = (high - low).max(least);
     let at = scale(value);
     let distance = (low - at).max(at - high) / width;
-    let is_outside = distance.is_nan() || distance > TOLERANCE;
-    is_outside.then_some(Outside { quantity, value, range, distance })
+    let is_beyond = distance.is_nan() || distance > 0.0;
+    is_beyond.then_some(Outside { quantity, value, range, distance })
 }
 
 #[cfg(test)]
@@ -147,8 +153,9 @@ mod tests {
     fn variances_grow_with_the_distance_and_half_a_range_away_there_is_no_estimate() {
         let at = |value| beyond("q/p", value, [-0.2, 0.3], |v| v, 0.1);
         assert_eq!(at(0.3), None);
-        assert_eq!(at(-0.2099), None);
-        assert!(at(-0.2101).is_some());
+        let [end, beyond] = [-0.2099, -0.2101].map(|v| at(v).unwrap());
+        assert!(!end.is_extrapolation() && beyond.is_extrapolation());
+        assert!((at(0.300_001).unwrap().growth() - 1.0).abs() < 1e-3, "the variance does not jump");
         let near = at(0.35).unwrap();
         assert!(!near.is_too_far() && (near.growth() - (OUTSIDE + GROWTH * 0.04)).abs() < 1e-9, "{near:?}");
         let far = at(-0.46).unwrap();

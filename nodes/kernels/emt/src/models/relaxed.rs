@@ -149,11 +149,13 @@ fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state
     if !state.sizes_known {
         warnings.push(Warning::SizesUnknown);
     }
-    for outside in &state.outside {
+    for outside in state.outside.iter().filter(|o| o.is_extrapolation()) {
         let Outside { quantity, value, range, .. } = *outside;
         warnings.push(Warning::StateOutsideFit { quantity, value, range });
     }
-    for Outside { quantity, value, range, .. } in fit.outside(network) {
+    for Outside { quantity, value, range, .. } in
+        fit.outside(network).into_iter().filter(Outside::is_extrapolation)
+    {
         warnings.push(match quantity {
             "z" => Warning::CoordinationOutsideFit { quantity: InferredQuantity::Z, value, range },
             _ => Warning::EpsOutsideFit { eps: value, range },

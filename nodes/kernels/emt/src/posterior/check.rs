@@ -7,11 +7,13 @@ use super::halton;
 use super::points::{Posterior, point};
 use super::proposal::Proposal;
 use super::target::At;
+use crate::estimate::{Estimate, Status};
 use crate::likelihood::Predicted;
 use crate::moduli::Modulus;
 use crate::normal;
+use crate::warning::Warning;
 
-/// Probability below which an observation counts as unlike what the model knows.
+/// Probability below which an observation counts as unlike what the model predicts.
 const UNLIKELY: f64 = 1e-3;
 
 /// Number of points of the integration without a modulus.
@@ -43,11 +45,23 @@ pub struct Check {
 }
 
 impl Check {
-    /// Whether the observation is unlike what the model knows: a probability of less than one in a thousand, that of the moduli
-    /// left out divided by their number.
+    /// Whether the observation is unlike what the model predicts: a probability of less than one in a thousand.
     pub fn is_unlikely(&self) -> bool {
-        let each = UNLIKELY / self.moduli.len() as f64;
-        self.chi_square < UNLIKELY || self.moduli.iter().filter_map(|m| m.left_out).any(|p| p < each)
+        self.probability() < UNLIKELY
+    }
+
+    /// The lower of the probability of χ² and of the least probable modulus left out times the number of moduli.
+    fn probability(&self) -> f64 {
+        let least = self.least().and_then(|m| m.left_out).unwrap_or(1.0);
+        self.chi_square.min(least * self.moduli.len() as f64)
+    }
+
+    /// Marks an estimate of the same observation as contradictory, if the observation is unlikely and nothing else says so.
+    pub fn apply(&self, estimate: &mut Estimate) {
+        if self.is_unlikely() && !estimate.warnings.iter().any(Warning::is_contradiction) {
+            estimate.warnings.push(Warning::Improbable { probability: self.probability() });
+            estimate.status = Status::of_estimate(&estimate.structure, &estimate.warnings);
+        }
     }
 
     /// The smallest probability of a modulus left out.

@@ -133,16 +133,26 @@ const MEDIANS: [f64; 4] = [0.09957, 0.05788, 0.01465, 0.00771];
 #[test]
 fn relaxed_answers_inside_its_domain_as_accurately_as_before() {
     let inside: Vec<_> = judged().into_iter().filter(inside).collect();
-    let estimates: Vec<Estimate> = inside
-        .iter()
-        .filter_map(|s| Relaxed.infer(&s.observation(StrainRatioSource::Zero), ours()).ok())
-        .filter(|e| e.status == Status::Ok)
-        .collect();
+    let infer = |s: &CalibrationSample| {
+        Some((Relaxed.infer(&s.observation(StrainRatioSource::Zero), ours()).ok()?, s.clone()))
+    };
+    let is_ok = |(e, _): &(Estimate, CalibrationSample)| e.status == Status::Ok;
+    let estimates: Vec<_> = inside.iter().filter_map(infer).filter(is_ok).collect();
     let median = |q: InferredQuantity| {
-        let mut all: Vec<f64> = estimates.iter().map(|e| e.stddev(q).unwrap()).collect();
+        let mut all: Vec<f64> = estimates.iter().map(|(e, _)| e.stddev(q).unwrap()).collect();
         all.sort_by(f64::total_cmp);
         all[all.len() / 2]
     };
+    let pulls: Vec<_> = estimates.iter().map(|(e, s)| pulls(e, s)).collect();
+    for (i, q) in QUANTITIES.into_iter().enumerate() {
+        let of = |f: &dyn Fn(f64) -> f64| pulls.iter().map(|p| f(p[i].1)).sum::<f64>() / pulls.len() as f64;
+        let held = of(&|pull| f64::from(u8::from(pull.abs() < 1.96)));
+        eprintln!(
+            "{q}: error over sigma, rms {:.3}, mean {:.3}; inside 95 %: {held:.3}",
+            of(&|p| p * p).sqrt(),
+            of(&|p| p)
+        );
+    }
     let found = QUANTITIES.map(median);
     eprintln!(
         "ok on {} of {}, median sigma of k, z, eps, eps_stiffness {found:?}",

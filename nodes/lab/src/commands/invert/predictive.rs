@@ -1,9 +1,10 @@
 //! The observed moduli against what each model predicts with its posterior.
 
+use super::answer::Answer;
 use super::state::State;
 use super::way::Way;
 use grainlab_console::{Table, fixed};
-use grainlab_emt::{Check, EmtError, Posterior, PosteriorSettings};
+use grainlab_emt::{Check, EmtError, Estimate, Posterior, PosteriorSettings};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -17,7 +18,7 @@ pub(super) struct Predictive {
     calibration: String,
     /// Probability of a chi-square as large as the observed one, under the posterior of all moduli.
     chi_square: f64,
-    /// Whether the observation is unlike what the model knows.
+    /// Whether the observation is unlike what the model predicts.
     unlikely: bool,
     moduli: Vec<OfModulus>,
 }
@@ -32,9 +33,17 @@ struct OfModulus {
     left_out: Option<f64>,
 }
 
-/// Of the models that state a likelihood.
-pub(super) fn of_ways(state: &State, ways: &[Way]) -> Vec<Predictive> {
-    ways.par_iter().filter_map(|way| Some(view(way, &check(state, way).ok()?))).collect()
+/// Of the models that state a likelihood. Improbable moduli are part of the status of the answer.
+pub(super) fn of_answer(answer: &mut Answer, ways: &[Way]) -> Option<Vec<Predictive>> {
+    let state = answer.state.as_ref().ok()?;
+    let of_way = |(way, outcome): (&Way, &mut Result<Estimate, EmtError>)| {
+        let check = check(state, way).ok()?;
+        if let Ok(estimate) = outcome {
+            check.apply(estimate);
+        }
+        Some(view(way, &check))
+    };
+    Some(ways.par_iter().zip(&mut answer.outcomes).filter_map(of_way).collect())
 }
 
 fn check(state: &State, way: &Way) -> Result<Check, EmtError> {
@@ -60,7 +69,7 @@ fn view(way: &Way, check: &Check) -> Predictive {
     }
 }
 
-/// As a text table, with a warning where the observation is unlike what a model knows.
+/// As a text table.
 pub(super) fn people(all: &[Predictive]) -> String {
     if all.is_empty() {
         return String::new();
@@ -78,13 +87,6 @@ pub(super) fn people(all: &[Predictive]) -> String {
         }
         let text = format!("{}: chi-square of all moduli: p = {}", p.model, probability(Some(p.chi_square)));
         notes += &format!("  {text}\n");
-        if p.unlikely {
-            notes += &format!(
-                "  warning: {}: moduli as far from the prediction as these are improbable: the sample is unlike the packings of \
-                 the calibration, or the errors are larger than given\n",
-                p.model
-            );
-        }
     }
     notes += "  p: probability of a modulus as extreme as the observed one, with the posterior of all moduli, and of the others\n";
     format!("\n{}{notes}", t.text())
