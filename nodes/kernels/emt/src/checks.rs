@@ -19,12 +19,16 @@ const SCATTER: f64 = 2.2;
 /// Imbalance of moduli that were rounded to three or four digits.
 const ROUNDING: f64 = 5e-3;
 
-/// Probability with which chance alone raises one of the alarms that the data contradict each other or the model. There are
-/// three, of which consistent data together raise less than one in a hundred.
-pub(crate) const FALSE_ALARM: f64 = 2e-3;
+/// Probability with which chance alone raises the alarm that the data contradict the model, by χ² or by the modulus furthest
+/// from its prediction: with that of [`UNBALANCED`], consistent data raise less than one alarm in a hundred.
+pub(crate) const FALSE_ALARM: f64 = 1e-3;
 
-/// Number of standard deviations that chance exceeds, to either side, with the probability [`FALSE_ALARM`].
-const CERTAIN: f64 = 3.09;
+/// Number of standard deviations that chance exceeds, to either side, once in a thousand times.
+const CERTAIN: f64 = 3.29;
+
+/// Number of standard deviations of the relation between the six moduli that chance exceeds, to either side, five times in a
+/// thousand: no other check finds a fault of one modulus by the errors of the data alone.
+const UNBALANCED: f64 = 2.81;
 
 /// Relative error of a modulus beyond which linear propagation is inaccurate: at 5 % the intervals still cover their
 /// level, at 30 % they do not.
@@ -78,7 +82,7 @@ pub(crate) fn common(
     if let Some(relative) = observation.moduli.imbalance() {
         let errors = observation.covariance.as_ref();
         let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c)).unwrap_or(0.0);
-        add(relative.abs() > ROUNDING.max(CERTAIN * stddev), Warning::Imbalance { relative });
+        add(relative.abs() > ROUNDING.max(UNBALANCED * stddev), Warning::Imbalance { relative });
     }
     for quantity in [InferredQuantity::K, InferredQuantity::Z] {
         let Some(value) = structure.get(quantity) else { continue };

@@ -15,10 +15,10 @@ use std::ops::Range;
 /// isostatic point.
 const MIN_EXCESS: f64 = 0.05;
 
-/// Share of the variance of packings of 2,000 grains that is due to their size: packings of 8,000 grains by the same recipes
-/// (`tests/golden/ensembles/large.csv`) have .55 (ε weighted by stiffness) to .67 (ε) of the variance, and would have a
-/// quarter if all of it were.
-const OF_THE_SAMPLE: f64 = 0.45;
+/// Least and largest share of the variance of packings of 2,000 grains that is due to their size: packings of 8,000 grains by
+/// the same recipes (`tests/golden/ensembles/large.csv`) have .67 (ε) to .55 (ε weighted by stiffness) of the variance, and
+/// would have a quarter if all of it were.
+const OF_THE_SAMPLE: [f64; 2] = [0.45, 0.6];
 
 /// Number of quantities whose scatter is known: five invariants of the stiffness, ε weighted by stiffness, and k.
 pub(crate) const SCATTERED: usize = 7;
@@ -109,14 +109,16 @@ impl RelaxationCalibration {
         Scatter::from_fn(|i, j| self.scatter[i][j] * (factors[i] * factors[j]).sqrt() / (w[i] * w[j]))
     }
 
-    /// Variances of the scatter of samples of this size over those of the packings. For smaller ones they grow as the inverse
-    /// of the number of grains. For larger ones only the share that is due to the size of the sample falls, and none of that of
-    /// k: differences between recipes remain at any size.
+    /// Variances of the scatter of samples of this size over those of the packings. Only the share that is due to the size of the
+    /// sample changes as the inverse of the number of grains, and none of that of k in larger samples: differences between
+    /// recipes remain at any size. The share is that with the larger variance.
     pub(crate) fn variance_factors(&self, grains: Option<u32>) -> [f64; SCATTERED] {
         // Of an unknown size: as the packings.
         let ratio = grains.map_or(1.0, |n| f64::from(self.grains) / f64::from(n.max(1)));
-        let (moduli, k) =
-            if ratio >= 1.0 { (ratio, ratio) } else { (1.0 - OF_THE_SAMPLE + OF_THE_SAMPLE * ratio, 1.0) };
+        let [least, largest] = OF_THE_SAMPLE;
+        let share = if ratio > 1.0 { largest } else { least };
+        let moduli = 1.0 - share + share * ratio;
+        let k = moduli.max(1.0);
         [moduli, moduli, moduli, moduli, moduli, moduli, k]
     }
 

@@ -14,7 +14,7 @@ pub(super) fn is_beyond_chance(chi_square: f64, degrees_of_freedom: usize) -> bo
 /// The ratio is that of a χ² with `above` degrees of freedom, per degree of freedom, to another with `below`, or to its
 /// expectation if `None`: Wilson and Hilferty (1931), and Paulson (1942) for the ratio. With `below` less than three it
 /// never exceeds 2.7.
-pub(super) fn score(ratio: f64, above: usize, below: Option<usize>) -> f64 {
+pub(crate) fn score(ratio: f64, above: usize, below: Option<usize>) -> f64 {
     let spread = |freedom: usize| 2.0 / (9.0 * freedom.max(1) as f64);
     let (above, below) = (spread(above), below.map_or(0.0, spread));
     let root = ratio.max(0.0).cbrt();

@@ -25,6 +25,7 @@ mod agreement;
 mod axis;
 mod axis_error;
 mod chance;
+pub(crate) use chance::score;
 mod departure;
 mod determined;
 mod error;

@@ -16,6 +16,7 @@ mod state;
 
 use crate::calibration::{Calibration, Outside, Reach, RelaxationCalibration};
 use crate::checks::FALSE_ALARM;
+use crate::christoffel::score;
 use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;
@@ -166,9 +167,11 @@ fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state
         .map(|degrees_of_freedom| Misfit { chi_square: fit.chi_square, degrees_of_freedom });
     if let Some(Misfit { chi_square, degrees_of_freedom }) = misfit {
         let worst = fit.worst(data);
+        let below = fit.freedom_of_variances(network);
+        let of_all = score(chi_square / degrees_of_freedom as f64, degrees_of_freedom, Some(below));
         // The largest of several differences.
-        let of_worst = normal::chi_square_above(worst.1.powi(2), 1) * data.used as f64;
-        if normal::chi_square_above(chi_square, degrees_of_freedom).min(of_worst) < FALSE_ALARM {
+        let of_worst = 2.0 * normal::below(-worst.1) * data.used as f64;
+        if normal::below(-of_all).min(of_worst) < FALSE_ALARM {
             warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
         }
     }

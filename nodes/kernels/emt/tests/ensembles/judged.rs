@@ -190,9 +190,6 @@ fn intervals_hold_the_truth_where_the_state_is_uncertain() {
         let e = Relaxed.infer(&o, ours());
         assert!(!matches!(e, Err(EmtError::NoCoordination { .. })), "{o:?}");
         let Ok(e) = e else { continue };
-        if e.status != Status::Ok {
-            continue;
-        }
         for (i, q) in QUANTITIES.into_iter().enumerate() {
             let Some([low, high]) = e.interval(q) else { continue };
             count[i] += 1;
@@ -201,8 +198,8 @@ fn intervals_hold_the_truth_where_the_state_is_uncertain() {
     }
     let share: [f64; 4] = std::array::from_fn(|i| inside_95[i] as f64 / count[i] as f64);
     eprintln!("inside 95 % of k, z, eps, eps_stiffness: {share:?} of {count:?}");
-    // k and ε of 600 grains scatter less than those of the packings taught by the inverse of the number of grains.
-    let most = [0.99, 0.98, 0.99, 0.98];
+    // The distribution of q/p, from which most of the error of ε is, has no tails.
+    let most = [0.98, 0.98, 0.99, 0.98];
     assert!(share.iter().zip(most).all(|(share, most)| (0.93..=most).contains(share)), "{share:?}");
 }
 
@@ -250,6 +247,34 @@ fn at_most_one_in_a_hundred_consistent_packings_raises_an_alarm() {
     }
 }
 
+/// The standard deviation is that of the modulus less its prediction by the others: the errors of the data and the scatter of
+/// packings.
+#[test]
+fn nine_in_ten_moduli_off_by_five_standard_deviations_from_their_prediction_are_flagged() {
+    let mut of_all = [0, 0];
+    let mut random = Random(Pcg64Mcg::seed_from_u64(8));
+    for relative in [0.003, 0.01, 0.03] {
+        for modulus in Modulus::ALL {
+            let (mut flagged, mut all) = (0, 0);
+            for s in judged().iter().filter(|s| inside(s)) {
+                let noise = std::array::from_fn(|_| random.normal());
+                let of = |by: f64| estimate(s, relative, &noise, (modulus, by));
+                let (Some(without), Some(above), Some(below)) = (of(0.0), of(5.0), of(-5.0)) else {
+                    continue;
+                };
+                let chi_square = |e: &Estimate| e.misfit.unwrap().chi_square;
+                let square = 0.5 * (chi_square(&above) + chi_square(&below)) - chi_square(&without);
+                let Some(e) = of(25.0 / square.max(1e-12).sqrt()) else { continue };
+                (flagged, all) = (flagged + usize::from(e.status == Status::Contradictory), all + 1);
+            }
+            eprintln!("{modulus} five from its prediction, errors of {relative}: {flagged} of {all} flagged");
+            assert!(flagged * 100 >= 85 * all, "{modulus} {relative}: {flagged} of {all}");
+            of_all = [of_all[0] + flagged, of_all[1] + all];
+        }
+    }
+    assert!(of_all[0] * 10 >= of_all[1] * 9, "{of_all:?}");
+}
+
 /// Where the scatter of packings hides a fault of five stated errors, no test finds it: half the sum of χ² with the fault to
 /// either side, less that without, is the square of its distance in standard deviations. The best test, of a known modulus and
 /// sign and at a false alarm in a hundred, finds nine in ten only in Θ, and in C11 at large errors.
@@ -283,7 +308,7 @@ fn most_faults_of_five_stated_errors_are_flagged_where_the_scatter_of_packings_d
             );
             if best >= 0.9 * all {
                 visible += 1;
-                assert!(flagged >= 0.6 * all, "{modulus} {relative}");
+                assert!(flagged >= 0.65 * all, "{modulus} {relative}");
             }
         }
     }

@@ -143,6 +143,8 @@ fn packings_of_recipes_that_taught_nothing_are_inverted_to_what_is_stated() {
         eprintln!("{name:20} {:4}  {}", part.len(), [0, 1, 2, 3].map(of).join("  "));
     };
     line("all", &whole);
+    let alarms = all.iter().filter(|j| j.status == Status::Contradictory).count();
+    assert!(alarms * 100 <= all.len(), "{alarms}");
     // Those at the one q/p below 0, which the others do not reach.
     assert!(all.len() >= 500 && unknown <= 40, "{} and {unknown}", all.len());
     for (i, most) in RMS.into_iter().enumerate() {
@@ -205,7 +207,8 @@ fn every_packing_outside_is_flagged_or_unknown_and_none_is_confidently_wrong() {
             }
         }
         eprintln!("learned from {name}: {unknown} unknown, the others within {furthest:.1} sigma");
-        assert!(furthest <= 3.5, "{name}: {furthest} sigma");
+        // Of some 2,000 errors, five normal ones are beyond 3.
+        assert!(furthest <= 3.2, "{name}: {furthest} sigma");
     }
     assert!(answered >= 450, "{answered}");
 }

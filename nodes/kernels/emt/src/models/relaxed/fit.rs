@@ -75,6 +75,8 @@ pub(super) struct Fit {
     /// Inverse of the covariance of the residual, and covariance of the unknowns.
     weight: Square,
     unknowns: SMatrix<f64, 2, 2>,
+    /// Share of the variances of the residual that is the scatter of packings.
+    of_packings: f64,
     /// Covariance of ε weighted by stiffness and of k with the moduli, by the errors of the state.
     with_following: WithFollowing,
 }
@@ -123,7 +125,8 @@ impl Fit {
                 .scatter_at(z, &state.variance_factors)
                 .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
                 .into_owned();
-            let mut c = slopes * scatter * slopes.transpose() + data.covariance + of_inputs;
+            let of_packings = slopes * scatter * slopes.transpose();
+            let mut c = of_packings + data.covariance + of_inputs;
             if !fits_eps {
                 let [mean, spread] = network.eps_spread;
                 c += by_eps * by_eps.transpose() * (mean * mean + spread * spread);
@@ -133,13 +136,13 @@ impl Fit {
                     c[(i, i)] = 1.0;
                 }
             }
-            c
+            (c, of_packings)
         };
         let eps = match eps {
             Some(eps) => eps,
             None if fits_eps => {
                 let direction = by_eps(&at_zero);
-                let c = covariance(&at_zero, &direction, &of_inputs(0.0).0);
+                let (c, _) = covariance(&at_zero, &direction, &of_inputs(0.0).0);
                 let weighted = Cholesky::new(c)?.solve(&direction);
                 let residual = data.masked(data.value - first);
                 weighted.dot(&residual) / weighted.dot(&direction)
@@ -150,7 +153,7 @@ impl Fit {
         let by_invariants = data.masked(invariants.slopes());
         let direction = by_eps(&by_invariants);
         let (of_inputs, with_following) = of_inputs(eps);
-        let c = covariance(&by_invariants, &direction, &of_inputs);
+        let (c, of_packings) = covariance(&by_invariants, &direction, &of_inputs);
         let cholesky = Cholesky::new(c)?;
         let by_z = by_invariants.column(0) * network.theta.slope(z, laws)
             + by_invariants.column(1) * network.shear.slope(z, laws)
@@ -177,6 +180,7 @@ impl Fit {
             by_invariants,
             by_unknowns,
             weight,
+            of_packings: (weight * of_packings).trace() / data.used as f64,
             with_following,
             unknowns: information.try_inverse()?,
         })
@@ -215,6 +219,14 @@ impl Fit {
     pub(super) fn degrees_of_freedom(&self, data: &Data) -> Option<usize> {
         let unknowns = if self.fits_eps { 2 } else { 1 };
         data.used.checked_sub(unknowns).filter(|d| *d > 0)
+    }
+
+    /// Number of degrees of freedom of the estimated variances of the residual (Satterthwaite 1946): the scatter of packings was
+    /// learned from a few recipes, the errors of the data are exact.
+    pub(super) fn freedom_of_variances(&self, network: &RelaxationCalibration) -> usize {
+        let recipes = f64::from(network.recipes.saturating_sub(1).max(1));
+        // Beyond some thousands the distribution is that of known variances.
+        (recipes / self.of_packings.powi(2)).min(1e4) as usize
     }
 
     /// The modulus furthest from its prediction by the others, and the difference in standard deviations.
