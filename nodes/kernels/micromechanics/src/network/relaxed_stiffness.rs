@@ -104,9 +104,9 @@ pub fn relaxed_stiffness(
     let left = match solver {
         Solver::Iterative => left_by_iterations(network, &loads, &norms, &solution, max_iterations),
         // Its residual is at no right angle to the motion.
-        Solver::Direct => Matrix6::zeros(),
+        Solver::Direct => (relaxed - by_stress).abs(),
     };
-    let stddev = (relaxed - by_stress).zip_map(&left, |d, left| d.abs().max(left).max(ROUNDING * scale));
+    let stddev = left.map(|left| left.max(ROUNDING * scale));
     Ok(Some(NetworkStiffness {
         relaxed: Stiffness(relaxed),
         stddev: Stiffness(stddev),
