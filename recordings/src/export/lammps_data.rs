@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 pub fn lammps_data(packing: &Packing) -> String {
     let m = packing.cell.matrix();
     let mut text = format!(
-        "LAMMPS data file of grainlab, step {}, units = si\n\n{} atoms\n1 atom types\n\n",
+        "LAMMPS data file of grainlab, timestep = {}, units = si\n\n{} atoms\n1 atom types\n\n",
         packing.step,
         packing.grains()
     );

@@ -93,6 +93,14 @@ impl GrainTable {
         Ok(radius)
     }
 
+    /// The density, kg/m³, that the masses give, if all agree within 6 printed digits.
+    pub(super) fn density(&self) -> Option<f64> {
+        let volume = |radius: &f64| 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+        let mut all = self.masses.iter().zip(&self.radii).map(|(mass, radius)| mass / volume(radius));
+        let first = all.next().filter(|_| self.masses.len() == self.radii.len())?;
+        all.all(|other| (other / first - 1.0).abs() < 1e-5).then_some(first)
+    }
+
     /// What to know about the grains of a packing with this material.
     fn notes(&self, material: &Material) -> Vec<String> {
         let other =

@@ -9,10 +9,10 @@
 //!
 //! Lines that start with `#` are comments. Without contact rows, contacts are found from positions.
 //!
-//! Sidecar keys: `G` (Pa), `nu`, `density` (kg/m³), `mu_prep` (a number, or `"inf"`), `cell` (three rows of
+//! Sidecar keys: `G` or `shear_modulus` (Pa), `nu` or `poisson_ratio`, `density` (kg/m³), `mu_prep` or `friction` (a number, or `"inf"`), `cell` (three rows of
 //! three; columns are the edge vectors, m) or `box_L` (three edges, m), and optionally `step`, `time` (s),
 //! `time_step` (s), `deformation` (three rows of three). `N` and `n_contacts`, the numbers of rows, are checked, and so are `units`
-//! (SI) and `pbc` (periodic in all directions). Other keys are ignored.
+//! (SI) and `pbc` (periodic in all directions); `walls` and `gravity` are refused. Other keys are ignored.
 
 use grainlab_core::Vec3;
 

@@ -16,7 +16,7 @@ use super::error::ImportError;
 use super::imported::Imported;
 use super::settings::{ImportOptions, Known};
 use super::stated;
-use super::text::{Line, lines};
+use super::text::{Line, lines, shown};
 
 /// Whether a comment is that of extended XYZ.
 pub(super) fn is_comment(line: &str) -> bool {
@@ -46,9 +46,11 @@ pub fn each(
             frame.grain(&text.next().ok_or_else(missing)?, read, options, &mut grains)?;
         }
         any = true;
-        let settings = frame.known.complete(options)?;
+        let notes = frame.unread();
+        let density = frame.known.density.or_else(|| grains.density());
+        let settings = Known { density, ..frame.known }.complete(options)?;
         let source = format!("extended XYZ, step {}", frame.state.step);
-        if take(assemble::packing(grains, &settings, None, frame.state, source, Vec::new())?).is_break() {
+        if take(assemble::packing(grains, &settings, None, frame.state, source, notes)?).is_break() {
             break;
         }
     }
@@ -66,7 +68,7 @@ struct Frame {
 
 impl Frame {
     fn of(line: &Line<'_>) -> Result<Self, ImportError> {
-        let entries = entries(line.text);
+        let entries = entries(line)?;
         let number = |key: &str| entries.get(key).map(|value| line.number(key, value)).transpose();
         let cell = match entries.get("Lattice") {
             None => None,
@@ -76,8 +78,12 @@ impl Frame {
                 if numbers.len() != 9 {
                     return Err(line.error(format!("Lattice has {} numbers; it must have 9", numbers.len())));
                 }
-                // The edge vectors one after the other.
-                Some(Mat3::from_column_slice(&numbers))
+                // The edge vectors one after the other. In another order they span the same cell: a left-handed one is turned.
+                let mut cell = Mat3::from_column_slice(&numbers);
+                if cell.determinant() < 0.0 {
+                    cell.swap_columns(1, 2);
+                }
+                Some(cell)
             }
         };
         let properties = entries.get("Properties").ok_or_else(|| line.error("Properties= is missing"))?;
@@ -89,7 +95,9 @@ impl Frame {
             };
             let width = width.parse().ok().filter(|w| (1..=1000).contains(w));
             let width: usize = width.ok_or_else(|| line.error(format!("the width of {name} is invalid")))?;
-            columns.insert((*name).to_owned(), (fields, width));
+            if columns.insert((*name).to_owned(), (fields, width)).is_some() {
+                return Err(line.error(format!("the column {name} occurs twice in Properties")));
+            }
             fields += width;
         }
         entries.get("units").map_or(Ok(()), |units| stated::units(line.number, units))?;
@@ -108,6 +116,18 @@ impl Frame {
             columns,
             fields,
         })
+    }
+
+    /// A note where velocities are under names that are not read.
+    fn unread(&self) -> Vec<String> {
+        let is_other = |name: &&String| {
+            let name = name.to_lowercase();
+            ["vel", "moment"].iter().any(|of_motion| name.starts_with(of_motion)) && name != "velo"
+        };
+        let other = self.columns.keys().filter(is_other).filter(|_| !self.columns.contains_key("velo"));
+        other
+            .map(|name| format!("the column {name} is not read: velocities, velo:R:3, are taken as 0"))
+            .collect()
     }
 
     fn grain(
@@ -160,18 +180,20 @@ fn law(line: &Line<'_>, entries: &BTreeMap<&str, &str>) -> Result<Option<Contact
     ContactLaw::new(name, &parameters).map(Some).map_err(|e| line.error(e.to_string()))
 }
 
-/// `key=value` and `key="value with spaces"`.
-fn entries(text: &str) -> BTreeMap<&str, &str> {
+/// `key=value` and `key="value with spaces"`, each key once.
+fn entries<'a>(line: &Line<'a>) -> Result<BTreeMap<&'a str, &'a str>, ImportError> {
     let mut found = BTreeMap::new();
-    let mut rest = text.trim();
+    let mut rest = line.text.trim();
     while let Some((key, after)) = rest.split_once('=') {
         let key = key.rsplit(char::is_whitespace).next().unwrap_or(key);
         let (value, left) = match after.strip_prefix('"') {
             Some(quoted) => quoted.split_once('"').unwrap_or((quoted, "")),
             None => after.split_once(char::is_whitespace).unwrap_or((after, "")),
         };
-        found.insert(key, value);
+        if found.insert(key, value).is_some() {
+            return Err(line.error(format!("{} occurs twice", shown(key))));
+        }
         rest = left.trim_start();
     }
-    found
+    Ok(found)
 }

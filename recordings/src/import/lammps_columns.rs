@@ -61,6 +61,16 @@ pub(super) fn check(
     let skew = |part: &str, count: usize, columns: &[&str]| {
         (count > 0).then(|| format!("{part} ({}) in {count} of {} contacts", columns.join(" "), known.len()))
     };
+    if columns.len() < 8 {
+        // The whole force need not be along the line, but it presses the grains apart.
+        let pulling = known.iter().filter(|(r, d)| r.normal.dot(d) <= 0.0).count();
+        if 2 * pulling < known.len() || known.is_empty() {
+            return Ok(());
+        }
+        let problem = skew("the force does not press the grains apart", pulling, &columns[2..5]);
+        let likely = likely(&known[..known.len().min(SAMPLE)], names, columns);
+        return Err(ImportError::Columns { problem: problem.unwrap_or_default(), likely });
+    }
     let off = known.iter().filter(|(r, d)| !is_along(&r.normal, d)).count();
     let whole = |r: &Row<'_>| r.normal.norm() + r.tangential.norm();
     let along = known.iter().filter(|(r, d)| !is_across(&r.tangential, d, whole(r))).count();

@@ -4,7 +4,7 @@
 //! `Velocities` (id, v, ω), in SI units. Contacts are found from positions, unless a `dump local` with their forces is given
 //! ([`ImportOptions::contact_forces`]). The format does not state boundaries: they are taken as periodic.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use grainlab_core::{Mat3, Vec3};
 
@@ -81,6 +81,8 @@ impl Section {
 #[derive(Default)]
 struct DataFile {
     step: u64,
+    /// Names of the lines of the header.
+    named: BTreeSet<String>,
     expected: Option<usize>,
     bounds: [Option<f64>; 3],
     tilt: [f64; 3],
@@ -111,6 +113,12 @@ impl DataFile {
     }
 
     fn header(&mut self, line: &Line<'_>, words: &[&str]) -> Result<(), ImportError> {
+        // The name follows the numbers.
+        let name = words.iter().skip_while(|w| !w.starts_with(char::is_alphabetic)).copied();
+        let name = name.collect::<Vec<_>>().join(" ");
+        if !self.named.insert(name.clone()) {
+            return Err(line.error(format!("{name} occurs twice")));
+        }
         match *words {
             [n, "atoms"] => self.expected = Some(line.number("number of atoms", n)?),
             [lo, hi, "xlo", "xhi"] => self.bounds[0] = Some(edge(line, lo, hi)?),
@@ -149,8 +157,11 @@ impl DataFile {
             );
         };
         let (v, w) = (line.vector("velocity", [vx, vy, vz])?, line.vector("angular velocity", [wx, wy, wz])?);
-        self.motion.insert(line.id("id", id)?, (line.number, v, w));
-        Ok(())
+        let id = line.id("id", id)?;
+        match self.motion.insert(id, (line.number, v, w)) {
+            Some((before, ..)) => Err(ImportError::DuplicateId { id, line: line.number, before }),
+            None => Ok(()),
+        }
     }
 
     fn finish(
@@ -158,9 +169,16 @@ impl DataFile {
         options: &ImportOptions,
         forces: Option<&Local<'_>>,
     ) -> Result<Imported, ImportError> {
+        let moving = self.motion.len();
         for (k, id) in self.grains.ids.iter().enumerate() {
-            if let Some((_, v, w)) = self.motion.remove(id) {
-                (self.grains.velocities[k], self.grains.spins[k]) = (v, w);
+            match self.motion.remove(id) {
+                Some((_, v, w)) => (self.grains.velocities[k], self.grains.spins[k]) = (v, w),
+                None if moving > 0 => {
+                    let problem =
+                        format!("{moving} velocities, but none of grain {id}: the file is incomplete");
+                    return Err(ImportError::Syntax { line: self.grains.lines[k], problem });
+                }
+                None => {}
             }
         }
         if let Some((id, (line, ..))) = self.motion.pop_first() {
@@ -169,6 +187,10 @@ impl DataFile {
         let found = self.grains.ids.len();
         if let Some(expected) = self.expected.filter(|n| *n != found) {
             let problem = format!("the file ends after {found} of {expected} atoms");
+            return Err(ImportError::Syntax { line: 1, problem });
+        }
+        if self.edges.iter().any(Option::is_some) && self.bounds.iter().any(Option::is_some) {
+            let problem = "the header has a box twice: xlo xhi and avec".to_owned();
             return Err(ImportError::Syntax { line: 1, problem });
         }
         let cell: Option<Mat3> = match (self.edges, self.bounds) {

@@ -6,6 +6,7 @@
 //! ([`ImportOptions::contact_forces`]).
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 use std::iter::Peekable;
 use std::ops::ControlFlow;
 
@@ -217,6 +218,10 @@ impl Columns {
         if names.len() != announced {
             return Err(line.error("a column occurs twice: dump each quantity once"));
         }
+        if let Some(shape) = names.keys().find(|name| name.starts_with("shape")) {
+            let (line, what) = (line.number, format!("the column {shape}"));
+            return Err(ImportError::Unsupported { line, what, reason: "grains must be single spheres" });
+        }
         let three = |form: &str| {
             let find = |axis: &str| names.get(&format!("{axis}{form}")).copied();
             Some([find("x")?, find("y")?, find("z")?])
@@ -240,14 +245,20 @@ impl Columns {
             [Some(&x), Some(&y), Some(&z)] => line.vector(name, [words[x], words[y], words[z]]),
             _ => Ok(Vec3::zeros()),
         };
-        let radius = number("radius")?.or(number("diameter")?.map(|d| 0.5 * d));
+        let [radius, half] = [number("radius")?, number("diameter")?.map(|d| 0.5 * d)];
+        same(line, "radius and half of the diameter", radius, half)?;
+        let radius = radius.or(half);
+        let of_density = |(density, radius): (f64, f64)| 4.0 / 3.0 * PI * density * radius.powi(3);
+        let of_density = number("density")?.zip(radius).map(of_density);
+        let mass = number("mass")?;
+        same(line, "mass and that of density and radius", mass, of_density)?;
         Ok(Row {
             line: *line,
             coordinates: self.position.map(|k| words[k]),
             // Without an id column, the row number is the id.
             id: self.id.map_or(Ok(before as u32 + 1), |k| line.id("id", words[k]))?,
             radius,
-            mass: number("mass")?,
+            mass: mass.or(of_density),
             kind: self.names.get("type").map(|&k| words[k]),
             position: line.vector("position", self.position.map(|k| words[k]))?,
             scaled: self.scaled,
@@ -265,7 +276,6 @@ impl Frame<'_> {
         source: String,
     ) -> Result<Imported, ImportError> {
         let mut grains = GrainTable::default();
-        let mut densities = Vec::new();
         for row in &self.rows {
             let radius = grains.radius(row.radius, options)?;
             let position = if row.scaled { self.origin + self.cell * row.position } else { row.position };
@@ -275,17 +285,24 @@ impl Frame<'_> {
             grains.push(&row.line, row.id, radius, [position, row.velocity, row.spin])?;
             grains.masses.extend(row.mass);
             grains.kinds.extend(row.kind.map(str::to_owned));
-            densities.extend(row.mass.map(|m| m / (4.0 / 3.0 * std::f64::consts::PI * radius.powi(3))));
         }
-        // Masses give the density if all agree within 6 printed digits.
-        let density =
-            densities.first().copied().filter(|d| densities.iter().all(|e| (e / d - 1.0).abs() < 1e-5));
+        let density = grains.density();
         let settings = Known { cell: Some(self.cell), density, ..Known::default() }.complete(options)?;
         let grains = grains.sorted_by_id().folded_if_far(&settings.cell);
         forces.map_or(Ok(()), |forces| forces.check(self.step, &grains, &settings.cell))?;
         let contacts = forces.map(|forces| forces.contacts.as_slice());
         let state = State { time: self.time, ..State::at(self.step) };
         assemble::packing(grains, &settings, contacts, state, source, Vec::new())
+    }
+}
+
+/// Refuses two values of one quantity that differ by more than the rounding of six digits.
+fn same(line: &Line<'_>, what: &str, a: Option<f64>, b: Option<f64>) -> Result<(), ImportError> {
+    match (a, b) {
+        (Some(a), Some(b)) if (a - b).abs() > 1e-5 * b.abs() => {
+            Err(line.error(format!("{what} contradict each other: {a} and {b}")))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -15,6 +15,8 @@
 //! [`ImportOptions::contact_columns`](super::ImportOptions::contact_columns). Pairs that do not touch, which
 //! LAMMPS lists as long as they are neighbours, have no force and are left out.
 
+use std::collections::BTreeMap;
+
 use super::assemble::{GrainTable, ListedContact, ListedForce};
 use super::error::ImportError;
 use super::lammps_columns::{self, Row};
@@ -126,8 +128,15 @@ impl Local<'_> {
         if let Some(forces) = self.step.filter(|forces| *forces != step) {
             return Err(ImportError::OtherStep { forces, grains: step });
         }
-        if !self.tangential {
-            return Ok(());
+        let mut pairs = BTreeMap::new();
+        for c in &self.contacts {
+            let (a, b) = c.ids;
+            if let Some(first) = pairs.insert((a.min(b), a.max(b)), c.line) {
+                let what = format!("a second contact of grains {a} and {b}, after line {first},");
+                let reason =
+                    "a dump local does not state the periodic image: the cell must be larger than two grains";
+                return Err(ImportError::Unsupported { line: c.line, what, reason });
+            }
         }
         let columns: Vec<&str> = self.columns.iter().map(|k| self.names[*k]).collect();
         lammps_columns::check(&self.rows, (&columns, &self.names), (grains, cell))
@@ -150,6 +159,12 @@ const NEEDED: &str = "columns c_pl[1] c_pl[2] c_pf[2] c_pf[3] c_pf[4] c_pf[5] c_
     compute pl all property/local patom1 patom2 and compute pf all pair/local dist fx fy fz p1 p2 p3; name others with \
     --contact-columns";
 
+/// Refuses a wanted column that occurs twice.
+fn once(names: &[&str], wanted: &[&str]) -> Result<(), String> {
+    let twice = wanted.iter().find(|wanted| names.iter().filter(|name| name == wanted).count() > 1);
+    twice.map_or(Ok(()), |name| Err(format!("the column {name} occurs twice")))
+}
+
 /// Indices of the columns, all eight or five.
 fn find(names: &[&str], chosen: &[String]) -> Result<Vec<usize>, String> {
     let place = |wanted: &str| names.iter().position(|n| *n == wanted);
@@ -161,12 +176,21 @@ fn find(names: &[&str], chosen: &[String]) -> Result<Vec<usize>, String> {
                 BY_NAME.join(" ")
             ));
         }
+        once(names, &chosen.iter().map(String::as_str).collect::<Vec<_>>())?;
         let missing = |name: &String| format!("there is no column {name}; there are: {}", names.join(" "));
         return chosen.iter().map(|name| place(name).ok_or_else(|| missing(name))).collect();
     }
     for wanted in [BY_NAME, BY_NUMBER] {
         let places: Vec<usize> = wanted.iter().map_while(|name| place(name)).collect();
         if places.len() >= LEAST {
+            once(names, &wanted)?;
+            let numbered = names.iter().filter(|n| n.starts_with("c_pf[")).count();
+            if wanted == BY_NUMBER && places.len() < wanted.len() && numbered != 4 {
+                return Err(format!(
+                    "{numbered} columns c_pf[...]: dist fx fy fz and then p1 p2 p3 are expected; name the columns of the force \
+                     with --contact-columns"
+                ));
+            }
             // A subset of the three components is not a force.
             let whole = places.len() == wanted.len();
             return Ok(places[..if whole { wanted.len() } else { LEAST }].to_vec());

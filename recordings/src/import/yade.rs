@@ -40,7 +40,9 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
             // With attributes YADE joins the lines of a comment.
             for comment in line.text.split('#').map(str::trim) {
                 if let Some(numbers) = comment.strip_prefix("cell") {
-                    cell = Some(edges(&line, numbers)?);
+                    if cell.replace(edges(&line, numbers)?).is_some() {
+                        return Err(line.error("the cell occurs twice"));
+                    }
                 } else if let Some(names) = comment.strip_prefix("x y z r") {
                     columns.attributes(names);
                 }

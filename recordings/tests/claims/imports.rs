@@ -240,7 +240,7 @@ fn what_a_data_file_must_not_be_is_refused() {
         ("3 atoms", "4 atoms", "after 3 of 4 atoms"),
         ("0.25 0 0 xy xz yz", "1 0 nan avec", "edge vector"),
         ("20 1 0.3 2500", "20 1 0.3 2600", ""),
-        ("10 1 2 3 4 5 6", "11 1 2 3 4 5 6", "11"),
+        ("10 1 2 3 4 5 6", "11 1 2 3 4 5 6", "none of grain 10"),
         ("10 1 0.2", "10 1", "7 or 10 fields"),
         ("-0.5 0.5 zlo zhi", "", "--cell"),
         ("-0.5 0.5 zlo zhi", "0.5 -0.5 zlo zhi", "no positive volume"),

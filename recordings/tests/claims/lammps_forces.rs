@@ -112,6 +112,30 @@ fn columns_that_are_not_a_normal_and_a_tangential_force_are_refused_with_those_t
     assert!(problem(&options(exchanged.join("\n"), &[])).contains("in 1 of 847 contacts"));
 }
 
+#[test]
+fn columns_in_another_number_or_twice_or_of_forces_that_pull_are_refused() {
+    // compute pair/local fx fy fz p1 p2 p3.
+    let renumbered = HEADER.replace(" c_pf[7]", "");
+    let without_dist: Vec<String> = forces()
+        .lines()
+        .map(|line| match line.split(' ').collect::<Vec<_>>().as_slice() {
+            [a, b, _, rest @ ..] if rest.len() >= 6 && !line.starts_with("ITEM") => format!("{a} {b} {}", rest.join(" ")),
+            _ => line.replace(HEADER, &renumbered),
+        })
+        .collect();
+    assert!(problem(&options(without_dist.join("\n"), &[])).contains("6 columns c_pf[...]"));
+    let twice = ["c_pl[1]", "c_pl[2]", "c_pf[2]", "c_pf[3]", "c_pf[4]"];
+    let header = HEADER.replace("c_pf[5]", "c_pf[4]");
+    assert!(problem(&options(forces().replace(HEADER, &header), &twice)).contains("c_pf[4] occurs twice"));
+    let exchanged = ["c_pl[2]", "c_pl[1]", "c_pf[2]", "c_pf[3]", "c_pf[4]"];
+    assert!(problem(&options(forces(), &exchanged)).contains("does not press the grains apart"));
+    let pair = forces().lines().nth(9).unwrap().to_owned();
+    let again = forces().replacen(&pair, &format!("{pair}\n{pair}"), 1);
+    let count = forces().lines().nth(3).unwrap().trim().parse::<usize>().unwrap();
+    let again = again.replacen(&format!("\n{count}\n"), &format!("\n{}\n", count + 1), 1);
+    assert!(problem(&options(again, &[])).contains("a second contact of grains"));
+}
+
 /// These are all forces of a granular pair style from `compute pair/local dist fx fy fz`.
 #[test]
 fn normal_forces_alone_are_refused_where_friction_acts_and_the_columns_are_named() {

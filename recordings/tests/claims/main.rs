@@ -13,6 +13,7 @@ mod recovery;
 mod reference_packing;
 mod round_trips;
 mod start;
+mod stated_twice;
 mod support;
 mod write_and_read;
 mod yade;

@@ -3,6 +3,7 @@
 use grainlab_core::Mat3;
 use grainlab_core::contact::ContactLaw;
 use serde::Deserialize;
+use serde_json::Value;
 
 use crate::import::assemble::State;
 use crate::import::error::ImportError;
@@ -11,13 +12,15 @@ use crate::import::stated;
 
 #[derive(Debug, Default, Deserialize)]
 pub(super) struct Sidecar {
-    #[serde(rename = "G")]
+    #[serde(rename = "G", alias = "shear_modulus")]
     shear_modulus: Option<f64>,
+    #[serde(alias = "poisson_ratio")]
     nu: Option<f64>,
     density: Option<f64>,
     contact_law: Option<String>,
     #[serde(default)]
     contact_law_parameters: Vec<f64>,
+    #[serde(alias = "friction")]
     mu_prep: Option<Friction>,
     cell: Option<[[f64; 3]; 3]>,
     #[serde(rename = "box_L")]
@@ -30,7 +33,21 @@ pub(super) struct Sidecar {
     grains: Option<usize>,
     n_contacts: Option<usize>,
     units: Option<String>,
-    pbc: Option<serde_json::Value>,
+    pbc: Option<Value>,
+    walls: Option<Value>,
+    gravity: Option<Value>,
+}
+
+/// Whether a value says that there is none of something.
+fn is_nothing(value: &Value) -> bool {
+    match value {
+        Value::Null => true,
+        Value::Bool(some) => !some,
+        Value::Number(number) => number.as_f64() == Some(0.0),
+        Value::String(text) => matches!(text.as_str(), "" | "none"),
+        Value::Array(all) => all.iter().all(is_nothing),
+        Value::Object(all) => all.values().all(is_nothing),
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -61,6 +78,11 @@ impl Sidecar {
     pub(super) fn known(&self) -> Result<Known, ImportError> {
         self.units.as_deref().map_or(Ok(()), |units| stated::units(1, units))?;
         self.pbc.as_ref().map_or(Ok(()), |pbc| stated::periodic(1, &pbc.to_string()))?;
+        for (what, value) in [("walls", &self.walls), ("gravity", &self.gravity)] {
+            if value.as_ref().is_some_and(|value| !is_nothing(value)) {
+                return Err(ImportError::Sidecar(format!("{what}: packings are periodic, without {what}")));
+            }
+        }
         let friction = match &self.mu_prep {
             None => None,
             Some(Friction::Number(mu)) => Some(*mu),
