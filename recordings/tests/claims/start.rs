@@ -106,7 +106,7 @@ fn files_and_columns_that_are_not_there_are_named_by_their_key() {
     }
 }
 
-/// A recording of two packings of these steps, the first grain of which is moved by this share of its radius.
+/// A recording of two packings of these steps, moved by this share of a radius.
 fn recorded(root: &tempfile::TempDir, name: &str, steps: [u64; 2], moved: f64, scene: &str) -> PathBuf {
     let directory = root.path().join(name);
     let spec = TopicSpec::of_contract(&topics::PACKING, "/packing");
@@ -114,7 +114,8 @@ fn recorded(root: &tempfile::TempDir, name: &str, steps: [u64; 2], moved: f64, s
     run.attach("scene.toml", "application/toml", scene.as_bytes()).unwrap();
     for (n, step) in steps.into_iter().enumerate() {
         let mut packing = grainlab_core::Packing { step, time: 1e-6 * step as f64, ..reference().packing };
-        packing.positions[0].x += moved * packing.radii[0];
+        let shift = moved * packing.radii[0];
+        packing.positions.iter_mut().for_each(|position| position.x += shift);
         let body = to_cdr(&packing_message(&packing, "made", Vec::new()));
         run.write("/packing", &sample(SIMULATOR, n as i64 + 1, START + step, &body)).unwrap();
     }
@@ -141,7 +142,8 @@ fn a_merged_recording_starts_a_run_only_from_a_step_that_one_of_its_runs_has() {
         let source = Source { name: root.path().join("scene.toml").to_string_lossy().into_owned(), text };
         super::start::start(&Draft::of(&source, &|_, _| Err("no base".into())).unwrap())
     };
-    assert!(matches!(of(&merged, "step = 0"), Err(StartError::Ambiguous { step: 0, .. })));
+    let error = of(&merged, "step = 0").unwrap_err();
+    assert!(matches!(error, StartError::Ambiguous { step: 0, .. }), "{error}");
     let error = of(&merged, "").unwrap_err();
     assert!(matches!(error, StartError::SeveralRuns(_)), "{error}");
     assert!(matches!(of(&merged, "step = 11"), Err(StartError::NoStep { .. })));
