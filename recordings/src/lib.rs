@@ -7,6 +7,7 @@
 //! - [`recover()`]: completes the files of a recorder that was killed
 //! - [`copy`]: recordings made from others: cut, merged, filtered, compressed
 //! - `definitions`: schemas of message types; `qos`: profiles of rosbag2
+//! - [`OneRun`]: whether packings and requests are of one run
 //! - `player`: the schedule of a playback, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and recordings
 //! - [`export`]: packings to CSV and LAMMPS dump files
@@ -25,6 +26,7 @@ pub mod input;
 mod ledger;
 mod metadata_keys;
 mod new_path;
+mod one_run;
 mod player;
 mod qos;
 mod reader;
@@ -37,6 +39,7 @@ pub use definitions::{DefinitionError, Definitions};
 pub use ledger::{Guid, GuidError, Ledger, TopicTally, WriterTally, merge};
 pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 pub use new_path::NewPath;
+pub use one_run::{OneRun, RunSign, SeveralRuns};
 pub use player::{Play, PlayError, PlayOptions, Player};
 pub use qos::{QosError, QosOverrides, adapted, offered_profiles, profiles};
 pub use reader::{

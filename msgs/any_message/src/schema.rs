@@ -44,6 +44,9 @@ pub enum SchemaError {
         /// The missing type.
         name: String,
     },
+    /// A type has two texts, which differ: it is not known which of them its messages follow.
+    #[error("the schema has two different texts of the type {0}: record it again, or take out the wrong one")]
+    Twice(String),
     /// A type contains itself.
     #[error("the type {0} contains itself")]
     Circle(String),
@@ -68,7 +71,11 @@ impl Schema {
         texts.insert(root.clone(), sections.next().map_or("", |(_, text)| text));
         for (name, text) in sections {
             let name = name.strip_prefix("MSG:").ok_or_else(|| SchemaError::NotMessage(root.clone()))?;
-            texts.entry(short(name.trim())).or_insert(text);
+            let name = short(name.trim());
+            match texts.get(&name) {
+                Some(known) if !says_the_same(known, text) => return Err(SchemaError::Twice(name)),
+                _ => _ = texts.entry(name).or_insert(text),
+            }
         }
         for (name, text) in BUILT_IN {
             texts.entry(name.to_owned()).or_insert(text);
@@ -89,6 +96,12 @@ fn short(name: &str) -> String {
         [package, _, last] => format!("{package}/{last}"),
         _ => name.to_owned(),
     }
+}
+
+/// Whether two texts of a type have the same declarations; comments and spaces may differ.
+fn says_the_same(a: &str, b: &str) -> bool {
+    let of = |text| str::lines(text).map(declaration).filter(|line| !matches!(line, Ok(None)));
+    a == b || of(a).eq(of(b))
 }
 
 /// The parts of a schema between lines of equals signs, each with its first line; that of the first part is empty.
@@ -273,6 +286,19 @@ mod tests {
             let error = of(&format!("int8 v\n{line} # comment")).to_string();
             assert!(error.contains("p/A, line 2") && error.contains(problem), "{line}: {error}");
         }
+        let twice =
+            |second: &str| format!("B b\n{bar}\nMSG: p/B\nint8 v\nint16 w\n{bar}\nMSG: p/msg/B\n{second}");
+        for other in [
+            "int16 w\nint8 v\n",
+            "int8 v\n",
+            "int8 v\nint16 other\n",
+            "int8 v\nint16 w\nint8 x\n",
+            "int8[ v\n",
+        ] {
+            assert_eq!(of(&twice(other)), SchemaError::Twice("p/B".into()), "{other:?}");
+        }
+        assert!(Schema::parse("p/msg/A", &twice("int8   v # the same\n\nint16 w")).is_ok());
+        assert_eq!(of(&format!("int8 v\n{bar}\nMSG: p/A\nint8 w\n")), SchemaError::Twice("p/A".into()));
         let chain: String = (1..70).map(|n| format!("{bar}\nMSG: p/T{n}\nT{} t\n", n + 1)).collect();
         assert!(matches!(of(&format!("T1 t\n{chain}")), SchemaError::Depth(_)));
     }

@@ -107,6 +107,32 @@ pub struct Args {
     wait_for_subscribers: f64,
 }
 
+/// The name under which a topic is published.
+fn renamed<'a>(remaps: &'a [Remap], name: &'a str) -> &'a str {
+    remaps.iter().find(|r| r.from == name).map_or(name, |r| &r.to)
+}
+
+/// Refuses a name that no played topic has, and one name for topics of two types. `topics`: names and types.
+fn check_remaps(remaps: &[Remap], topics: &[(&str, &str)]) -> Result<(), String> {
+    if let Some(Remap { from, .. }) = remaps.iter().find(|r| !topics.iter().any(|(name, _)| *name == r.from))
+    {
+        let known = topics.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+        return Err(format!("--remap: {from} is not played; these topics are: {known}"));
+    }
+    for (n, (first, of_first)) in topics.iter().enumerate() {
+        let to = renamed(remaps, first);
+        let other =
+            topics[n + 1..].iter().find(|(name, kind)| renamed(remaps, name) == to && kind != of_first);
+        if let Some((second, of_second)) = other {
+            return Err(format!(
+                "--remap: {first} ({of_first}) and {second} ({of_second}) would both be {to}: a topic has one type; give each a \
+                 name of its own"
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// Runs the command.
 ///
 /// # Errors
@@ -130,13 +156,15 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let overrides = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose();
     let overrides = overrides.map_err(Failure::usage)?.unwrap_or_default();
     let wanted = Player::new(&recording, &options).map_err(play_failure)?.channels().to_vec();
+    let topics: Vec<(&str, &str)> = wanted.iter().map(|c| (c.topic.as_str(), c.ros_type.as_str())).collect();
+    check_remaps(&args.remap, &topics).map_err(Failure::usage)?;
 
     let mut bus = tool_bus("player")?;
     pause(&mut bus, LOOK_AROUND);
     let (mut publishers, mut refused) = (Outlets::new(), false);
     for channel in wanted {
         let name = channel.topic.clone();
-        let to = args.remap.iter().find(|r| r.from == name).map_or(name.as_str(), |r| &r.to);
+        let to = renamed(&args.remap, &name);
         let replaced = args.clock.is_some() && to == topics::CLOCK.name;
         let outlet = match replaced {
             true => Err("--clock publishes it".to_owned()),
@@ -232,5 +260,24 @@ fn play_failure(error: grainlab_recordings::PlayError) -> Failure {
             Failure::failed(error)
         }
         _ => Failure::usage(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_remap_names_a_topic_that_is_played_and_gives_no_topic_two_types() {
+        let topics = [("/moduli", "Moduli"), ("/packing", "Packing"), ("/left/moduli", "Moduli")];
+        let check = |remaps: &[&str]| {
+            let remaps: Vec<Remap> = remaps.iter().map(|r| r.parse().unwrap()).collect();
+            check_remaps(&remaps, &topics)
+        };
+        assert_eq!(check(&["moduli:=/x", "packing:=/y"]), Ok(()));
+        assert_eq!(check(&["left/moduli:=moduli"]), Ok(()), "one type");
+        assert!(check(&["modulii:=/x"]).unwrap_err().contains("/modulii is not played"));
+        assert!(check(&["moduli:=/x", "packing:=/x"]).unwrap_err().contains("would both be /x"));
+        assert!(check(&["moduli:=/packing"]).unwrap_err().contains("would both be /packing"));
     }
 }

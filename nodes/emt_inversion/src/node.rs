@@ -3,18 +3,22 @@
 use crate::{Answer, Settings, microstructure_message, microstructure_of_speeds};
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, WaveSpeeds};
 use grainlab_msgs::{Message, Topic, topics};
-use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, Subscription};
+use grainlab_node_kit::{
+    Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, SampleInfo, Subscription, WriterId,
+};
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// The node does nothing between two sets of data.
 const IDLE: Duration = Duration::from_secs(3600);
 
-/// Capacity of the queue of one topic.
-const BACKLOG: u32 = 64;
+/// Capacity of the queue of one topic: an instrument may send hundreds of shots at once.
+const BACKLOG: u32 = 1024;
 
 /// One topic of data, and the function that inverts its messages.
 #[derive(Debug)]
 struct Source<T> {
+    topic: &'static str,
     messages: Subscription<T>,
     invert: fn(&T, &Settings) -> Answer,
 }
@@ -25,6 +29,10 @@ struct Tally {
     inverted: u64,
     without_solution: u64,
     last_step: Option<u64>,
+    /// Data that were sent and did not arrive, by the gaps in the numbers of their writers.
+    missed: u64,
+    /// Number of the last data of each writer.
+    numbers: BTreeMap<WriterId, i64>,
     /// The fault of the latest data, if any.
     trouble: Option<String>,
 }
@@ -58,7 +66,8 @@ impl<T: Message> Source<T> {
         topic: &Topic,
         invert: fn(&T, &Settings) -> Answer,
     ) -> Result<Self, BusError> {
-        Ok(Self { messages: Subscription::subscribe(bus, topic, Demand::reliable(BACKLOG))?, invert })
+        let messages = Subscription::subscribe(bus, topic, Demand::reliable(BACKLOG))?;
+        Ok(Self { topic: topic.name, messages, invert })
     }
 
     /// Answers all received data, also those that are refused.
@@ -70,6 +79,7 @@ impl<T: Message> Source<T> {
         tally: &mut Tally,
     ) -> Result<(), BusError> {
         while let Some((data, info)) = self.messages.take_valid(bus)? {
+            tally.note_gap(self.topic, &info);
             let Answer { message, refused } = (self.invert)(&data, settings);
             match (microstructure.publish_about(bus, &message, info.origin()), refused) {
                 (Ok(_), None) => tally.count(&message),
@@ -87,6 +97,18 @@ impl<T: Message> Source<T> {
 }
 
 impl Tally {
+    /// Counts the data between these and those before them of the same writer.
+    fn note_gap(&mut self, topic: &str, info: &SampleInfo) {
+        let before = self.numbers.insert(info.writer, info.sequence);
+        let gap = before.map_or(0, |before| (info.sequence - before - 1).max(0)) as u64;
+        if gap > 0 {
+            self.missed += gap;
+            self.complain(format!(
+                "{gap} sets of {topic} were sent faster than they were inverted, and are not"
+            ));
+        }
+    }
+
     fn complain(&mut self, trouble: String) {
         log::error!("{trouble}");
         self.trouble = Some(trouble);
@@ -123,6 +145,7 @@ impl Node for EmtInversion {
         health
             .with("inverted", tally.inverted)
             .with("without_solution", tally.without_solution)
+            .with("missed", tally.missed)
             .with("last_step", tally.last_step.map_or("none".into(), |s| s.to_string()))
     }
 }

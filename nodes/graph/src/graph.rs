@@ -1,7 +1,7 @@
 //! Nodes and endpoints of a domain.
 
 use crate::names::{RosName, ros_type};
-use grainlab_node_kit::type_hash;
+use grainlab_node_kit::{may_be_ours, type_hash};
 use ros2_client::QosProfile;
 use ros2_client::qos::{Durability, Reliability};
 use serde::Serialize;
@@ -108,6 +108,14 @@ impl Graph {
             same.next().filter(|_| same.next().is_none())
         });
         named.map_or_else(|| format!("participant {}", hex(endpoint.participant())), |node| node.name.clone())
+    }
+
+    /// The nodes of this program that publish reports: one a second. What others publish on this topic, and when, is their own.
+    pub(crate) fn reporting(&self) -> BTreeSet<String> {
+        let topics = self.topics();
+        let publishers = topics.get("/diagnostics").map(|t| t.publishers.as_slice()).unwrap_or_default();
+        let ours = |e: &&&Endpoint| <&[u8; 12]>::try_from(e.participant()).is_ok_and(may_be_ours);
+        publishers.iter().filter(ours).map(|e| self.owner(e)).collect()
     }
 
     /// The endpoints of a node.

@@ -15,6 +15,16 @@ const MODULI_WITHIN: Duration = Duration::from_secs(5);
 /// Time limit for the measurement of the last packing by a third-party program that measured others.
 const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
 
+/// Why a run is not complete whose instruments measured other packings.
+const NONE_OF_LAST: &str =
+    "a program that the launch file lists sent wave speeds of other packings, and none or fewer of the last";
+
+/// Time without further data of a program after which there are none.
+const QUIET: Duration = Duration::from_secs(2);
+
+/// Time for the last data of a program that has ended to arrive.
+const ARRIVES_WITHIN: Duration = Duration::from_secs(5);
+
 /// The pending result, and its time limit.
 pub(super) struct Deadline {
     pub(super) of: ResultState,
@@ -49,13 +59,14 @@ impl Deadline {
                 (INVERTED_WITHIN, Exit::Failure, message)
             }
             ResultState::Open(Source::Instrument) => {
-                let message = "a program that the launch file lists sent wave speeds of other packings, and none of the last";
-                (INSTRUMENT_WITHIN, Exit::DataLoss, message.to_owned())
+                (INSTRUMENT_WITHIN, Exit::DataLoss, NONE_OF_LAST.to_owned())
             }
             ResultState::Open(node) | ResultState::Declined(node) => {
                 let message = format!("the last packing was not measured: see logs/{node}.log");
                 (MEASURED_WITHIN, Exit::Failure, message)
             }
+            ResultState::Left => (ARRIVES_WITHIN, Exit::DataLoss, format!("{NONE_OF_LAST}: it has ended")),
+            ResultState::Settling => (QUIET, Exit::Done, String::new()),
             ResultState::Complete => (Duration::ZERO, Exit::Done, String::new()),
         };
         Self { of: standing, limit: TimeLimit::new(time), exit, message }

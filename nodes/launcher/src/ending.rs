@@ -3,7 +3,9 @@
 use super::child::{Child, Ended};
 use super::supervisor::Supervisor;
 use super::watch::{Event, Watch};
+use crate::last_packing;
 use crate::nodes::NodeKind;
+use grainlab_console::worse;
 use grainlab_dem_simulator::SAVED_WITHIN;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
@@ -161,6 +163,30 @@ impl Supervisor {
             }
         }
         hurried
+    }
+
+    /// The exit of the run after the end of its recorder.
+    pub(super) fn judge_recorder(&mut self, exit: Exit) -> Exit {
+        const RECORDER: NodeKind = NodeKind::Recorder;
+        if self.code(RECORDER) == Some(0) {
+            return exit;
+        }
+        // Data loss is in the table; other errors are only in the recorder's log.
+        let failed = self.children.iter().position(|c| c.plan.is(RECORDER) && c.code == Some(1));
+        if let Some(recorder) = failed {
+            self.complain(format!("{RECORDER} ended with exit code 1: see logs/{RECORDER}.log"));
+            self.children[recorder].quote_log(&self.logs);
+        }
+        // A code of its own says why.
+        let by_itself = [Exit::Failure, Exit::DataLoss].map(|exit| Some(i32::from(exit.code())));
+        if !by_itself.contains(&self.code(RECORDER)) {
+            // It may be killed while it leaves, with its file complete.
+            if last_packing::is_complete(&self.directory) {
+                return exit;
+            }
+            self.complain(format!("{RECORDER} was ended before its file was complete"));
+        }
+        worse(exit, Exit::DataLoss)
     }
 
     /// Records the end of a process and describes it.

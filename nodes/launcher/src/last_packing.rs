@@ -12,6 +12,11 @@ pub fn count(directory: &Path) -> u64 {
     packings(&recording).map_or(0, |messages| messages.count() as u64)
 }
 
+/// Whether a recorder finished every file of a recording.
+pub(crate) fn is_complete(directory: &Path) -> bool {
+    Recording::open(directory).is_ok_and(|r| r.warnings().is_empty() && r.unaccounted().is_empty())
+}
+
 /// The last packing, and its run state.
 pub fn read(directory: &Path) -> Result<(Packing, Vec<u8>), Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));

@@ -2,8 +2,9 @@
 //!
 //! - [`agreement`]: what the processes of a launch file must agree on
 //! - `child`: one process, which ends with the launcher
-//! - `progress`: a line for each phase; `phase_line`: that of a terminal
-//! - `pending_results`: results of the last packing that are still pending; `deadline`: their time limits
+//! - `progress`: a line for each phase; `phase_line`: that of a terminal; `said`: other lines
+//! - `pending_results`: results of the last packing that are still pending; `deadline`: their time limits; [`RecordedSpeeds`]:
+//!   what a resumed run has of them
 //! - `watch`: the messages of the run
 //! - `stopped`: processes stopped by a signal; `time_limit`: a time limit that does not count the time for which they are
 //! - `supervisor`: restarts, and ends of processes that end the run; `ending`: the order in which processes end
@@ -21,7 +22,9 @@ mod phase_line;
 pub mod pipe;
 mod plan;
 mod progress;
+mod recorded_speeds;
 mod run;
+mod said;
 mod stopped;
 mod supervisor;
 mod time_limit;
@@ -29,5 +32,6 @@ mod watch;
 
 pub use nodes::{NodeKind, UnknownNode};
 pub use plan::{BUILT_IN, LaunchFile, NodePlan};
+pub use recorded_speeds::RecordedSpeeds;
 pub use run::Run;
 pub use supervisor::{Outline, Received, Supervised, Supervisor};

@@ -3,8 +3,9 @@
 
 use super::plan::NodePlan;
 use crate::nodes::NodeKind;
+use crate::recorded_speeds::RecordedSpeeds;
 use grainlab_msgs::topics;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// The source of data.
@@ -32,16 +33,39 @@ struct Kind {
     topic: &'static str,
     /// Its source.
     source: Source,
-    measured: BTreeSet<u64>,
-    /// Step of the packing, and member number of the inversion.
-    inverted: BTreeSet<(u64, u8)>,
+    /// Number of sets of data about the packing of each step.
+    measured: BTreeMap<u64, usize>,
+    /// Number of answers, by step of the packing and member number of the inversion.
+    inverted: BTreeMap<(u64, u8), usize>,
+    /// Steps of the packings whose data were inverted before the run was resumed.
+    settled: BTreeSet<u64>,
     declined: BTreeSet<u64>,
 }
 
 impl Kind {
     fn new(topic: &'static str, source: Source) -> Self {
-        let (measured, inverted, declined) = Default::default();
-        Self { topic, source, measured, inverted, declined }
+        let (measured, inverted, settled, declined) = Default::default();
+        Self { topic, source, measured, inverted, settled, declined }
+    }
+
+    /// Whether the packing is measured: an instrument that sent several sets of data about every other packing sends as many about
+    /// this one.
+    fn is_measured(&self, step: u64) -> bool {
+        let others = self.measured.iter().filter(|(other, _)| **other != step).map(|(_, sets)| *sets).min();
+        let expected = others.filter(|_| self.source == Source::Instrument).unwrap_or(1);
+        self.settled.contains(&step) || self.measured.get(&step).is_some_and(|sets| *sets >= expected)
+    }
+
+    /// Whether so many inversions have answered; those of an instrument each of its sets of data.
+    fn is_inverted(&self, step: u64, inversions: usize) -> bool {
+        let sets = match self.source {
+            Source::Instrument => self.measured.get(&step).copied().unwrap_or(1),
+            Source::Node(_) => 1,
+        };
+        let answers = self.inverted.range((step, 0)..=(step, u8::MAX)).filter(|(_, n)| **n >= sets);
+        self.settled.contains(&step)
+            || (answers.count() >= inversions
+                && (self.source != Source::Instrument || self.is_measured(step)))
     }
 }
 
@@ -50,6 +74,10 @@ impl Kind {
 pub(crate) enum ResultState {
     /// Every kind of data is inverted.
     Complete,
+    /// Every kind of data is inverted, and a program may send more of them.
+    Settling,
+    /// No more results are expected: the programs that measured other packings have ended.
+    Left,
     /// No more results are expected, and this node found no data to invert.
     Declined(Source),
     /// This node measured a structure, and no data for an inversion have arrived.
@@ -97,13 +125,35 @@ impl PendingResults {
     /// The data of this topic about the packing of `step` were published.
     pub(crate) fn measured(&mut self, topic: &str, step: u64) {
         // Step 0 means no packing.
-        let instrument = self.instruments && topic == topics::WAVE_SPEEDS.name && step > 0;
-        if instrument && self.of_topic(topic).next().is_none() {
-            self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, Source::Instrument));
+        if topic == topics::WAVE_SPEEDS.name && step > 0 {
+            self.expect_of_instruments();
         }
         self.of_topic(topic).for_each(|k| {
-            k.measured.insert(step);
+            *k.measured.entry(step).or_default() += 1;
         });
+    }
+
+    /// The wave speeds of the packing that the run starts from were published.
+    pub(crate) fn measured_start(&mut self) {
+        self.expect_of_instruments();
+        let of_instruments = self.kinds.iter_mut().filter(|k| k.source == Source::Instrument);
+        of_instruments.for_each(|k| *k.measured.entry(0).or_insert(0) += 1);
+    }
+
+    /// Third-party programs measure: their data are awaited from now on.
+    fn expect_of_instruments(&mut self) {
+        if self.instruments && self.of_topic(topics::WAVE_SPEEDS.name).next().is_none() {
+            self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, Source::Instrument));
+        }
+    }
+
+    /// The wave speeds in the recording of a run that is resumed.
+    pub(crate) fn remember(&mut self, recorded: &RecordedSpeeds) {
+        for step in &recorded.measured {
+            if *step == 0 { self.measured_start() } else { self.measured(topics::WAVE_SPEEDS.name, *step) }
+        }
+        let of_instruments = self.kinds.iter_mut().filter(|k| k.source == Source::Instrument);
+        of_instruments.for_each(|k| k.settled.extend(&recorded.inverted));
     }
 
     /// All third-party programs have ended.
@@ -114,7 +164,7 @@ impl PendingResults {
     /// The inversion with this member number published a microstructure from the data of this topic.
     pub(crate) fn inverted(&mut self, topic: &str, step: u64, member: u8) {
         self.of_topic(topic).for_each(|k| {
-            k.inverted.insert((step, member));
+            *k.inverted.entry((step, member)).or_default() += 1;
         });
     }
 
@@ -136,23 +186,30 @@ impl PendingResults {
 
     /// The state of the results of the packing of `step`: that of the slowest one.
     pub(crate) fn state_of(&self, step: u64) -> ResultState {
-        let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
+        let inverted = |k: &Kind| k.is_inverted(step, self.inversions);
         // A program that has ended sends no more data.
-        let never =
-            |k: &Kind| k.source == Source::Instrument && !self.instruments && !k.measured.contains(&step);
+        let never = |k: &Kind| k.source == Source::Instrument && !self.instruments && !k.is_measured(step);
         let owed = || self.kinds.iter().filter(|k| !inverted(k) && !never(k));
         let due = || owed().filter(|k| !k.declined.contains(&step));
         let without_moduli = |k: &Kind| k.topic == topics::MODULI.name && self.structures.contains(&step);
-        if let Some(open) = due().find(|k| !k.measured.contains(&step) && !without_moduli(k)) {
+        if let Some(open) = due().find(|k| !k.is_measured(step) && !without_moduli(k)) {
             return ResultState::Open(open.source);
         }
-        if let Some(bare) = due().find(|k| !k.measured.contains(&step)) {
+        if let Some(bare) = due().find(|k| !k.is_measured(step)) {
             return ResultState::Bare(bare.source);
         }
         if let Some(measured) = due().next() {
             return ResultState::Measured(measured.source);
         }
-        owed().next().map_or(ResultState::Complete, |k| ResultState::Declined(k.source))
+        let left = || self.kinds.iter().any(|k| never(k) && !inverted(k));
+        match owed().next() {
+            Some(declined) => ResultState::Declined(declined.source),
+            None if left() => ResultState::Left,
+            None if self.instruments && self.kinds.iter().any(|k| k.source == Source::Instrument) => {
+                ResultState::Settling
+            }
+            None => ResultState::Complete,
+        }
     }
 }
 
@@ -175,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn an_instrument_that_measured_one_packing_is_waited_for_at_the_last_unless_it_left() {
+    fn an_instrument_that_measured_one_packing_is_waited_for_at_the_last_and_is_missed_if_it_left() {
         let foreign = NodePlan {
             name: "instrument".to_owned(),
             node: None,
@@ -191,18 +248,72 @@ mod tests {
         }
         d.measured("wave_speeds", 0);
         assert_eq!(d.state_of(9), ResultState::Complete, "speeds of no packing");
+        let mut of_start = PendingResults::of(&[NodePlan {
+            name: "instrument".to_owned(),
+            node: None,
+            program: "python3".to_owned(),
+            arguments: Vec::new(),
+            respawn: false,
+        }]);
+        of_start.measured("moduli", 9);
+        of_start.inverted("moduli", 9, 2);
+        of_start.measured_start();
+        assert_eq!(of_start.state_of(9), ResultState::Open(Source::Instrument));
         d.measured("wave_speeds", 7);
         assert!(d.is_measured_by_node("moduli") && !d.is_measured_by_node("wave_speeds"));
         assert_eq!(d.state_of(9), ResultState::Open(Source::Instrument));
         d.measured("wave_speeds", 9);
         assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));
         d.inverted("wave_speeds", 9, 2);
-        assert_eq!(d.state_of(9), ResultState::Complete);
+        assert_eq!(d.state_of(9), ResultState::Settling);
         assert_eq!(d.state_of(11), ResultState::Open(ANALYZER));
         d.measured("moduli", 11);
         d.inverted("moduli", 11, 2);
         d.instruments_left();
-        assert_eq!(d.state_of(11), ResultState::Complete);
+        assert_eq!((d.state_of(9), d.state_of(11)), (ResultState::Complete, ResultState::Left));
+    }
+
+    #[test]
+    fn a_resumed_run_waits_for_the_instrument_as_before_and_not_for_what_is_recorded() {
+        let program = NodePlan {
+            name: "instrument".to_owned(),
+            node: None,
+            program: "python3".to_owned(),
+            arguments: Vec::new(),
+            respawn: false,
+        };
+        let mut d = PendingResults::of(&[program]);
+        d.remember(&RecordedSpeeds { measured: [7, 9].into(), inverted: [7].into() });
+        for step in [7, 9, 11] {
+            d.measured("moduli", step);
+            d.inverted("moduli", step, 2);
+        }
+        assert_eq!(d.state_of(7), ResultState::Settling);
+        assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));
+        assert_eq!(d.state_of(11), ResultState::Open(Source::Instrument));
+    }
+
+    #[test]
+    fn as_many_shots_are_waited_for_as_every_other_packing_has() {
+        let program = NodePlan {
+            name: "instrument".to_owned(),
+            node: None,
+            program: "python3".to_owned(),
+            arguments: Vec::new(),
+            respawn: false,
+        };
+        let mut d = PendingResults::of(&[program]);
+        d.measured("moduli", 9);
+        d.inverted("moduli", 9, 2);
+        (0..3).for_each(|_| d.measured("wave_speeds", 7));
+        for shot in 0..3 {
+            assert_eq!(d.state_of(9), ResultState::Open(Source::Instrument), "{shot}");
+            d.measured("wave_speeds", 9);
+            d.inverted("wave_speeds", 9, 2);
+        }
+        assert_eq!(d.state_of(9), ResultState::Settling);
+        d.measured("wave_speeds", 9);
+        assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));
     }
 
     #[test]

@@ -5,10 +5,13 @@ use super::deadline::{Deadline, nothing};
 use super::pending_results::{PendingResults, ResultState, Source};
 use super::plan::NodePlan;
 use super::progress::Progress;
+use super::recorded_speeds::RecordedSpeeds;
+use super::said;
 use super::stopped::Stopped;
 use super::time_limit::TimeLimit;
 use super::watch::{Event, Watch};
 use crate::agreement::names_of_run;
+use crate::last_packing;
 use crate::nodes::NodeKind;
 use crate::run::Run;
 use grainlab_console::{Failure, worse};
@@ -38,9 +41,6 @@ const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 /// Time before a message about a run that has not begun.
 const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 
-/// What the message of a simulator begins with that waits for other processes.
-const WAITS: &str = "waiting for";
-
 /// The recorder, whose end is the end of the record.
 const RECORDER: NodeKind = NodeKind::Recorder;
 /// The simulator, which continues from its last packing after a crash.
@@ -66,8 +66,8 @@ pub struct Supervisor {
     run: Run,
     /// The names of the topics of the run.
     names: Names,
-    directory: PathBuf,
-    logs: PathBuf,
+    pub(super) directory: PathBuf,
+    pub(super) logs: PathBuf,
     pub(super) ended: UnboundedReceiver<Ended>,
     report_end: UnboundedSender<Ended>,
     pub(super) interrupt: Signal,
@@ -161,6 +161,13 @@ impl Supervisor {
         })
     }
 
+    /// What a resumed run has recorded before.
+    #[must_use]
+    pub fn resuming(mut self, recorded: &RecordedSpeeds) -> Self {
+        self.pending.remember(recorded);
+        self
+    }
+
     /// Starts every process, waits for the end, ends every process.
     pub async fn run(mut self) -> Result<Supervised, Failure> {
         let begin = Instant::now();
@@ -180,20 +187,7 @@ impl Supervisor {
         if self.end_all(exit, &mut events, &watch).await {
             exit = Exit::Interrupted;
         }
-        if self.code(RECORDER) != Some(0) {
-            // Data loss is in the table; other errors are only in the recorder's log.
-            let failed = self.children.iter().position(|c| c.plan.is(RECORDER) && c.code == Some(1));
-            if let Some(recorder) = failed {
-                self.complain(format!("{RECORDER} ended with exit code 1: see logs/{RECORDER}.log"));
-                self.children[recorder].quote_log(&self.logs);
-            }
-            // A code of its own says why.
-            let by_itself = [Exit::Failure, Exit::DataLoss].map(|exit| Some(i32::from(exit.code())));
-            if !by_itself.contains(&self.code(RECORDER)) {
-                self.complain(format!("{RECORDER} was ended before its file was complete"));
-            }
-            exit = worse(exit, Exit::DataLoss);
-        }
+        exit = self.judge_recorder(exit);
         // A simulator that ended with an error fails the run, whatever was received before.
         let simulator = self.code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
         if exit == Exit::Done && simulator != Exit::Done {
@@ -211,7 +205,7 @@ impl Supervisor {
     }
 
     /// The exit code of a node that has ended by itself.
-    fn code(&self, node: NodeKind) -> Option<i32> {
+    pub(super) fn code(&self, node: NodeKind) -> Option<i32> {
         self.children.iter().find(|c| c.plan.is(node))?.code
     }
 
@@ -252,6 +246,9 @@ impl Supervisor {
                         && late.limit.is_over(suspended)
                     {
                         let (message, exit) = (std::mem::take(&mut late.message), late.exit);
+                        if late.of == ResultState::Settling {
+                            return self.caught_up().await;
+                        }
                         self.complain(message);
                         return exit;
                     }
@@ -266,7 +263,9 @@ impl Supervisor {
             let Some(step) = last else { return self.caught_up().await };
             match self.pending.state_of(step) {
                 ResultState::Complete => return self.caught_up().await,
-                ResultState::Declined(_) if self.outline.ends_within => return self.caught_up().await,
+                ResultState::Declined(_) | ResultState::Left if self.outline.ends_within => {
+                    return self.caught_up().await;
+                }
                 ResultState::Declined(node) => {
                     self.complain(format!("the last packing has no {}", nothing(node)));
                     return Exit::PhysicsInvalid;
@@ -333,6 +332,8 @@ impl Supervisor {
                 self.note_result(topic, step);
                 self.pending.measured(topic, step);
             }
+            Event::MeasuredStart if self.outline.starts_from_packing => self.pending.measured_start(),
+            Event::MeasuredStart => {}
             Event::Declined(topic, step) => self.pending.declined(topic, step),
             Event::Probing(step) => {
                 self.probing = true;
@@ -340,20 +341,12 @@ impl Supervisor {
                     self.progress.still(&format!("measuring waves through the packing of step {step}"));
                 }
             }
-            Event::Microstructure { source, step, member } => {
+            Event::Microstructure { source, step, member, nothing } => {
                 self.note_result(topics::MICROSTRUCTURE.name, step);
                 self.pending.inverted(&source, step, member);
-                let data = source.replace('_', " ");
                 let is_of_start =
                     self.outline.starts_from_packing && self.pending.is_measured_by_node(&source);
-                self.progress.say(&match step {
-                    0 if is_of_start => {
-                        format!("the packing that the run starts from measured and inverted, by its {data}")
-                    }
-                    // Data of an external instrument do not belong to a packing of the run.
-                    0 => format!("the {data} of an instrument inverted"),
-                    _ => format!("packing of step {step} measured and inverted, by its {data}"),
-                });
+                self.progress.say(&said::inverted(&source, step, is_of_start, nothing.as_deref()));
             }
             Event::Stranger(text) => {
                 grainlab_console::say!("grainlab: {text} and is not of this run: it is ignored")
@@ -366,7 +359,7 @@ impl Supervisor {
     }
 
     /// Prints why the run does not end as it should, and keeps it for the result.
-    fn complain(&mut self, reason: String) {
+    pub(super) fn complain(&mut self, reason: String) {
         grainlab_console::say!("grainlab: {reason}");
         self.reasons.push(reason);
     }
@@ -394,14 +387,9 @@ impl Supervisor {
 
     /// What a run that has not begun waits for, as far as its simulator has said it.
     fn say_what_is_waited_for(&self) {
-        let what = match (self.simulator.as_deref(), self.first_step) {
-            (Some(says), _) if says.starts_with(WAITS) => says,
-            (Some(_), None) => "the simulator has published no state",
-            (None, None) => "the simulator starts, or places its grains",
-            // It computes its first step.
-            (_, Some(_)) => return,
-        };
-        self.progress.say(&format!("the run has not begun: {what}"));
+        if let Some(what) = said::awaited(self.simulator.as_deref(), self.first_step) {
+            self.progress.say(&format!("the run has not begun: {what}"));
+        }
     }
 
     fn interrupted(&self, name: &str) -> Exit {
@@ -455,7 +443,7 @@ impl Supervisor {
 
     /// Restarts the simulator from the last recorded packing; see `--resume`.
     async fn resume(&mut self, index: usize, how: &str) -> Option<Exit> {
-        let packings = crate::last_packing::count(&self.directory);
+        let packings = last_packing::count(&self.directory);
         self.crashes.push(packings);
         // Three attempts ended at the same packing: a fourth one would, too.
         if self.crashes.iter().filter(|known| **known == packings).count() > 3 {

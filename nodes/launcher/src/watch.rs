@@ -8,8 +8,8 @@ use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
 use grainlab_fabric_analyzer::WITHOUT_MODULI;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::msg::{Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
-use grainlab_msgs::{Topic, topics};
+use grainlab_msgs::msg::{Estimate, Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
+use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::member_of;
 use grainlab_node_kit::{
     Bus, BusError, DdsBus, Demand, Identity, Names, Report, Stranger, Subscription, watchdog,
@@ -22,8 +22,8 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-/// Maximum number of queued messages; one arrives per second and at each end of a phase.
-const BACKLOG: u32 = 256;
+/// Maximum number of queued messages; one arrives per second and at each end of a phase, and an instrument may send hundreds.
+const BACKLOG: u32 = 1024;
 
 /// Period at which the thread checks whether to end.
 const POLL_PERIOD: Duration = Duration::from_millis(100);
@@ -62,13 +62,15 @@ pub(crate) enum Event {
     Structure(u64),
     /// The packing of this step was measured: its data were published on this topic.
     Measured(&'static str, u64),
+    /// Wave speeds with step 0 and the stamp of a packing that a run starts from.
+    MeasuredStart,
     /// The packing of this step has no data on this topic.
     Declined(&'static str, u64),
     /// An acoustic probe measures the packing of this step, which may take long.
     Probing(u64),
     /// The process with this member number inferred the microstructure of the packing of this step from data of this
-    /// topic.
-    Microstructure { source: String, step: u64, member: u8 },
+    /// topic; or, if no model has an estimate, why.
+    Microstructure { source: String, step: u64, member: u8, nothing: Option<String> },
     /// How far the present phase is.
     Phase(PhaseReport),
     /// What the simulator does or waits for.
@@ -188,10 +190,14 @@ impl RunSubscriptions {
         }
         while let Some((found, _)) = self.speeds.take_valid(bus)? {
             send(Event::Measured(topics::WAVE_SPEEDS.name, found.source_step));
+            if found.source_step == 0 && found.header.stamp == stamp(0.0) {
+                send(Event::MeasuredStart);
+            }
         }
         while let Some((found, info)) = self.microstructures.take_valid(bus)? {
             let member = member_of(&info.writer.participant());
-            send(Event::Microstructure { source: found.source, step: found.source_step, member });
+            let nothing = without_estimate(&found);
+            send(Event::Microstructure { source: found.source, step: found.source_step, member, nothing });
         }
         while let Some((message, _)) = self.reports.take_valid(bus)? {
             for report in Report::from_message(&message) {
@@ -251,6 +257,14 @@ fn strangers(bus: &dyn Bus) -> Vec<(&'static str, Stranger)> {
     OF_THE_RUN.iter().flat_map(|topic| -> Vec<_> { of(topic) }).collect()
 }
 
+/// Why a microstructure has no estimate; `None` if a model has one.
+fn without_estimate(found: &Microstructure) -> Option<String> {
+    let unknown = found.estimates.iter().all(|e| e.status == Estimate::STATUS_UNKNOWN);
+    let why =
+        found.estimates.iter().find_map(|e| e.warnings.first()).map_or("no model was asked", String::as_str);
+    unknown.then(|| why.to_owned())
+}
+
 /// How far the present phase is, if the report is that of a simulator.
 fn phase_of(report: &Report) -> Option<PhaseReport> {
     let share = value_under(PHASE_SHARE, report)?.parse().ok().filter(|s| (0.0..=1.0).contains(s));
@@ -266,4 +280,23 @@ fn step_under(key: &str, report: &Report) -> Option<u64> {
 /// The value that a node reports under this key.
 fn value_under<'a>(key: &str, report: &'a Report) -> Option<&'a str> {
     report.health.values.iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_to_refused_data_is_no_estimate() {
+        let estimate = |status, warning: &str| Estimate {
+            status,
+            warnings: vec![warning.to_owned()],
+            ..Estimate::default()
+        };
+        let refused = || estimate(Estimate::STATUS_UNKNOWN, "speeds[0].speed = NaN is refused");
+        let of = |estimates| without_estimate(&Microstructure { estimates, ..Microstructure::default() });
+        assert_eq!(of(vec![refused(), refused()]).as_deref(), Some("speeds[0].speed = NaN is refused"));
+        assert_eq!(of(vec![refused(), estimate(Estimate::STATUS_OK, "")]), None);
+        assert!(of(Vec::new()).is_some());
+    }
 }

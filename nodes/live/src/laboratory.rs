@@ -8,7 +8,7 @@ use grainlab_msgs::boundary::{
 use grainlab_msgs::{msg, simulated_seconds};
 use grainlab_node_kit::{Exit, Report, RunId};
 use grainlab_report::Timeline;
-use grainlab_results::Inference;
+use grainlab_results::{Inference, Measurement};
 use std::time::Duration;
 
 /// Phases of a run of which nothing is known yet: they share the bins of the curves.
@@ -162,7 +162,9 @@ impl Laboratory {
             (*step, *known) = (reading.source_step, Vec::new());
         }
         for estimate in &reading.estimates {
-            let found = Inference::of_reading(&reading.source, estimate);
+            // A name tells several measurements of a packing apart.
+            let mut found = Inference::of_reading(&reading.source, estimate);
+            found.measurement = (!reading.name.is_empty()).then(|| Measurement::named(&reading.name));
             if known.len() < ESTIMATES && !known.contains(&found) {
                 known.push(found);
             }

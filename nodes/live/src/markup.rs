@@ -166,7 +166,9 @@ impl Laboratory {
                 best.map(|b| (b.values.eps, b.sigma.eps)),
             ),
         ];
-        let by = best.map_or_else(String::new, |b| format!(", by model {}", escaped(&b.model)));
+        let which = best.filter(|b| b.measurement.is_some()).and_then(|b| b.origin().data());
+        let which = which.map_or_else(String::new, |data| format!(" from {}", escaped(&data)));
+        let by = best.map_or_else(String::new, |b| format!(", by model {}{which}", escaped(&b.model)));
         let mut text = table(
             &format!("Packing of step {step}{by}"),
             &["", "", "counted", "inferred", "", "error"],

@@ -163,6 +163,12 @@ pub fn run_of(prefix: &[u8; 12]) -> Option<RunId> {
     })
 }
 
+/// Whether a participant may be one of this program, in a run or by hand; another program has such a prefix by chance, one of 256
+/// with RustDDS.
+pub fn may_be_ours(prefix: &[u8; 12]) -> bool {
+    run_of(prefix).is_some() || (prefix[..2] == VENDOR && prefix[2] == 0)
+}
+
 /// The check byte of the eleven bytes before it.
 fn check(prefix: &[u8; 12]) -> u8 {
     fnv1a(&prefix[..11]) as u8
@@ -203,6 +209,8 @@ mod tests {
         }
         assert_eq!(run_of(&Identity::default().guid_prefix()), None);
         assert_eq!(run_of(&[0x01, 0x10, 9, 9, 9, 9, 9, 9, 1, 1, 1, 1]), None, "another vendor's");
+        assert!(may_be_ours(&a) && may_be_ours(&Identity::default().guid_prefix()));
+        assert!(!may_be_ours(&[0x01, 0x10, 9, 9, 9, 9, 9, 9, 1, 1, 1, 1]));
         let random = (0..=255).map(|last| [0x01, 0x12, 9, 9, 9, 9, 9, 9, 1, 1, 1, last]);
         assert_eq!(
             random.filter(|prefix| run_of(prefix).is_some()).count(),

@@ -60,7 +60,8 @@ pub use diagnostics::Report;
 pub use exit::Exit;
 pub use health::{Health, Level};
 pub use identity::{
-    Identity, MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId, RunIdError, Scope, member_of, run_of,
+    Identity, MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId, RunIdError, Scope, may_be_ours, member_of,
+    run_of,
 };
 pub use logging::Logger;
 pub use memory::{Actor, Dice, Faults, Hub, MemoryBus, run_until};

@@ -3,7 +3,7 @@
 use crate::figure::{PageFigure, number};
 use crate::run::{Run, recommended};
 use grainlab_console::fixed;
-use grainlab_console::html::{Cell, paragraph, table};
+use grainlab_console::html::{Cell, escaped, paragraph, table};
 use grainlab_console::plot::{Bar, Bars};
 use grainlab_core::results::PackingReport;
 use grainlab_results::Inference;
@@ -24,6 +24,9 @@ pub(crate) struct Counted {
     pub(crate) sigma: fn(&Inference) -> Option<f64>,
     interval: fn(&Inference) -> Option<[f64; 2]>,
 }
+
+/// Most bars of a plot; its data have all.
+const MOST_BARS: usize = 60;
 
 /// k, z, ε, and ε weighted by contact stiffness.
 pub(crate) const COUNTED: [Counted; 4] = [
@@ -67,7 +70,9 @@ pub(crate) const COUNTED: [Counted; 4] = [
 
 /// Name of a result: its model, and its data unless these are moduli.
 fn name(e: &Inference) -> String {
-    let data = e.source.as_deref().filter(|s| *s != "moduli").map(|s| format!(", {}", s.replace('_', " ")));
+    let which = || e.measurement.as_ref().map_or_else(String::new, |m| format!(" {}", m.label));
+    let is_named = |s: &&str| *s != "moduli" || e.measurement.is_some();
+    let data = e.source.as_deref().filter(is_named).map(|s| format!(", {}{}", s.replace('_', " "), which()));
     let by =
         e.by.as_deref().filter(|b| *b != "/emt_inversion" && *b != "emt_inversion").map(|b| format!(", {b}"));
     format!("{}{}{}", e.model, data.unwrap_or_default(), by.unwrap_or_default())
@@ -95,6 +100,9 @@ impl Counted {
                 number(value),
                 number(counted)
             );
+            if bars.len() >= MOST_BARS {
+                continue;
+            }
             let colour = if e.status == "ok" { 0 } else { 1 };
             let error = format!("{value:.digits$} ({:+.digits$})", value - counted);
             bars.push(Bar { name: name(e), colour, value, interval, text: error });
@@ -134,9 +142,7 @@ impl Run {
             .results
             .iter()
             .flat_map(|e| {
-                e.warnings
-                    .iter()
-                    .map(move |w| format!("<li>{}: {}</li>", name(e), grainlab_console::html::escaped(w)))
+                e.warnings.iter().map(move |w| format!("<li>{}: {}</li>", escaped(&name(e)), escaped(w)))
             })
             .collect();
         let warnings = if warnings.is_empty() {
@@ -144,7 +150,24 @@ impl Run {
         } else {
             format!("<details><summary>Notes of the models</summary><ul>{warnings}</ul></details>\n")
         };
-        format!("{about}<div class=\"grid\">\n{figures}</div>\n{warnings}")
+        format!("{about}<div class=\"grid\">\n{figures}</div>\n{warnings}{}", self.of_instruments())
+    }
+
+    /// What was inferred from data that are not about a packing of the run; empty if nothing was.
+    fn of_instruments(&self) -> String {
+        let row = |e: &Inference| {
+            let mut cells = vec![
+                Cell::text(e.origin().data().unwrap_or_default()),
+                Cell::text(format!("{} ({})", e.model, e.status)),
+            ];
+            cells.extend(COUNTED.map(|c| Cell::number(fixed((c.inferred)(e), c.digits))));
+            cells
+        };
+        let rows: Vec<Vec<Cell>> = self.of_instruments.iter().map(row).collect();
+        if rows.is_empty() {
+            return String::new();
+        }
+        table("Inferred from data of no packing of the run", &["data", "model", "k", "z", "ε", "ε_k"], &rows)
     }
 
     /// The measured states, one a row.
@@ -166,6 +189,14 @@ impl Run {
             "ε_k",
             "by",
         ];
+        let of_best = |best: Option<&Inference>| {
+            COUNTED.map(|c| {
+                let sigma = best
+                    .and_then(|b| (c.sigma)(b))
+                    .map_or_else(String::new, |s| format!(" ± {s:.*}", c.digits));
+                Cell::number(fixed(best.and_then(|b| (c.inferred)(b)), c.digits) + &sigma)
+            })
+        };
         let row = |s: &InvertedPacking| {
             let r = &s.packing.report;
             let phase = s.packing.position.filter(|p| p.phase > 0).map_or_else(String::new, |p| {
@@ -179,19 +210,34 @@ impl Run {
             ];
             cells.extend(COUNTED.map(|c| Cell::number(fixed((c.counted)(r), c.digits))));
             cells.extend(moduli(r).map(|m| Cell::number(fixed(m, 2))));
-            cells.extend(COUNTED.map(|c| {
-                let sigma = best
-                    .and_then(|b| (c.sigma)(b))
-                    .map_or_else(String::new, |s| format!(" ± {s:.*}", c.digits));
-                Cell::number(fixed(best.and_then(|b| (c.inferred)(b)), c.digits) + &sigma)
-            }));
+            cells.extend(of_best(best));
             let unknown = if s.results.is_empty() { "" } else { "unknown" };
+            let which = best
+                .and_then(|b| b.measurement.as_ref())
+                .map_or_else(String::new, |m| format!(", {}", m.label));
             cells.push(Cell::text(
-                best.map_or_else(|| unknown.to_owned(), |b| format!("{} ({})", b.model, b.status)),
+                best.map_or_else(|| unknown.to_owned(), |b| format!("{} ({}){which}", b.model, b.status)),
             ));
             cells
         };
-        let rows: Vec<Vec<Cell>> = self.states.iter().map(row).collect();
+        // Each of several measurements of a packing has a row of its own.
+        let further = |s: &InvertedPacking| -> Vec<Vec<Cell>> {
+            let first = recommended(s).map(Inference::origin);
+            let groups = grainlab_results::by_origin(&s.results);
+            let others = groups.iter().filter(|(o, _)| o.measurement.is_some() && Some(o) != first.as_ref());
+            let row = |(origin, results): &(grainlab_results::Origin, Vec<&Inference>)| {
+                let best = Inference::recommended(results);
+                let by = best.map_or_else(|| "unknown".to_owned(), |b| format!("{} ({})", b.model, b.status));
+                let mut cells = vec![Cell::text(origin.data().unwrap_or_default())];
+                cells.extend((1..10).map(|_| Cell::text("")));
+                cells.extend(of_best(best));
+                cells.push(Cell::text(by));
+                cells
+            };
+            others.map(row).collect()
+        };
+        let rows: Vec<Vec<Cell>> =
+            self.states.iter().flat_map(|s| std::iter::once(row(s)).chain(further(s))).collect();
         table(
             "Packings at the ends of phases: counted, measured, and inferred with standard deviations.",
             &header,

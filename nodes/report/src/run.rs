@@ -2,7 +2,7 @@
 
 use crate::summary_file::SummaryFile;
 use crate::timeline::Timeline;
-use grainlab_recordings::{Recording, input};
+use grainlab_recordings::{Recording, SeveralRuns, input};
 use grainlab_results::Inference;
 use grainlab_results::read_back::{self, InvertedPacking};
 use grainlab_scene::Scene;
@@ -20,6 +20,10 @@ pub struct Run {
     pub(crate) summary: SummaryFile,
     /// Packings at the ends of phases, with what was inferred.
     pub(crate) states: Vec<InvertedPacking>,
+    /// Inferred from data that are not about a packing of the run.
+    pub(crate) of_instruments: Vec<Inference>,
+    /// The recording holds several runs: there is no report of it.
+    several_runs: Option<SeveralRuns>,
     pub(crate) timeline: Timeline,
     /// Text of the scene; empty if there is none.
     pub(crate) scene_text: String,
@@ -51,6 +55,8 @@ impl Run {
             directory: path.to_owned(),
             summary: SummaryFile::default(),
             states: Vec::new(),
+            of_instruments: Vec::new(),
+            several_runs: None,
             timeline: Timeline::of_phases(1),
             scene_text: String::new(),
             scene: None,
@@ -93,12 +99,20 @@ impl Run {
     fn read_recording(&mut self, recording: &Recording) {
         self.recorded_by = Some(recording.info().library).filter(|by| !by.is_empty());
         let back = read_back::read(recording);
-        self.states = back.states;
+        if back.several_runs.is_some() {
+            return self.refuse(back.several_runs);
+        }
+        (self.states, self.of_instruments) = (back.states, back.of_instruments);
         // The launcher writes these lines to the summary, too.
         let known = |line: &String| self.summary.warnings.contains(line);
         self.missing.extend(back.complaints.into_iter().filter(|line| !known(line)));
         let phases = self.scene.as_ref().map_or(1, |s| s.phases.len());
         match Timeline::read(recording, phases) {
+            Ok(timeline) if timeline.several_runs.is_some() => {
+                let sign = timeline.several_runs;
+                let path = recording.path().to_owned();
+                return self.refuse(sign.map(|sign| SeveralRuns { path, sign }));
+            }
             Ok(timeline) => {
                 self.timeline = timeline;
                 // The scene has the names of all phases.
@@ -119,6 +133,18 @@ impl Run {
                 grainlab_console::count(self.timeline.unreadable, "message")
             ));
         }
+    }
+
+    /// Leaves out all that was joined.
+    fn refuse(&mut self, why: Option<SeveralRuns>) {
+        (self.states, self.of_instruments) = (Vec::new(), Vec::new());
+        self.missing.extend(why.as_ref().map(ToString::to_string));
+        self.several_runs = why;
+    }
+
+    /// Why the recording is not of one run.
+    pub fn several_runs(&self) -> Option<&SeveralRuns> {
+        self.several_runs.as_ref()
     }
 
     /// The same for a table: without series and packings, which are large.

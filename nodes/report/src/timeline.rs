@@ -4,7 +4,7 @@ use crate::phased::{MOST_PHASES, PhaseAxis, Phased};
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_msgs::boundary::{EnergyReading, FabricReading, StressRequest};
 use grainlab_msgs::{Topic, msg, simulated_seconds, topics};
-use grainlab_recordings::{ChannelInfo, Message, ReadError, Recording, Selection};
+use grainlab_recordings::{ChannelInfo, Message, OneRun, ReadError, Recording, RunSign, Selection};
 use grainlab_viewer::{Film, View};
 use std::collections::BTreeMap;
 
@@ -46,6 +46,8 @@ pub struct Timeline {
     pub(crate) last: Option<Packing>,
     /// Messages that could not be read.
     pub(crate) unreadable: usize,
+    /// What shows that the recording is of several runs: then it was not read to its end.
+    pub(crate) several_runs: Option<RunSign>,
     /// Sequence number of the next request.
     next: u64,
     /// The recording counts phases from 0, as those of earlier versions.
@@ -82,6 +84,7 @@ impl Timeline {
             film: Film::default(),
             last: None,
             unreadable: 0,
+            several_runs: None,
             next: 0,
             from_zero: false,
         }
@@ -96,8 +99,16 @@ impl Timeline {
         let channels = recording.channels();
         let names = channels.iter().filter(|c| of(c).is_some()).map(|c| c.topic.clone());
         let mut timeline = Self::of_phases(phases);
+        let mut run = OneRun::default();
         for message in recording.messages(&Selection::topics(names))? {
             let Some(topic) = of(&message.channel) else { continue };
+            if topic.name == topics::STRESS.name
+                && let Ok(request) = message.decoded::<msg::Stress>()
+                && let Err(sign) = run.request(request.sequence, &message.payload)
+            {
+                timeline.several_runs = Some(sign);
+                return Ok(timeline);
+            }
             if timeline.take(topic.name, &message).is_none() {
                 timeline.unreadable += 1;
             }

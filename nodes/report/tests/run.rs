@@ -226,3 +226,27 @@ fn the_table_of_many_runs_has_a_row_for_each_and_leads_to_their_pages() {
     // Of these runs there is only a summary.
     assert!(page.contains("two &amp; three</a>") && page.contains("damaged") && !page.contains("complete"));
 }
+
+#[test]
+fn requests_of_two_runs_are_not_drawn_as_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let spec = TopicSpec::of_contract(&topics::STRESS, "/stress");
+    let mut run = RunWriter::create(folder.path(), "r", &[spec], WriterOptions::default()).unwrap();
+    for (n, sequence) in [0, 1, 2, 1, 2].into_iter().enumerate() {
+        // The second run begins with the third request: other strains under the same numbers.
+        let message = msg::Stress { solid_fraction: if n < 4 { 0.6 } else { 0.61 }, ..request(sequence) };
+        let sample = Incoming {
+            guid: Guid([1; 16]),
+            sequence: n as i64 + 1,
+            source_time: None,
+            receive_time: 1 + n as u64,
+            payload: &to_cdr(&message),
+        };
+        run.write("/stress", &sample).unwrap();
+    }
+    run.finish().unwrap();
+    let run = Run::read(folder.path());
+    let several = run.several_runs().map(ToString::to_string).unwrap_or_default();
+    assert!(several.contains("two different requests of number 2"), "{several}");
+    assert!(run.html().unwrap().contains("holds several runs"));
+}

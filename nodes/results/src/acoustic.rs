@@ -1,6 +1,7 @@
 //! Wave speeds of one packing, and the moduli of the medium with these speeds.
 
 use crate::attenuation::AttenuationReport;
+use crate::measurements::Measurement;
 use crate::quantities::entries;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::*};
@@ -13,6 +14,8 @@ use serde::ser::{SerializeMap, Serializer};
 /// Wave speeds, and the moduli that follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcousticReport {
+    /// Which of several measurements of the packing it is; `None` if there is one only.
+    pub measurement: Option<Measurement>,
     /// The speeds.
     pub reading: WaveSpeedsReading,
     /// Density of all grains, kg/m³.
@@ -70,7 +73,7 @@ impl AcousticReport {
             Some(packing.grains() as f64),
         );
         let bulk_density = packing.solid_fraction() * packing.material.density;
-        Self { reading, bulk_density, medium, modes: Vec::new(), attenuation: None }
+        Self { measurement: None, reading, bulk_density, medium, modes: Vec::new(), attenuation: None }
     }
 
     /// Largest relative difference between the speed of a mode and that along its polarization in a medium isotropic about
@@ -129,6 +132,9 @@ impl AcousticReport {
 impl Serialize for AcousticReport {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
+        if let Some(measurement) = &self.measurement {
+            map.serialize_entry("measurement", measurement)?;
+        }
         entries(&mut map, ACOUSTIC, self)?;
         let speeds: Vec<SpeedView> = self.reading.speeds.iter().map(SpeedView::from).collect();
         map.serialize_entry("speeds", &speeds)?;

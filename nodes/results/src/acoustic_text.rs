@@ -11,7 +11,8 @@ use grainlab_emt::Modulus;
 pub(crate) fn heading(a: &AcousticReport) -> String {
     let method = a.method().map_or_else(String::new, |m| format!("{}, ", m.replace('_', " ")));
     let error = a.relative_error().map_or_else(String::new, |e| format!(", each +- {}", percent(e)));
-    format!("wave speeds ({method}{}{error})", count(a.reading.speeds.len(), "speed"))
+    let which = a.measurement.as_ref().map_or_else(String::new, |m| format!(", {}", m.label));
+    format!("wave speeds{which} ({method}{}{error})", count(a.reading.speeds.len(), "speed"))
 }
 
 /// The block of one packing: its density, its moduli compared with the static ones of `report`, and notes.

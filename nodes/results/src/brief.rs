@@ -15,6 +15,7 @@ use grainlab_core::results::PackingReport;
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use shown::eps;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The model of the paper (its Eqs. 21 and 22, corrected).
@@ -26,8 +27,9 @@ const MOST_GROUPS: usize = 3;
 /// Notes on a packing that are shown.
 const MOST_NOTES: usize = 1;
 
-/// The result of a run as text. `program` is the name of the binary on the command line.
-pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
+/// The result of a run as text. `files` are those that the directory has, and `program` is the name of the binary on the command
+/// line.
+pub fn text(s: &Summary, directory: &Path, files: &[&str], program: &str) -> String {
     let mut lines: Vec<String> =
         ended(s.exit, s.reason.as_deref(), s.saved_step).map(|why| row("Ended", &why)).into_iter().collect();
     match s.states.as_slice() {
@@ -35,9 +37,11 @@ pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
         [state] => lines.extend(one(state)),
         several => lines.extend(states::lines(several)),
     }
+    lines.extend(of_instruments(&s.of_instruments));
     lines.push(row("Run", &pace(s)));
     let folder = quoted(&directory.display().to_string());
-    lines.push(row("Files", &format!("{folder}: recording, summary.json, scene.toml, logs")));
+    let files = if files.is_empty() { "nothing was written".to_owned() } else { files.join(", ") };
+    lines.push(row("Files", &format!("{folder}: {files}")));
     let next = [
         [Exit::Interrupted, Exit::DataLoss]
             .iter()
@@ -70,7 +74,10 @@ pub fn ended(code: u8, reason: Option<&str>, saved_step: Option<u64>) -> Option<
         Exit::Done => return None,
         Exit::Failure => format!("a process failed; {}", saved()),
         Exit::Usage => "invalid arguments".to_owned(),
-        Exit::DataLoss => "messages or results are missing in the recording".to_owned(),
+        Exit::DataLoss => match reason {
+            Some(reason) => format!("messages or results are missing or refused: {reason}"),
+            None => "messages or results are missing in the recording".to_owned(),
+        },
         Exit::PhysicsInvalid => {
             reason.map_or_else(|| format!("the loading path was not completed; {}", saved()), str::to_owned)
         }
@@ -176,12 +183,25 @@ fn measured(r: &PackingReport) -> String {
     format!("G12 {g12} MPa, G13 {g13} MPa, Theta {theta} MPa")
 }
 
+/// What was inferred from data that are not about a packing of the run.
+fn of_instruments(results: &[Inference]) -> Option<String> {
+    let data: BTreeSet<String> = results.iter().filter_map(|r| r.origin().data()).collect();
+    let first = data.first()?;
+    let more = match data.len() {
+        1 => String::new(),
+        n => format!(" and {} more", n - 1),
+    };
+    Some(row(
+        "Also",
+        &format!("inverted, and of no packing of the run: {first}{more}: summary.json has the estimates"),
+    ))
+}
+
 /// The data inverted: `moduli`, or `wave speeds (…)`; and the node, if several infer.
 fn source(origin: &Origin, state: &InvertedPacking, several: bool) -> String {
-    let data = match (origin.source.as_deref(), &state.acoustic) {
+    let data = match (origin.source.as_deref(), state.acoustic_of(origin.measurement.as_ref())) {
         (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic_text::heading(a),
-        (Some(name), _) if name != topics::MODULI.name => name.to_owned(),
-        _ => "moduli".to_owned(),
+        _ => origin.data().unwrap_or_else(|| "moduli".to_owned()),
     };
     match &origin.by {
         Some(node) if several => format!("{data} ({node})"),
@@ -251,6 +271,24 @@ mod tests {
         }
         let why = ended(4, Some("phase 2 (rest) did not meet its end conditions"), None).unwrap();
         assert_eq!(why, "with exit code 4: phase 2 (rest) did not meet its end conditions");
+    }
+
+    #[test]
+    fn a_run_that_lost_data_says_why_if_it_is_known() {
+        let of = |reason| ended(Exit::DataLoss.code(), reason, None).unwrap();
+        assert!(of(None).ends_with("missing in the recording"));
+        assert!(of(Some("speed = NaN is refused")).ends_with("missing or refused: speed = NaN is refused"));
+    }
+
+    #[test]
+    fn only_files_that_exist_are_listed() {
+        let summary = Summary::of_nothing(Exit::DataLoss);
+        let files = |files: &[&str]| {
+            let text = text(&summary, Path::new("r"), files, "grainlab");
+            text.lines().find(|l| l.starts_with("Files")).unwrap().to_owned()
+        };
+        assert_eq!(files(&["scene.toml", "logs"]), "Files     r: scene.toml, logs");
+        assert_eq!(files(&[]), "Files     r: nothing was written");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Results of the models, with the stable keys of `results[]`.
 
+use crate::measurements::Measurement;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Status, recommended};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
@@ -15,6 +16,9 @@ pub struct Inference {
     /// Node that inferred it; absent if unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
+    /// Which of several measurements of the packing it is from; absent if there is one only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measurement: Option<Measurement>,
     /// Name of the model.
     pub model: String,
     /// Name of the calibration.
@@ -89,18 +93,44 @@ pub struct Origin {
     pub source: Option<String>,
     /// Node that inferred.
     pub by: Option<String>,
+    /// Which of several measurements of the packing.
+    pub measurement: Option<Measurement>,
+}
+
+impl Origin {
+    /// The same with the node that inferred.
+    pub(crate) fn data_and_node(&self) -> Option<String> {
+        Some(format!("{} ({})", self.data()?, self.by.as_deref().unwrap_or("an unknown program")))
+    }
+
+    /// The topic of the data, and the measurement where there are several: `wave_speeds, shot 2`.
+    pub fn data(&self) -> Option<String> {
+        let source = self.source.as_deref()?;
+        Some(match &self.measurement {
+            Some(measurement) => format!("{source}, {}", measurement.label),
+            None => source.to_owned(),
+        })
+    }
 }
 
 /// Results by their origin, in its order.
 pub fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
     let mut groups = BTreeMap::<Origin, Vec<&Inference>>::new();
     for r in results {
-        groups.entry(Origin { source: r.source.clone(), by: r.by.clone() }).or_default().push(r);
+        groups.entry(r.origin()).or_default().push(r);
     }
-    groups.into_iter().collect()
+    let mut groups: Vec<_> = groups.into_iter().collect();
+    // Of one topic the results of a program that is not known come last.
+    groups.sort_by(|(a, _), (b, _)| (&a.source, a.by.is_none()).cmp(&(&b.source, b.by.is_none())));
+    groups
 }
 
 impl Inference {
+    /// Its origin.
+    pub fn origin(&self) -> Origin {
+        Origin { source: self.source.clone(), by: self.by.clone(), measurement: self.measurement.clone() }
+    }
+
     /// The recommended one among the results of all models from the same data.
     pub fn recommended<'a>(results: &[&'a Self]) -> Option<&'a Self> {
         let named = |r: &Self| {
@@ -124,6 +154,7 @@ impl Inference {
     pub fn unknown(model: &str, calibration: &str, warnings: Vec<String>) -> Self {
         Self {
             by: None,
+            measurement: None,
             source: None,
             model: model.to_owned(),
             calibration: calibration.to_owned(),
@@ -190,6 +221,7 @@ impl Inference {
         };
         Self {
             by: None,
+            measurement: None,
             source: None,
             model: estimate.model.to_owned(),
             calibration: estimate.calibration.clone(),

@@ -2,6 +2,7 @@
 //!
 //! - [`quantities`]: values, columns and help from the tables of quantities; [`ORIGIN`], [`ACOUSTIC`]: two of the tables
 //! - [`MeasuredPacking`], [`AcousticReport`], [`AttenuationReport`], [`Probed`], [`Inference`]: one packing, its waves, and what a model infers
+//! - [`Measurement`]: which of several measurements of a packing
 //! - [`state_warnings()`]: warnings about a packing; [`ProbeView`], [`ScanView`]: details of a strain probe
 //! - [`Printed`], [`Printer`]: results one after the other; [`inference_text`]: results of models as text
 //! - [`read_back`]: the results in a recording; [`continuity`]: the messages that it lacks
@@ -16,6 +17,7 @@ pub mod continuity;
 mod inference;
 pub mod inference_text;
 mod measured_packing;
+mod measurements;
 mod packing_text;
 pub mod posterior_draws;
 mod printer;
@@ -31,6 +33,7 @@ pub use acoustic::{ACOUSTIC, AcousticReport};
 pub use attenuation::AttenuationReport;
 pub use inference::{Inference, Interval, Origin, Quantities, by_origin};
 pub use measured_packing::{MeasuredPacking, ORIGIN};
+pub use measurements::Measurement;
 pub use printer::{Printed, Printer};
 pub use probe::{ProbeView, ScanView};
 pub use probed::Probed;

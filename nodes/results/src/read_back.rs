@@ -1,19 +1,25 @@
 //! The results in the recording of a run: its states, and the counters of its nodes.
+//!
+//! - `about`: the messages about one packing
+
+mod about;
+
+use about::{About, Unused, enter};
 
 use crate::acoustic::AcousticReport;
 use crate::inference::Inference;
 use crate::measured_packing::MeasuredPacking;
+use crate::measurements::Measurement;
 use crate::state_warnings::of_springs;
 use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed, PackingReport};
 use grainlab_core::{Packing, PackingError};
-use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::{PackingView, ReportParts, min_contacts, report};
-use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading};
+use grainlab_msgs::boundary::FabricReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::{Topic, msg, topics};
+use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::Report;
 use grainlab_recorder::strangers::{self, Authors, StrangerView};
-use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
+use grainlab_recordings::{ChannelInfo, Message, OneRun, Recording, RunSign, Selection, SeveralRuns};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,14 +29,26 @@ pub struct InvertedPacking {
     /// Structure and stiffness.
     #[serde(flatten)]
     pub packing: MeasuredPacking,
-    /// Null where no wave speeds were published.
+    /// Null where no wave speeds were published; of several measurements the first.
     pub acoustic: Option<AcousticReport>,
+    /// The other measurements of wave speeds.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub further_acoustic: Vec<AcousticReport>,
     /// What each model infers from the data of each topic.
     pub results: Vec<Inference>,
 }
 
-/// Topics of data that an inversion reads.
-const INVERTED: [&str; 2] = [topics::MODULI.name, topics::WAVE_SPEEDS.name];
+impl InvertedPacking {
+    /// Every measurement of wave speeds, in the order of arrival.
+    pub fn acoustics(&self) -> impl DoubleEndedIterator<Item = &AcousticReport> {
+        self.acoustic.iter().chain(&self.further_acoustic)
+    }
+
+    /// The measurement that a result is from.
+    pub fn acoustic_of(&self, measurement: Option<&Measurement>) -> Option<&AcousticReport> {
+        self.acoustics().find(|a| a.measurement.as_ref() == measurement)
+    }
+}
 
 /// The results read back.
 #[derive(Debug, Default)]
@@ -45,12 +63,16 @@ pub struct ReadBack {
     pub saved_step: Option<u64>,
     /// Data of packings without a microstructure.
     pub not_inverted: usize,
+    /// Messages whose content is refused.
+    pub refused: usize,
+    /// Inferred from data of an instrument that are not about a packing of the run.
+    pub of_instruments: Vec<Inference>,
+    /// The recording holds several runs: nothing of it was used.
+    pub several_runs: Option<SeveralRuns>,
     /// Packings without a structure.
     pub not_analysed: usize,
     /// Packings published within phases, and the number of those measured. They are only in the recording.
     pub(crate) film: Film,
-    /// Microstructures, by the topic of their data and the step of the packing.
-    pub(crate) inverted: BTreeSet<(String, u64)>,
     /// Steps of the packings with a result, by topic.
     pub results: BTreeMap<&'static str, BTreeSet<u64>>,
     /// Processes on the bus that are not part of the run.
@@ -64,6 +86,11 @@ impl ReadBack {
     pub fn failed(error: impl ToString) -> Self {
         Self { complaints: vec![error.to_string()], ..Self::default() }
     }
+
+    fn of_several_runs(recording: &Recording, sign: RunSign) -> Self {
+        let several = SeveralRuns { path: recording.path().to_owned(), sign };
+        Self { several_runs: Some(several.clone()), ..Self::failed(several) }
+    }
 }
 
 /// Packings published within phases.
@@ -75,25 +102,6 @@ pub(crate) struct Film {
     pub(crate) structures: usize,
     /// Number with moduli.
     pub(crate) moduli: usize,
-}
-
-/// The messages about one packing; repeated ones are equal.
-#[derive(Default)]
-struct About {
-    /// Position on the loading path. A packing within a phase need not be at rest, and may have no results.
-    position: Option<PathPosition>,
-    packing: Option<Packing>,
-    fabric: Option<FabricReading>,
-    stiffness: Option<ElasticStiffness>,
-    wave_speeds: Option<WaveSpeedsReading>,
-    /// In the order of arrival.
-    results: Vec<Inference>,
-}
-
-impl About {
-    fn is_within_phase(&self) -> bool {
-        self.position.is_some_and(|p| !p.end_of_phase)
-    }
 }
 
 /// Reads a recording back.
@@ -123,45 +131,61 @@ pub fn read(recording: &Recording) -> ReadBack {
             return back;
         }
     };
+    let mut run = OneRun::default();
+    if let Err(sign) = OneRun::scenes(recording) {
+        return ReadBack::of_several_runs(recording, sign);
+    }
     for message in messages {
         let Some(topic) = of(&message.channel) else { continue };
-        let taken = if topic.name == topics::DIAGNOSTICS.name {
-            reports(&mut back.reports, &message)
-        } else {
-            let by = authors.node(&message.channel.topic, message.log_time);
-            enter(&mut about, topic, &message, by).map(|step| {
-                if topic.name == topics::MICROSTRUCTURE.name
-                    && let Ok(found) = message.decoded::<msg::Microstructure>()
-                {
-                    back.inverted.insert((found.source, step));
-                }
-                if topic.name == topics::PACKING.name {
-                    back.packings += 1;
-                    let on_path = about.get(&step).is_some_and(|a| a.position.is_some());
-                    back.saved_step = if on_path { Some(step) } else { back.saved_step };
-                } else {
-                    back.results.entry(topic.name).or_default().insert(step);
-                }
-            })
-        };
-        if let Err(problem) = taken {
-            back.complaints
-                .push(format!("message {} on {}: {problem}", message.sequence, message.channel.topic));
+        let name = &message.channel.topic;
+        if topic.name == topics::DIAGNOSTICS.name {
+            if let Err(problem) = reports(&mut back.reports, &message) {
+                back.complaints.push(complaint(&message, &problem));
+            }
+            continue;
         }
+        let step = match enter(&mut about, topic, &message, authors.node(name, message.log_time)) {
+            Ok(step) => step,
+            Err(Unused::Unreadable(problem)) => {
+                back.complaints.push(complaint(&message, &problem));
+                continue;
+            }
+            // It is in the recording all the same.
+            Err(Unused::Refused(step, problem)) => {
+                back.refused += 1;
+                back.complaints.push(complaint(&message, &problem));
+                step
+            }
+        };
+        if topic.name != topics::PACKING.name {
+            back.results.entry(topic.name).or_default().insert(step);
+            continue;
+        }
+        let Some(about) = about.get(&step) else { continue };
+        if let Some(Err(sign)) = about.packing.as_ref().map(|packing| run.packing(name, packing)) {
+            return ReadBack::of_several_runs(recording, sign);
+        }
+        back.packings += 1;
+        back.saved_step = if about.position.is_some() { Some(step) } else { back.saved_step };
+    }
+    if let Some(sign) = about.iter().find_map(|(step, about)| about.contradiction(*step)) {
+        return ReadBack::of_several_runs(recording, sign);
     }
     let source = recording.path().display().to_string();
-    let film: BTreeSet<u64> =
-        about.iter().filter(|(_, a)| a.is_within_phase()).map(|(step, _)| *step).collect();
-    for (step, about) in about {
+    for (step, mut about) in about {
+        back.note_unanswered(step, &about);
         if about.is_within_phase() {
             back.film.packings += 1;
             back.film.structures += usize::from(about.fabric.is_some());
-            back.film.moduli += usize::from(about.stiffness.is_some());
+            back.film.moduli += usize::from(about.stiffness().is_some());
             continue;
         }
+        let ((results, others), speeds) = (about.results(), about.speeds());
+        let (stiffness, notes) = (about.stiffness(), about.notes());
+        back.of_instruments.extend(others);
         match (about.packing, about.fabric) {
             (Some(packing), Some(fabric)) => {
-                let report = match reported(&packing, fabric, about.stiffness) {
+                let report = match reported(&packing, fabric, stiffness) {
                     Ok(report) => report,
                     Err(why) => {
                         back.complaints.push(format!("the packing of step {step}: {why}"));
@@ -171,8 +195,18 @@ pub fn read(recording: &Recording) -> ReadBack {
                 let mut measured = MeasuredPacking::new(source.clone(), report).at(about.position);
                 measured.warnings.extend(measured.report.elasticity.not_jammed().map(ToString::to_string));
                 measured.warnings.extend(of_springs(&packing, &measured.report));
-                let acoustic = about.wave_speeds.map(|reading| AcousticReport::new(&packing, reading));
-                back.states.push(InvertedPacking { packing: measured, acoustic, results: about.results });
+                measured.warnings.extend(notes);
+                let mut acoustic = speeds.into_iter().map(|(measurement, reading)| AcousticReport {
+                    measurement,
+                    ..AcousticReport::new(&packing, reading)
+                });
+                let first = acoustic.next();
+                back.states.push(InvertedPacking {
+                    packing: measured,
+                    acoustic: first,
+                    further_acoustic: acoustic.collect(),
+                    results,
+                });
             }
             // Data of an external instrument do not belong to a packing of the run.
             (None, None) if step == 0 => {}
@@ -183,16 +217,32 @@ pub fn read(recording: &Recording) -> ReadBack {
             }
         }
     }
-    for (topic, steps) in back.results.iter().filter(|(topic, _)| INVERTED.contains(topic)) {
-        for step in steps.iter().filter(|step| **step > 0 && !film.contains(step)) {
-            if !back.inverted.contains(&((*topic).to_owned(), *step)) {
-                back.not_inverted += 1;
-                back.complaints.push(format!("the {topic} of step {step} were not inverted"));
+    back.complaints.extend(recording.warnings().iter().map(ToString::to_string));
+    back
+}
+
+impl ReadBack {
+    /// Counts data without an answer. Those of packings within a phase may have none.
+    fn note_unanswered(&mut self, step: u64, about: &About) {
+        for (topic, data) in about.data.iter().filter(|_| step > 0 && !about.is_within_phase()) {
+            match data.unanswered() {
+                (_, 0) => {}
+                (sent, open) if sent == open => {
+                    self.not_inverted += 1;
+                    self.complaints.push(format!("the {topic} of step {step} were not inverted"));
+                }
+                (sent, open) => {
+                    self.not_inverted += open;
+                    self.complaints
+                        .push(format!("{open} of {sent} {topic} of step {step} were not inverted"));
+                }
             }
         }
     }
-    back.complaints.extend(recording.warnings().iter().map(ToString::to_string));
-    back
+}
+
+fn complaint(message: &Message, problem: &str) -> String {
+    format!("message {} on {}: {problem}", message.sequence, message.channel.topic)
 }
 
 /// The report from the messages about a packing.
@@ -214,59 +264,6 @@ fn reported(
     };
     let parts = ReportParts { contacts, fabric, stress_decomposition, strain_ratios, elasticity };
     Ok(report(&PackingView::new(packing)?, parts))
-}
-
-/// Adds one message; returns the step of its packing.
-fn enter(
-    about: &mut BTreeMap<u64, About>,
-    topic: &Topic,
-    recorded: &Message,
-    by: Option<&str>,
-) -> Result<u64, String> {
-    let text = |e: grainlab_msgs::boundary::BoundaryError| e.to_string();
-    match topic.name {
-        name if name == topics::PACKING.name => {
-            let message: msg::Packing = recorded.decoded()?;
-            let packing = Packing::try_from(&message).map_err(text)?;
-            let step = packing.step;
-            let about = about.entry(step).or_default();
-            about.position = PathPosition::of(&message.run_state);
-            about.packing = Some(packing);
-            Ok(step)
-        }
-        name if name == topics::FABRIC.name => {
-            let message: msg::Fabric = recorded.decoded()?;
-            about.entry(message.source_step).or_default().fabric =
-                Some(FabricReading::try_from(&message).map_err(text)?);
-            Ok(message.source_step)
-        }
-        name if name == topics::MODULI.name => {
-            let message: msg::Moduli = recorded.decoded()?;
-            let about = about.entry(message.source_step).or_default();
-            about.stiffness = ModuliReading::try_from(&message).map_err(text)?.stiffness;
-            Ok(message.source_step)
-        }
-        name if name == topics::WAVE_SPEEDS.name => {
-            let message: msg::WaveSpeeds = recorded.decoded()?;
-            let reading = WaveSpeedsReading::try_from(&message).map_err(text)?;
-            about.entry(message.source_step).or_default().wave_speeds = Some(reading);
-            Ok(message.source_step)
-        }
-        _ => {
-            let message: msg::Microstructure = recorded.decoded()?;
-            let reading = MicrostructureReading::try_from(&message).map_err(text)?;
-            let known = &mut about.entry(reading.source_step).or_default().results;
-            for estimate in &reading.estimates {
-                let by = by.map(str::to_owned);
-                let found = Inference { by, ..Inference::of_reading(&reading.source, estimate) };
-                // A restarted process may have sent it again.
-                if !known.contains(&found) {
-                    known.push(found);
-                }
-            }
-            Ok(reading.source_step)
-        }
-    }
 }
 
 /// Nodes by the messages that they sent.
@@ -296,3 +293,6 @@ fn reports(known: &mut BTreeMap<(String, u32), Report>, recorded: &Message) -> R
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

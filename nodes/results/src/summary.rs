@@ -1,5 +1,6 @@
 //! The result of a launched run, with the stable keys of `summary.json`.
 
+use crate::inference::Inference;
 use crate::read_back::{Film, InvertedPacking, ReadBack};
 use grainlab_node_kit::{Exit, Report};
 use grainlab_recorder::strangers::StrangerView;
@@ -30,6 +31,9 @@ pub struct Summary {
     pub(crate) particle_steps_per_second: Option<f64>,
     /// Packings at the ends of phases, with what was inferred.
     pub states: Vec<InvertedPacking>,
+    /// Inferred from data that are not about a packing of the run.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) of_instruments: Vec<Inference>,
     /// Packings published within phases.
     pub(crate) film: Film,
     pub(crate) recording: Option<String>,
@@ -113,7 +117,10 @@ impl Summary {
     /// Combines the data of the launcher with those of the recording.
     pub fn new(launched: Launched, back: ReadBack, tallies: Option<&[TopicTally]>) -> Self {
         let counters = Counters::of(back.reports.values());
-        let warnings = launched.reasons.iter().cloned().chain(back.complaints).collect();
+        let warnings: Vec<String> = launched.reasons.iter().cloned().chain(back.complaints).collect();
+        // Of missing results the launcher may have no reason; the recording has.
+        let is_loss = launched.exit == Exit::DataLoss;
+        let reason = launched.reasons.first().or(warnings.first().filter(|_| is_loss)).cloned();
         let per_wall = |v: Option<f64>| Some(v? / counters.wall?);
         Self {
             scene: launched.scene,
@@ -130,11 +137,12 @@ impl Summary {
             waiting_fraction: per_wall(counters.waiting),
             particle_steps_per_second: counters.particle_steps,
             states: back.states,
+            of_instruments: back.of_instruments,
             film: back.film,
             recording: launched.recording,
             saved_step: back.saved_step,
             exit: launched.exit.code(),
-            reason: launched.reasons.into_iter().next(),
+            reason,
             warnings,
         }
     }
@@ -167,4 +175,26 @@ pub struct Launched {
     pub exit: Exit,
     /// Why it did not end as it should, one line each.
     pub reasons: Vec<String>,
+}
+
+#[cfg(test)]
+impl Summary {
+    /// Of a run that left nothing.
+    pub(crate) fn of_nothing(exit: Exit) -> Self {
+        let launched = Launched {
+            scene: "made".to_owned(),
+            seed: 1,
+            domain: 0,
+            run: String::new(),
+            wall_seconds: 1.0,
+            resumed: false,
+            exchanges: None,
+            recorded: BTreeMap::new(),
+            nodes: Vec::new(),
+            recording: None,
+            exit,
+            reasons: Vec::new(),
+        };
+        Self::new(launched, ReadBack::default(), None)
+    }
 }

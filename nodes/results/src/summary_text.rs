@@ -18,9 +18,7 @@ pub fn text(s: &Summary) -> String {
         let (number, of, step) = (n + 1, s.states.len(), state.packing.step);
         text += &format!("State {number} of {of}: scene {}, seed {}, step {step}\n", s.scene, s.seed);
         text += &packing_text::text(&state.packing);
-        if let Some(a) = &state.acoustic {
-            text += &acoustic_text::text(a, &state.packing.report);
-        }
+        state.acoustics().for_each(|a| text += &acoustic_text::text(a, &state.packing.report));
         text += &inferred(state);
         text.push('\n');
     }
@@ -31,6 +29,11 @@ pub fn text(s: &Summary) -> String {
              grainlab analyze RECORDING --format csv\n\n",
             count(packings, "packing")
         );
+    }
+    for (origin, results) in by_origin(&s.of_instruments) {
+        let data = origin.data().unwrap_or_else(|| "data".to_owned());
+        let table = crate::inference_text::table(&results.into_iter().cloned().collect::<Vec<_>>());
+        text += &format!("Of no packing of the run: from {data}\n{}\n", indented(&table));
     }
     text += "Run\n";
     let since = if s.resumed { " since it was resumed" } else { "" };
@@ -63,18 +66,19 @@ fn inferred(s: &InvertedPacking) -> String {
     let inversions: BTreeSet<_> = groups.iter().map(|(o, _)| &o.by).collect();
     let sources: BTreeSet<_> = groups.iter().map(|(o, _)| &o.source).collect();
     let mut text = String::new();
-    for (Origin { source, by }, results) in &groups {
+    let several = groups.iter().any(|(o, _)| o.measurement.is_some());
+    for (origin @ Origin { source, by, measurement }, results) in &groups {
         if inversions.len() > 1 {
             text += &format!("  by {}\n", by.as_deref().unwrap_or("a node that the recording does not name"));
         }
-        if sources.len() > 1 {
-            let data = match (source.as_deref(), &s.acoustic) {
+        if sources.len() > 1 || several {
+            let data = match (source.as_deref(), s.acoustic_of(measurement.as_ref())) {
                 (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic_text::heading(a),
-                (Some(name), _) if name == topics::MODULI.name => {
+                (Some(name), _) if name == topics::MODULI.name && measurement.is_none() => {
                     let method = s.packing.report.stiffness().map_or("given", |s| s.method.name());
                     format!("moduli ({})", method.replace('_', " "))
                 }
-                (name, _) => name.unwrap_or("data").to_owned(),
+                _ => origin.data().unwrap_or_else(|| "data".to_owned()),
             };
             text += &format!("  from {data}\n");
         }

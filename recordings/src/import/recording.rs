@@ -8,11 +8,12 @@ use grainlab_msgs::{Message as _, msg, topics};
 use super::ImportOptions;
 use super::error::ImportError;
 use super::imported::Imported;
+use crate::one_run::OneRun;
 use crate::reader::{Message, ReadError, Recording, Selection};
 
 /// Passes the packings of a recording to `take` one by one, in order of log time, until it stops. A message
 /// that is not a packing is an error; the readable part of a damaged or truncated recording is used, with
-/// warnings.
+/// warnings. From the first packing on that shows that the recording holds several runs, each has a note that says so.
 ///
 /// # Errors
 /// If the options give data that a recording has itself, the topic does not exist or carries another type, or a message on it
@@ -39,9 +40,18 @@ pub fn each(
         return Err(ReadError::NoSuchTopic { path, topic, known }.into());
     }
     let mut any = false;
+    let mut run = OneRun::default();
+    let mut several = None;
     for message in recording.messages(&Selection::topics([topic]))? {
         any = true;
-        if take(packing(&message)?).is_break() {
+        let mut imported = packing(&message)?;
+        several = several.or_else(|| run.packing(topic, &imported.packing).err());
+        imported.notes.extend(several.as_ref().map(|sign| {
+            format!(
+                "the recording holds several runs: {sign}; of which of them this packing is, it does not say"
+            )
+        }));
+        if take(imported).is_break() {
             break;
         }
     }

@@ -7,6 +7,8 @@ use grainlab_core::{Contact, Packing};
 use grainlab_scene::{Draft, StartFile, StartPath};
 
 use super::{ImportError, ImportOptions, Imported, Setting, each, text};
+use crate::one_run::{OneRun, RunSign, SeveralRuns, state};
+use crate::reader::Recording;
 
 /// A packing to start from, with its exact place.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +49,19 @@ pub enum StartError {
         /// The step asked for.
         step: u64,
     },
+    /// The step is that of several packings.
+    #[error(
+        "start.step: {path} has several different packings of step {step}: it is of several runs. Name the file of one of them"
+    )]
+    Ambiguous {
+        /// The file.
+        path: PathBuf,
+        /// The step asked for.
+        step: u64,
+    },
+    /// Which packing is the last one depends on the run.
+    #[error("start.packing: {0}; or name the packing by start.step, if only one run has it")]
+    SeveralRuns(SeveralRuns),
 }
 
 /// Reads the packing named by `file`: that of its step, or the last one. Data that the file lacks are taken from the scene.
@@ -70,12 +85,22 @@ pub fn start(draft: &Draft, file: &StartFile) -> Result<Start, StartError> {
         },
         found => found,
     };
-    let found = found.map_err(|e| match missing(&e) {
+    let (found, sign) = found.map_err(|e| match missing(&e) {
         Some(_) => StartError::Lacks(Box::new(e)),
         None => failed("packing")(e),
     })?;
-    let Some(Imported { packing, step, mut notes, .. }) = found else {
-        return Err(StartError::NoStep { path, step: file.step.unwrap_or_default() });
+    let Imported { packing, step, mut notes, .. } = match (found, file.step) {
+        (Picked::One(found), Some(_)) => *found,
+        (Picked::One(found), None) => {
+            if let Some(sign) = several_runs(&path, sign) {
+                return Err(StartError::SeveralRuns(SeveralRuns { path, sign }));
+            }
+            *found
+        }
+        (Picked::Several, step) => {
+            return Err(StartError::Ambiguous { path, step: step.unwrap_or_default() });
+        }
+        (Picked::None, step) => return Err(StartError::NoStep { path, step: step.unwrap_or_default() }),
     };
     notes.extend(draft.first_friction().and_then(|friction| cut(&packing, friction)));
     Ok(Start { packing, path, contact_forces, step, notes })
@@ -89,17 +114,43 @@ fn whole(key: &'static str, file: &StartPath) -> Result<PathBuf, StartError> {
         .map_err(|source| StartError::File { key, source: Box::new(ImportError::Io { path, source }) })
 }
 
-/// The packing of this step, or the last one.
-fn pick(path: &Path, step: Option<u64>, options: &ImportOptions) -> Result<Option<Imported>, ImportError> {
-    let mut found = None;
+/// What a file has of a step.
+enum Picked {
+    None,
+    One(Box<Imported>),
+    /// Different packings.
+    Several,
+}
+
+/// The packing of this step, or the last one, and what shows that the packings before it are of several runs.
+fn pick(
+    path: &Path,
+    step: Option<u64>,
+    options: &ImportOptions,
+) -> Result<(Picked, Option<RunSign>), ImportError> {
+    let (mut found, mut run, mut sign) = (Picked::None, OneRun::default(), None);
     each(path, options, &mut |imported| {
-        let wanted = step.is_none_or(|step| step == imported.step);
-        if wanted {
-            found = Some(imported);
+        sign = sign.take().or_else(|| run.packing("", &imported.packing).err());
+        match (&found, step) {
+            (_, Some(step)) if step != imported.step => {}
+            (Picked::One(first), Some(_)) => {
+                // A restarted simulator may publish it again.
+                if state(&first.packing) != state(&imported.packing) {
+                    found = Picked::Several;
+                    return ControlFlow::Break(());
+                }
+            }
+            _ => found = Picked::One(Box::new(imported)),
         }
-        if wanted && step.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        ControlFlow::Continue(())
     })?;
-    Ok(found)
+    Ok((found, sign))
+}
+
+/// What shows that a recording is of several runs. The frames of other files may be in any order.
+fn several_runs(path: &Path, sign: Option<RunSign>) -> Option<RunSign> {
+    let recording = Recording::open(path).ok()?;
+    sign.or_else(|| OneRun::scenes(&recording).err())
 }
 
 fn missing(error: &ImportError) -> Option<&[Setting]> {

@@ -22,7 +22,8 @@ pub struct Messages<'r> {
     recording: &'r Recording,
     topics: Option<BTreeSet<String>>,
     start: u64,
-    end: u64,
+    /// `None`: to the last message, whose time may be the greatest number.
+    end: Option<u64>,
     /// Blocks still to read: file and block, the next one last.
     blocks: Vec<(usize, usize)>,
     /// Blocks read and not yet returned, the one with the earliest message on top. Blocks of one file may overlap in time.
@@ -81,7 +82,7 @@ impl Recording {
                     .collect::<Result<BTreeSet<_>, ReadError>>()?,
             ),
         };
-        Ok(Messages::new(self, topics, selection.start.unwrap_or(0), selection.end.unwrap_or(u64::MAX)))
+        Ok(Messages::new(self, topics, selection.start.unwrap_or(0), selection.end))
     }
 
     /// The last message on `topic` whose log time is below `time` (ns since 1970).
@@ -103,10 +104,11 @@ impl Recording {
 }
 
 impl<'r> Messages<'r> {
-    fn new(recording: &'r Recording, topics: Option<BTreeSet<String>>, start: u64, end: u64) -> Self {
+    fn new(recording: &'r Recording, topics: Option<BTreeSet<String>>, start: u64, end: Option<u64>) -> Self {
         let mut blocks = Vec::new();
         for (f, file) in recording.files.iter().enumerate() {
-            let wanted = |b: &Block| b.end >= start && b.start < end && holds(file, b, topics.as_ref());
+            let in_time = |b: &Block| b.end >= start && end.is_none_or(|end| b.start < end);
+            let wanted = |b: &Block| in_time(b) && holds(file, b, topics.as_ref());
             blocks.extend(file.blocks().iter().enumerate().filter(|(_, b)| wanted(b)).map(|(n, _)| (f, n)));
         }
         blocks.sort_by_key(|&(f, n)| Reverse((recording.files[f].blocks()[n].start, f, n)));
@@ -128,14 +130,15 @@ impl<'r> Messages<'r> {
             let detail = "too many bytes of chunks that claim the same time are in memory already".to_owned();
             return self.recording.warn(file.warning(block.offset, WarningKind::DamagedChunk, detail));
         }
-        let (topics, times) = (self.topics.as_ref(), self.start..self.end);
+        let topics = self.topics.as_ref();
+        let in_time = |time: u64| time >= self.start && self.end.is_none_or(|end| time < end);
         let wanted = |channel: u16| {
             let info = file.index.channels.get(&channel);
             info.filter(|info| topics.is_none_or(|t| t.contains(&info.topic)))
         };
         let mut messages = Vec::new();
         decode(self.recording, file, block, &self.held, wanted, |message| {
-            if times.contains(&message.log_time) {
+            if in_time(message.log_time) {
                 messages.push(message);
             }
         });

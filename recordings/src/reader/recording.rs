@@ -1,7 +1,7 @@
 //! An opened recording: its files, topics, stored files and ledger.
 
 use super::channel::ChannelInfo;
-use super::error::{ReadError, Warning};
+use super::error::{ReadError, Warning, WarningKind};
 use super::file::OpenFile;
 use super::files;
 use super::stored_file::{FileCount, StoredFile};
@@ -34,9 +34,19 @@ impl Recording {
         if paths.len() > 1 && paths.last().is_some_and(is_empty) {
             paths.pop();
         }
-        let mut files = Vec::with_capacity(paths.len());
+        let parts = paths.len();
+        let mut files = Vec::with_capacity(parts);
         for file in paths {
+            // A power cut may leave a part without a byte; the others are read.
+            if parts > 1 && is_empty(&file) {
+                let detail = "it is empty: what was recorded in it is lost".to_owned();
+                warnings.insert(Warning { path: file, offset: 0, kind: WarningKind::Truncated, detail });
+                continue;
+            }
             files.push(OpenFile::map(&file, &mut warnings)?);
+        }
+        if files.is_empty() {
+            return Err(ReadError::Empty { path: path.to_owned() });
         }
         Ok(Self { path: path.to_owned(), files, warnings: Mutex::new(warnings) })
     }

@@ -187,3 +187,24 @@ mod arbitrary_bytes {
         }
     }
 }
+
+#[test]
+fn a_part_without_a_byte_is_named_and_the_other_parts_are_read() {
+    let root = tempfile::tempdir().unwrap();
+    let (directory, bytes) = run_in(&root, 100);
+    let count = || {
+        let recording = Recording::open(&directory).unwrap();
+        let found = recording.messages(&Selection::default()).unwrap().count();
+        (found, recording.warnings().into_iter().map(|w| w.kind).collect::<Vec<_>>())
+    };
+    let whole = count().0;
+    std::fs::remove_file(directory.join("metadata.yaml")).unwrap();
+    std::fs::write(directory.join("demo-7-1_1.mcap"), b"").unwrap();
+    std::fs::write(directory.join("demo-7-1_2.mcap"), &bytes).unwrap();
+    assert_eq!(count(), (2 * whole, vec![WarningKind::Truncated]));
+    // The file alone is no recording.
+    assert!(matches!(
+        Recording::open(&directory.join("demo-7-1_1.mcap")),
+        Err(ReadError::NotMcap { bytes: 0, .. })
+    ));
+}

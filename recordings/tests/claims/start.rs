@@ -3,8 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use grainlab_experiment::Simulation;
+use grainlab_msgs::boundary::packing_message;
+use grainlab_msgs::{to_cdr, topics};
+use grainlab_recordings::copy::{CopyOptions, Select, copy};
 use grainlab_recordings::import::{self, Start, StartError};
+use grainlab_recordings::{Recording, RunWriter, TopicSpec};
 use grainlab_scene::{Draft, SceneError, Source};
+
+use crate::reference_packing::reference;
+use crate::support::{SIMULATOR, START, options, sample};
 
 fn golden() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/golden/lammps")
@@ -97,4 +104,56 @@ fn files_and_columns_that_are_not_there_are_named_by_their_key() {
         let error = start(&draft(lines, GLASS, 0.3)).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");
     }
+}
+
+/// A recording of two packings of these steps, moved by this share of a radius.
+fn recorded(root: &tempfile::TempDir, name: &str, steps: [u64; 2], moved: f64, scene: &str) -> PathBuf {
+    let directory = root.path().join(name);
+    let spec = TopicSpec::of_contract(&topics::PACKING, "/packing");
+    let mut run = RunWriter::create(&directory, name, &[spec], options()).unwrap();
+    run.attach("scene.toml", "application/toml", scene.as_bytes()).unwrap();
+    for (n, step) in steps.into_iter().enumerate() {
+        let mut packing = grainlab_core::Packing { step, time: 1e-6 * step as f64, ..reference().packing };
+        let shift = moved * packing.radii[0];
+        packing.positions.iter_mut().for_each(|position| position.x += shift);
+        let body = to_cdr(&packing_message(&packing, "made", Vec::new()));
+        run.write("/packing", &sample(SIMULATOR, n as i64 + 1, START + step, &body)).unwrap();
+    }
+    run.finish().unwrap();
+    directory
+}
+
+#[test]
+fn a_merged_recording_starts_a_run_only_from_a_step_that_one_of_its_runs_has() {
+    let root = tempfile::tempdir().unwrap();
+    let runs = [
+        recorded(&root, "left", [0, 10], 0.0, "name = 'left'"),
+        recorded(&root, "right", [0, 20], 1e-3, "name = 'right'"),
+    ];
+    let sources = runs.map(|run| Recording::open(&run).unwrap());
+    let merged = root.path().join("merged.mcap");
+    copy(&sources, &Select::default(), &merged, &CopyOptions::default()).unwrap();
+    let of = |path: &Path, start: &str| {
+        let text = format!(
+            "name = 'x'\n[start]\npacking = '{}'\n{start}\n[[phase]]\nkind = 'strain'\nfriction = 0.3\n\
+             rate = [-1.0, -1.0, -1.0, 0, 0, 0]\nuntil = {{ elapsed = 1e-3 }}\n",
+            path.display()
+        );
+        let source = Source { name: root.path().join("scene.toml").to_string_lossy().into_owned(), text };
+        super::start::start(&Draft::of(&source, &|_, _| Err("no base".into())).unwrap())
+    };
+    let error = of(&merged, "step = 0").unwrap_err();
+    assert!(matches!(error, StartError::Ambiguous { step: 0, .. }), "{error}");
+    let error = of(&merged, "").unwrap_err();
+    assert!(matches!(error, StartError::SeveralRuns(_)), "{error}");
+    assert!(matches!(of(&merged, "step = 11"), Err(StartError::NoStep { .. })));
+    let found = of(&merged, "step = 20").unwrap();
+    assert!(found.notes.iter().any(|n| n.contains("holds several runs")), "{:?}", found.notes);
+    // Each by itself is one run; so is one that was merged with itself.
+    let left = root.path().join("left");
+    assert_eq!((of(&left, "").unwrap().step, of(&left, "step = 0").unwrap().notes.len()), (10, 0));
+    let twice = root.path().join("twice.mcap");
+    let same = [Recording::open(&left).unwrap(), Recording::open(&left).unwrap()];
+    copy(&same, &Select::default(), &twice, &CopyOptions::default()).unwrap();
+    assert_eq!(of(&twice, "").unwrap().step, 10);
 }

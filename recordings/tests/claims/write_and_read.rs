@@ -236,3 +236,17 @@ fn a_file_exceeds_its_size_by_one_chunk_at_most_however_fast_messages_come() {
         count as usize
     );
 }
+
+#[test]
+fn the_message_of_the_greatest_log_time_is_read_and_an_end_leaves_it_out() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path().join("r");
+    let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
+    for (n, time) in [(1, 5), (2, u64::MAX)] {
+        run.write("/stress", &sample(SIMULATOR, n, time, &stress(n as u64))).unwrap();
+    }
+    run.finish().unwrap();
+    let recording = Recording::open(&directory).unwrap();
+    let count = |end| recording.messages(&Selection { end, ..Selection::default() }).unwrap().count();
+    assert_eq!((count(None), count(Some(u64::MAX)), count(Some(5))), (2, 1, 0));
+}

@@ -41,7 +41,11 @@ impl ParquetTable {
     }
 
     pub(crate) fn row(&mut self, row: Vec<Cell>) -> Result<(), ParquetError> {
-        for (column, cell) in self.cells.iter_mut().zip(row) {
+        for ((column, kind), cell) in self.cells.iter_mut().zip(&self.kinds).zip(row) {
+            if *kind == Kind::Time && matches!(cell, Cell::Unsigned(ns) if i64::try_from(ns).is_err()) {
+                let why = "a time is after the year 2262, which a Parquet timestamp cannot hold: convert to csv or json";
+                return Err(ParquetError::General(why.to_owned()));
+            }
             if let Cell::Text(text) = &cell {
                 self.text += text.len();
             }
@@ -178,6 +182,10 @@ mod tests {
             Cell::Double(f64::INFINITY),
             Cell::Text("[1,2]".into()),
         ];
+        let mut late = row.clone();
+        late[0] = Cell::Unsigned(1 << 63);
+        assert!(table.row(late).unwrap_err().to_string().contains("year 2262"), "it would be one of 1677");
+        table.cells.iter_mut().for_each(Vec::clear);
         let count = CELLS / columns.len() + 2;
         (1..count).for_each(|_| table.row(row.clone()).unwrap());
         table.row(vec![Cell::Missing; columns.len()]).unwrap();

@@ -69,3 +69,27 @@ fn moduli_and_the_wave_speeds_of_a_remapped_instrument_are_answered_side_by_side
     other.step(&mut bus).unwrap();
     assert_eq!(bus.received().iter().map(|r| r.taken).collect::<Vec<_>>(), [1, 0]);
 }
+
+#[test]
+fn a_burst_of_shots_is_inverted_whole_and_what_is_lost_of_a_longer_one_is_counted() {
+    let hub = Hub::new(1);
+    let mut bus = hub.bus(Names::new("source").unwrap());
+    let source: Publisher<WaveSpeeds> = Publisher::advertise(&mut bus, &topics::WAVE_SPEEDS).unwrap();
+    let found: Subscription<Microstructure> =
+        Subscription::subscribe(&mut bus, &topics::MICROSTRUCTURE, Demand::reliable(4000)).unwrap();
+    let mut node_bus = hub.bus(Names::new("emt_inversion").unwrap());
+    let mut node = EmtInversion::new(&mut node_bus, Settings::default()).unwrap();
+    // Refused data are answered at once.
+    let mut burst = |shots: usize| {
+        for n in 0..shots {
+            let shot = WaveSpeeds { name: format!("shot {n}"), density: 0.0, ..upright() };
+            source.publish(&mut bus, &shot).unwrap();
+        }
+        node.step(&mut node_bus).unwrap();
+        let answers = std::iter::from_fn(|| found.take_valid(&mut bus).unwrap()).count();
+        let missed = node.health().values.into_iter().find(|(key, _)| key == "missed").unwrap().1;
+        (answers, missed)
+    };
+    assert_eq!(burst(200), (200, "0".into()));
+    assert_eq!(burst(1030), (1024, "6".into()));
+}

@@ -57,12 +57,7 @@ fn run_of_endpoint(endpoint: &Endpoint) -> Option<grainlab_node_kit::RunId> {
 
 /// Nodes that publish reports and sent none, and those that report a fault.
 pub(super) fn of_reports(graph: &Graph, heard: &BTreeMap<String, Report>) -> Vec<Finding> {
-    let topics = graph.topics();
-    let sends: BTreeSet<String> = topics
-        .get("/diagnostics")
-        .map(|t| t.publishers.iter().map(|p| graph.owner(p)).collect())
-        .unwrap_or_default();
-    let silent = sends.into_iter().filter(|node| !heard.contains_key(node)).map(|node| {
+    let silent = graph.reporting().into_iter().filter(|node| !heard.contains_key(node)).map(|node| {
         Finding::error(
             "silent_node",
             format!("{node} sent no report for {} s", LISTEN.as_secs_f64()),
@@ -131,6 +126,21 @@ mod tests {
     fn kinds(nodes: [(Endpoint, NodeEntry); 2]) -> Vec<&'static str> {
         let (endpoints, nodes) = nodes.into_iter().unzip();
         findings(&Graph { nodes, endpoints }).into_iter().map(|f| f.kind).collect()
+    }
+
+    #[test]
+    fn a_program_of_another_maker_owes_no_report_and_a_node_of_ours_does() {
+        let of = |prefix: [u8; 12]| {
+            let (endpoint, node) = simulator(prefix, "/x");
+            let qos = endpoint.qos.clone();
+            let kind = "diagnostic_msgs::msg::dds_::DiagnosticArray_";
+            let reports = Endpoint::new(endpoint.guid, "rt/diagnostics", kind, true, qos);
+            of_reports(&Graph { nodes: vec![node], endpoints: vec![reports] }, &BTreeMap::new()).len()
+        };
+        assert_eq!(of([0x01, 0x10, 9, 9, 9, 9, 9, 9, 1, 1, 1, 1]), 0, "CycloneDDS");
+        assert_eq!(of(grainlab_node_kit::Identity::default().guid_prefix()), 1);
+        let run = grainlab_node_kit::RunId::named("left");
+        assert_eq!(of(grainlab_node_kit::Identity::member_of(run, 1).guid_prefix()), 1);
     }
 
     #[test]

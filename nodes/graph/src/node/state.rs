@@ -45,11 +45,9 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut observer = Observer::join()?;
     let graph = observer.settled(args.common.patience());
     let heard = latest_reports(&mut observer)?;
-    let topics = graph.topics();
-    let reporting = topics.get("/diagnostics").map(|t| t.publishers.as_slice()).unwrap_or_default();
     let mut rows: BTreeMap<String, Row> =
         heard.iter().map(|(node, report)| (node.clone(), row(report))).collect();
-    for node in reporting.iter().map(|publisher| graph.owner(publisher)) {
+    for node in graph.reporting() {
         rows.entry(node.clone()).or_insert_with(|| Row {
             node,
             level: "silent",

@@ -64,6 +64,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 fn read(path: &Path) -> Result<Run, Failure> {
     path.metadata().map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
     let run = Run::read(path);
+    if let Some(several) = run.several_runs() {
+        return Err(Failure::failed(several));
+    }
     match run.nothing() {
         Some(why) => Err(Failure::failed(format!("{} is no run: {why}", path.display()))),
         None => Ok(run),

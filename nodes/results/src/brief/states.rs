@@ -1,13 +1,17 @@
 //! Several packings of a run, one line each, in at most 100 columns.
 
 use super::shown::{eps, moduli};
-use crate::inference::{Inference, by_origin};
+use crate::inference::{Inference, Origin, by_origin};
 use crate::read_back::InvertedPacking;
 use grainlab_console::{Table, count, fixed};
 use grainlab_msgs::topics;
+use std::collections::BTreeSet;
 
 /// Rows of the table; with more states, the last ones have rows.
 const MOST_ROWS: usize = 10;
+
+/// The same where packings have several measurements.
+const MOST_ROWS_OF_SEVERAL: usize = 24;
 
 /// The mark after the model of an estimate outside its range, and the status that it means.
 const OUTSIDE: (&str, &str) = ("*", "extrapolated");
@@ -18,7 +22,10 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
         "step", "p/kPa", "q/p", "phi", "k", "z", "eps", "G12", "Theta", "est. k", "z", "eps", "by",
     ]);
     let origins = states.iter().map(|s| by_origin(&s.results).len()).max().unwrap_or(0).max(1);
-    let left_out = states.len().saturating_sub(MOST_ROWS / origins);
+    let left_out = match of_measurements(states) {
+        Some(shown) => states.len() - shown,
+        None => states.len().saturating_sub((MOST_ROWS / origins).max(1)),
+    };
     let mut notes = Vec::new();
     let mut note = |line: String| {
         if !notes.contains(&line) {
@@ -43,27 +50,36 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
             theta,
         ];
         let groups = by_origin(&state.results);
-        let found: Vec<&Inference> =
-            groups.iter().filter_map(|(_, results)| Inference::recommended(results)).collect();
-        for best in &found {
-            if best.status == OUTSIDE.1 {
+        // Of several measurements those without an estimate have a row, too.
+        let found: Vec<(&Origin, Option<&Inference>)> = groups
+            .iter()
+            .map(|(origin, results)| (origin, Inference::recommended(results)))
+            .filter(|(origin, best)| best.is_some() || origin.measurement.is_some())
+            .collect();
+        let step = state.packing.step;
+        // Of several nodes that infer, each is named.
+        let nodes: BTreeSet<_> = groups.iter().map(|(origin, _)| &origin.by).collect();
+        let named = |o: &Origin| if nodes.len() > 1 { o.data_and_node() } else { o.data() };
+        let shown = &found[..found.len().min(MOST_ROWS)];
+        for (_, best) in shown {
+            if best.is_some_and(|b| b.status == OUTSIDE.1) {
                 note(format!("{} {}", OUTSIDE.0, OUTSIDE.1));
             }
         }
-        let first = found.first().copied();
-        if let Some(other) =
-            first.and_then(|b| b.source.as_deref()).filter(|from| *from != topics::MODULI.name)
-        {
-            note(format!("step {}: inferred from {other}", state.packing.step));
+        let first = shown.first();
+        if let Some(other) = first.and_then(|(o, _)| named(o)).filter(|from| from != topics::MODULI.name) {
+            note(format!("step {step}: inferred from {other}"));
         }
         let unknown = if groups.is_empty() { "" } else { "unknown" };
-        t.row(packing.into_iter().chain(estimated(first, unknown)));
+        t.row(packing.into_iter().chain(estimated(first.and_then(|(_, best)| *best), unknown)));
         // The data of a further estimate stand in its first cell.
-        for best in found.iter().skip(1) {
-            let from = best.source.clone().unwrap_or_default();
-            t.row(
-                [from].into_iter().chain((1..9).map(|_| String::new())).chain(estimated(Some(best), unknown)),
-            );
+        for (origin, best) in shown.iter().skip(1) {
+            let from = named(origin).unwrap_or_default();
+            t.row([from].into_iter().chain((1..9).map(|_| String::new())).chain(estimated(*best, unknown)));
+        }
+        if found.len() > shown.len() {
+            let more = count(found.len() - shown.len(), "estimate");
+            note(format!("step {step}: and {more} more: summary.json has all"));
         }
     }
     if left_out > 0 {
@@ -71,6 +87,20 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
     }
     let table = t.without_empty_columns().text();
     table.lines().map(str::to_owned).chain(notes).collect()
+}
+
+/// Number of the last states that have rows where packings have several measurements: each of these has one; `None` without such
+/// packings.
+fn of_measurements(states: &[InvertedPacking]) -> Option<usize> {
+    let is_of_several = |s: &InvertedPacking| s.results.iter().any(|r| r.measurement.is_some());
+    states.iter().any(is_of_several).then(|| {
+        let mut rows = 0;
+        let shown = states.iter().rev().take_while(|s| {
+            rows += by_origin(&s.results).len().clamp(1, MOST_ROWS);
+            rows <= MOST_ROWS_OF_SEVERAL
+        });
+        shown.count()
+    })
 }
 
 /// The recommended estimate; without one, its cell has `unknown`.

@@ -130,7 +130,11 @@ fn inferred(results: &[Inference]) -> BTreeMap<String, Cell> {
     let mut cells = BTreeMap::new();
     for r in results {
         let data = r.source.as_deref().filter(|source| *source != topics::MODULI.name);
-        let parts = [data, r.by.as_deref().filter(|by| !by.ends_with("emt_inversion")), Some(&r.model)];
+        // Moduli of several programs need their topic, too.
+        let data = if r.measurement.is_some() { r.source.as_deref() } else { data };
+        let measurement = r.measurement.as_ref().map(|m| m.label.as_str());
+        let by = r.by.as_deref().filter(|by| !by.ends_with("emt_inversion"));
+        let parts = [data, measurement, by, Some(&r.model)];
         let prefix = parts.into_iter().flatten().collect::<Vec<_>>().join(".");
         let number = |v: Option<f64>| v.map_or(Cell::Unknown, Cell::Number);
         for (n, q) in InferredQuantity::ALL.into_iter().enumerate() {

@@ -7,8 +7,9 @@ use grainlab_campaign::Lock;
 use grainlab_console::Failure;
 use grainlab_console::network::FreeDomain;
 use grainlab_console::scenes::SceneText;
-use grainlab_launcher::{NodePlan, Outline, Run, Supervised, Supervisor};
+use grainlab_launcher::{NodePlan, Outline, RecordedSpeeds, Run, Supervised, Supervisor};
 use grainlab_node_kit::{Exit, Network, RunId};
+use grainlab_recordings::Recording;
 use grainlab_scene::Scene;
 use std::path::Path;
 
@@ -34,7 +35,10 @@ pub(super) fn conduct(
     for note in scene.scene.notes() {
         grainlab_console::say!("grainlab: note: {note}");
     }
-    let supervised = supervise(plans, run, directory, &scene.scene);
+    // Programs that measured packings before an interruption are waited for as before it.
+    let resumed = output.resumed && Recording::open(directory).is_ok();
+    let recorded = if resumed { RecordedSpeeds::read(directory)? } else { RecordedSpeeds::default() };
+    let supervised = supervise(plans, run, directory, &scene.scene, &recorded);
     drop(lock);
     let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;
     let failed = matches!(supervised.exit, Exit::Failure | Exit::Usage);
@@ -79,7 +83,13 @@ pub(super) fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
     Ok((free.id, Some(free)))
 }
 
-fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, scene: &Scene) -> Result<Supervised, Failure> {
+fn supervise(
+    plans: Vec<NodePlan>,
+    run: Run,
+    directory: &Path,
+    scene: &Scene,
+    recorded: &RecordedSpeeds,
+) -> Result<Supervised, Failure> {
     let last = scene.phases.iter().rfind(|p| p.publish || p.record.is_some());
     let outline = Outline {
         phases: scene.phases.len(),
@@ -88,7 +98,8 @@ fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, scene: &Scene) ->
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
-    runtime.block_on(async { Supervisor::new(plans, run, directory, outline)?.run().await })
+    runtime
+        .block_on(async { Supervisor::new(plans, run, directory, outline)?.resuming(recorded).run().await })
 }
 
 #[cfg(test)]

@@ -18,6 +18,9 @@ use std::path::{Path, PathBuf};
 /// Published results that the recording lacks.
 fn missing(received: &Received, back: &ReadBack) -> Vec<String> {
     let mut missing = Vec::new();
+    if back.several_runs.is_some() {
+        return missing;
+    }
     if let Some(published) = received.packings.filter(|n| back.packings < *n as usize) {
         missing.push(format!("{} of {published} packings are in the recording", back.packings));
     }
@@ -58,7 +61,8 @@ pub(super) fn finish(
     let has = |node: NodeKind| children.iter().any(|c| c.plan.is(node));
     let unanswered = (has(NodeKind::FabricAnalyzer) && back.not_analysed > 0)
         || (has(NodeKind::EmtInversion) && back.not_inverted > 0);
-    if !missing.is_empty() || unanswered {
+    let unused = back.refused > 0 || back.several_runs.is_some();
+    if !missing.is_empty() || unanswered || unused {
         exit = worse(exit, Exit::DataLoss);
         back.complaints.extend(missing);
     }
@@ -89,17 +93,25 @@ pub(super) fn finish(
     let path = directory.join("summary.json");
     let text = json(&summary)?;
     let packings: Vec<_> = summary.states.iter().map(|s| s.packing.clone()).collect();
-    // Printed before writing, so that a full disk does not lose the result.
+    let written = write_whole(&path, &text).map_err(|e| {
+        Failure::failed(format!("{}: {e}; the result is printed, and is in the recording", path.display()))
+    });
+    let exists = |name: &str| directory.join(name).exists();
+    let files = [
+        ("recording", recording.is_ok()),
+        ("summary.json", written.is_ok()),
+        ("scene.toml", exists("scene.toml")),
+        ("logs", exists("logs")),
+    ];
+    let files: Vec<&str> = files.into_iter().filter(|(_, there)| *there).map(|(name, _)| name).collect();
+    // Printed in any case, so that a full disk does not lose the result.
     let printed = print(&match output.format {
         Format::Json => text.clone(),
         Format::Csv => MeasuredPacking::table(&packings).csv(),
         Format::Table => {
             let all = if output.verbose { summary_text::text(&summary) + "\n" } else { String::new() };
-            all + &brief::text(&summary, &from_here(directory), &program())
+            all + &brief::text(&summary, &from_here(directory), &files, &program())
         }
-    });
-    let written = write_whole(&path, &text).map_err(|e| {
-        Failure::failed(format!("{}: {e}; the result was printed, and is in the recording", path.display()))
     });
     for failure in [written, printed].into_iter().filter_map(Result::err) {
         grainlab_console::say!("grainlab: {failure}");

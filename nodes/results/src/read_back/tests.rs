@@ -1,0 +1,279 @@
+//! Recordings that are made here, message by message.
+
+use super::*;
+use crate::measured_packing::tests::{lattice, measured};
+use grainlab_emt_inversion::{Settings, microstructure_message, microstructure_of_speeds};
+use grainlab_msgs::boundary::{fabric_message, moduli_message, packing_header, packing_message};
+use grainlab_msgs::builtin_interfaces::Time;
+use grainlab_msgs::geometry_msgs::Vector3;
+use grainlab_msgs::{msg, to_cdr};
+use grainlab_node_kit::Exit;
+use grainlab_recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
+use std::path::{Path, PathBuf};
+
+const TOPICS: [(&Topic, &str); 5] = [
+    (&topics::PACKING, "/packing"),
+    (&topics::FABRIC, "/fabric"),
+    (&topics::MODULI, "/moduli"),
+    (&topics::WAVE_SPEEDS, "/wave_speeds"),
+    (&topics::MICROSTRUCTURE, "/microstructure"),
+];
+
+/// A recording in a directory that is removed with it.
+struct Made {
+    directory: tempfile::TempDir,
+    writer: Option<RunWriter>,
+    sent: u64,
+}
+
+impl Made {
+    fn new() -> Self {
+        let directory = tempfile::tempdir().unwrap();
+        let specs = TOPICS.map(|(topic, name)| TopicSpec::of_contract(topic, name));
+        let writer = RunWriter::create(&directory.path().join("r"), "r", &specs, WriterOptions::default());
+        Self { directory, writer: Some(writer.unwrap()), sent: 0 }
+    }
+
+    fn write(&mut self, topic: &str, payload: &[u8]) {
+        self.sent += 1;
+        let (guid, sequence, receive_time) = (Guid([1; 16]), self.sent as i64, self.sent);
+        let sample = Incoming { guid, sequence, source_time: None, receive_time, payload };
+        self.writer.as_mut().unwrap().write(topic, &sample).unwrap();
+    }
+
+    /// The packing, and what analyzer and inversion send about it.
+    fn state(&mut self, packing: &Packing) {
+        let report = measured(packing).report;
+        let header = || packing_header(packing);
+        self.write("/packing", &to_cdr(&packing_message(packing, "made", Vec::new())));
+        self.write("/fabric", &to_cdr(&fabric_message(header(), &report).unwrap()));
+        let moduli = moduli_message(header(), &report, report.stiffness().unwrap()).unwrap();
+        self.moduli(&moduli);
+    }
+
+    fn moduli(&mut self, moduli: &msg::Moduli) {
+        self.write("/moduli", &to_cdr(moduli));
+        let answer = microstructure_message(moduli, &Settings::default()).message;
+        self.write("/microstructure", &to_cdr(&answer));
+    }
+
+    fn speeds(&mut self, speeds: &msg::WaveSpeeds, answered: bool) {
+        self.write("/wave_speeds", &to_cdr(speeds));
+        let answer = microstructure_of_speeds(speeds, &Settings::default()).message;
+        if answered {
+            self.write("/microstructure", &to_cdr(&answer));
+        }
+    }
+
+    fn path(&self) -> PathBuf {
+        self.directory.path().join("r")
+    }
+
+    fn read(&mut self) -> ReadBack {
+        self.writer.take().unwrap().finish().unwrap();
+        read(&Recording::open(&self.path()).unwrap())
+    }
+}
+
+/// The lattice at another step and time, with its grain elsewhere.
+fn later(step: u64, x: f64) -> Packing {
+    let mut packing = Packing { step, time: 1e-6 * step as f64, ..lattice(true) };
+    packing.positions[0].x = x;
+    packing
+}
+
+/// Speeds along the third axis, of a shot of this packing.
+fn shot(packing: &Packing, name: &str, speed: f64) -> msg::WaveSpeeds {
+    let along = |x: f64, speed: f64| msg::WaveSpeed {
+        direction: Vector3 { x: 0.0, y: 0.0, z: 1.0 },
+        polarization: Vector3 { x, y: 0.0, z: 1.0 - x },
+        speed,
+        speed_stddev: 0.01 * speed,
+        method: msg::WaveSpeed::METHOD_FIRST_ARRIVAL,
+        ..msg::WaveSpeed::default()
+    };
+    msg::WaveSpeeds {
+        header: packing_header(packing),
+        name: name.to_owned(),
+        source_step: packing.step,
+        density: 1500.0,
+        pressure: 5e4,
+        solid_fraction: 0.6,
+        grain_shear_modulus: packing.material.shear_modulus,
+        grain_poisson_ratio: packing.material.poisson_ratio,
+        speeds: vec![along(0.0, 1.6 * speed), along(1.0, speed)],
+        ..msg::WaveSpeeds::default()
+    }
+}
+
+#[test]
+fn a_run_is_read_back_and_one_measurement_has_no_label() {
+    let mut made = Made::new();
+    made.state(&later(7, 0.0));
+    made.speeds(&shot(&later(7, 0.0), "bench", 300.0), true);
+    made.state(&later(9, 1e-6));
+    let back = made.read();
+    assert_eq!((back.states.len(), back.complaints.len(), back.refused), (2, 0, 0), "{:?}", back.complaints);
+    let state = &back.states[0];
+    assert!(state.acoustic.is_some() && state.further_acoustic.is_empty());
+    assert!(state.results.iter().all(|r| r.measurement.is_none()));
+    let json = serde_json::to_value(state).unwrap();
+    assert!(json.get("further_acoustic").is_none() && json["acoustic"].get("measurement").is_none());
+}
+
+#[test]
+fn results_of_two_runs_are_never_joined_by_their_step() {
+    for (other, sign) in [
+        (later(7, 2e-6), RunSign::Packings { step: 7 }),
+        (later(8, 2e-6), RunSign::Restart { step: 8, before: 9 }),
+    ] {
+        let mut made = Made::new();
+        [later(7, 0.0), later(9, 1e-6), other].iter().for_each(|packing| made.state(packing));
+        let back = made.read();
+        assert_eq!(back.several_runs.as_ref().map(|s| &s.sign), Some(&sign));
+        assert!(back.states.is_empty() && back.complaints[0].contains("holds several runs"), "{back:?}");
+    }
+    // The structure of another run, whose packings are not there.
+    let mut made = Made::new();
+    made.state(&later(7, 0.0));
+    let foreign = Packing { time: 0.5, ..later(7, 0.0) };
+    let report = measured(&foreign).report;
+    made.write("/fabric", &to_cdr(&fabric_message(packing_header(&foreign), &report).unwrap()));
+    assert!(matches!(made.read().several_runs.unwrap().sign, RunSign::Result { step: 7, .. }));
+}
+
+#[test]
+fn every_shot_of_a_packing_keeps_its_own_speeds_and_estimates() {
+    let packing = later(7, 0.0);
+    let mut made = Made::new();
+    made.state(&packing);
+    for n in 0..3 {
+        made.speeds(&shot(&packing, &format!("shot {n}"), 300.0 + 20.0 * f64::from(n)), true);
+    }
+    let back = made.read();
+    let state = &back.states[0];
+    assert!(back.complaints.is_empty(), "{:?}", back.complaints);
+    assert_eq!(state.acoustics().count(), 3);
+    let groups = crate::by_origin(&state.results);
+    let data: Vec<String> = groups.iter().filter_map(|(origin, _)| origin.data()).collect();
+    assert_eq!(data, ["moduli", "wave_speeds, shot 0", "wave_speeds, shot 1", "wave_speeds, shot 2"]);
+    for (n, (origin, results)) in groups.iter().skip(1).enumerate() {
+        let sent = shot(&packing, &format!("shot {n}"), 300.0 + 20.0 * n as f64);
+        let own = state.acoustic_of(origin.measurement.as_ref()).unwrap();
+        assert_eq!(own.reading.speeds[1].wave.speed, sent.speeds[1].speed, "{origin:?}");
+        let answer = microstructure_of_speeds(&sent, &Settings::default()).message;
+        let expected: Vec<Option<f64>> = answer.estimates.iter().map(|e| e.k.first().copied()).collect();
+        assert_eq!(results.iter().map(|r| r.values.k).collect::<Vec<_>>(), expected, "{origin:?}");
+    }
+    let json = serde_json::to_value(state).unwrap();
+    assert_eq!(json["acoustic"]["measurement"], "shot 0");
+    assert_eq!(json["further_acoustic"][1]["measurement"], "shot 2");
+    let labelled: Vec<_> =
+        json["results"].as_array().unwrap().iter().filter(|r| r["measurement"] == "shot 1").collect();
+    assert_eq!(labelled.len(), groups[2].1.len());
+}
+
+#[test]
+fn shots_that_nothing_tells_apart_are_not_paired_with_estimates() {
+    let packing = later(7, 0.0);
+    let mut made = Made::new();
+    made.state(&packing);
+    [300.0, 320.0].iter().for_each(|speed| made.speeds(&shot(&packing, "", *speed), true));
+    let back = made.read();
+    let state = &back.states[0];
+    for (origin, _) in crate::by_origin(&state.results).iter().skip(1) {
+        assert!(state.acoustic_of(origin.measurement.as_ref()).is_none(), "{origin:?}");
+    }
+    assert!(
+        state.packing.warnings.iter().any(|w| w.contains("is not known")),
+        "{:?}",
+        state.packing.warnings
+    );
+}
+
+#[test]
+fn data_without_an_answer_are_counted() {
+    let packing = later(7, 0.0);
+    let mut made = Made::new();
+    made.state(&packing);
+    for n in 0..5 {
+        made.speeds(&shot(&packing, &format!("shot {n}"), 300.0 + f64::from(n)), n < 3);
+    }
+    let back = made.read();
+    assert_eq!(back.not_inverted, 2);
+    assert_eq!(back.complaints, ["2 of 5 wave_speeds of step 7 were not inverted"]);
+}
+
+#[test]
+fn refused_data_are_in_the_recording_and_the_reason_is_said() {
+    let packing = later(7, 0.0);
+    let mut made = Made::new();
+    made.state(&packing);
+    made.speeds(&shot(&packing, "bench", f64::NAN), true);
+    let back = made.read();
+    assert_eq!((back.refused, back.not_inverted), (1, 0));
+    assert!(back.results[topics::WAVE_SPEEDS.name].contains(&7), "it is in the recording");
+    assert!(
+        back.complaints.len() == 1 && back.complaints[0].contains("NaN is refused"),
+        "{:?}",
+        back.complaints
+    );
+}
+
+#[test]
+fn the_moduli_of_another_program_do_not_replace_those_of_the_network() {
+    let packing = later(7, 0.0);
+    let report = measured(&packing).report;
+    let own = moduli_message(packing_header(&packing), &report, report.stiffness().unwrap()).unwrap();
+    let bench = msg::Moduli { name: "bench".into(), g12: vec![6e7], stiffness: Vec::new(), ..own };
+    let mut made = Made::new();
+    made.state(&packing);
+    made.moduli(&bench);
+    let back = made.read();
+    let state = &back.states[0];
+    assert!(state.packing.report.stiffness().is_some());
+    assert!(state.packing.warnings.iter().any(|w| w.starts_with("2 different moduli")));
+    let data: Vec<_> = crate::by_origin(&state.results).iter().filter_map(|(o, _)| o.data()).collect();
+    assert!(data.len() == 2 && data.contains(&"moduli, bench".to_owned()), "{data:?}");
+}
+
+#[test]
+fn what_an_instrument_measured_elsewhere_is_no_result_of_the_packing_that_a_run_starts_from() {
+    let first = later(0, 0.0);
+    let mut made = Made::new();
+    made.state(&first);
+    let elsewhere = msg::WaveSpeeds {
+        header: grainlab_msgs::std_msgs::Header {
+            stamp: Time { sec: 77, nanosec: 5 },
+            frame_id: String::new(),
+        },
+        ..shot(&first, "glass beads", 300.0)
+    };
+    made.speeds(&elsewhere, true);
+    let back = made.read();
+    let state = &back.states[0];
+    assert!(state.acoustic.is_none() && state.results.iter().all(|r| r.source.as_deref() == Some("moduli")));
+    assert!(!back.of_instruments.is_empty());
+    assert!(back.of_instruments.iter().all(|r| r.origin().data().unwrap() == "wave_speeds, glass beads"));
+}
+
+#[test]
+fn the_table_of_a_launch_has_a_row_for_every_shot_and_counts_those_that_it_leaves_out() {
+    let shown = |shots: u32| {
+        let packing = later(7, 0.0);
+        let mut made = Made::new();
+        made.state(&later(5, 1e-6));
+        made.state(&packing);
+        for n in 0..shots {
+            made.speeds(&shot(&packing, &format!("shot {n}"), 300.0 + f64::from(n)), true);
+        }
+        let summary = crate::Summary { states: made.read().states, ..crate::Summary::of_nothing(Exit::Done) };
+        crate::brief::text(&summary, Path::new("r"), &["recording"], "grainlab")
+    };
+    let few = shown(4);
+    // The lattice has no estimate from its moduli: that of the first shot stands in the row of the packing.
+    assert!(few.contains("step 7: inferred from wave_speeds, shot 0\n"), "{few}");
+    assert!((1..4).all(|n| few.contains(&format!("\nwave_speeds, shot {n} "))), "{few}");
+    let many = shown(200);
+    assert!(many.contains("step 7: and 190 estimates more: summary.json has all"), "{many}");
+}

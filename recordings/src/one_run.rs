@@ -1,0 +1,231 @@
+//! Whether a recording is of one run. A merged one, or one of a recorder that heard two runs, has packings and results of several
+//! runs under the same steps; what is joined by its step would then be joined across runs.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::PathBuf;
+
+use grainlab_core::Packing;
+
+use crate::reader::Recording;
+
+/// Most requests whose content is kept, 40 MB: those of two runs differ soon after their beginning.
+const REQUESTS: usize = 1 << 20;
+
+/// A recording holds several runs.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{path} holds several runs: {sign}. Results of several runs are not joined: give the recording of one of them, or cut one out \
+     by its time (grainlab bag cut)"
+)]
+pub struct SeveralRuns {
+    /// The recording.
+    pub path: PathBuf,
+    /// What shows it.
+    pub sign: RunSign,
+}
+
+/// What shows that a recording holds several runs.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RunSign {
+    /// One step is that of two states.
+    #[error("there are two different packings of step {step}")]
+    Packings {
+        /// The step.
+        step: u64,
+    },
+    /// The steps begin again.
+    #[error("a packing of step {step} comes after one of step {before}")]
+    Restart {
+        /// The step of the later packing.
+        step: u64,
+        /// The step of the earlier one.
+        before: u64,
+    },
+    /// Grains were exchanged, which no run does.
+    #[error("there are packings of {first} and of {second} grains")]
+    Grains {
+        /// Of the first packing.
+        first: usize,
+        /// Of another one.
+        second: usize,
+    },
+    /// Packings of several laboratories.
+    #[error("there are packings on {first} and on {second}")]
+    Topics {
+        /// A topic.
+        first: String,
+        /// Another one.
+        second: String,
+    },
+    /// The recording has several scenes.
+    #[error("it has {count} different scenes ({names})")]
+    Scenes {
+        /// Their number.
+        count: usize,
+        /// Names of the stored files.
+        names: String,
+    },
+    /// One number is that of two requests of the lockstep.
+    #[error("there are two different requests of number {sequence} on stress")]
+    Requests {
+        /// The number.
+        sequence: u64,
+    },
+    /// A result is not that of the packing of its step.
+    #[error("the {topic} of step {step} is not that of the packing of this step: {difference}")]
+    Result {
+        /// Topic of the result.
+        topic: &'static str,
+        /// The step.
+        step: u64,
+        /// What differs.
+        difference: String,
+    },
+}
+
+/// Compares the packings and requests of a recording, in their order. What was published again has the same content.
+#[derive(Clone, Debug, Default)]
+pub struct OneRun {
+    topic: Option<String>,
+    grains: Option<usize>,
+    /// A fingerprint of the packing of each step.
+    packings: BTreeMap<u64, u64>,
+    /// A fingerprint of each request, by its number.
+    requests: BTreeMap<u64, u64>,
+}
+
+impl OneRun {
+    /// Takes a packing of a topic.
+    ///
+    /// # Errors
+    /// If it cannot be of the run of the packings before it.
+    pub fn packing(&mut self, topic: &str, packing: &Packing) -> Result<(), RunSign> {
+        let first = self.topic.get_or_insert_with(|| topic.to_owned());
+        if first != topic {
+            return Err(RunSign::Topics { first: first.clone(), second: topic.to_owned() });
+        }
+        let (step, grains) = (packing.step, packing.grains());
+        let first = *self.grains.get_or_insert(grains);
+        if first != grains {
+            return Err(RunSign::Grains { first, second: grains });
+        }
+        let last = self.packings.last_key_value().map(|(step, _)| *step);
+        let found = state(packing);
+        match (self.packings.get(&step), last) {
+            (Some(known), _) if *known == found => {}
+            (Some(_), _) => return Err(RunSign::Packings { step }),
+            (None, Some(before)) if before > step => return Err(RunSign::Restart { step, before }),
+            (None, _) => _ = self.packings.insert(step, found),
+        }
+        Ok(())
+    }
+
+    /// Takes a request of the lockstep, with the bytes of its content.
+    ///
+    /// # Errors
+    /// If another one has its number.
+    pub fn request(&mut self, sequence: u64, content: &[u8]) -> Result<(), RunSign> {
+        let found = fingerprint(|hasher| content.hash(hasher));
+        match self.requests.get(&sequence) {
+            Some(known) if *known != found => return Err(RunSign::Requests { sequence }),
+            None if self.requests.len() < REQUESTS => _ = self.requests.insert(sequence, found),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Compares the scenes stored in a recording: `scene.toml`, and `scene.2.toml` and so on in a merged one.
+    ///
+    /// # Errors
+    /// If they differ.
+    pub fn scenes(recording: &Recording) -> Result<(), RunSign> {
+        let is_scene = |name: &str| {
+            let number = name.strip_prefix("scene.").and_then(|rest| rest.strip_suffix(".toml"));
+            name == "scene.toml" || number.is_some_and(|n| n.parse::<u32>().is_ok())
+        };
+        let scenes: Vec<_> =
+            recording.stored_files().into_iter().filter(|file| is_scene(&file.name)).collect();
+        let count = scenes.iter().map(|file| &file.bytes).collect::<BTreeSet<_>>().len();
+        if count < 2 {
+            return Ok(());
+        }
+        let names: BTreeSet<&str> = scenes.iter().map(|file| file.name.as_str()).collect();
+        Err(RunSign::Scenes { count, names: names.into_iter().collect::<Vec<_>>().join(", ") })
+    }
+}
+
+/// A fingerprint of where the grains are. What a phase sets is left out: it differs at the end of one and at the beginning of the
+/// next.
+pub(crate) fn state(packing: &Packing) -> u64 {
+    let number = |hasher: &mut DefaultHasher, value: f64| value.to_bits().hash(hasher);
+    fingerprint(|hasher| {
+        number(hasher, packing.time);
+        packing.ids.hash(hasher);
+        packing.radii.iter().for_each(|r| number(hasher, *r));
+        packing.cell.matrix().iter().for_each(|x| number(hasher, *x));
+        packing.positions.iter().flat_map(|v| v.iter()).for_each(|x| number(hasher, *x));
+    })
+}
+
+fn fingerprint(content: impl FnOnce(&mut DefaultHasher)) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    content(&mut hasher);
+    hasher.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainlab_core::{Cell, Mat3, Material, Vec3};
+
+    fn packing(step: u64, x: f64, grains: usize) -> Packing {
+        Packing {
+            step,
+            time: 1e-6 * step as f64,
+            cell: Cell::cube(4e-3).unwrap(),
+            deformation: Mat3::identity(),
+            ids: (0..grains as u32).collect(),
+            radii: vec![1e-3; grains],
+            positions: vec![Vec3::new(x, 1e-3, 1e-3); grains],
+            velocities: vec![Vec3::zeros(); grains],
+            spins: vec![Vec3::zeros(); grains],
+            contacts: Vec::new(),
+            material: Material::GLASS,
+            law: Default::default(),
+            friction: 0.3,
+            time_step: 1e-7,
+        }
+    }
+
+    #[test]
+    fn packings_of_two_runs_are_told_apart_and_those_of_one_are_not() {
+        let last = |packings: &[Packing]| {
+            let mut run = OneRun::default();
+            packings.iter().map(|p| run.packing("/packing", p)).collect::<Result<(), RunSign>>()
+        };
+        let again = Packing { friction: 0.5, ..packing(7, 1e-3, 2) };
+        assert_eq!(
+            last(&[packing(0, 1e-3, 2), packing(7, 1e-3, 2), again.clone(), packing(9, 2e-3, 2)]),
+            Ok(())
+        );
+        assert_eq!(last(&[packing(7, 1e-3, 2), packing(9, 1e-3, 2), again]), Ok(()), "published again");
+        for (other, sign) in [
+            (packing(7, 1.1e-3, 2), RunSign::Packings { step: 7 }),
+            (packing(8, 1e-3, 2), RunSign::Restart { step: 8, before: 9 }),
+            (packing(10, 1e-3, 3), RunSign::Grains { first: 2, second: 3 }),
+        ] {
+            assert_eq!(last(&[packing(7, 1e-3, 2), packing(9, 1e-3, 2), other]), Err(sign));
+        }
+        let mut run = OneRun::default();
+        run.packing("/left/packing", &packing(0, 1e-3, 2)).unwrap();
+        assert!(matches!(run.packing("/right/packing", &packing(1, 1e-3, 2)), Err(RunSign::Topics { .. })));
+    }
+
+    #[test]
+    fn a_number_is_that_of_one_request() {
+        let mut run = OneRun::default();
+        assert_eq!(run.request(0, b"a").and(run.request(1, b"b")).and(run.request(0, b"a")), Ok(()));
+        assert_eq!(run.request(1, b"c"), Err(RunSign::Requests { sequence: 1 }));
+    }
+}
