@@ -2,8 +2,8 @@
 
 use crate::calibration::{Calibration, NetworkState, Outside};
 use crate::conditions::{Conditions, StrainRatioSource};
-use crate::moduli::Modulus;
-use crate::observation::Observation;
+use crate::moduli::{MODULI, Modulus};
+use crate::observation::{INPUT_NAMES, Observation};
 use crate::warning::Warning;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 
@@ -17,14 +17,14 @@ const ASYMMETRY: f64 = 0.05;
 const SCATTER: f64 = 2.2;
 
 /// Imbalance of moduli that were rounded to three or four digits.
-const ROUNDING: f64 = 5e-3;
+pub(crate) const ROUNDING: f64 = 5e-3;
 
 /// Probability with which chance alone raises the alarm that the data contradict the model, by χ² or by the modulus furthest
 /// from its prediction: with that of [`UNBALANCED`], consistent data raise less than one alarm in a hundred.
 pub(crate) const FALSE_ALARM: f64 = 1e-3;
 
 /// Number of standard deviations that chance exceeds, to either side, once in a thousand times.
-const CERTAIN: f64 = 3.29;
+pub(crate) const CERTAIN: f64 = 3.29;
 
 /// Number of standard deviations of the relation between the six moduli that chance exceeds, to either side, five times in a
 /// thousand: no other check finds a fault of one modulus by the errors of the data alone.
@@ -34,10 +34,32 @@ const UNBALANCED: f64 = 2.81;
 /// level, at 30 % they do not.
 const LARGE_ERROR: f64 = 0.1;
 
-/// Warnings that follow from the observation and the structure alone.
+/// Relative error of the pressure, or of E* by the properties of the grains, beyond which linear propagation is inaccurate. The
+/// moduli grow with roots of them.
+const LARGE_STATE_ERROR: f64 = 0.3;
+
+/// Warnings that follow from the structure alone; a prior may change them.
+pub(crate) fn of_structure(structure: &Microstructure) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let coordinations = [structure.k, structure.k_hat, structure.z].into_iter().flatten();
+    let highest = coordinations.fold(0.0, f64::max);
+    if highest > CLOSE_PACKING {
+        warnings.push(Warning::CoordinationImpossible { coordination: highest });
+    }
+    for quantity in [InferredQuantity::K, InferredQuantity::Z] {
+        if let Some(value) = structure.get(quantity).filter(|value| *value < 1.0) {
+            warnings.push(Warning::CoordinationAbsurd { quantity, value });
+        }
+    }
+    if let Some(eps) = structure.eps.filter(|eps| !(-0.5..=1.0).contains(eps)) {
+        warnings.push(Warning::EpsOutOfRange { eps });
+    }
+    warnings
+}
+
+/// Warnings that follow from the observation alone.
 pub(crate) fn common(
     observation: &Observation,
-    structure: &Microstructure,
     calibration: &Calibration,
     uses_gamma: bool,
     compares_state: bool,
@@ -50,9 +72,6 @@ pub(crate) fn common(
         }
     };
     let outside = |v: f64, [low, high]: [f64; 2]| !(low..=high).contains(&v);
-    let coordinations = [structure.k, structure.k_hat, structure.z].into_iter().flatten();
-    let highest = coordinations.fold(0.0, f64::max);
-    add(highest > CLOSE_PACKING, Warning::CoordinationImpossible { coordination: highest });
     if let Some(range) = calibration.pressures().filter(|_| !compares_state) {
         let pressure = observation.pressure();
         // The tolerance of a servo is not an extrapolation.
@@ -84,15 +103,14 @@ pub(crate) fn common(
         let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c)).unwrap_or(0.0);
         add(relative.abs() > ROUNDING.max(UNBALANCED * stddev), Warning::Imbalance { relative });
     }
-    for quantity in [InferredQuantity::K, InferredQuantity::Z] {
-        let Some(value) = structure.get(quantity) else { continue };
-        add(value < 1.0, Warning::CoordinationAbsurd { quantity, value });
-    }
     if let Some((modulus, relative)) = largest_error(observation) {
         add(relative > LARGE_ERROR, Warning::ErrorsLarge { modulus, relative });
     }
-    if let Some(eps) = structure.eps {
-        add(outside(eps, [-0.5, 1.0]), Warning::EpsOutOfRange { eps });
+    for modulus in Modulus::ALL {
+        add(observation.taken_as_unknown[modulus as usize], Warning::TakenAsUnknown { modulus });
+    }
+    for (input, relative) in state_errors(conditions, calibration) {
+        add(relative > LARGE_STATE_ERROR, Warning::StateErrorLarge { input, relative });
     }
     if uses_gamma {
         let g = conditions.gamma.value;
@@ -101,6 +119,15 @@ pub(crate) fn common(
         add(conditions.gamma.source == StrainRatioSource::Zero, Warning::GammaAssumedZero);
     }
     warnings
+}
+
+/// The relative errors of the pressure and of E*, by the inputs that cause them.
+fn state_errors(conditions: &Conditions, calibration: &Calibration) -> [(&'static str, f64); 3] {
+    let grains = conditions.material.as_ref().unwrap_or(calibration.material());
+    let stddevs = conditions.stddevs(calibration.material());
+    // E* = G/(1 − ν).
+    let of_poisson = stddevs[6] / (1.0 - grains.poisson_ratio);
+    [(0, stddevs[0]), (5, stddevs[5]), (6, of_poisson)].map(|(at, error)| (INPUT_NAMES[MODULI + at], error))
 }
 
 /// What of the state is outside the packings on which the errors of the models were learned.
@@ -127,15 +154,4 @@ fn largest_error(observation: &Observation) -> Option<(Modulus, f64)> {
     // C13 is a small difference of large numbers: its relative error is not meaningful.
     let given = observation.moduli.known().filter(|(m, _)| *m != Modulus::C13).map(relative);
     given.max_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// The warning for a coordination number in Eqs. 21 and 22 that no packing of the calibration had.
-pub(crate) fn outside_fit(
-    quantity: InferredQuantity,
-    value: f64,
-    calibration: &Calibration,
-) -> Option<Warning> {
-    let range = calibration.isotropic().fitted;
-    let outside = !(range[0]..=range[1]).contains(&value);
-    outside.then_some(Warning::CoordinationOutsideFit { quantity, value, range })
 }

@@ -2,6 +2,7 @@
 
 use crate::conditions::Conditions;
 use crate::error::EmtError;
+use crate::warning::Warning;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// Lowest and highest value, both included.
@@ -12,6 +13,15 @@ pub type Range = [f64; 2];
 /// onset of jamming, and some percent more under pressure.
 const JAMMED: Range = [0.5, 0.8];
 
+/// Of one quantity, the packings that the constants of a model were learned from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fitted {
+    /// Lowest and highest of them.
+    pub range: Range,
+    /// What still counts as inside: the same, or wider by the ends that random packings do not reach.
+    pub inside: Range,
+}
+
 /// The structures and states for which a model predicts moduli and inverts its prediction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
@@ -19,6 +29,8 @@ pub struct Domain {
     pub model: &'static str,
     /// Range of each quantity in the order of [`InferredQuantity::ALL`]; `None` for those that the model does not use.
     pub structure: [Option<Range>; InferredQuantity::COUNT],
+    /// The packings of the calibration, in the same order: beyond them an estimate is an extrapolation.
+    pub fitted: [Option<Fitted>; InferredQuantity::COUNT],
     /// Range of g = γ/Δ.
     pub gamma: Range,
     /// Range of the Poisson ratio of the grains.
@@ -41,6 +53,7 @@ impl Domain {
         Self {
             model,
             structure,
+            fitted: [None; InferredQuantity::COUNT],
             gamma: [-1.0, 1.0],
             poisson_ratio: [0.0, 0.5],
             reduced_pressure: [0.0, f64::INFINITY],
@@ -109,6 +122,24 @@ impl Domain {
         }
         Err(EmtError::OutsideDomain { model: self.model, quantity, value, low, high })
     }
+}
+
+/// The warnings of the quantities of a structure that are beyond the packings of the calibration.
+pub(crate) fn outside_fitted(
+    fitted: &[Option<Fitted>; InferredQuantity::COUNT],
+    structure: &Microstructure,
+) -> Vec<Warning> {
+    let of = |quantity: InferredQuantity| {
+        let (value, Fitted { range, inside: [low, high] }) =
+            structure.get(quantity).zip(fitted[quantity as usize])?;
+        let warning = match quantity {
+            InferredQuantity::Eps => Warning::EpsOutsideFit { eps: value, range },
+            _ => Warning::CoordinationOutsideFit { quantity, value, range },
+        };
+        // Also where it is not a number.
+        (!(low..=high).contains(&value)).then_some(warning)
+    };
+    InferredQuantity::ALL.into_iter().filter_map(of).collect()
 }
 
 #[cfg(test)]

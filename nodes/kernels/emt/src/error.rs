@@ -1,5 +1,6 @@
 //! Why an inversion or a prediction is impossible.
 
+use crate::digits::{moved_out, too_far};
 use crate::moduli::Modulus;
 
 /// Why a model cannot invert an observation or predict moduli for a structure.
@@ -55,6 +56,18 @@ pub enum EmtError {
         /// The value found.
         ratio: f64,
     },
+    /// A structure that no packing has.
+    #[error("{quantity} = {value} is outside [{low}, {high}], which contains that of every packing")]
+    NoStructure {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// Lowest possible.
+        low: f64,
+        /// Highest possible.
+        high: f64,
+    },
     /// Contacts that are not Hertz–Mindlin contacts.
     #[error(
         "unknown: the contact law is {law}; every model is for Hertz-Mindlin contacts, whose stiffness follows from the material \
@@ -87,7 +100,7 @@ pub enum EmtError {
         value: f64,
     },
     /// An input that the model needs is not known.
-    #[error("model {model} needs {missing}, which is not given")]
+    #[error("model {model} needs {missing}, which is not known")]
     Missing {
         /// Name of the model.
         model: &'static str,
@@ -177,10 +190,7 @@ pub enum EmtError {
         calibration: String,
     },
     /// The packing differs too much from those of the calibration.
-    #[error(
-        "unknown: {quantity} = {value:.4} is too far from the packings of calibration `{calibration}`, [{low:.4}, {high:.4}], \
-         for an estimate"
-    )]
+    #[error("unknown: {}", too_far(.quantity, *.value, [*.low, *.high], .calibration))]
     TooFar {
         /// Name of the quantity.
         quantity: &'static str,
@@ -209,8 +219,8 @@ pub enum EmtError {
     },
     /// With the priors, the structure is outside the domain of the model.
     #[error(
-        "with its priors, {quantity} = {value:.4} is outside [{low:.4}, {high:.4}], the domain of the model: the priors contradict the moduli; \
-         widen or move them"
+        "with its priors, {}: the priors contradict the moduli; widen or move them",
+        moved_out(.quantity, *.value, [*.low, *.high])
     )]
     PriorContradicts {
         /// Name of the quantity.
@@ -262,6 +272,7 @@ impl EmtError {
             | EmtError::SolidFraction { .. }
             | EmtError::StressRatio { .. }
             | EmtError::PoissonRatio { .. }
+            | EmtError::NoStructure { .. }
             | EmtError::Missing { .. }
             | EmtError::NotCalibrated { .. }
             | EmtError::PriorOutsideDomain { .. }
@@ -282,7 +293,7 @@ impl EmtError {
         }
     }
 
-    /// `model` needs `modulus`, which is not given.
+    /// `model` needs `modulus`, which is not known.
     pub(crate) fn missing(model: &'static str, modulus: Modulus) -> Self {
         EmtError::Missing { model, missing: modulus.name() }
     }

@@ -3,12 +3,13 @@
 use crate::calibration::Calibration;
 use crate::checks;
 use crate::conditions::StrainRatio;
-use crate::domain::Domain;
+use crate::domain::{Domain, outside_fitted};
 use crate::error::EmtError;
 use crate::moduli::MODULI;
 use crate::observation::{INPUT_NAMES, INPUTS, InputCovariance, Observation};
 use crate::point_estimate::{Jacobian, Misfit, PointEstimate};
 use crate::prior::Prior;
+use crate::prior_conflict;
 use crate::update::{Updated, updated};
 use crate::warning::Warning;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
@@ -20,9 +21,6 @@ pub const CREDIBLE_LEVEL: f64 = 0.95;
 /// Half width, in standard deviations, of the central interval of a normal distribution at [`CREDIBLE_LEVEL`].
 pub(crate) const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 
-/// Distance of a prior from the data, in standard deviations of both, that chance exceeds once in a thousand times.
-const PRIOR_CONFLICT: f64 = 3.3;
-
 /// Share of the variance of a quantity from which the input that causes it is named.
 const WIDENS: f64 = 0.5;
 
@@ -33,7 +31,7 @@ pub enum Status {
     Ok,
     /// Model or calibration were used outside their range; see the warnings.
     Extrapolated,
-    /// The data contradict each other or the model; see the warnings. Takes precedence over both others.
+    /// The data contradict each other, the model or the prior; see the warnings. Takes precedence over both others.
     Contradictory,
     /// There is no estimate, or one that determines nothing.
     Unknown,
@@ -94,8 +92,8 @@ pub struct Estimate {
     /// Warnings.
     pub warnings: Vec<Warning>,
     inputs: Option<InputCovariance>,
-    /// The independent quantities of the model; the others follow from them.
-    unknowns: [bool; InferredQuantity::COUNT],
+    /// That of the model: its independent quantities, from which the others follow, and their ranges.
+    domain: Domain,
     /// Limits of the prior of each quantity.
     limits: [[f64; 2]; InferredQuantity::COUNT],
 }
@@ -129,18 +127,29 @@ impl Estimate {
         with.prior_covariance = Some(covariance - kept * before * kept.transpose());
         for quantity in prior.quantities() {
             let Some(density) = prior.get(quantity) else { continue };
-            if self.structure.get(quantity).is_none() {
-                with.warnings.push(Warning::PriorUnused { quantity });
-                continue;
-            }
-            let (i, [mean, variance]) = (quantity as usize, density.moments());
-            with.limits[i] = density.range();
-            let sigma = (values[i] - mean).abs() / (before[(i, i)] + variance).sqrt();
-            if sigma > PRIOR_CONFLICT {
-                with.warnings.push(Warning::PriorConflict { quantity, value: values[i], prior: mean, sigma });
-            }
+            with.limits[quantity as usize] = density.range();
         }
+        with.warnings.extend(prior_conflict::warnings(&self.structure, &before, prior));
+        with.decide_anew();
         Ok(with)
+    }
+
+    /// The warnings and the status that follow from the structure and its uncertainty, after these have changed.
+    fn decide_anew(&mut self) {
+        self.warnings.retain(|warning| !warning.is_of_structure());
+        self.warnings.extend(outside_fitted(&self.domain.fitted, &self.structure));
+        self.warnings.extend(checks::of_structure(&self.structure));
+        let outside = outside_domain(&self.structure, &self.domain, &self.warnings);
+        self.warnings.extend(outside);
+        self.status = Status::of_estimate(&self.structure, &self.warnings);
+        self.name_widest();
+    }
+
+    /// Names the input of the state that contributes most of the variance of a quantity.
+    fn name_widest(&mut self) {
+        if let Some((input, quantity, share)) = self.widest().filter(|(_, _, share)| *share > WIDENS) {
+            self.warnings.push(Warning::WidenedMost { input, quantity, share });
+        }
     }
 
     /// The same, if its structure is within the domain, that of [`crate::Model::prior_domain`]: priors of quantities that
@@ -159,7 +168,9 @@ impl Estimate {
 
     /// The unknowns of the model that the data do not determine.
     pub fn undetermined(&self) -> impl Iterator<Item = InferredQuantity> + '_ {
-        let is_open = |q: &InferredQuantity| self.unknowns[*q as usize] && self.structure.get(*q).is_none();
+        let is_open = |q: &InferredQuantity| {
+            self.domain.structure[*q as usize].is_some() && self.structure.get(*q).is_none()
+        };
         InferredQuantity::ALL.into_iter().filter(is_open)
     }
 
@@ -200,7 +211,10 @@ impl Estimate {
         let mut scaled = SMatrix::<f64, { InferredQuantity::COUNT }, INPUTS>::zeros();
         let mut determined = 0;
         for (i, quantity) in InferredQuantity::ALL.into_iter().enumerate() {
-            let Some(value) = self.structure.get(quantity).filter(|_| self.unknowns[i]) else { continue };
+            let Some(value) = self.structure.get(quantity).filter(|_| self.domain.structure[i].is_some())
+            else {
+                continue;
+            };
             let scale = if quantity.is_coordination() { 1.0 / value } else { 1.0 };
             scaled.set_row(determined, &(self.jacobian.row(i) * scale));
             determined += 1;
@@ -258,8 +272,10 @@ pub(crate) fn assemble(
         }
     }
     domain.validate_solid_fraction(&observation.conditions)?;
-    warnings.extend(checks::common(observation, &structure, calibration, uses_gamma, domain.compares_state));
-    warnings.extend(open_or_outside(&structure, domain, &warnings));
+    warnings.extend(checks::common(observation, calibration, uses_gamma, domain.compares_state));
+    warnings.extend(checks::of_structure(&structure));
+    warnings.extend(outside_domain(&structure, domain, &warnings));
+    warnings.extend(undetermined(&structure, domain));
     let status = Status::of_estimate(&structure, &warnings);
     let mut estimate = Estimate {
         model,
@@ -274,36 +290,34 @@ pub(crate) fn assemble(
         status,
         warnings,
         inputs,
-        unknowns: domain.structure.map(|range| range.is_some()),
+        domain: *domain,
         limits: [[f64::NEG_INFINITY, f64::INFINITY]; InferredQuantity::COUNT],
     };
-    if let Some((input, quantity, share)) = estimate.widest().filter(|(_, _, share)| *share > WIDENS) {
-        estimate.warnings.push(Warning::WidenedMost { input, quantity, share });
+    if observation.covariance.is_none() && estimate.covariance().is_some() {
+        estimate.warnings.push(Warning::DataErrorUnknown);
     }
+    estimate.name_widest();
     Ok(estimate)
 }
 
-/// The unknowns of the model that are open, and, unless another warning says so, that are outside its domain.
-fn open_or_outside(structure: &Microstructure, domain: &Domain, warnings: &[Warning]) -> Vec<Warning> {
-    let mut quantities = [false; InferredQuantity::COUNT];
-    let mut found = Vec::new();
-    for quantity in InferredQuantity::ALL {
-        let i = quantity as usize;
-        match (structure.get(quantity), domain.structure[i]) {
-            (None, Some(_)) => quantities[i] = true,
-            (Some(value), Some(range)) if !(range[0]..=range[1]).contains(&value) => {
-                found.push(Warning::OutsideDomain { quantity, value, range });
-            }
-            _ => {}
-        }
-    }
+/// The unknowns of the model that are outside its domain, unless another warning says so.
+fn outside_domain(structure: &Microstructure, domain: &Domain, warnings: &[Warning]) -> Vec<Warning> {
     if warnings.iter().any(Warning::is_extrapolation) {
-        found.clear();
+        return Vec::new();
     }
-    if quantities.contains(&true) {
-        found.push(Warning::Undetermined { quantities });
-    }
-    found
+    let of = |quantity: InferredQuantity| {
+        let (value, range) = structure.get(quantity).zip(domain.structure[quantity as usize])?;
+        let outside = !(range[0]..=range[1]).contains(&value);
+        outside.then_some(Warning::OutsideDomain { quantity, value, range })
+    };
+    InferredQuantity::ALL.into_iter().filter_map(of).collect()
+}
+
+/// The unknowns of the model that are open.
+fn undetermined(structure: &Microstructure, domain: &Domain) -> Option<Warning> {
+    let quantities =
+        InferredQuantity::ALL.map(|q| structure.get(q).is_none() && domain.structure[q as usize].is_some());
+    quantities.contains(&true).then_some(Warning::Undetermined { quantities })
 }
 
 fn of_determined(

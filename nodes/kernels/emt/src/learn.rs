@@ -6,7 +6,7 @@ mod regression;
 mod relaxation;
 mod sample;
 
-pub use sample::CalibrationSample;
+pub use sample::{CalibrationSample, check_structure};
 
 use crate::calibration::{Calibration, CalibrationError};
 use discrepancy::discrepancies;
@@ -26,7 +26,7 @@ pub fn learn(
 ) -> Result<Calibration, CalibrationError> {
     let own: Vec<&CalibrationSample> = isotropic.iter().chain(anisotropic).collect();
     let material = material(&own)?;
-    others.iter().try_for_each(check)?;
+    others.iter().try_for_each(CalibrationSample::check)?;
     let (low, high) = bounds(own.iter().map(|s| s.pressure));
     let mut calibration = Calibration {
         other: Some(of_isotropic(isotropic, InferredQuantity::Z)?),
@@ -46,25 +46,16 @@ pub fn with_errors(
     constants: &Calibration,
     samples: &[CalibrationSample],
 ) -> Result<Calibration, CalibrationError> {
-    samples.iter().try_for_each(check)?;
+    samples.iter().try_for_each(CalibrationSample::check)?;
     let all: Vec<&CalibrationSample> = samples.iter().collect();
     Ok(Calibration { discrepancies: discrepancies(&all, constants), ..constants.clone() })
-}
-
-/// Refuses numbers that are not finite.
-fn check(s: &CalibrationSample) -> Result<(), CalibrationError> {
-    if s.is_finite() {
-        return Ok(());
-    }
-    let requirement = "every number of a packing must be finite, and all moduli known and positive";
-    Err(CalibrationError::Constant { field: "a packing", value: s.pressure, requirement })
 }
 
 fn material(samples: &[&CalibrationSample]) -> Result<Material, CalibrationError> {
     let first =
         samples.first().ok_or(CalibrationError::Packings { what: "packings", found: 0, needed: 3 })?;
     for s in samples {
-        check(s)?;
+        s.check()?;
         for (field, value, reference) in [
             ("shear modulus of the grains", s.material.shear_modulus, first.material.shear_modulus),
             ("Poisson ratio of the grains", s.material.poisson_ratio, first.material.poisson_ratio),

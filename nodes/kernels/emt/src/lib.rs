@@ -42,6 +42,7 @@ mod calibration;
 mod checks;
 pub mod christoffel;
 mod conditions;
+mod digits;
 mod domain;
 mod eq16;
 mod error;
@@ -61,6 +62,7 @@ mod overlap;
 mod point_estimate;
 mod posterior;
 mod prior;
+mod prior_conflict;
 mod propagation;
 mod registry;
 mod root;
@@ -77,12 +79,12 @@ pub use calibration::{
 pub use conditions::{
     Conditions, Measured, StrainRatio, StrainRatioSource, UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO,
 };
-pub use domain::{Domain, Range};
+pub use domain::{Domain, Fitted, Range};
 pub use eq16::Eq16Reading;
 pub use error::EmtError;
 pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
 pub use invariants::Invariants;
-pub use learn::{CalibrationSample, learn, with_errors};
+pub use learn::{CalibrationSample, check_structure, learn, with_errors};
 pub use likelihood::{Likelihood, Predicted};
 pub use medium::{Medium, MediumModuli};
 pub use model::Model;

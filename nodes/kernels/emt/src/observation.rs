@@ -27,6 +27,10 @@ pub const INPUT_NAMES: [&str; INPUTS] = [
     "grain Poisson ratio",
 ];
 
+/// Standard deviation over the largest modulus beyond which a modulus counts as unknown: it determines nothing, and numbers of
+/// such different size lose their digits.
+pub(crate) const UNKNOWN_ERROR: f64 = 1e3;
+
 /// Covariance of the relative errors of moduli, pressure, solid fraction and shear modulus of the grains, and of the errors of
 /// γ/Δ, q/p, the spread of the sizes and the Poisson ratio.
 pub(crate) type InputCovariance = SMatrix<f64, INPUTS, INPUTS>;
@@ -47,12 +51,22 @@ pub struct Observation {
     pub grains: Option<u32>,
     /// The modulus that was not measured but follows from the others ([`Observation::checked`]).
     pub derived: Option<Modulus>,
+    /// Whether each modulus has an error so large that it was taken as unknown ([`Observation::checked`]).
+    pub taken_as_unknown: [bool; MODULI],
 }
 
 impl Observation {
     /// Moduli of unknown uncertainty.
     pub const fn new(moduli: Moduli, conditions: Conditions) -> Self {
-        Self { moduli, covariance: None, conditions, asymmetry: None, grains: None, derived: None }
+        Self {
+            moduli,
+            covariance: None,
+            conditions,
+            asymmetry: None,
+            grains: None,
+            derived: None,
+            taken_as_unknown: [false; MODULI],
+        }
     }
 
     /// The three moduli that the paper uses and the pressure, all Pa.
@@ -102,13 +116,14 @@ impl Observation {
         self.conditions.pressure.value
     }
 
-    /// Checks every number and adds the modulus that follows from the others.
+    /// Checks every number, leaves out the moduli whose errors are too large, and adds the modulus that follows from the others.
     pub fn checked(&self) -> Result<Self, EmtError> {
         self.check_values()?;
         if let Some(covariance) = &self.covariance {
             check_covariance(covariance)?;
         }
-        let (moduli, covariance) = self.moduli.completed(self.covariance);
+        let known = self.without_unknown();
+        let (moduli, covariance) = known.moduli.completed(known.covariance);
         for (modulus, value) in moduli.known() {
             if !value.is_finite() {
                 return Err(EmtError::NotFinite { quantity: modulus.name(), value });
@@ -117,9 +132,26 @@ impl Observation {
                 return Err(EmtError::Unstable { modulus: modulus.name(), value });
             }
         }
-        let is_new = |m: &Modulus| self.moduli.get(*m).is_none() && moduli.get(*m).is_some();
-        let derived = Modulus::ALL.into_iter().find(is_new).or(self.derived);
-        Ok(Self { moduli, covariance, derived, ..self.clone() })
+        let is_new = |m: &Modulus| known.moduli.get(*m).is_none() && moduli.get(*m).is_some();
+        let derived = Modulus::ALL.into_iter().find(is_new).or(known.derived);
+        Ok(Self { moduli, covariance, derived, ..known })
+    }
+
+    /// The same without the moduli whose errors are more than [`UNKNOWN_ERROR`] times the largest modulus.
+    fn without_unknown(&self) -> Self {
+        let mut known = self.clone();
+        let Some(covariance) = &mut known.covariance else { return known };
+        let largest = self.moduli.known().map(|(_, value)| value.abs()).fold(0.0, f64::max);
+        for modulus in Modulus::ALL {
+            let at = modulus as usize;
+            if covariance[(at, at)].sqrt() > UNKNOWN_ERROR * largest && self.moduli.get(modulus).is_some() {
+                known.moduli = known.moduli.without(modulus);
+                known.taken_as_unknown[at] = true;
+                covariance.fill_row(at, 0.0);
+                covariance.fill_column(at, 0.0);
+            }
+        }
+        known
     }
 
     /// Refuses the first value that is not finite or out of range, the covariance excepted.

@@ -1,11 +1,10 @@
 //! Warnings about an estimate.
 
+use crate::digits::{apart, of_quantity};
 use crate::moduli::Modulus;
+use crate::observation::UNKNOWN_ERROR;
 use grainlab_core::results::InferredQuantity;
 use std::fmt;
-
-/// Decimals beyond which two numbers are printed as equal.
-const MOST_DIGITS: usize = 16;
 
 /// A limitation of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,6 +125,20 @@ pub enum Warning {
         /// Its relative standard deviation.
         relative: f64,
     },
+    /// The error of a modulus is so large that the modulus was taken as unknown.
+    TakenAsUnknown {
+        /// The modulus.
+        modulus: Modulus,
+    },
+    /// The errors of the moduli are not known, and the uncertainty is without them.
+    DataErrorUnknown,
+    /// The error of an input of the state is too large for linear error propagation.
+    StateErrorLarge {
+        /// Its name, one of [`crate::INPUT_NAMES`].
+        input: &'static str,
+        /// Its relative standard deviation.
+        relative: f64,
+    },
     /// The data contradict the prior.
     PriorConflict {
         /// The quantity.
@@ -136,6 +149,24 @@ pub enum Warning {
         prior: f64,
         /// Their difference in standard deviations.
         sigma: f64,
+    },
+    /// The data contradict a limit of the prior.
+    PriorExcludes {
+        /// The quantity.
+        quantity: InferredQuantity,
+        /// Its value by the data alone.
+        value: f64,
+        /// The nearest limit of the prior.
+        limit: f64,
+        /// Their difference in standard deviations of the value.
+        sigma: f64,
+    },
+    /// The data contradict the priors of several quantities together.
+    PriorsConflict {
+        /// Sum of squares weighted by the covariance of data and priors.
+        chi_square: f64,
+        /// Number of quantities with a prior.
+        quantities: usize,
     },
     /// The data do not determine a quantity, so that its prior has no effect.
     PriorUnused {
@@ -173,7 +204,7 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// Whether the data contradict each other or the model.
+    /// Whether the data contradict each other, the model or the prior.
     pub fn is_contradiction(&self) -> bool {
         matches!(
             self,
@@ -181,6 +212,23 @@ impl Warning {
                 | Warning::Imbalance { .. }
                 | Warning::Conflict { .. }
                 | Warning::Improbable { .. }
+                | Warning::PriorConflict { .. }
+                | Warning::PriorExcludes { .. }
+                | Warning::PriorsConflict { .. }
+        )
+    }
+
+    /// Whether it follows from the structure and its uncertainty alone, which a prior changes.
+    pub(crate) fn is_of_structure(&self) -> bool {
+        matches!(
+            self,
+            Warning::CoordinationOutsideFit { .. }
+                | Warning::CoordinationImpossible { .. }
+                | Warning::CoordinationAbsurd { .. }
+                | Warning::EpsOutOfRange { .. }
+                | Warning::EpsOutsideFit { .. }
+                | Warning::OutsideDomain { .. }
+                | Warning::WidenedMost { .. }
         )
     }
 
@@ -195,7 +243,12 @@ impl Warning {
                 | Warning::ContactLawAssumed
                 | Warning::IsotropicContacts
                 | Warning::ErrorsLarge { .. }
+                | Warning::TakenAsUnknown { .. }
+                | Warning::DataErrorUnknown
+                | Warning::StateErrorLarge { .. }
                 | Warning::PriorConflict { .. }
+                | Warning::PriorExcludes { .. }
+                | Warning::PriorsConflict { .. }
                 | Warning::PriorUnused { .. }
         ) && !matches!(self, Warning::StickingShare { share } if is_share(*share))
     }
@@ -284,7 +337,7 @@ impl fmt::Display for Warning {
                 )
             }
             Warning::StateOutsideFit { quantity, value, range } => {
-                let [shown, low, high] = apart(*value, *range, 4);
+                let [shown, low, high] = of_quantity(quantity, *value, *range);
                 write!(
                     f,
                     "{quantity} = {shown} is outside {low} to {high}, the range of the calibration's packings"
@@ -330,9 +383,29 @@ impl fmt::Display for Warning {
                 "{modulus} is known to {:.0} % only: intervals from linear error propagation are too narrow, use sampling",
                 100.0 * relative
             ),
+            Warning::TakenAsUnknown { modulus } => write!(
+                f,
+                "the error of {modulus} is more than {UNKNOWN_ERROR} times the largest modulus: {modulus} was taken as unknown"
+            ),
+            Warning::DataErrorUnknown => {
+                write!(f, "the errors of the moduli are not known: the uncertainty does not include them")
+            }
+            Warning::StateErrorLarge { input, relative } => write!(
+                f,
+                "the {input} is known to {:.0} % only: intervals from linear error propagation are too narrow",
+                100.0 * relative
+            ),
             Warning::PriorConflict { quantity, value, prior, sigma } => write!(
                 f,
                 "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma from {prior:.4}, the mean of its prior"
+            ),
+            Warning::PriorExcludes { quantity, value, limit, sigma } => write!(
+                f,
+                "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma beyond {limit:.4}, the limit of its prior"
+            ),
+            Warning::PriorsConflict { chi_square, quantities } => write!(
+                f,
+                "the priors together contradict the data: chi-square {chi_square:.1} for {quantities} quantities with a prior"
             ),
             Warning::PriorUnused { quantity } => write!(
                 f,
@@ -355,16 +428,6 @@ impl fmt::Display for Warning {
 /// Whether a number is in [0, 1], to the rounding of its computation.
 fn is_share(number: f64) -> bool {
     (-1e-9..=1.0 + 1e-9).contains(&number)
-}
-
-/// A value outside a range, and the ends of the range, with `digits` decimals, or more if the value and the nearer end would
-/// look equal.
-fn apart(value: f64, range: [f64; 2], digits: usize) -> [String; 3] {
-    let [low, high] = range;
-    let end = if value < low { low } else { high };
-    let differ = |digits: &usize| format!("{value:.digits$}") != format!("{end:.digits$}");
-    let digits = (digits..=MOST_DIGITS).find(differ).unwrap_or(MOST_DIGITS);
-    [value, low, high].map(|v| format!("{v:.digits$}"))
 }
 
 #[cfg(test)]

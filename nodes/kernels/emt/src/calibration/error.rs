@@ -16,6 +16,14 @@ pub enum CalibrationError {
     /// The text is not a valid calibration file.
     #[error("{0}")]
     Text(String),
+    /// A packing to learn from is none, or its numbers are in other units.
+    #[error("packing `{packing}`: {fault}")]
+    Packing {
+        /// Its name.
+        packing: String,
+        /// What is wrong, and what to do.
+        fault: String,
+    },
     /// The packings do not determine the constants.
     #[error("{found} {what}, {needed} or more are needed: prepare more packings, or more different ones")]
     Packings {

@@ -1,10 +1,43 @@
 //! Packings that a calibration is learned from.
 
+use crate::calibration::CalibrationError;
+use crate::checks::{CERTAIN, ROUNDING};
 use crate::conditions::{Conditions, Measured, StrainRatio, StrainRatioSource};
-use crate::moduli::Moduli;
+use crate::error::EmtError;
+use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use grainlab_core::Material;
-use grainlab_core::results::StrainRatios;
+use grainlab_core::results::{InferredQuantity, Microstructure, StrainRatios};
+
+/// Θ over E*^⅔ p^⅓ of any packing of spheres, with a wide margin: .21 to .44 in those of `tests/golden/ensembles`. A modulus or a
+/// pressure in another unit is outside.
+const REDUCED_BULK: [f64; 2] = [0.05, 2.0];
+
+/// Share by which k may exceed z: rattlers have few contacts, so that k is below z.
+const K_ABOVE_Z: f64 = 0.01;
+
+/// Largest coordination number of a packing of spheres of similar sizes, with a margin.
+const MAX_COORDINATION: f64 = 15.0;
+
+/// Largest anisotropy, to either side: that of contacts along e3 alone, 2.5 of the coefficient of P2.
+const MAX_EPS: f64 = 2.5;
+
+/// Largest spread of the radii over their mean.
+const MAX_SPREAD: f64 = 1.0;
+
+/// Refuses a counted structure that no packing has.
+pub fn check_structure(structure: &Microstructure) -> Result<(), EmtError> {
+    for quantity in InferredQuantity::ALL {
+        let Some(value) = structure.get(quantity) else { continue };
+        let [low, high] =
+            if quantity.is_coordination() { [0.0, MAX_COORDINATION] } else { [-MAX_EPS, MAX_EPS] };
+        // Also where it is not a number.
+        if !(low..=high).contains(&value) {
+            return Err(EmtError::NoStructure { quantity: quantity.name(), value, low, high });
+        }
+    }
+    Ok(())
+}
 
 /// One packing: its moduli, and its structure counted from the contacts.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +84,57 @@ impl CalibrationSample {
             ..Conditions::at(self.pressure)
         };
         Observation { grains: Some(self.grains), ..Observation::new(self.moduli, conditions) }
+    }
+
+    /// Refuses what no packing is, as an inversion would, and moduli or a pressure in another unit.
+    pub fn check(&self) -> Result<(), CalibrationError> {
+        let fault = |fault: String| Err(CalibrationError::Packing { packing: self.packing.clone(), fault });
+        if !self.is_finite() {
+            return fault("every number must be finite, and all moduli known and positive".to_owned());
+        }
+        if self.grains == 0 {
+            return fault("grains = 0: a packing has one grain or more".to_owned());
+        }
+        if !(0.0..=MAX_SPREAD).contains(&self.size_spread) {
+            return fault(format!("size_spread = {} is outside [0, {MAX_SPREAD}]", self.size_spread));
+        }
+        let structure = Microstructure {
+            k: Some(self.k),
+            k_hat: None,
+            z: Some(self.z),
+            eps: Some(self.eps),
+            eps_stiffness: Some(self.eps_stiffness),
+        };
+        let sound = check_structure(&structure)
+            .and_then(|()| self.observation(StrainRatioSource::Zero).checked().map(|_| ()));
+        if let Err(error) = sound {
+            return fault(error.to_string());
+        }
+        if self.k > self.z * (1.0 + K_ABOVE_Z) {
+            let [k, z] = [self.k, self.z];
+            return fault(format!(
+                "k = {k} is above z = {z}: k counts all grains, z those that are no rattlers"
+            ));
+        }
+        if self.moduli.unstable(None, CERTAIN) {
+            return fault("no stable medium has these moduli: they are not of one state".to_owned());
+        }
+        if let Some(relative) = self.moduli.imbalance().filter(|relative| relative.abs() > ROUNDING) {
+            return fault(format!(
+                "Theta is {:.1} % off the value that follows from C11, C33, C13 and G12: one of them is wrong",
+                100.0 * relative.abs()
+            ));
+        }
+        let unit = self.material.effective_young().cbrt().powi(2) * self.pressure.cbrt();
+        let reduced = self.moduli.get(Modulus::Theta).map_or(f64::NAN, |theta| theta / unit);
+        let [low, high] = REDUCED_BULK;
+        if !(low..=high).contains(&reduced) {
+            return fault(format!(
+                "Theta = {reduced:.3e} E*^(2/3) p^(1/3), and that of packings is {low} to {high}: check the units of moduli and \
+                 pressure (Pa) and the material of the grains"
+            ));
+        }
+        Ok(())
     }
 
     /// p/E*.

@@ -7,10 +7,10 @@
 //! the best model that uses three moduli; on packings of the calibration `grainlab` the amplification is too
 //! large.
 
+use super::equivalent::fitted;
 use crate::calibration::{Calibration, IsotropicCalibration};
-use crate::checks::outside_fit;
 use crate::conditions::Conditions;
-use crate::domain::Domain;
+use crate::domain::{Domain, outside_fitted};
 use crate::error::EmtError;
 use crate::model::Model;
 use crate::moduli::{MODULI, Moduli, Modulus};
@@ -47,7 +47,8 @@ impl Model for Directional {
         structure[isotropic.coordination_kind as usize] =
             Some([-1.05 * isotropic.constants()[1] / weakest, 12.0]);
         structure[InferredQuantity::Eps as usize] = Some([-MAX_EPS, MAX_EPS]);
-        Domain::new(NAME, structure)
+        let fitted = fitted(isotropic.coordination_kind, calibration);
+        Domain { fitted, ..Domain::new(NAME, structure) }
     }
 
     fn predict(
@@ -95,7 +96,7 @@ impl Model for Directional {
         }
         let structure =
             Microstructure::default().with(isotropic.coordination_kind, k).with(InferredQuantity::Eps, eps);
-        let warnings = outside_fit(isotropic.coordination_kind, k, calibration).into_iter().collect();
+        let warnings = outside_fitted(&fitted(isotropic.coordination_kind, calibration), &structure);
         Ok(PointEstimate { jacobian: Some(jacobian), warnings, ..PointEstimate::exact(structure) })
     }
 }

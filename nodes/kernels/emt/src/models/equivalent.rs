@@ -6,9 +6,8 @@
 
 use super::shear_ratio::ratio_warnings;
 use crate::calibration::Calibration;
-use crate::checks::outside_fit;
 use crate::conditions::Conditions;
-use crate::domain::Domain;
+use crate::domain::{Domain, Fitted, outside_fitted};
 use crate::error::EmtError;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
@@ -76,10 +75,21 @@ impl Factors {
         let k_hat = isotropic.coordination(s);
         let denser = theta / (isotropic.bulk_modulus(k_hat, observation.pressure()) * self.bulk);
         let k = k_hat * denser;
-        warnings.extend(outside_fit(InferredQuantity::KHat, k_hat, calibration));
         let structure = structure.with(isotropic.coordination_kind, k).with(InferredQuantity::KHat, k_hat);
+        warnings.extend(outside_fitted(&fitted(InferredQuantity::KHat, calibration), &structure));
         Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) })
     }
+}
+
+/// The packings of Eqs. 21 and 22, for the coordination number that a model takes in them.
+pub(super) fn fitted(
+    quantity: InferredQuantity,
+    calibration: &Calibration,
+) -> [Option<Fitted>; InferredQuantity::COUNT] {
+    let range = calibration.isotropic().fitted;
+    let mut fitted = [None; InferredQuantity::COUNT];
+    fitted[quantity as usize] = Some(Fitted { range, inside: range });
+    fitted
 }
 
 /// Domain of a model with the paper's three unknowns: k (or z, as the calibration has it), k̂ above the zero of the
@@ -92,5 +102,6 @@ pub(super) fn domain(model: &'static str, calibration: &Calibration) -> Domain {
     structure[InferredQuantity::KHat as usize] =
         Some([-isotropic.constants()[1] * (1.0 + 1e-3), MAX_COORDINATION]);
     structure[InferredQuantity::Eps as usize] = Some([-0.5, 1.0]);
-    Domain { gamma: [-0.5, 0.25], ..Domain::new(model, structure) }
+    let fitted = fitted(InferredQuantity::KHat, calibration);
+    Domain { gamma: [-0.5, 0.25], fitted, ..Domain::new(model, structure) }
 }

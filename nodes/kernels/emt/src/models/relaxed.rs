@@ -18,7 +18,7 @@ use crate::calibration::{Calibration, Outside, Reach, RelaxationCalibration};
 use crate::checks::FALSE_ALARM;
 use crate::christoffel::score;
 use crate::conditions::Conditions;
-use crate::domain::Domain;
+use crate::domain::{Domain, Fitted, outside_fitted};
 use crate::error::EmtError;
 use crate::likelihood::Likelihood;
 use crate::model::Model;
@@ -57,11 +57,18 @@ impl Model for Relaxed {
             network.reach.with_ends();
         structure[InferredQuantity::Z as usize] = Some(z);
         structure[InferredQuantity::Eps as usize] = Some(eps);
+        let mut fitted = [None; InferredQuantity::COUNT];
+        for (quantity, range, inside) in
+            [(InferredQuantity::Z, network.reach.z, z), (InferredQuantity::Eps, network.reach.eps, eps)]
+        {
+            fitted[quantity as usize] = Some(Fitted { range, inside });
+        }
         let size_spread = [size_spread[0].max(0.0), size_spread[1]];
         Domain {
             reduced_pressure,
             stress_ratio,
             size_spread,
+            fitted,
             compares_state: true,
             ..Domain::new(NAME, structure)
         }
@@ -107,7 +114,7 @@ impl Model for Relaxed {
         if let Some(far) = fit.outside(network).iter().find(|o| o.is_too_far()) {
             return Err(too_far(far, calibration.name()));
         }
-        Ok(point_estimate(&fit, &data, network, &state))
+        Ok(point_estimate(&fit, &data, network, &state, &self.domain(calibration)))
     }
 
     fn quantities(&self, _: &Calibration) -> Vec<InferredQuantity> {
@@ -142,7 +149,14 @@ fn network(calibration: &Calibration) -> Result<&RelaxationCalibration, EmtError
     calibration.network().ok_or_else(missing)
 }
 
-fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state: &State) -> PointEstimate {
+fn point_estimate(
+    fit: &Fit,
+    data: &Data,
+    network: &RelaxationCalibration,
+    state: &State,
+    domain: &Domain,
+) -> PointEstimate {
+    let inferred = fit.inferred(data, network, state);
     let mut warnings = Vec::new();
     if !state.stress_known {
         warnings.push(Warning::StressRatioUnknown);
@@ -154,14 +168,7 @@ fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state
         let Outside { quantity, value, range, .. } = *outside;
         warnings.push(Warning::StateOutsideFit { quantity, value, range });
     }
-    for Outside { quantity, value, range, .. } in
-        fit.outside(network).into_iter().filter(Outside::is_extrapolation)
-    {
-        warnings.push(match quantity {
-            "z" => Warning::CoordinationOutsideFit { quantity: InferredQuantity::Z, value, range },
-            _ => Warning::EpsOutsideFit { eps: value, range },
-        });
-    }
+    warnings.extend(outside_fitted(&domain.fitted, &inferred.structure));
     let misfit = fit
         .degrees_of_freedom(data)
         .map(|degrees_of_freedom| Misfit { chi_square: fit.chi_square, degrees_of_freedom });
@@ -175,7 +182,6 @@ fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state
             warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
         }
     }
-    let inferred = fit.inferred(data, network, state);
     PointEstimate {
         structure: inferred.structure,
         jacobian: Some(inferred.jacobian),

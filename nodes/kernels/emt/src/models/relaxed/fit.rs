@@ -12,6 +12,10 @@ use nalgebra::{Cholesky, SMatrix, SVector};
 /// Relative error of the relation between the six moduli below which only five of them are independent.
 const NO_ROOM: f64 = 1e-6;
 
+/// Share of the weight of a datum that the others must leave, for a difference from their prediction to be meaningful: they
+/// predict nothing where the fit goes through the datum, and the difference is rounding.
+const PREDICTED: f64 = 1e-9;
+
 type Square = SMatrix<f64, MODULI, MODULI>;
 type Moduli = SVector<f64, MODULI>;
 type WithFollowing = SMatrix<f64, 2, MODULI>;
@@ -234,7 +238,8 @@ impl Fit {
         // A datum left out of the fit differs from its prediction by (W r)_i over the square root of (W C W)_ii.
         let left = self.weight - self.weight * self.by_unknowns * self.gain();
         let pull = left * self.residual;
-        let sigma = |i: usize| pull[i].abs() / left[(i, i)].max(f64::MIN_POSITIVE).sqrt();
+        let is_predicted = |i: usize| left[(i, i)] > PREDICTED * self.weight[(i, i)];
+        let sigma = |i: usize| if is_predicted(i) { pull[i].abs() / left[(i, i)].sqrt() } else { 0.0 };
         let used = (0..MODULI).filter(|i| data.is_used[*i]);
         let worst = used.max_by(|a, b| sigma(*a).total_cmp(&sigma(*b))).unwrap_or(0);
         (Modulus::ALL[worst], sigma(worst))
