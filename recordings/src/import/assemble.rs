@@ -247,6 +247,7 @@ pub(super) fn packing(
         }
     };
     notes.extend(other_law(&packing));
+    notes.extend(beyond_friction(&packing));
     notes.extend(too_few_digits(printed, &packing));
     packing.contacts.sort_by_key(|c| (c.i, c.j, c.image));
     let packing = packing.validated()?.consistent()?;
@@ -338,6 +339,16 @@ fn listed_contact(
     }
     let (i, j) = (i as u32, j as u32);
     Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force, rolling_force: c.rolling })
+}
+
+/// Warns of listed forces beyond the Coulomb limit, by more than rounding.
+fn beyond_friction(packing: &Packing) -> Option<String> {
+    let is_beyond =
+        |c: &&Contact| c.tangential_force.norm() > (1.0 + 1e-3) * packing.friction * c.normal_force.max(0.0);
+    let count = packing.contacts.iter().filter(is_beyond).count();
+    (count > 0).then(|| {
+        format!("{count} contacts carry more tangential force than a friction of {} allows: of another friction, or in motion", packing.friction)
+    })
 }
 
 /// Warns if listed forces are not those of the contact law: the stiffness would be that of different

@@ -52,6 +52,14 @@ fn forces_of_another_contact_law_are_noted() {
 }
 
 #[test]
+fn forces_beyond_the_limit_of_friction_are_noted() {
+    let notes =
+        |tangential: f64| pair(&format!("c,1,2,1,0,0,0.05,3,0,{tangential},0")).unwrap().notes.concat();
+    assert!(!notes(0.3).contains("friction"));
+    assert!(notes(0.5).contains("1 contacts carry more tangential force than a friction of 0.1 allows"));
+}
+
+#[test]
 fn contacts_that_contradict_positions_are_refused() {
     for (row, quantity) in [
         ("c,2,1,-1,0,0,0.0500001,3,0,0.5,0", "overlap"),

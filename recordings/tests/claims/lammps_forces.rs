@@ -119,7 +119,9 @@ fn columns_in_another_number_or_twice_or_of_forces_that_pull_are_refused() {
     let without_dist: Vec<String> = forces()
         .lines()
         .map(|line| match line.split(' ').collect::<Vec<_>>().as_slice() {
-            [a, b, _, rest @ ..] if rest.len() >= 6 && !line.starts_with("ITEM") => format!("{a} {b} {}", rest.join(" ")),
+            [a, b, _, rest @ ..] if rest.len() >= 6 && !line.starts_with("ITEM") => {
+                format!("{a} {b} {}", rest.join(" "))
+            }
             _ => line.replace(HEADER, &renumbered),
         })
         .collect();

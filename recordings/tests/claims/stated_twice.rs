@@ -1,8 +1,8 @@
 //! What a file states twice, or states of half of its grains, is refused if it contradicts itself.
 
 use grainlab_core::Vec3;
-use grainlab_recordings::import::{ImportOptions, csv, extended_xyz, lammps_data, lammps_dump, yade};
 use grainlab_recordings::import::{ImportError, Imported};
+use grainlab_recordings::import::{ImportOptions, csv, extended_xyz, lammps_data, lammps_dump, yade};
 use std::ops::ControlFlow;
 
 fn glass() -> ImportOptions {

@@ -134,13 +134,15 @@ pub(crate) struct Args {
     /// Solid fraction
     #[arg(long, value_name = "PHI", conflicts_with = "table")]
     phi: Option<f64>,
-    /// Axial stress less the lateral one over pressure [default: unknown, the stress is taken as isotropic]
+    /// Axial stress less the lateral one over pressure [default: unknown: 0 +- 0.15, cut at +- 0.3, in relaxed; isotropic in
+    /// the other models]
     #[arg(long, value_name = "Q/P", conflicts_with = "table", allow_hyphen_values = true)]
     stress_ratio: Option<f64>,
     /// Standard deviation of the stress ratio
     #[arg(long, value_name = "SIGMA", requires = "stress_ratio", default_value_t = 0.0)]
     stress_ratio_sigma: f64,
-    /// Standard deviation of the radii over their mean [default: unknown, the grains are taken as equal]
+    /// Standard deviation of the radii over their mean [default: unknown: any from 0 to 0.3 in relaxed; equal grains in
+    /// the other models]
     #[arg(long, value_name = "SPREAD", conflicts_with = "table")]
     size_spread: Option<f64>,
     /// Relative one-sigma error of each modulus without its own error: 0.01 is one percent [default: unknown]
@@ -162,7 +164,7 @@ pub(crate) struct Args {
     calibration: Vec<String>,
     /// Compare the estimates with the truth in the columns k, z, eps and eps_stiffness of the table, for each
     /// model and gamma/Delta: bias, scatter, rms error, and the fraction of the 95 % intervals that contain
-    /// the truth
+    /// the truth. A row without an estimate is counted there, and is no error
     #[arg(long, requires = "table")]
     judge: bool,
     /// Group the rows with the same cells in these columns; numbers that are not whole are equal if they
@@ -230,6 +232,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let defaults = args.defaults()?;
     let printer = Printer { ways: &ways };
     if let Some(path) = &args.table {
+        args.none_of_one_state()?;
         let rows = Rows::open(path, &args.by, defaults)?;
         if args.judge {
             return judge::run(rows, &args.by, &ways, args.plot.as_deref(), args.format);
@@ -254,7 +257,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let evidence = args.evidence.then(|| evidence::of_ways(&state, &ways, &args.prior_odds, args.seed));
     let mut answer = Answer::of(state, None, &ways);
-    let predictive = args.explain.then(|| predictive::of_answer(&mut answer, &ways)).flatten();
+    let state = answer.state.as_ref().ok().filter(|_| args.explain);
+    let predictive = state.map(|state| predictive::of_ways(state, &mut answer.outcomes, &ways));
     for fault in answer.faults(&ways) {
         say!("grainlab: {fault}");
     }
@@ -280,6 +284,23 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 impl Args {
+    /// Refuses the data of one state beside a table, which has columns for them.
+    fn none_of_one_state(&self) -> Result<(), Failure> {
+        for (flag, given) in [
+            ("--pressure-sigma", self.pressure_sigma != 0.0),
+            ("--stress-ratio-sigma", self.stress_ratio_sigma != 0.0),
+            ("--density", self.density.is_some()),
+            ("--density-sigma", self.density_sigma != 0.0),
+        ] {
+            if given {
+                return Err(Failure::usage(format!(
+                    "{flag} is of one state: in a --table it is a column, or of no use"
+                )));
+            }
+        }
+        Ok(())
+    }
+
     /// The names of the models: for a prior, the recommended one.
     fn models(&self) -> Vec<String> {
         let of_prior = self.print_prior && self.model.is_empty();

@@ -3,7 +3,7 @@
 use super::contact_statistics::FORCE_BIN_WIDTH;
 use super::fabric::{ORIENTATION_BINS, OrientationFit};
 use super::packing_report::PackingReport;
-use super::stress_decomposition::StressForceFabric;
+use super::stress_decomposition::{StressForceFabric, SubNetwork};
 use crate::quantities;
 use crate::quantity::{Quantity, Shape::*};
 use crate::tensor::SymTensor;
@@ -45,7 +45,7 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
     "fabric" "L" "1" "fabric tensor, mean of n n, trace 1 (Eq. 2)" Tensor, |r| r.fabric.contact_fabric;
     "force_fabric" "" "1" "the same weighted by normal force" Tensor, |r| r.fabric.normal_force_fabric;
     "tangential_force_fabric" "" "1" "mean of t t weighted by the size of the tangential force, t its direction"
-        Tensor, |r| r.fabric.tangential_force_fabric;
+        Tensor, |r| Some(r.fabric.tangential_force_fabric).filter(|f| f.trace() > 0.0);
     "stiffness_fabric" "" "1" "fabric tensor weighted by normal stiffness" Tensor, |r| r.fabric.stiffness_fabric;
     "axis" "" "1" "unit principal axis of the fabric that stands out most"
         Vector, |r| r.fabric.principal_axis.direction;
@@ -106,8 +106,8 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
         Scalar, |r| r.stress_decomposition.strong.contacts;
     "strong_share_of_contacts" "" "1" "their share of all contacts"
         Scalar, |r| r.stress_decomposition.share_of_contacts(&r.stress_decomposition.strong);
-    "strong_eps" "" "1" "eps of the strong contacts" Scalar, |r| r.stress_decomposition.strong.contact_anisotropy;
-    "strong_fabric" "" "1" "their fabric tensor" Tensor, |r| r.stress_decomposition.strong.fabric;
+    "strong_eps" "" "1" "eps of the strong contacts" Scalar, |r| some_contacts(&r.stress_decomposition.strong).map(|n| n.contact_anisotropy);
+    "strong_fabric" "" "1" "their fabric tensor" Tensor, |r| some_contacts(&r.stress_decomposition.strong).map(|n| n.fabric);
     "strong_stress_pa" "" "Pa" "the stress they carry" Tensor, |r| r.stress_decomposition.strong.stress;
     "strong_share_of_pressure" "" "1" "their share of the pressure"
         Scalar, |r| r.stress_decomposition.share_of_pressure(&r.stress_decomposition.strong);
@@ -119,8 +119,8 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
         Scalar, |r| r.stress_decomposition.weak.contacts;
     "weak_share_of_contacts" "" "1" "their share of all contacts"
         Scalar, |r| r.stress_decomposition.share_of_contacts(&r.stress_decomposition.weak);
-    "weak_eps" "" "1" "eps of the weak contacts" Scalar, |r| r.stress_decomposition.weak.contact_anisotropy;
-    "weak_fabric" "" "1" "their fabric tensor" Tensor, |r| r.stress_decomposition.weak.fabric;
+    "weak_eps" "" "1" "eps of the weak contacts" Scalar, |r| some_contacts(&r.stress_decomposition.weak).map(|n| n.contact_anisotropy);
+    "weak_fabric" "" "1" "their fabric tensor" Tensor, |r| some_contacts(&r.stress_decomposition.weak).map(|n| n.fabric);
     "weak_stress_pa" "" "Pa" "the stress they carry" Tensor, |r| r.stress_decomposition.weak.stress;
     "weak_share_of_pressure" "" "1" "their share of the pressure"
         Scalar, |r| r.stress_decomposition.share_of_pressure(&r.stress_decomposition.weak);
@@ -181,7 +181,7 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
     // Symmetry of the stiffness.
     "symmetry" "" "" "isotropic, cubic, transversely isotropic, orthotropic or lower"
         Scalar, |r| r.symmetry.map(|s| s.class.name());
-    "symmetry_tolerance" "" "1" "largest residual that counts as noise: what packings of as many grains scatter by"
+    "symmetry_tolerance" "" "1" "largest residual that counts as noise: 1.1/sqrt(grains), which isotropic packings scatter by, but at most 0.05"
         Scalar, |r| r.symmetry.map(|s| s.tolerance);
     "symmetry_axis" "" "1" "axis of the nearest transversely isotropic stiffness"
         Vector, |r| r.symmetry.map(|s| s.axis);
@@ -213,6 +213,11 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
 
 fn orientation(r: &PackingReport) -> Option<OrientationFit> {
     r.fabric.orientation.contact_fit
+}
+
+/// A network with contacts: one without has no fabric.
+fn some_contacts(network: &SubNetwork) -> Option<&SubNetwork> {
+    Some(network).filter(|network| network.contacts > 0)
 }
 
 fn anisotropies(r: &PackingReport) -> Option<StressForceFabric> {

@@ -86,7 +86,13 @@ pub(super) fn fitted(
     quantity: InferredQuantity,
     calibration: &Calibration,
 ) -> [Option<Fitted>; InferredQuantity::COUNT] {
-    let range = calibration.isotropic().fitted;
+    let mut range = calibration.isotropic().fitted;
+    if range[1].is_infinite()
+        && let Some(learned) = Calibration::builtin("grainlab")
+    {
+        // The errors are known up to the densest packings that they were learned from.
+        range[1] = learned.isotropic().fitted[1];
+    }
     let mut fitted = [None; InferredQuantity::COUNT];
     fitted[quantity as usize] = Some(Fitted { range, inside: range });
     fitted

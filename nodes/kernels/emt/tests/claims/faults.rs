@@ -324,3 +324,47 @@ fn what_is_missing_is_named() {
         Err(EmtError::Missing { missing: "G12", .. })
     ));
 }
+
+#[test]
+fn a_modulus_with_a_huge_error_is_one_that_is_not_known() {
+    let mut o = sound().with_relative_error(0.01);
+    o.conditions.stress_ratio = Some(Measured::exact(0.0));
+    o.conditions.size_spread = Some(0.0);
+    let relaxed = grainlab_emt::model("relaxed").unwrap();
+    let ours = Calibration::builtin("grainlab").unwrap();
+    let infer = |o: &Observation| relaxed.infer(o, ours).unwrap();
+    let mut without = o.clone();
+    without.moduli = without.moduli.without(Modulus::G12);
+    let covariance = o.covariance.as_mut().unwrap();
+    let at = Modulus::G12 as usize;
+    covariance[(at, at)] = 1e30;
+    let found = infer(&o);
+    assert!(
+        found.warnings.contains(&Warning::TakenAsUnknown { modulus: Modulus::G12 }),
+        "{:?}",
+        found.warnings
+    );
+    assert_eq!(found.structure, infer(&without).structure);
+}
+
+#[test]
+fn unknown_errors_of_the_moduli_and_large_ones_of_the_state_are_said() {
+    let says = |o: &Observation, wanted: fn(&Warning) -> bool| {
+        let relaxed = grainlab_emt::model("relaxed").unwrap();
+        relaxed.infer(o, Calibration::builtin("grainlab").unwrap()).unwrap().warnings.iter().any(wanted)
+    };
+    let no_errors = |w: &Warning| matches!(w, Warning::DataErrorUnknown);
+    assert!(says(&sound(), no_errors) && !says(&sound().with_relative_error(0.01), no_errors));
+    let mut o = sound().with_relative_error(0.01);
+    let large = |w: &Warning| matches!(w, Warning::StateErrorLarge { input: "pressure", .. });
+    assert!(!says(&o, large));
+    o.conditions.pressure.stddev = 0.5 * o.conditions.pressure.value;
+    assert!(says(&o, large));
+}
+
+#[test]
+fn the_constants_of_the_paper_are_not_used_above_the_packings_that_their_errors_are_known_for() {
+    let dense = of_structure(5.5, 8.0, 0.02, -0.05);
+    assert_eq!(dense.status, Status::Extrapolated, "{:?}", dense.warnings);
+    assert_eq!(of_structure(5.5, 5.6, 0.02, -0.05).status, Status::Ok);
+}

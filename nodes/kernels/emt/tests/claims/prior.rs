@@ -3,7 +3,7 @@
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
     Calibration, Conditions, Density, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation,
-    Prior, PriorError, Relaxed, Warning,
+    Prior, PriorError, Relaxed, Status, Warning,
 };
 
 fn ours() -> &'static Calibration {
@@ -176,4 +176,26 @@ fn a_prior_outside_the_domain_of_the_model_is_refused() {
     let prior = Prior::default().with(InferredQuantity::Z, Density::uniform(8.0, 9.0).unwrap());
     let fault = prior.completed(&domain).unwrap_err();
     assert!(matches!(fault, EmtError::PriorOutsideDomain { model: "relaxed", quantity: "z", .. }), "{fault}");
+}
+
+/// Expected: the data give z 4.7 ± .03.
+#[test]
+fn a_prior_far_from_the_data_contradicts_them_and_the_structure_that_it_gives_is_judged_anew() {
+    let without = estimate();
+    assert_eq!(without.status, Status::Ok);
+    for text in [
+        "[z]\ndistribution = \"uniform\"\nlow = 6\nhigh = 6.2\n",
+        "[z]\ndistribution = \"normal\"\nmean = 6\nstddev = 0.1\n",
+        // Wide, but its limit is far from the data.
+        "[z]\ndistribution = \"uniform\"\nlow = 5.4\nhigh = 6.4\n",
+        "[eps]\ndistribution = \"normal\"\nmean = 0.2\nstddev = 0.002\n",
+    ] {
+        let with = without.with_prior(&Prior::parse(text).unwrap()).unwrap();
+        assert_eq!(with.status, Status::Contradictory, "{text}{:?}", with.warnings);
+        let outside = with.structure.eps.is_some_and(|eps| eps > 0.15);
+        let said = with.warnings.iter().any(|w| matches!(w, Warning::EpsOutsideFit { .. }));
+        assert_eq!(outside, said, "{text}{:?}", with.structure);
+    }
+    let near = Prior::parse("[z]\ndistribution = \"normal\"\nmean = 4.75\nstddev = 0.1\n").unwrap();
+    assert_eq!(without.with_prior(&near).unwrap().status, Status::Ok);
 }

@@ -150,6 +150,7 @@ impl Model for Line {
         Domain {
             model: "line",
             structure,
+            fitted: [None; InferredQuantity::COUNT],
             gamma: [0.0, 0.0],
             poisson_ratio: [0.0, 0.5],
             reduced_pressure: [0.0, f64::INFINITY],

@@ -212,3 +212,35 @@ fn every_packing_outside_is_flagged_or_unknown_and_none_is_confidently_wrong() {
     }
     assert!(answered >= 450, "{answered}");
 }
+
+#[test]
+fn a_calibration_refuses_what_is_no_packing_and_numbers_in_other_units() {
+    let packings = Packings::read();
+    let sound = packings.others[0].clone();
+    assert_eq!(sound.check(), Ok(()));
+    let faults: [(&str, fn(&mut CalibrationSample)); 8] = [
+        ("eps", |s| s.eps = 7.0),
+        ("grains = 0", |s| s.grains = 0),
+        ("phi", |s| s.solid_fraction = 64.0),
+        ("k = ", |s| s.k = 1.1 * s.z),
+        ("size_spread", |s| s.size_spread = 2.0),
+        ("Theta is 33.3 % off", |s| {
+            let theta = s.moduli.get(grainlab_emt::Modulus::Theta).unwrap();
+            s.moduli = s.moduli.with(grainlab_emt::Modulus::Theta, 1.5 * theta);
+        }),
+        ("check the units", |s| s.pressure *= 1e-3),
+        ("check the units", |s| {
+            for (modulus, value) in s.moduli.known().collect::<Vec<_>>() {
+                s.moduli = s.moduli.with(modulus, 1e-6 * value);
+            }
+        }),
+    ];
+    for (expected, fault) in faults {
+        let mut bad = sound.clone();
+        fault(&mut bad);
+        let error = bad.check().unwrap_err().to_string();
+        assert!(error.contains(expected) && error.contains(&bad.packing), "{expected}: {error}");
+        let with_it = [&packings.others[1..], &[bad]].concat();
+        assert!(learn("test", &packings.isotropic, &packings.anisotropic, &with_it).is_err(), "{expected}");
+    }
+}

@@ -10,7 +10,7 @@ use grainlab_core::{Mat3, SymTensor, Vec3};
 /// contacts) and the weak one (all others). `fabric` is that of the packing.
 pub fn stress_decomposition(view: &PackingView<'_>, fabric: &Fabric) -> StressDecomposition {
     // Forces that are equal up to rounding all count as weak.
-    let threshold = view.mean_normal_force * (1.0 + 1e-12);
+    let threshold = view.mean_normal_force * (1.0 + 1e-9);
     let (mut normal, mut tangential) = (Mat3::zeros(), Mat3::zeros());
     let (mut strong, mut weak) = (Sums::default(), Sums::default());
     for (c, branch) in view.packing.contacts.iter().zip(&view.branches) {

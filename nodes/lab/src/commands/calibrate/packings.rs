@@ -3,6 +3,7 @@
 use crate::commands::invert::{BadRow, Defaults, Row, Rows, State};
 use grainlab_console::{Failure, say};
 use grainlab_core::Material;
+use grainlab_core::contact::SpringLaw;
 use grainlab_emt::{CalibrationSample, Modulus};
 use std::path::Path;
 
@@ -63,6 +64,12 @@ fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
     }
     if let Some(ratio) = stress_ratio.filter(|r| !(-1.5..=3.0).contains(&r.value)) {
         return Err(format!("axial_q_over_p = {} is outside [-1.5, 3]", ratio.value));
+    }
+    if row.state.smooth {
+        return Err("its moduli are those without tangential springs, which no model is for".to_owned());
+    }
+    if let Some(law) = row.state.contact_law.filter(|law| law.springs != SpringLaw::HertzMindlin) {
+        return Err(format!("its contact law is {law}, and every model is for Hertz-Mindlin contacts"));
     }
     let (preparation, packing) = row.group.split_at(preparation);
     Ok(CalibrationSample {

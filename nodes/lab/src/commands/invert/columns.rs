@@ -9,6 +9,9 @@ use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt::{Measured, Moduli};
 
+/// Share of the largest entry of a stiffness up to which two values of one entry are the same, rounded to four digits.
+const SAME: f64 = 1e-3;
+
 /// Positions of the inputs in a row. Other columns are ignored.
 pub(crate) struct Columns {
     names: Vec<String>,
@@ -160,6 +163,9 @@ impl Columns {
                 }
                 continue;
             };
+            if input.role == Role::Truth && !value.is_finite() {
+                return Err(format!("column {}: {value} is not finite", self.names[*column]));
+            }
             if input.role == Role::Stddev && !(value >= 0.0 && value.is_finite()) {
                 return Err(format!("column {}: {value} is not a standard deviation", self.names[*column]));
             }
@@ -173,9 +179,13 @@ impl Columns {
             "true" => true,
             other => return Err(format!("column smooth: {other:?} is not true or false")),
         };
+        if let Some(grains) =
+            state.grains.filter(|n| !(1.0..=f64::from(u32::MAX)).contains(n) || n.fract() != 0.0)
+        {
+            return Err(format!("column grains: {grains} is not a number of grains"));
+        }
         if let Some(stiffness) = self.stiffness(cells)? {
-            let medium = stiffness.transverse_isotropy_about(&self.axis(cells)?);
-            (state.moduli, state.asymmetry) = (Moduli::of_medium(&medium), Some(medium.residual));
+            self.project(&mut state, &stiffness, &self.axis(cells)?)?;
         }
         for (input, column, _) in self.inputs.iter().filter(|(input, ..)| input.role == Role::Stddev) {
             if !cells.get(*column).is_empty() && (input.get)(&state).is_none() {
@@ -184,6 +194,33 @@ impl Columns {
             }
         }
         Ok(state)
+    }
+
+    /// The moduli of a whole stiffness; those in columns of their own must be the same.
+    fn project(&self, state: &mut State, stiffness: &Stiffness, axis: &Vec3) -> Result<(), String> {
+        let medium = stiffness.transverse_isotropy_about(axis);
+        let moduli = Moduli::of_medium(&medium);
+        for (modulus, given) in state.moduli.known() {
+            let projected = moduli.get(modulus).unwrap_or(f64::NAN);
+            if (given - projected).abs() > SAME * stiffness.0.amax() {
+                return Err(format!(
+                    "{modulus} = {given:e} Pa is not that of the stiffness, {projected:e} Pa: leave one of them out"
+                ));
+            }
+        }
+        let skew = 0.5 * (stiffness.0 - stiffness.0.transpose()).amax() / stiffness.0.amax();
+        if skew > SAME {
+            state.notes.push(format!(
+                "the stiffness is not symmetric, by {:.1} % of its largest entry: its symmetric part is used",
+                100.0 * skew
+            ));
+        }
+        let symmetric = 0.5 * (stiffness.0 + stiffness.0.transpose());
+        if symmetric.symmetric_eigenvalues().min() < -SAME * symmetric.amax() {
+            return Err("the stiffness is not positive definite: no stable medium has it".to_owned());
+        }
+        (state.moduli, state.asymmetry) = (moduli, Some(medium.residual));
+        Ok(())
     }
 
     fn number(&self, cells: &Cells<'_>, column: usize) -> Result<Option<f64>, String> {
@@ -383,6 +420,37 @@ mod tests {
         let printed = state(names, "5e4,1,2,3,4,5,6").unwrap();
         assert_eq!(printed.moduli.values(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(Some));
         assert!(printed.projected && !state("p_pa,c11_pa", "5e4,7").unwrap().projected);
+    }
+
+    #[test]
+    fn a_stiffness_that_contradicts_a_modulus_or_itself_is_refused_or_noted() {
+        let mut entries = Stiffness::isotropic(2e8, 1e8).row_major();
+        let row = |entries: &[f64; 36], more: &str| {
+            let cells: Vec<String> = entries.iter().map(f64::to_string).collect();
+            state(
+                &format!("p_pa,{},g12_pa", matrix_names().join(",")),
+                &format!("5e4,{},{more}", cells.join(",")),
+            )
+        };
+        let g12 = row(&entries, "").unwrap().moduli.get(Modulus::G12).unwrap();
+        assert!(row(&entries, &g12.to_string()).unwrap().notes.is_empty());
+        assert!(row(&entries, "1e6").unwrap_err().contains("is not that of the stiffness"));
+        entries[1] *= 1.05;
+        assert!(row(&entries, "").unwrap().notes[0].contains("not symmetric"));
+        (entries[4], entries[24]) = (1e9, 1e9);
+        assert!(row(&entries, "").unwrap_err().contains("not positive definite"));
+    }
+
+    #[test]
+    fn grains_are_counted_and_the_truth_is_a_number() {
+        for grains in ["0", "-3", "2.5", "nan", "inf"] {
+            assert!(
+                state("p_pa,g12_pa,grains", &format!("5e4,1,{grains}"))
+                    .unwrap_err()
+                    .contains("number of grains")
+            );
+        }
+        assert!(state("p_pa,g12_pa,k", "5e4,1,nan").unwrap_err().contains("column k"));
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! The observed moduli against what each model predicts with its posterior.
 
-use super::answer::Answer;
 use super::state::State;
 use super::way::Way;
 use grainlab_console::{Table, fixed};
@@ -34,8 +33,11 @@ struct OfModulus {
 }
 
 /// Of the models that state a likelihood. Improbable moduli are part of the status of the answer.
-pub(super) fn of_answer(answer: &mut Answer, ways: &[Way]) -> Option<Vec<Predictive>> {
-    let state = answer.state.as_ref().ok()?;
+pub(super) fn of_ways(
+    state: &State,
+    outcomes: &mut [Result<Estimate, EmtError>],
+    ways: &[Way],
+) -> Vec<Predictive> {
     let of_way = |(way, outcome): (&Way, &mut Result<Estimate, EmtError>)| {
         let check = check(state, way).ok()?;
         if let Ok(estimate) = outcome {
@@ -43,7 +45,7 @@ pub(super) fn of_answer(answer: &mut Answer, ways: &[Way]) -> Option<Vec<Predict
         }
         Some(view(way, &check))
     };
-    Some(ways.par_iter().zip(&mut answer.outcomes).filter_map(of_way).collect())
+    ways.par_iter().zip(outcomes).filter_map(of_way).collect()
 }
 
 fn check(state: &State, way: &Way) -> Result<Check, EmtError> {

@@ -41,6 +41,14 @@ pub(super) fn ways(
 ) -> Result<Vec<Way>, Failure> {
     let named = models.iter().map(|name| grainlab_emt::model(name).ok_or_else(|| no_model(name)));
     let named = named.collect::<Result<Vec<_>, _>>()?;
+    for (flag, given) in [("--model", models), ("--calibration", calibrations)] {
+        if let Some((i, twice)) = given.iter().enumerate().find(|(i, name)| given[..*i].contains(name)) {
+            return Err(Failure::usage(format!(
+                "{flag} {twice} is given twice, the second time as number {}",
+                i + 1
+            )));
+        }
+    }
     let models = if named.is_empty() { grainlab_emt::models().to_vec() } else { named };
     let choices = calibrations.iter().map(|name| Choice::named(name)).collect::<Result<Vec<_>, _>>()?;
     let gammas: &[Option<StrainRatioSource>] = match gamma {
