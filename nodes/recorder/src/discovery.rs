@@ -3,7 +3,7 @@
 use crate::wanted::Wanted;
 use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::{Bus, Offer};
-use grainlab_recordings::{Definitions, QosOverrides, TopicSpec, adapted};
+use grainlab_recordings::{Definitions, QosOverrides, TopicSpec, TopicTally, adapted};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
@@ -56,6 +56,8 @@ pub(crate) struct Finder {
     /// Topics whose types nothing more is said about: found, or said to have more than one type, or another one than that of
     /// the contract.
     settled: BTreeSet<String>,
+    /// Topics that are recorded because a publisher was found.
+    found: BTreeSet<String>,
 }
 
 impl Finder {
@@ -66,6 +68,7 @@ impl Finder {
             has_waited: false,
             seen: BTreeMap::new(),
             settled: BTreeSet::new(),
+            found: BTreeSet::new(),
         }
     }
 
@@ -100,17 +103,31 @@ impl Finder {
             if now.saturating_sub(*self.seen.entry(name.clone()).or_insert(now)) >= LOOK {
                 self.seen.remove(&name);
                 self.settled.insert(name.clone());
-                found.extend(self.found(&name, &offers));
+                let of_topic = self.found(&name, &offers);
+                self.found.extend(of_topic.iter().map(|_| name.clone()));
+                found.extend(of_topic);
             }
         }
         found
     }
 
-    /// Says of which named topics nothing was published.
-    pub(crate) fn report_missing(&self, known: &BTreeSet<String>) {
+    /// Says of which named topics nothing was published, and of which found ones nothing was received.
+    pub(crate) fn report_missing(&self, known: &BTreeSet<String>, tallies: &[TopicTally]) {
+        for name in self.silent(tallies) {
+            log::warn!(
+                "{name}: nothing was received from its publishers: they sent nothing, or their QoS, partition or data \
+                 representation suits no reader of ROS 2"
+            );
+        }
         for name in self.missing(known) {
             log::warn!("/{name} is not recorded: no process published it");
         }
+    }
+
+    /// The topics that were found, and are not in the recording.
+    fn silent(&self, tallies: &[TopicTally]) -> Vec<&String> {
+        let is_recorded = |name: &String| tallies.iter().any(|t| t.published > 0 && t.name == *name);
+        self.found.iter().filter(|name| !is_recorded(name)).collect()
     }
 
     /// The named topics that were not found. Those of the contract may have another name, with namespace and remaps.

@@ -446,7 +446,7 @@ impl Node for Recorder {
         }
         let finished = writer.finish().map_err(|e| lost(&e))?;
         if let Some(finder) = &self.finder {
-            finder.report_missing(&self.names);
+            finder.report_missing(&self.names, &finished.ledger.tallies());
         }
         let (before, after) = losses(&finished.ledger.tallies());
         *self.result.borrow_mut() = Some(finished);

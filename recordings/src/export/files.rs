@@ -55,6 +55,11 @@ impl Exporter {
         Self { format, states: Vec::new() }
     }
 
+    /// Whether the format has no place for resistance to rolling.
+    pub fn loses_rolling(&self) -> bool {
+        matches!(self.format, ExportFormat::LammpsDump | ExportFormat::LammpsData)
+    }
+
     /// What the next packing adds. Parts of the same name are parts of one file.
     ///
     /// # Errors

@@ -59,7 +59,26 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
     if nothing_listed || warnings.iter().any(|w| w.kind == WarningKind::Unlisted) {
         files.sort_by_key(|f| (part(f).map(|(_, number)| number), f.clone()));
     }
+    if nothing_listed {
+        warnings.extend(gaps(path, &files));
+    }
     if files.is_empty() { Err(ReadError::Empty { path: path.to_owned() }) } else { Ok(files) }
+}
+
+/// The parts that are missing between others, where no `metadata.yaml` lists them.
+fn gaps(directory: &Path, files: &[PathBuf]) -> Vec<Warning> {
+    let parts: Vec<(String, u64)> = files.iter().filter_map(|f| part(f)).collect();
+    let between = parts.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    let missing =
+        between.flat_map(|pair| (pair[0].1 + 1..pair[1].1).map(|n| format!("{}_{n}.mcap", pair[0].0)));
+    missing
+        .map(|name| Warning {
+            path: directory.join(name),
+            offset: 0,
+            kind: WarningKind::MissingFile,
+            detail: "the parts before and after it are there".to_owned(),
+        })
+        .collect()
 }
 
 fn listed(directory: &Path) -> Vec<String> {
@@ -75,4 +94,17 @@ fn listed(directory: &Path) -> Vec<String> {
 fn part(file: &Path) -> Option<(String, u64)> {
     let (stem, number) = file.file_stem()?.to_str()?.rsplit_once('_')?;
     Some((stem.to_owned(), number.parse().ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_metadata_the_parts_between_others_are_missing() {
+        let files =
+            ["run_0.mcap", "run_1.mcap", "run_4.mcap", "other_7.mcap", "single.mcap"].map(PathBuf::from);
+        let missing: Vec<PathBuf> = gaps(Path::new("d"), &files).into_iter().map(|w| w.path).collect();
+        assert_eq!(missing, ["d/run_2.mcap", "d/run_3.mcap"].map(PathBuf::from));
+    }
 }

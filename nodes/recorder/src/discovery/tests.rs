@@ -115,3 +115,19 @@ fn losses_of_a_topic_of_any_type_are_counted_from_its_first_message() {
     let tally = tallies.iter().find(|t| t.name == "/chatter").unwrap();
     assert_eq!((tally.published, tally.recorded, tally.lost), (30, 20, 10));
 }
+
+#[test]
+fn a_topic_that_was_found_and_of_which_nothing_came_is_silent() {
+    let tally = |name: &str, published: u64| TopicTally {
+        name: name.to_owned(),
+        published,
+        recorded: published,
+        lost: 0,
+        repeated: 0,
+        redelivered: 0,
+        writers: Vec::new(),
+    };
+    let mut finder = Finder::new(settings());
+    finder.found = ["/chatter", "/mute", "/partitioned"].map(str::to_owned).into();
+    assert_eq!(finder.silent(&[tally("/chatter", 3), tally("/mute", 0)]), ["/mute", "/partitioned"]);
+}

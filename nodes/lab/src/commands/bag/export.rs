@@ -123,6 +123,11 @@ impl<'a> Writer<'a> {
     fn write(&mut self, imported: &Imported) -> Result<(), Failure> {
         let source = self.path.display();
         imported.notes.iter().for_each(|note| say!("grainlab: {source}: {note}"));
+        if self.packings == 0 && imported.packing.law.rolling.is_some() && self.exporter.loses_rolling() {
+            say!(
+                "grainlab: {source}: contacts resist rolling, and files for LAMMPS have neither this law nor its forces"
+            );
+        }
         let parts = self.exporter.next(&imported.packing).map_err(Failure::failed)?;
         self.packings += 1;
         parts.iter().try_for_each(|part| self.append(part))
