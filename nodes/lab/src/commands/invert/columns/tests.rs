@@ -1,0 +1,182 @@
+use super::*;
+use grainlab_emt::Modulus;
+
+fn columns(header: &str) -> Columns {
+    Columns::of_header(header.as_bytes(), &[], Defaults::default()).unwrap()
+}
+
+fn state(header: &str, row: &str) -> Result<State, String> {
+    columns(header)
+        .row(row.as_bytes(), &mut Splitter::new())
+        .unwrap()
+        .map(|r| r.state)
+        .map_err(|bad| bad.fault)
+}
+
+fn matrix_names() -> Vec<String> {
+    (0..36).map(|n| format!("c{}{}_pa", n / 6 + 1, n % 6 + 1)).collect()
+}
+
+#[test]
+fn three_constants_are_moduli_and_a_whole_stiffness_is_projected() {
+    let few = state("p_pa,c11_pa,c33_pa,c13_pa", "5e4,300,200,100").unwrap();
+    assert_eq!(few.moduli.values(), [None, None, None, Some(300.0), Some(200.0), Some(100.0)]);
+    assert_eq!(few.asymmetry, None);
+
+    // C11 ≠ C22: neither is the modulus of the projection.
+    let mut entries = [0.0; 36];
+    for (n, value) in [(0, 300.0), (7, 340.0), (14, 280.0), (21, 90.0), (28, 110.0), (35, 95.0)] {
+        entries[n] = value;
+    }
+    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+        (entries[6 * i + j], entries[6 * j + i]) = (120.0, 120.0);
+    }
+    let row = entries.map(|e| e.to_string()).join(",");
+    let full = state(&format!("p_pa,{}", matrix_names().join(",")), &format!("5e4,{row}")).unwrap();
+    let medium = Stiffness::from_row_major(&entries).transverse_isotropy();
+    assert_eq!(full.moduli, Moduli::of_medium(&medium));
+    assert_eq!(full.asymmetry, Some(medium.residual));
+    assert_ne!(full.moduli.get(Modulus::C11), Some(300.0));
+
+    // About the axis of the row, which is in the columns of a packing measured about it.
+    let axis = "reference_axis_x,reference_axis_y,reference_axis_z";
+    let about = |cells: &str| {
+        state(&format!("p_pa,{},{axis}", matrix_names().join(",")), &format!("5e4,{row},{cells}"))
+    };
+    let turned = Stiffness::from_row_major(&entries).transverse_isotropy_about(&Vec3::x());
+    assert_eq!(about("2,0,0").unwrap().moduli, Moduli::of_medium(&turned));
+    assert_eq!(about("0,0,1").unwrap().moduli, full.moduli);
+    assert_eq!(about(",,").unwrap().moduli, full.moduli);
+    assert!(about("0,0,0").unwrap_err().contains("not a direction"));
+
+    // One half of the matrix suffices.
+    let upper: Vec<usize> = (0..36).filter(|n| n / 6 <= n % 6).collect();
+    let names = matrix_names();
+    let header = upper.iter().map(|n| names[*n].clone()).collect::<Vec<_>>().join(",");
+    let row = upper.iter().map(|n| entries[*n].to_string()).collect::<Vec<_>>().join(",");
+    let half = state(&format!("p_pa,{header}"), &format!("5e4,{row}")).unwrap();
+    assert_eq!(half, full);
+}
+
+#[test]
+fn the_projection_that_analyze_prints_is_that_of_a_stiffness() {
+    let names = "p_pa,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa";
+    let printed = state(names, "5e4,1,2,3,4,5,6").unwrap();
+    assert_eq!(printed.moduli.values(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(Some));
+    assert!(printed.projected && !state("p_pa,c11_pa", "5e4,7").unwrap().projected);
+}
+
+#[test]
+fn a_stiffness_that_contradicts_a_modulus_or_itself_is_refused_or_noted() {
+    let mut entries = [0.0; 36];
+    for i in 0..3 {
+        (0..3).for_each(|j| entries[6 * i + j] = if i == j { 3e8 } else { 1e8 });
+        entries[7 * (i + 3)] = 1e8;
+    }
+    let row = |entries: &[f64; 36], more: &str| {
+        let cells: Vec<String> = entries.iter().map(f64::to_string).collect();
+        state(
+            &format!("p_pa,{},g12_pa", matrix_names().join(",")),
+            &format!("5e4,{},{more}", cells.join(",")),
+        )
+    };
+    let g12 = row(&entries, "").unwrap().moduli.get(Modulus::G12).unwrap();
+    assert!(row(&entries, &g12.to_string()).unwrap().notes.is_empty());
+    assert!(row(&entries, "1e6").unwrap_err().contains("is not that of the stiffness"));
+    entries[1] *= 1.05;
+    assert!(row(&entries, "").unwrap().notes[0].contains("not symmetric"));
+    (entries[4], entries[24]) = (1e9, 1e9);
+    assert!(row(&entries, "").unwrap_err().contains("not positive definite"));
+}
+
+#[test]
+fn grains_are_counted_and_the_truth_is_a_number() {
+    for grains in ["0", "-3", "2.5", "nan", "inf"] {
+        assert!(
+            state("p_pa,g12_pa,grains", &format!("5e4,1,{grains}")).unwrap_err().contains("number of grains")
+        );
+    }
+    assert!(state("p_pa,g12_pa,k", "5e4,1,nan").unwrap_err().contains("column k"));
+}
+
+#[test]
+fn a_packing_without_stiffness_is_a_row_without_moduli() {
+    let header = format!("p_pa,phi,{}", matrix_names().join(","));
+    let empty = state(&header, &format!("5e4,0.6{}", ",".repeat(36))).unwrap();
+    assert_eq!(empty.moduli, Moduli::NONE);
+    let torn = state(&header, &format!("5e4,0.6,1{}", ",".repeat(35))).unwrap_err();
+    assert!(torn.contains("c12_pa is empty"), "{torn}");
+}
+
+#[test]
+fn pressures_are_in_the_unit_that_their_column_names() {
+    for header in ["p_kpa,g12_pa", "p_pa,g12_pa", "pressure_pa,g12_pa"] {
+        let unit = if header.starts_with("p_kpa") { 1e3 } else { 1.0 };
+        assert_eq!(state(header, "50,1").unwrap().pressure.value, 50.0 * unit, "{header}");
+    }
+    assert!(state("p_pa,g12_pa", ",1").unwrap_err().contains("p_pa is empty"));
+}
+
+fn refused(header: &str) -> String {
+    Columns::of_header(header.as_bytes(), &[], Defaults::default()).err().unwrap_or_default()
+}
+
+#[test]
+fn two_columns_of_one_modulus_are_refused_unless_one_is_an_entry_of_a_whole_stiffness() {
+    let twice = refused("p_pa,g12_pa,c66_pa");
+    assert!(twice.contains("g12_pa and c66_pa both contain g12_pa"), "{twice}");
+    assert!(refused("p_pa,ti_c11_pa,c11_pa").contains("both contain"));
+    assert!(refused("p_kpa,pressure_pa,g12_pa").contains("both contain"));
+    assert_eq!(refused(&format!("p_pa,g12_pa,ti_c11_pa,{}", matrix_names().join(","))), "");
+}
+
+#[test]
+fn a_column_that_is_almost_one_that_is_read_is_refused_by_both_names() {
+    for (column, meant) in
+        [("G13_PA", "g13_pa"), ("g12_sigma", "g12_sigma_pa"), ("q_over_p", "axial_q_over_p")]
+    {
+        let fault = refused(&format!("p_pa,g12_pa,{column}"));
+        assert!(fault.contains(column) && fault.contains(&format!("almost {meant}:")), "{fault}");
+        assert_eq!(refused(&format!("p_pa,g12_pa,_{column}")), "");
+    }
+    assert_eq!(refused("name,operator,mu2,p_pa,g12_pa,stddev_c11_pa"), "");
+    assert!(refused("p_pa,c11_pa,c12_pa").contains("c12_pa is an entry of a stiffness"));
+}
+
+#[test]
+fn smooth_grains_of_an_analysis_and_errors_of_what_is_not_there_are_not_overlooked() {
+    assert!(state("p_pa,g12_pa,smooth", "5e4,1e8,true").unwrap().smooth);
+    assert!(!state("p_pa,g12_pa,smooth", "5e4,1e8,").unwrap().smooth);
+    assert!(state("p_pa,g12_pa,smooth", "5e4,1e8,maybe").unwrap_err().contains("not true or false"));
+    let lonely = state("p_pa,g12_pa,axial_q_over_p,axial_q_over_p_sigma", "5e4,1e8,,0.1").unwrap_err();
+    assert!(lonely.contains("column axial_q_over_p_sigma is a standard deviation"), "{lonely}");
+}
+
+#[test]
+fn negative_errors_are_refused() {
+    let fault = state("p_pa,g12_pa,g12_sigma_pa", "5e4,1e8,-1e6").unwrap_err();
+    assert!(fault.contains("g12_sigma_pa") && fault.contains("-1000000"), "{fault}");
+}
+
+#[test]
+fn blank_lines_and_comments_are_no_rows() {
+    let columns = columns("p_pa,g12_pa");
+    for line in ["", "   ", "# 5e4,1e8"] {
+        assert!(columns.row(line.as_bytes(), &mut Splitter::new()).is_none(), "{line:?}");
+    }
+    assert!(columns.row(b"\xff,1", &mut Splitter::new()).unwrap().unwrap_err().fault.contains("UTF-8"));
+}
+
+#[test]
+fn pressures_as_a_servo_leaves_them_are_one_group_and_whole_numbers_stay() {
+    for (cell, label) in [
+        ("49998.31", "50000"),
+        ("50012.7", "50000"),
+        ("0.15", "0.15"),
+        ("1017", "1017"),
+        ("s1", "s1"),
+        ("", ""),
+    ] {
+        assert_eq!(group_label(cell), label, "{cell}");
+    }
+}
