@@ -411,6 +411,11 @@ impl fmt::Display for Warning {
                 f,
                 "the data do not determine {quantity}, and its prior is not used; draws from the posterior use it"
             ),
+            Warning::Conflict { chi_square, degrees_of_freedom: 1, .. } => write!(
+                f,
+                "the moduli contradict each other or the model: chi-square {chi_square:.1} for 1 degree of freedom, so that any of \
+                 them may be wrong"
+            ),
             Warning::Conflict { chi_square, degrees_of_freedom, worst: (modulus, sigma) } => write!(
                 f,
                 "the moduli contradict each other or the model: chi-square {chi_square:.1} for {degrees_of_freedom} \
