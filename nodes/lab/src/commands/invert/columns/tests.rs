@@ -1,5 +1,4 @@
 use super::*;
-use grainlab_emt::Modulus;
 
 fn columns(header: &str) -> Columns {
     Columns::of_header(header.as_bytes(), &[], Defaults::default()).unwrap()
