@@ -174,15 +174,17 @@ fn probabilities_are_of_models_with_the_same_moduli_and_follow_the_prior_odds() 
 }
 
 #[test]
-fn moduli_unlike_any_packing_are_improbable_when_explained() {
+fn moduli_unlike_any_packing_are_contradictory_when_explained() {
     let moduli = ["--c11=226.698e6", "--c33=264.817e6"];
     let ordinary = json(&[&moduli[..], &["--model=relaxed", "--explain"]].concat());
     let ordinary = &ordinary["predictive"][0];
     assert_eq!((&ordinary["model"], &ordinary["unlikely"]), (&"relaxed".into(), &false.into()), "{ordinary}");
     assert_eq!(ordinary["moduli"].as_array().unwrap().len(), 5);
     let odd = [&STATE[..], &["--c11=280e6", "--c33=264.817e6", "--model=relaxed", "--explain"]].concat();
-    let odd = text(&grainlab(&odd, b"").stdout);
-    assert!(odd.contains("p left out") && odd.contains("warning: relaxed: moduli as far"), "{odd}");
+    let output = grainlab(&odd, b"");
+    assert_eq!(output.status.code(), Some(4), "{}", text(&output.stderr));
+    let odd = text(&output.stdout);
+    assert!(odd.contains("p left out") && odd.contains("contradictory"), "{odd}");
 }
 
 #[test]

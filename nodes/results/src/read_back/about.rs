@@ -81,7 +81,7 @@ impl About {
         let mut own: Vec<&Stiffness> =
             self.moduli.iter().filter(|m| self.is_of_packing(&m.identity)).collect();
         own.sort_by_key(|m| m.by != self.fabric_by);
-        own.into_iter().find_map(|m| m.tensor.clone())
+        own.into_iter().find_map(|m| m.tensor)
     }
 
     /// Notes on several results of one kind.
