@@ -202,7 +202,7 @@ mod tests {
     fn packings_of_two_runs_are_told_apart_and_those_of_one_are_not() {
         let last = |packings: &[Packing]| {
             let mut run = OneRun::default();
-            packings.iter().map(|p| run.packing("/packing", p)).collect::<Result<(), RunSign>>()
+            packings.iter().try_for_each(|p| run.packing("/packing", p))
         };
         let again = Packing { friction: 0.5, ..packing(7, 1e-3, 2) };
         assert_eq!(

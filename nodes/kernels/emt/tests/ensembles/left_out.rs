@@ -218,7 +218,8 @@ fn a_calibration_refuses_what_is_no_packing_and_numbers_in_other_units() {
     let packings = Packings::read();
     let sound = packings.others[0].clone();
     assert_eq!(sound.check(), Ok(()));
-    let faults: [(&str, fn(&mut CalibrationSample)); 8] = [
+    type Fault = (&'static str, fn(&mut CalibrationSample));
+    const FAULTS: [Fault; 8] = [
         ("eps", |s| s.eps = 7.0),
         ("grains = 0", |s| s.grains = 0),
         ("phi", |s| s.solid_fraction = 64.0),
@@ -235,7 +236,7 @@ fn a_calibration_refuses_what_is_no_packing_and_numbers_in_other_units() {
             }
         }),
     ];
-    for (expected, fault) in faults {
+    for (expected, fault) in FAULTS {
         let mut bad = sound.clone();
         fault(&mut bad);
         let error = bad.check().unwrap_err().to_string();
