@@ -222,7 +222,7 @@ fn a_calibration_refuses_what_is_no_packing_and_numbers_in_other_units() {
     const FAULTS: [Fault; 8] = [
         ("eps", |s| s.eps = 7.0),
         ("grains = 0", |s| s.grains = 0),
-        ("phi", |s| s.solid_fraction = 64.0),
+        ("solid fraction", |s| s.solid_fraction = 64.0),
         ("k = ", |s| s.k = 1.1 * s.z),
         ("size_spread", |s| s.size_spread = 2.0),
         ("Theta is 33.3 % off", |s| {
