@@ -14,5 +14,5 @@ mod settings;
 
 pub use measure::{MeasureError, Measured, measure, messages};
 pub use node::{AcousticProbe, DECLINED_STEP, MEASURING, Probe};
-pub use parameters::parameters;
+pub use parameters::{methods_with, parameters};
 pub use settings::{Settings, SettingsError};

@@ -11,6 +11,22 @@ pub fn parameters() -> Vec<ParameterSpec> {
     all
 }
 
+/// The methods that move the grains, and of these the ones that time a burst.
+const MOVING: &[&str] = &["standing_wave", "first_arrival", "cross_correlation", "peak"];
+const OF_BURSTS: &[&str] = &["first_arrival", "cross_correlation", "peak"];
+
+/// The methods on which a parameter acts; `None`: all of them.
+pub fn methods_with(parameter: &str) -> Option<&'static [&'static str]> {
+    match parameter {
+        "wavelengths" | "tolerance" | "max_iterations" => Some(&["dispersion"]),
+        "frequencies" | "cycles" => Some(OF_BURSTS),
+        "copies" | "amplitude" | "wave_friction" | "sample_rate" | "signal_to_noise" | "jitter" | "shots" => {
+            Some(MOVING)
+        }
+        _ => None,
+    }
+}
+
 /// The set of waves.
 fn rays() -> Vec<ParameterSpec> {
     vec![

@@ -30,6 +30,9 @@ pub enum SettingsError {
         "parameter \"copies\" = {0}: a standing wave needs 5 or more repetitions of the packing, or 0 for 8"
     )]
     Copies(u32),
+    /// A friction between -1 and 0.
+    #[error("parameter \"wave_friction\" = {0}: it is 0 or more, or -1 for that of the packing")]
+    Friction(f64),
 }
 
 impl TryFrom<&Parameters> for Settings {
@@ -70,7 +73,11 @@ fn count(parameters: &Parameters, name: &str) -> u32 {
 fn method(parameters: &Parameters) -> Result<MethodSettings, SettingsError> {
     let copies = Some(count(parameters, "copies")).filter(|n| *n > 0);
     let amplitude = Some(parameters.get("amplitude")).filter(|strain| *strain > 0.0);
-    let friction = Some(parameters.get("wave_friction")).filter(|mu| *mu >= 0.0);
+    let friction: f64 = parameters.get("wave_friction");
+    if friction < 0.0 && friction != -1.0 {
+        return Err(SettingsError::Friction(friction));
+    }
+    let friction = Some(friction).filter(|mu| *mu >= 0.0);
     let pick = match parameters.get::<String>("method").as_str() {
         "dispersion" => {
             let wavelengths: Vec<f64> = parameters.get("wavelengths");

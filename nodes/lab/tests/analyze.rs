@@ -154,3 +154,18 @@ fn warnings_that_a_table_has_no_column_for_are_printed_beside_it() {
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("pair.dump, step 7: contacts were found from positions"), "{said}");
 }
+
+#[test]
+fn flags_that_change_nothing_are_refused_with_what_they_need() {
+    for (flags, word) in [
+        (&["--amplitude", "1e-6"][..], "--method probe"),
+        (&["--method", "probe", "--solver", "direct"], "--scan"),
+        (&["--method", "probe", "--tolerance", "1e-8"], "--scan"),
+        (&["--count", "3"], "--live"),
+        (&["--topic", "nothing"], "recordings"),
+    ] {
+        let out = analyze().arg(reference()).args(flags).output().unwrap();
+        let err = String::from_utf8_lossy(&out.stderr).into_owned();
+        assert!(out.status.code() == Some(2) && err.contains(word), "{flags:?}: {err}");
+    }
+}

@@ -37,5 +37,5 @@ pub use measurements::Measurement;
 pub use printer::{Printed, Printer};
 pub use probe::{ProbeView, ScanView};
 pub use probed::Probed;
-pub use state_warnings::{of_springs, state_warnings};
+pub use state_warnings::{of_springs, state_warnings, yields};
 pub use summary::{Launched, NodeEnd, Summary};

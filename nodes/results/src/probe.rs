@@ -105,6 +105,10 @@ impl ScanView {
         let mut text = t.text();
         text += &match self.linear {
             Some([least, largest]) => format!("linear from {least:e} to {largest:e}\n"),
+            None if self.probes.len() < 2 => {
+                "one amplitude alone does not show whether the response is linear: give two or more\n"
+                    .to_owned()
+            }
             None => "no two neighbouring amplitudes agree: no linear regime seen\n".to_owned(),
         };
         for s in &self.probes {
@@ -113,5 +117,18 @@ impl ScanView {
             }
         }
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_amplitude_alone_is_not_said_to_disagree_with_others() {
+        let probe = |amplitude| ScannedView { amplitude, probe: None, failure: None, off_network: None };
+        let text = |probes: Vec<ScannedView>| ScanView { probes, linear: None }.text();
+        assert!(text(vec![probe(1e-6)]).contains("one amplitude alone"));
+        assert!(text(vec![probe(1e-7), probe(1e-6)]).contains("no two neighbouring amplitudes agree"));
     }
 }

@@ -14,6 +14,10 @@ const RESTLESS: f64 = 0.01;
 /// Relative margin of the lower bound of Θ: for packings whose stress is not exactly isotropic.
 const BELOW: f64 = 1e-3;
 
+/// Smallest eigenvalue of a stiffness, over the largest entry of the affine one, below which it is rounding: packings near
+/// isostaticity have 1e-3 and more.
+const NO_RESISTANCE: f64 = 1e-6;
+
 /// All warnings about `packing` and its measurement; `notes` are those of the reader of the file.
 pub fn state_warnings(
     packing: &Packing,
@@ -25,6 +29,11 @@ pub fn state_warnings(
         position.and_then(within_phase),
         restless(report),
         below_its_bound(report),
+        yields(report).then(|| {
+            "some strain of the cell meets no resistance: the contacts do not span it in every direction; moduli of 0 are those of \
+             no packing at rest"
+                .to_owned()
+        }),
         pulling(packing),
         missing(packing, notes),
     ]
@@ -63,6 +72,14 @@ fn below_its_bound(report: &PackingReport) -> Option<String> {
              not those of a packing at rest",
             theta, bound
         )
+    })
+}
+
+/// Whether a packing with a stiffness resists some strains, and not all.
+pub fn yields(report: &PackingReport) -> bool {
+    report.stiffness().is_some_and(|s| {
+        let least = s.tensor.0.symmetric_eigenvalues().min();
+        least < NO_RESISTANCE * s.bounds.affine.0.amax()
     })
 }
 
@@ -165,6 +182,16 @@ mod tests {
     #[test]
     fn a_packing_at_rest_has_no_warnings() {
         assert_eq!(warnings(|_| ()), "");
+    }
+
+    /// Without friction a simple cubic lattice shears freely; without a bond it is open along one axis.
+    #[test]
+    fn a_packing_that_some_strain_does_not_load_is_reported() {
+        let (smooth, open) = (warnings(|p| p.friction = 0.0), warnings(|p| _ = p.contacts.pop()));
+        for text in [smooth, open] {
+            assert!(text.contains("some strain of the cell meets no resistance"), "{text}");
+        }
+        assert!(!yields(&report(&lattice())));
     }
 
     #[test]

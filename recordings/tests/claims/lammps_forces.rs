@@ -146,7 +146,11 @@ fn normal_forces_alone_are_refused_where_friction_acts_and_the_columns_are_named
     let error = problem(&with);
     assert!(error.contains("p1 p2 p3") && error.contains("compute pf all pair/local"), "{error}");
     let smooth = ImportOptions { friction: Some(0.0), ..with };
-    assert!(packing(&smooth).is_ok());
+    let notes = load(&golden("grains.dump.gz"), &smooth).unwrap().packings.remove(0).notes;
+    assert!(
+        notes.len() == 1 && notes[0].contains("more tangential force than a friction of 0 allows"),
+        "{notes:?}"
+    );
 }
 
 #[test]

@@ -9,7 +9,7 @@ pub enum DemError {
     /// A grain moved too far in one step, or its state is not finite.
     #[error(
         "unstable at step {step}: grain {grain} moves at {speed:e} m/s, more than a tenth of its radius in one step of \
-         {time_step:e} s{cause}; lower numerics.time_step_safety or the strain rates"
+         {time_step:e} s{cause}; lower the time step (in a scene: numerics.time_step_safety) or the strain rates"
     )]
     Unstable {
         /// Solver step.

@@ -44,7 +44,7 @@ pub enum MicroError {
     /// The linear solve did not reach its tolerance.
     #[error(
         "stiffness solve reached a relative residual of {residual:e} after {iterations} iterations, {tolerance:e} was \
-         asked for; raise max_iterations or tolerance (a network near isostaticity converges slowly)"
+         asked for (a network near isostaticity converges slowly); raise the tolerance, or use the direct solver"
     )]
     NotConverged {
         /// The worst relative residual of the columns.
@@ -56,8 +56,9 @@ pub enum MicroError {
     },
     /// Prestress gives the network a direction of negative stiffness.
     #[error(
-        "the prestressed network has a direction of negative stiffness: the packing is not at rest in a stable state \
-         (relative residual {residual:e}); relax it further, or leave the prestress term out"
+        "the prestressed network has a direction of negative stiffness (relative residual {residual:e}): the packing is not at \
+         rest, or friction holds it, which this network of normal forces leaves out; relax it without friction, or leave the \
+         prestress term out"
     )]
     Unstable {
         /// The worst relative residual of the columns.
@@ -110,7 +111,7 @@ pub enum ProbeError {
     /// The packing did not come to rest before the strain.
     #[error(
         "the packing is not at rest: an unbalanced force ratio of {unbalanced:e} after {steps} steps, {target:e} is needed \
-         for this amplitude; relax the packing further, raise max_steps, or raise the amplitude"
+         for this amplitude; relax the packing further, or raise the amplitude"
     )]
     NoRest {
         /// Mean net force of non-rattlers over mean contact force.
@@ -123,8 +124,7 @@ pub enum ProbeError {
     /// The stress under strain did not settle.
     #[error(
         "column {component} did not settle in {steps} steps: residual force {residual:e}, drift of the stress {drift:e}, \
-         tolerance {tolerance:e}; raise max_steps or tolerance (a network near isostaticity converges slowly), or \
-         lower the amplitude if contacts open"
+         tolerance {tolerance:e} (a network near isostaticity converges slowly); lower the amplitude if contacts open"
     )]
     NotConverged {
         /// Voigt component of the strain.
@@ -141,4 +141,24 @@ pub enum ProbeError {
     /// The engine failed.
     #[error(transparent)]
     Engine(#[from] grainlab_dem::DemError),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unstable_network_without_friction_may_be_one_that_friction_holds() {
+        let text = MicroError::Unstable { residual: 1e-3 }.to_string();
+        assert!(text.contains("friction holds it") && text.contains("not at rest"), "{text}");
+    }
+
+    #[test]
+    fn advice_is_about_what_a_command_has() {
+        let rest = ProbeError::NoRest { unbalanced: 1e-3, target: 1e-6, steps: 9 };
+        let solve = MicroError::NotConverged { residual: 1e-3, tolerance: 1e-9, iterations: 9 };
+        for text in [rest.to_string(), solve.to_string()] {
+            assert!(!text.contains("max_"), "{text}");
+        }
+    }
 }

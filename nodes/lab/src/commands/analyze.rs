@@ -70,24 +70,24 @@ pub(crate) struct Args {
     /// frame of the cell
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 1, default_value = "0,0,1")]
     axis: Vec<f64>,
-    /// Relative residual at which the stiffness solve stops
-    #[arg(long, value_name = "REL", default_value_t = grainlab_micromechanics::Settings::default().tolerance)]
-    tolerance: f64,
+    /// Relative residual at which the stiffness solve stops [default: 1e-9]
+    #[arg(long, value_name = "REL")]
+    tolerance: Option<f64>,
     /// Method of the stiffness
     #[arg(long, value_enum, default_value_t)]
     method: Method,
-    /// Solver of the equations of the network
-    #[arg(long, value_enum, default_value_t)]
-    solver: Solver,
+    /// Solver of the equations of the network [default: iterative]
+    #[arg(long, value_enum)]
+    solver: Option<Solver>,
     /// Springs of the contacts
     #[arg(long, value_enum, default_value_t)]
     springs: ContactSprings,
     /// The same as --springs normal: the response of grains without friction
     #[arg(long, conflicts_with = "springs")]
     smooth: bool,
-    /// Strain of the probe, forward and backward; far below overlap/diameter
-    #[arg(long, value_name = "STRAIN", default_value_t = StrainProbe::default().amplitude)]
-    amplitude: f64,
+    /// Strain of --method probe, forward and backward; far below overlap/diameter [default: 1e-7]
+    #[arg(long, value_name = "STRAIN")]
+    amplitude: Option<f64>,
     /// Also probe with each of these strains, and find the range with a linear response
     #[arg(long, value_name = "STRAIN", value_delimiter = ',')]
     scan: Vec<f64>,
@@ -136,6 +136,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         print(yade::EXPORTER)?;
         return Ok(Exit::Done);
     }
+    args.without_effect()?;
     let options = args.import.options()?;
     let measure = Analysis { settings: settings(args)?, scan: scan(args)? };
     let printer = Printer::new(args.format, args.columns.clone())?;
@@ -153,14 +154,37 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
 }
 
+impl Args {
+    /// Refuses flags that would change nothing.
+    fn without_effect(&self) -> Result<(), Failure> {
+        let probed = self.method == Method::Probe;
+        // The network beside a probe gives bounds alone, and with --scan a comparison.
+        let solved = !probed || !self.scan.is_empty();
+        for (flag, given, needs) in [
+            ("--amplitude", self.amplitude.is_some() && !probed, "--method probe"),
+            ("--tolerance", self.tolerance.is_some() && !solved, "another --method, or --scan"),
+            ("--solver", self.solver.is_some() && !solved, "another --method, or --scan"),
+            // With an exclusion, the parser of the command line does not enforce a required flag.
+            ("--count", self.count.is_some() && !self.live, "--live"),
+        ] {
+            if given {
+                return Err(Failure::usage(format!("{flag} has no effect without {needs}")));
+            }
+        }
+        if self.live { Ok(()) } else { self.import.topic_has_use(&self.files) }
+    }
+}
+
 fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     let axis = <[f64; 3]>::try_from(args.axis.as_slice()).ok().map(Vec3::from);
     let axis = axis.filter(|v| v.norm() > 0.0 && v.norm().is_finite());
     let axis = axis.ok_or_else(|| Failure::usage("--axis takes three numbers that are not all zero"))?;
-    if !(1e-13..=1e-2).contains(&args.tolerance) {
-        return Err(Failure::usage(format!("--tolerance {} is out of range: 1e-13 to 1e-2", args.tolerance)));
+    let settings = grainlab_micromechanics::Settings::default();
+    let tolerance = args.tolerance.unwrap_or(settings.tolerance);
+    if !(1e-13..=1e-2).contains(&tolerance) {
+        return Err(Failure::usage(format!("--tolerance {tolerance} is out of range: 1e-13 to 1e-2")));
     }
-    let amplitude = args.amplitude;
+    let amplitude = args.amplitude.unwrap_or(StrainProbe::default().amplitude);
     in_range("amplitude", Some(amplitude), "a strain, more than 0 and at most 0.01", |a| {
         a > 0.0 && a <= 0.01
     })?;
@@ -178,19 +202,11 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     };
     let probe =
         (args.method == Method::Probe).then(|| StrainProbe { amplitude, ..measure::explicit(springs) });
-    let solver = match args.solver {
+    let solver = match args.solver.unwrap_or_default() {
         Solver::Iterative => network::Solver::Iterative,
         Solver::Direct => network::Solver::Direct,
     };
-    let settings = grainlab_micromechanics::Settings::default();
-    Ok(grainlab_micromechanics::Settings {
-        axis,
-        tolerance: args.tolerance,
-        solver,
-        springs,
-        probe,
-        ..settings
-    })
+    Ok(grainlab_micromechanics::Settings { axis, tolerance, solver, springs, probe, ..settings })
 }
 
 fn scan(args: &Args) -> Result<Vec<f64>, Failure> {

@@ -145,6 +145,9 @@ pub(crate) struct Args {
     /// the other models]
     #[arg(long, value_name = "SPREAD", conflicts_with = "table")]
     size_spread: Option<f64>,
+    /// Number of grains of the sample, which its scatter depends on [default: unknown, taken as 2000]
+    #[arg(long, value_name = "N", conflicts_with = "table", value_parser = clap::value_parser!(u32).range(1..))]
+    grains: Option<u32>,
     /// Relative one-sigma error of each modulus without its own error: 0.01 is one percent [default: unknown]
     #[arg(long, value_name = "REL")]
     error: Option<f64>,
@@ -353,6 +356,7 @@ impl Args {
         state.stress_ratio =
             self.stress_ratio.map(|value| Measured { value, stddev: self.stress_ratio_sigma });
         state.size_spread = self.size_spread;
+        state.grains = self.grains.map(f64::from);
         if let (Some(path), Some(value)) = (&self.speeds, self.density) {
             speeds::add(&mut state, path, Measured { value, stddev: self.density_sigma })?;
         }

@@ -64,6 +64,7 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    args.import.topic_has_use(&args.files)?;
     let options = args.import.options()?;
     let settings = args.flags.settings()?;
     let attenuation = args.attenuation.settings()?;

@@ -228,3 +228,13 @@ fn an_answer_without_one_of_the_unknowns_is_not_ok() {
         "{result}"
     );
 }
+
+#[test]
+fn a_sample_of_few_grains_has_a_wider_answer() {
+    let state = ["--error=0.01", "--stress-ratio=0", "--size-spread=0", "--model=relaxed"];
+    let sigma = |more: &[&str]| {
+        json(&[&S1[..], &state, more].concat())["results"][0]["sigma"]["eps"].as_f64().unwrap()
+    };
+    assert!(sigma(&["--grains=200"]) > 1.5 * sigma(&[]));
+    assert_eq!(sigma(&["--grains=2000"]), sigma(&[]));
+}

@@ -7,13 +7,13 @@ use crate::tape::Tape;
 use grainlab_console::{Failure, print};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
-use grainlab_results::{MeasuredPacking, Printer};
+use grainlab_results::{MeasuredPacking, Printer, yields};
 
 /// Prints and records results.
 pub(super) struct Outlet {
     printer: Printer<MeasuredPacking>,
     tape: Option<Tape>,
-    /// Packings without a stiffness.
+    /// Packings without a stiffness, or with one that some strain does not load: no wave passes them.
     without: usize,
 }
 
@@ -27,7 +27,8 @@ impl packings::Outlet for Outlet {
     type Found = Found;
 
     fn emit(&mut self, found: Found, bar: &Bar) -> Result<Exit, Failure> {
-        self.without += usize::from(found.packing.report.stiffness().is_none());
+        self.without +=
+            usize::from(found.packing.report.stiffness().is_none() || yields(&found.packing.report));
         let text = self.printer.next(&found.packing)?;
         bar.around(|| print(&text))?;
         let Some(tape) = &mut self.tape else { return Ok(Exit::Done) };

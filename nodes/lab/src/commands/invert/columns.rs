@@ -7,7 +7,7 @@ use super::splitter::{Cells, Splitter};
 use super::state::{Defaults, State};
 use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
-use grainlab_emt::{Measured, Moduli, Modulus};
+use grainlab_emt::{Measured, Moduli, Modulus, check_structure};
 
 /// Share of the largest entry of a stiffness up to which two values of one entry are the same, rounded to four digits.
 const SAME: f64 = 1e-3;
@@ -63,12 +63,13 @@ impl Columns {
         };
         let there = || format!("there are: {}", names.join(", "));
         let stiffness = stiffness_columns(&find)?;
+        let entries = entries();
         let mut inputs = Vec::new();
         for input in INPUTS {
             let mut found = Vec::new();
             for alias in input.names() {
-                // With the entries of a stiffness, the aliases of a modulus are these entries.
-                let is_entry = stiffness.is_some() && input.role == Role::Modulus && alias.name != input.key;
+                // A column of a whole stiffness is one of its entries, and no modulus of its projection.
+                let is_entry = stiffness.is_some() && entries.iter().any(|entry| entry == alias.name);
                 if let Some(column) = find(alias.name)?.filter(|_| !is_entry) {
                     found.push((input, column, alias.factor));
                 }
@@ -163,13 +164,13 @@ impl Columns {
                 }
                 continue;
             };
-            if input.role == Role::Truth && !value.is_finite() {
-                return Err(format!("column {}: {value} is not finite", self.names[*column]));
-            }
             if input.role == Role::Stddev && !(value >= 0.0 && value.is_finite()) {
                 return Err(format!("column {}: {value} is not a standard deviation", self.names[*column]));
             }
             (input.set)(&mut state, value * factor);
+            if input.role == Role::Truth {
+                check_structure(&state.truth).map_err(|e| format!("column {}: {e}", self.names[*column]))?;
+            }
         }
         if let Some(text) = self.contact_law.map(|column| cells.get(column)).filter(|text| !text.is_empty()) {
             state.contact_law = Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
@@ -193,6 +194,7 @@ impl Columns {
                 return Err(format!("column {name} is a standard deviation of a quantity that is not there"));
             }
         }
+        state.notes.extend(state.taken_as_exact());
         Ok(state)
     }
 
@@ -277,10 +279,15 @@ impl Columns {
     }
 }
 
+/// The names of the entries of a stiffness, row by row.
+fn entries() -> Vec<String> {
+    (0..36).map(|n| format!("c{}{}_pa", n / 6 + 1, n % 6 + 1)).collect()
+}
+
 /// Refuses a column that is not read, is not to group by, and is named almost like one that is read, or is one of a part of
 /// the entries of a stiffness.
 fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), String> {
-    let entries: Vec<String> = (0..36).map(|n| format!("c{}{}_pa", n / 6 + 1, n % 6 + 1)).collect();
+    let entries = entries();
     let mut read: Vec<&str> = INPUTS.iter().flat_map(|i| i.names()).map(|alias| alias.name).collect();
     read.extend(["contact_law", "smooth", "reference_axis_x", "reference_axis_y", "reference_axis_z"]);
     let printed: Vec<String> = QUANTITIES.iter().flat_map(|q| q.columns()).collect();

@@ -190,6 +190,20 @@ impl State {
             && others.all(|m| self.moduli.get(m).is_some())
     }
 
+    /// A note on the moduli that have no error where others have one.
+    pub(super) fn taken_as_exact(&self) -> Option<String> {
+        if self.relative_error.is_some() || self.sigma.iter().all(Option::is_none) {
+            return None;
+        }
+        let follows = self.theta_follows();
+        let is_exact = |m: &Modulus| self.sigma[*m as usize].is_none() && !(follows && *m == Modulus::Theta);
+        let exact: Vec<&str> =
+            self.moduli.known().map(|(m, _)| m).filter(is_exact).map(Modulus::name).collect();
+        (!exact.is_empty()).then(|| {
+            format!("no error of {} is given beside those of the others: taken as exact", exact.join(", "))
+        })
+    }
+
     /// Independent errors; moduli without one are exact if others have one. `None` if no error is known.
     fn covariance(&self, moduli: &Moduli) -> Option<ModuliCovariance> {
         if self.full_covariance.is_some() {

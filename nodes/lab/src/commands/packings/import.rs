@@ -61,6 +61,15 @@ pub(crate) struct Args {
 }
 
 impl Args {
+    /// Refuses a topic where no file is a recording, which has topics.
+    pub(crate) fn topic_has_use(&self, files: &[PathBuf]) -> Result<(), Failure> {
+        let is_recording = |file: &PathBuf| file.is_dir() || file.to_string_lossy().contains(".mcap");
+        if self.topic == topics::PACKING.name || files.is_empty() || files.iter().any(is_recording) {
+            return Ok(());
+        }
+        Err(Failure::usage(format!("--topic {} is for recordings, and no file is one", self.topic)))
+    }
+
     /// The same, checked.
     pub(crate) fn options(&self) -> Result<ImportOptions, Failure> {
         let positive = |v: f64| v > 0.0 && v.is_finite();

@@ -1,7 +1,7 @@
 //! The parameters of the node acoustic_probe as flags: with the same names, ranges and descriptions.
 
 use clap::{Arg, ArgMatches, Command, FromArgMatches};
-use grainlab_acoustic_probe::{Settings, parameters};
+use grainlab_acoustic_probe::{Settings, methods_with, parameters};
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
 use grainlab_node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range, RosArgs};
@@ -26,7 +26,32 @@ impl Flags {
         let parameters = Parameters::resolve(&specs, NODE.name(), &names, &ros);
         // The message refers to a flag, not to -p.
         let named = |e: &dyn std::fmt::Display| Failure::usage(e.to_string().replacen("-p: ", "", 1));
-        Settings::try_from(&parameters.map_err(|e| named(&e))?).map_err(|e| named(&e))
+        let parameters = parameters.map_err(|e| named(&e))?;
+        self.without_effect(&specs, &parameters)?;
+        Settings::try_from(&parameters).map_err(|e| named(&e))
+    }
+
+    /// Refuses a flag that the method does not use, unless its value is the default.
+    fn without_effect(&self, specs: &[ParameterSpec], parameters: &Parameters) -> Result<(), Failure> {
+        let method: String = parameters.get("method");
+        for (name, text) in &self.0 {
+            let default = specs.iter().find(|s| s.name == *name).map(|s| &s.default);
+            let is_default = match default {
+                Some(ParameterValue::Double(v)) => parameters.get::<f64>(name) == *v,
+                Some(ParameterValue::Integer(v)) => parameters.get::<i64>(name) == *v,
+                Some(ParameterValue::DoubleArray(v)) => parameters.get::<Vec<f64>>(name) == *v,
+                _ => false,
+            };
+            let others = methods_with(name).filter(|methods| !methods.contains(&method.as_str()));
+            if let Some(methods) = others.filter(|_| !is_default) {
+                return Err(Failure::usage(format!(
+                    "--{} {text} has no effect with --method {method}: it is for {}",
+                    name.replace('_', "-"),
+                    methods.join(", ")
+                )));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -118,6 +143,31 @@ mod tests {
         let MethodSettings::Dispersion(d) = s.method else { panic!("the default") };
         assert_eq!((d.wavelengths, s.axis), (vec![30.0, 40.0, 60.0], Some(grainlab_core::Vec3::z())));
         assert_eq!(s.instrument.seed, 7);
+    }
+
+    #[test]
+    fn a_flag_that_the_method_does_not_use_is_refused() {
+        for (words, flag, methods) in [
+            (&["--signal-to-noise", "0"][..], "--signal-to-noise", "standing_wave, first_arrival"),
+            (&["--jitter", "0.1"], "--jitter", "peak"),
+            (&["--shots", "5"], "--shots", "standing_wave"),
+            (&["--method", "standing_wave", "--cycles", "3"], "--cycles", "first_arrival"),
+            (&["--method", "peak", "--wavelengths", "30,40,60"], "--wavelengths", "dispersion"),
+        ] {
+            let error = settings(words).unwrap_err();
+            assert!(
+                error.contains(flag) && error.contains("no effect") && error.contains(methods),
+                "{error}"
+            );
+        }
+        assert!(settings(&["--method", "peak", "--shots", "5", "--jitter", "1e-9"]).is_ok());
+    }
+
+    #[test]
+    fn a_negative_friction_that_is_not_that_of_the_packing_is_refused() {
+        let with = |mu| settings(&["--method", "peak", "--wave-friction", mu]);
+        assert!(with("-0.5").unwrap_err().contains("wave_friction"));
+        assert!(with("-1").is_ok() && with("0").is_ok());
     }
 
     #[test]

@@ -1,3 +1,5 @@
+//! What rows and headers give.
+
 use super::*;
 
 fn columns(header: &str) -> Columns {
@@ -88,6 +90,28 @@ fn a_stiffness_that_contradicts_a_modulus_or_itself_is_refused_or_noted() {
     assert!(row(&entries, "").unwrap_err().contains("not positive definite"));
 }
 
+/// C11 of the projection is not the entry c11 of a stiffness that is not isotropic about the axis.
+#[test]
+fn a_stiffness_beside_all_moduli_of_its_projection_is_read_as_an_analysis_prints_it() {
+    let mut entries = [0.0; 36];
+    for (n, value) in [(0, 3.0e8), (7, 3.4e8), (14, 2.8e8), (21, 0.9e8), (28, 1.1e8), (35, 0.95e8)] {
+        entries[n] = value;
+    }
+    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+        (entries[6 * i + j], entries[6 * j + i]) = (1e8, 1e8);
+    }
+    let cells = entries.map(|e| e.to_string()).join(",");
+    let matrix = matrix_names().join(",");
+    let alone = state(&format!("p_pa,{matrix}"), &format!("5e4,{cells}")).unwrap();
+    let names = "g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa";
+    let moduli = alone.moduli.values().map(|m| m.unwrap().to_string());
+    let row = |moduli: &str| state(&format!("p_pa,{names},{matrix}"), &format!("5e4,{moduli},{cells}"));
+    assert_eq!(row(&moduli.join(",")).unwrap().moduli, alone.moduli);
+    let mut wrong = moduli;
+    wrong[3] = "3e8".to_owned();
+    assert!(row(&wrong.join(",")).unwrap_err().contains("C11 = 3e8 Pa is not that of the stiffness"));
+}
+
 #[test]
 fn grains_are_counted_and_the_truth_is_a_number() {
     for grains in ["0", "-3", "2.5", "nan", "inf"] {
@@ -95,7 +119,19 @@ fn grains_are_counted_and_the_truth_is_a_number() {
             state("p_pa,g12_pa,grains", &format!("5e4,1,{grains}")).unwrap_err().contains("number of grains")
         );
     }
-    assert!(state("p_pa,g12_pa,k", "5e4,1,nan").unwrap_err().contains("column k"));
+    for (column, value) in [("k", "nan"), ("z", "-1"), ("z", "40"), ("eps", "7"), ("eps_stiffness", "inf")] {
+        let fault = state(&format!("p_pa,g12_pa,{column}"), &format!("5e4,1,{value}")).unwrap_err();
+        assert!(fault.contains(&format!("column {column}:")), "{fault}");
+    }
+}
+
+#[test]
+fn moduli_without_an_error_beside_ones_that_have_one_are_said_to_be_exact() {
+    let notes = |header: &str, row: &str| state(header, row).unwrap().notes;
+    let some = notes("p_pa,g12_pa,g13_pa,theta_pa,g12_sigma_pa", "5e4,1e8,1e8,1.3e8,1e6");
+    assert!(some.len() == 1 && some[0].contains("G13, Theta"), "{some:?}");
+    assert!(notes("p_pa,g12_pa,g12_sigma_pa", "5e4,1e8,1e6").is_empty());
+    assert!(notes("p_pa,g12_pa,g13_pa", "5e4,1e8,1e8").is_empty());
 }
 
 #[test]
