@@ -1,7 +1,6 @@
 //! A packing as it is drawn.
 
-use grainlab_core::{Packing, Vec3};
-use grainlab_micromechanics::non_rattlers;
+use grainlab_core::{Packing, Vec3, non_rattlers};
 
 /// A packing as it is drawn: grains within the cell, each with its contacts.
 #[derive(Clone, Debug)]

@@ -253,7 +253,7 @@ impl PyPacking {
     /// Whether each grain carries no force.
     #[getter]
     fn rattlers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        let carries = grainlab_micromechanics::non_rattlers(&self.packing);
+        let carries = grainlab_core::non_rattlers(&self.packing);
         let rattlers: Vec<bool> = carries.iter().map(|carries| !carries).collect();
         rattlers.to_pyarray(py)
     }

@@ -12,9 +12,9 @@ use crate::effective_density::EffectiveDensity;
 use crate::error::AcousticsError;
 use cluster::{Cluster, clusters};
 use grainlab_core::results::NotJammed;
-use grainlab_core::{Mat3, Packing, Vec3};
+use grainlab_core::{Mat3, Packing, Vec3, min_contacts, non_rattlers};
 use grainlab_micromechanics::network::{SpringNetwork, Springs};
-use grainlab_micromechanics::{MicroError, PackingView, min_contacts, non_rattlers};
+use grainlab_micromechanics::{MicroError, PackingView};
 
 /// The grains that carry force, with masses and contacts.
 #[derive(Clone, Debug)]

@@ -3,10 +3,10 @@
 use crate::error::AcousticsError;
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::results::NotJammed;
-use grainlab_core::{Mat3, Packing, Vec3};
+use grainlab_core::{Mat3, Packing, Vec3, min_contacts, non_rattlers};
 use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
 use grainlab_micromechanics::probe::Relaxation;
-use grainlab_micromechanics::{min_contacts, non_rattlers, unbalanced_force_ratio};
+use grainlab_micromechanics::unbalanced_force_ratio;
 
 /// Time step over the stability bound; contacts stiffen very little.
 const SAFETY: f64 = 0.8;

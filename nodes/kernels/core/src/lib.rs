@@ -10,6 +10,7 @@
 //! - [`contact`]: the contact laws; [`lanes`]: the arithmetic they are written in
 //! - `packing`: grains, cell and contact network at one instant
 //!   ([`Packing::consistent`] holds its contacts against its positions)
+//! - [`non_rattlers`], [`min_contacts`]: grains that carry force
 //! - [`stress`]: the one definition of stress
 //! - `stiffness`: the 6×6 elastic stiffness and its transversely isotropic projection
 //! - `symmetry`: which symmetry a stiffness has, and about which axes
@@ -26,6 +27,7 @@ pub mod lanes;
 mod material;
 mod packing;
 pub mod quantity;
+mod rattlers;
 pub mod results;
 mod stiffness;
 pub mod stress;
@@ -37,6 +39,7 @@ pub use cell::Cell;
 pub use control::{ComponentControl, ServoLaw};
 pub use material::{Material, effective_radius};
 pub use packing::{Contact, Packing, PackingError};
+pub use rattlers::{min_contacts, non_rattlers};
 pub use stiffness::{Stiffness, TransverseIsotropy};
 pub use symmetry::{Symmetry, SymmetryClass, symmetry};
 pub use tensor::{Mat3, SymTensor, Vec3};

@@ -4,7 +4,6 @@ use crate::equilibrium::unbalanced_force_ratio;
 use crate::error::MicroError;
 use crate::network::{Solver, SpringNetwork, Springs, bulk_reuss_bound, relaxed_stiffness};
 use crate::probe::{StrainProbe, StrainProbeResult, strain_probe};
-use crate::rattlers::min_contacts;
 use crate::sampling_tolerance::sampling_tolerance;
 use crate::structure::{contact_statistics, fabric, strain_ratio, stress_decomposition, total_strain_ratio};
 use crate::view::PackingView;
@@ -12,7 +11,7 @@ use grainlab_core::results::{
     ContactStatistics, ElasticStiffness, Elasticity, Fabric, NotJammed, PackingReport, StiffnessBounds,
     StiffnessMethod, StrainRatios, StressDecomposition,
 };
-use grainlab_core::{Packing, Vec3, symmetry};
+use grainlab_core::{Packing, Vec3, min_contacts, symmetry};
 
 /// Settings of the measurement of a packing.
 #[derive(Clone, Copy, Debug, PartialEq)]

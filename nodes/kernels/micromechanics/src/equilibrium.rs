@@ -6,7 +6,7 @@ use grainlab_core::{Packing, Vec3};
 /// Contact forces are those stored in the packing. `None` without non-rattlers or if no contact carries
 /// force.
 ///
-/// `non_rattlers` is one entry per grain, from [`crate::non_rattlers`].
+/// `non_rattlers` is one entry per grain, from [`grainlab_core::non_rattlers`].
 pub fn unbalanced_force_ratio(packing: &Packing, non_rattlers: &[bool]) -> Option<f64> {
     let mut net = vec![Vec3::zeros(); packing.grains()];
     let mut contact_force = 0.0;

@@ -6,8 +6,7 @@
 //! - [`structure`]: contacts, fabric, stress, strain ratios
 //! - [`network`]: the frozen contact network and its stiffness
 //! - [`probe`]: the same stiffness by straining the packing with the whole contact law
-//! - [`non_rattlers`], [`min_contacts`]: grains that carry force; [`unbalanced_force_ratio`]: distance from
-//!   equilibrium
+//! - [`unbalanced_force_ratio`]: distance from equilibrium
 //! - [`sampling_tolerance()`]: scatter of the stiffness of one packing
 //! - [`MicroError`], [`ProbeError`]: errors
 
@@ -16,7 +15,6 @@ mod equilibrium;
 mod error;
 pub mod network;
 pub mod probe;
-mod rattlers;
 mod sampling_tolerance;
 pub mod structure;
 mod view;
@@ -24,6 +22,5 @@ mod view;
 pub use analyze::{Analysis, ReportParts, Settings, analyze, report};
 pub use equilibrium::unbalanced_force_ratio;
 pub use error::{MicroError, ProbeError};
-pub use rattlers::{min_contacts, non_rattlers};
 pub use sampling_tolerance::sampling_tolerance;
 pub use view::PackingView;

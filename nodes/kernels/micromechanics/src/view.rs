@@ -1,8 +1,7 @@
 //! Data common to all measurements on a packing, computed once.
 
-use crate::rattlers::non_rattlers;
 use grainlab_core::stress::{Stress, stress};
-use grainlab_core::{Packing, PackingError, Vec3};
+use grainlab_core::{Packing, PackingError, Vec3, non_rattlers};
 
 /// A packing with the data common to all measurements.
 #[derive(Clone, Debug)]

@@ -21,7 +21,7 @@ fn in_the_engine(
 ) -> (Vec<f64>, f64) {
     let repeated = supercell(packing, [0, 0, 1], copies).unwrap();
     let q = repeated.wavenumber(waves);
-    let carries = grainlab_micromechanics::non_rattlers(&repeated.packing);
+    let carries = grainlab_core::non_rattlers(&repeated.packing);
     let shape: Vec<f64> =
         repeated.along.iter().zip(&carries).map(|(x, c)| if *c { (q * x).cos() } else { 0.0 }).collect();
     let square: f64 = shape.iter().map(|s| s * s).sum();

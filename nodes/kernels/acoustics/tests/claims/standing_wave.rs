@@ -33,7 +33,7 @@ fn compared(packing: &Packing, curves: &[DispersionCurve]) -> Vec<[f64; 2]> {
     let settings = grainlab_micromechanics::Settings::default();
     let stiffness =
         grainlab_micromechanics::analyze(packing, &settings).unwrap().report.stiffness().unwrap().tensor;
-    let carried = packing.radii.iter().zip(grainlab_micromechanics::non_rattlers(packing));
+    let carried = packing.radii.iter().zip(grainlab_core::non_rattlers(packing));
     let mass: f64 = carried.filter(|(_, p)| *p).map(|(r, _)| packing.material.sphere_mass(*r)).sum();
     let density = mass / packing.cell.volume();
     let one = |c: &DispersionCurve| {

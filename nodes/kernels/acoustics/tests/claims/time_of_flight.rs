@@ -273,7 +273,7 @@ fn square_speed(packing: &Packing, ray: &Ray) -> f64 {
     let analysis =
         grainlab_micromechanics::analyze(packing, &grainlab_micromechanics::Settings::default()).unwrap();
     let stiffness = analysis.report.stiffness().unwrap().tensor;
-    let present = grainlab_micromechanics::non_rattlers(packing);
+    let present = grainlab_core::non_rattlers(packing);
     let masses = packing.radii.iter().zip(&present).filter(|(_, p)| **p);
     let mass: f64 = masses.map(|(r, _)| packing.material.sphere_mass(*r)).sum();
     let polarization = ray.polarizations[0];

@@ -1,9 +1,8 @@
 //! A packing near isostaticity.
 
 use crate::support::*;
-use grainlab_core::ServoLaw;
+use grainlab_core::{ServoLaw, non_rattlers};
 use grainlab_dem::{Engine, TimeStep};
-use grainlab_micromechanics::non_rattlers;
 
 /// Expected: under p → 0 a frictionless packing keeps just the contacts that balance needs, 3 (N − 1) forces and 6
 /// stresses, and the servo still settles it.

@@ -15,9 +15,8 @@ use super::column::{ProbeColumn, RestState, STEPS_PER_EVALUATION, strained};
 use super::relaxation::Relaxation;
 use super::settings::StrainProbe;
 use crate::error::ProbeError;
-use crate::rattlers::{min_contacts, non_rattlers};
 use grainlab_core::results::NotJammed;
-use grainlab_core::{Packing, Stiffness, Vec3};
+use grainlab_core::{Packing, Stiffness, Vec3, min_contacts, non_rattlers};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 /// Before it is strained, the packing is relaxed to this fraction of the unbalanced force that ends a

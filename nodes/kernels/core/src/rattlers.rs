@@ -1,6 +1,6 @@
 //! Grains that carry no force.
 
-use grainlab_core::Packing;
+use crate::packing::Packing;
 
 /// Number of contacts that a grain needs to carry force: 2 with friction, 4 without.
 pub fn min_contacts(friction: f64) -> u32 {
