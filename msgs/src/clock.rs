@@ -1,4 +1,4 @@
-//! Simulated time as a ROS stamp.
+//! Simulated time and wall-clock time as ROS stamps.
 
 use crate::builtin_interfaces::Time;
 
@@ -30,6 +30,12 @@ pub fn stamp(simulated_seconds: f64) -> Time {
 /// The simulated time of a stamp, s: the inverse of [`stamp`] to 1 ns.
 pub fn simulated_seconds(stamp: &Time) -> f64 {
     (i64::from(stamp.sec) - i64::from(EPOCH_SECONDS)) as f64 + f64::from(stamp.nanosec) / NANOS
+}
+
+/// Wall-clock time, ns since 1970, as a ROS stamp.
+pub fn wall_stamp(wall_nanos: u64) -> Time {
+    let sec = i32::try_from(wall_nanos / 1_000_000_000).unwrap_or(i32::MAX);
+    Time { sec, nanosec: (wall_nanos % 1_000_000_000) as u32 }
 }
 
 #[cfg(test)]

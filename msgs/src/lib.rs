@@ -8,27 +8,36 @@
 //! - `description`: the type description of a type, as `~/get_type_description` returns it
 //! - `cdr`: serialization
 //! - [`topics`]: the table of topics, types and QoS
-//! - `clock`: simulated time as a ROS stamp
+//! - `clock`: times as ROS stamps; `guid`: identities of readers and writers
+//! - `report`: the report of a process on `/diagnostics`, with its `health` and its `exit` code
 //! - [`boundary`]: conversion to and from the types of the kernels; everything received is checked here, once
 
 pub mod boundary;
 mod cdr;
 mod clock;
 mod description;
+mod exit;
 mod fixed_array;
 mod generated;
+mod guid;
+mod health;
 mod message;
+mod report;
 mod topic;
 pub mod topics;
 mod types;
 
 pub use cdr::{DecodeError, from_cdr, to_cdr};
-pub use clock::{EPOCH_SECONDS, simulated_seconds, stamp};
+pub use clock::{EPOCH_SECONDS, simulated_seconds, stamp, wall_stamp};
 pub use description::{FieldDescription, FieldTypeDescription, MessageDescription, TypeDescription};
+pub use exit::Exit;
 pub use generated::grainlab_msgs as msg;
 pub use generated::{
     builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs, sensor_msgs, std_msgs,
     tf2_msgs, visualization_msgs,
 };
+pub use guid::{Guid, GuidError};
+pub use health::{Health, Level};
 pub use message::{FieldInfo, Message, TypeInfo};
+pub use report::{Published, Received, Report};
 pub use topic::{Qos, Topic};

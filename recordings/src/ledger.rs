@@ -4,14 +4,13 @@
 //! is a lost message, wherever it was lost. Messages that a writer sent after the last number received are
 //! known from its report at its end ([`Ledger::report`]).
 
+use grainlab_msgs::Guid;
 use std::collections::{BTreeMap, BTreeSet};
 
-mod guid;
 mod merge;
 mod sequence;
 mod tally;
 
-pub use guid::{Guid, GuidError};
 pub use merge::merge;
 use sequence::Sequence;
 use tally::LISTED_GAPS;

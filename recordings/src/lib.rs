@@ -36,7 +36,7 @@ mod writer;
 
 pub use compression::Compression;
 pub use definitions::{DefinitionError, Definitions};
-pub use ledger::{Guid, GuidError, Ledger, TopicTally, WriterTally, merge};
+pub use ledger::{Ledger, TopicTally, WriterTally, merge};
 pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 pub use new_path::NewPath;
 pub use one_run::{OneRun, RunSign, SeveralRuns};

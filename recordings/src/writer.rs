@@ -20,9 +20,10 @@ use mcap::records::Metadata;
 use mcap::{Attachment, McapError};
 
 use crate::bag_metadata::{BagMetadata, TopicCount};
-use crate::ledger::{Guid, Ledger};
+use crate::ledger::Ledger;
 use crate::metadata_keys::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 use crate::reader::Recording;
+use grainlab_msgs::Guid;
 
 mod counted;
 mod device_sync;

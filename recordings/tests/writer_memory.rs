@@ -4,9 +4,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-use grainlab_msgs::Topic;
 use grainlab_msgs::topics::TOPICS;
-use grainlab_recordings::{Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
+use grainlab_msgs::{Guid, Topic};
+use grainlab_recordings::{Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
 
 struct Counting;
 

@@ -1,8 +1,8 @@
 //! Packings that are too large for one sample, between real processes: played, analysed and recorded again.
 
 use grainlab_msgs::msg::Fabric;
-use grainlab_msgs::{from_cdr, to_cdr, topics};
-use grainlab_recordings::{Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
+use grainlab_msgs::{Guid, from_cdr, to_cdr, topics};
+use grainlab_recordings::{Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};
 use system_tests::lab::{LIMIT, Lab};

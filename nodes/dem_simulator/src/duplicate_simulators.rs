@@ -1,6 +1,6 @@
 //! Other simulators on the same topics.
 
-use grainlab_node_kit::WriterId;
+use grainlab_msgs::Guid;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -31,9 +31,9 @@ pub(crate) enum Verdict {
     /// There is no other writer.
     Clear,
     /// It is not yet determined whether this writer is a simulator.
-    Wait(WriterId),
+    Wait(Guid),
     /// Another simulator started earlier.
-    Refuse(WriterId),
+    Refuse(Guid),
 }
 
 impl DuplicateSimulators {
@@ -42,7 +42,7 @@ impl DuplicateSimulators {
     }
 
     /// Records a `run_state` of this writer. True the first time for each other simulator.
-    pub(crate) fn note_state(&mut self, writer: WriterId, now: Duration) -> bool {
+    pub(crate) fn note_state(&mut self, writer: Guid, now: Duration) -> bool {
         let participant = writer.participant();
         if self.running.len() >= KEPT {
             return false;
@@ -51,7 +51,7 @@ impl DuplicateSimulators {
     }
 
     /// Evaluates the other writers of `stress` that are in the graph.
-    pub(crate) fn verdict(&mut self, foreign: &[WriterId], now: Duration) -> Verdict {
+    pub(crate) fn verdict(&mut self, foreign: &[Guid], now: Duration) -> Verdict {
         let mut verdict = Verdict::Clear;
         for writer in foreign {
             let participant = writer.participant();
@@ -76,10 +76,10 @@ mod tests {
 
     const SECOND: Duration = Duration::from_secs(1);
 
-    fn writer(first: u8) -> WriterId {
+    fn writer(first: u8) -> Guid {
         let mut id = [9; 16];
         id[0] = first;
-        WriterId(id)
+        Guid(id)
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The servo of the run.
 
-use grainlab_node_kit::{Participant, SampleInfo, WriterId, member_of, run_of};
+use grainlab_msgs::Guid;
+use grainlab_node_kit::{Participant, SampleInfo, member_of, run_of};
 use std::collections::BTreeSet;
 
 /// Maximum number of other servos that are logged.
@@ -10,7 +11,7 @@ const NAMED: usize = 64;
 #[derive(Debug)]
 pub(crate) struct Partner {
     /// The writer of requests of this process.
-    stress: WriterId,
+    stress: Guid,
     current: Option<Participant>,
     named: BTreeSet<Participant>,
     ignored: u64,
@@ -41,12 +42,11 @@ pub(crate) fn predecessor(a: &Participant, b: &Participant) -> bool {
 }
 
 /// Writers that are different servos: a restarted one counts once.
-pub(crate) fn different(writers: &[WriterId]) -> Vec<WriterId> {
-    let mut found: Vec<WriterId> = Vec::new();
+pub(crate) fn different(writers: &[Guid]) -> Vec<Guid> {
+    let mut found: Vec<Guid> = Vec::new();
     for writer in writers {
         let participant = writer.participant();
-        let known =
-            |w: &WriterId| w.participant() == participant || same_member(&w.participant(), &participant);
+        let known = |w: &Guid| w.participant() == participant || same_member(&w.participant(), &participant);
         if !found.iter().any(known) {
             found.push(*writer);
         }
@@ -56,12 +56,12 @@ pub(crate) fn different(writers: &[WriterId]) -> Vec<WriterId> {
 
 impl Partner {
     /// For the simulator with this writer of stress.
-    pub(crate) fn new(stress: WriterId) -> Self {
+    pub(crate) fn new(stress: Guid) -> Self {
         Self { stress, current: None, named: BTreeSet::new(), ignored: 0 }
     }
 
     /// The source of an answer; `present` returns the writers of answers in the graph.
-    pub(crate) fn judge(&mut self, info: &SampleInfo, present: impl Fn() -> Vec<WriterId>) -> AnswerSource {
+    pub(crate) fn judge(&mut self, info: &SampleInfo, present: impl Fn() -> Vec<Guid>) -> AnswerSource {
         if info.about.is_some_and(|asked| asked.writer != self.stress) {
             return AnswerSource::AnotherRun;
         }
@@ -79,7 +79,7 @@ impl Partner {
     }
 
     /// Makes this the servo of the run; true if it replaces another one.
-    pub(crate) fn stay_with(&mut self, writer: WriterId) -> bool {
+    pub(crate) fn stay_with(&mut self, writer: Guid) -> bool {
         let sender = writer.participant();
         self.current.replace(sender).is_some_and(|before| before != sender)
     }
@@ -95,15 +95,15 @@ mod tests {
     use super::*;
     use grainlab_node_kit::{Identity, RunId, SampleId};
 
-    const STRESS: WriterId = WriterId([9; 16]);
+    const STRESS: Guid = Guid([9; 16]);
 
-    fn writer(prefix: Participant) -> WriterId {
+    fn writer(prefix: Participant) -> Guid {
         let mut id = [1; 16];
         id[..12].copy_from_slice(&prefix);
-        WriterId(id)
+        Guid(id)
     }
 
-    fn answer(writer: WriterId) -> SampleInfo {
+    fn answer(writer: Guid) -> SampleInfo {
         SampleInfo { writer, sequence: 1, source_time: None, received: 0, about: None }
     }
 
@@ -143,7 +143,7 @@ mod tests {
         let servo = writer([1; 12]);
         let about = |writer| Some(SampleId { writer, sequence: 5 });
         let mut partner = Partner::new(STRESS);
-        let elsewhere = SampleInfo { about: about(WriterId([8; 16])), ..answer(servo) };
+        let elsewhere = SampleInfo { about: about(Guid([8; 16])), ..answer(servo) };
         assert_eq!(partner.judge(&elsewhere, || vec![servo]), AnswerSource::AnotherRun);
         let here = SampleInfo { about: about(STRESS), ..answer(servo) };
         assert_eq!(partner.judge(&here, || vec![servo]), AnswerSource::Successor);

@@ -2,9 +2,9 @@
 
 use crate::{Answer, Settings, microstructure_message, microstructure_of_speeds};
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, WaveSpeeds};
-use grainlab_msgs::{Message, Topic, topics};
+use grainlab_msgs::{Guid, Message, Topic, topics};
 use grainlab_node_kit::{
-    Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, SampleInfo, Subscription, WriterId,
+    Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, SampleInfo, Subscription,
 };
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -32,7 +32,7 @@ struct Tally {
     /// Data that were sent and did not arrive, by the gaps in the numbers of their writers.
     missed: u64,
     /// Number of the last data of each writer.
-    numbers: BTreeMap<WriterId, i64>,
+    numbers: BTreeMap<Guid, i64>,
     /// The fault of the latest data, if any.
     trouble: Option<String>,
 }

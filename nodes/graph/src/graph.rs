@@ -1,14 +1,12 @@
 //! Nodes and endpoints of a domain.
 
 use crate::names::{RosName, ros_type};
+use grainlab_msgs::Guid;
 use grainlab_node_kit::{may_be_ours, type_hash};
 use ros2_client::QosProfile;
 use ros2_client::qos::{Durability, Reliability};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// The 16-byte GUID of an endpoint: 12 of its participant, 4 of its own.
-pub(crate) type Guid = [u8; 16];
 
 /// A publisher or subscription.
 #[derive(Clone, Debug)]
@@ -35,13 +33,13 @@ impl Endpoint {
         Self { type_hash: type_hash(user_data), ..self }
     }
 
-    pub(crate) fn participant(&self) -> &[u8] {
-        &self.guid[..12]
+    pub(crate) fn participant(&self) -> [u8; 12] {
+        self.guid.participant()
     }
 
     /// Whether CycloneDDS made it: the vendor id, with which every GUID begins.
     pub(crate) fn is_cyclone(&self) -> bool {
-        self.guid[..2] == [0x01, 0x10]
+        self.guid.0[..2] == [0x01, 0x10]
     }
 }
 
@@ -104,17 +102,21 @@ impl Graph {
     pub(crate) fn owner(&self, endpoint: &Endpoint) -> String {
         let named = self.nodes.iter().find(|n| n.endpoints.contains(&endpoint.guid)).or_else(|| {
             // A program with one node may list fewer endpoints than it has.
-            let mut same = self.nodes.iter().filter(|n| n.participant[..12] == *endpoint.participant());
+            let mut same =
+                self.nodes.iter().filter(|n| n.participant.participant() == endpoint.participant());
             same.next().filter(|_| same.next().is_none())
         });
-        named.map_or_else(|| format!("participant {}", hex(endpoint.participant())), |node| node.name.clone())
+        named.map_or_else(
+            || format!("participant {}", &Guid::of_participant(endpoint.participant()).to_string()[..24]),
+            |node| node.name.clone(),
+        )
     }
 
     /// The nodes of this program that publish reports: one a second. What others publish on this topic, and when, is their own.
     pub(crate) fn reporting(&self) -> BTreeSet<String> {
         let topics = self.topics();
         let publishers = topics.get("/diagnostics").map(|t| t.publishers.as_slice()).unwrap_or_default();
-        let ours = |e: &&&Endpoint| <&[u8; 12]>::try_from(e.participant()).is_ok_and(may_be_ours);
+        let ours = |e: &&&Endpoint| may_be_ours(&e.participant());
         publishers.iter().filter(ours).map(|e| self.owner(e)).collect()
     }
 
@@ -122,11 +124,6 @@ impl Graph {
     pub(crate) fn endpoints_of(&self, node: &NodeEntry) -> Vec<&Endpoint> {
         self.endpoints.iter().filter(|e| node.endpoints.contains(&e.guid)).collect()
     }
-}
-
-/// Hexadecimal digits.
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 /// The policies of an endpoint in the words of `ros2 topic info`.

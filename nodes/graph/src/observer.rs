@@ -1,8 +1,9 @@
 //! Joins a domain and collects its graph.
 
-use crate::graph::{Endpoint, Graph, Guid, NodeEntry};
+use crate::graph::{Endpoint, Graph, NodeEntry};
 use crate::names::printable;
 use grainlab_console::Failure;
+use grainlab_msgs::Guid;
 use grainlab_node_kit::Network;
 use ros2_client::qos::{Durability, History, WhenFull};
 use ros2_client::{Context, MessageTypeName, Node, NodeName, NodeOptions, QosProfile, Subscription};
@@ -37,7 +38,7 @@ pub(crate) struct Observer {
     pub(crate) context: Context,
     announcements: Subscription<ParticipantNodes>,
     announced: BTreeMap<Guid, ParticipantNodes>,
-    own: Vec<u8>,
+    own: [u8; 12],
 }
 
 impl Observer {
@@ -60,7 +61,7 @@ impl Observer {
         let info = MessageTypeName::new("rmw_dds_common", "ParticipantEntitiesInfo");
         let topic = context.create_topic("ros_discovery_info".into(), info, &qos).map_err(Failure::failed)?;
         let announcements = node.create_subscription(&topic, Some(qos)).map_err(Failure::failed)?;
-        let own = announcements.gid().to_bytes16()[..12].to_vec();
+        let own = Guid(announcements.gid().to_bytes16()).participant();
         Ok(Self { node, context, announcements, announced: BTreeMap::new(), own })
     }
 
@@ -96,18 +97,20 @@ impl Observer {
             let data = &writer.publication_topic_data;
             let guid = writer.writer_proxy.remote_writer_guid.to_bytes();
             let qos = QosProfile::from(&data.qos());
-            Endpoint::new(guid, &data.topic_name, &data.type_name, true, qos).announcing(&writer.user_data)
+            Endpoint::new(Guid(guid), &data.topic_name, &data.type_name, true, qos)
+                .announcing(&writer.user_data)
         });
         let readers = participant.discovered_readers().into_iter().map(|reader| {
             let data = &reader.subscription_topic_data;
             let guid = reader.reader_proxy.remote_reader_guid.to_bytes();
             let qos = QosProfile::from(&data.qos());
-            Endpoint::new(guid, data.topic_name(), data.type_name(), false, qos).announcing(&reader.user_data)
+            Endpoint::new(Guid(guid), data.topic_name(), data.type_name(), false, qos)
+                .announcing(&reader.user_data)
         });
         let endpoints: Vec<Endpoint> =
             writers.chain(readers).filter(|e| e.participant() != self.own).collect();
         // An announcement outlasts its participant.
-        let there = |p: &&ParticipantNodes| endpoints.iter().any(|e| e.participant() == &p.gid[..12]);
+        let there = |p: &&ParticipantNodes| endpoints.iter().any(|e| e.participant() == p.gid.participant());
         let mut nodes: Vec<NodeEntry> = self.announced.values().filter(there).flat_map(entries).collect();
         nodes.sort_by(|a, b| a.name.cmp(&b.name));
         Graph { nodes, endpoints }

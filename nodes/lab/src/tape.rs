@@ -2,8 +2,8 @@
 
 use grainlab_console::Failure;
 use grainlab_msgs::std_msgs::Header;
-use grainlab_msgs::{Message, Topic, to_cdr};
-use grainlab_recordings::{Guid, Incoming, RunWriter, SESSION_KEY, TopicSpec, WriterOptions};
+use grainlab_msgs::{Guid, Message, Topic, to_cdr};
+use grainlab_recordings::{Incoming, RunWriter, SESSION_KEY, TopicSpec, WriterOptions};
 use std::path::Path;
 
 /// Writes messages. Their log times are their stamps, increased where necessary to stay in order: two

@@ -1,7 +1,7 @@
 //! Decides whose samples a process accepts, and counts the ignored ones by participant.
 
 use crate::identity::{Identity, RunId, Scope, member_of, run_of};
-use crate::sample::WriterId;
+use grainlab_msgs::Guid;
 use std::collections::BTreeMap;
 
 /// The GUID prefix of one participant.
@@ -111,7 +111,7 @@ impl Admission {
     }
 
     /// The same for one sample; an ignored one is counted. The second value is true for the first one of its writer.
-    pub(crate) fn takes(&mut self, writer: WriterId, topic: &str) -> (bool, bool) {
+    pub(crate) fn takes(&mut self, writer: Guid, topic: &str) -> (bool, bool) {
         let participant = writer.participant();
         if self.admits(&participant) {
             return (true, false);
@@ -153,10 +153,10 @@ mod tests {
 
     const HAND: Identity = Identity { run: None, member: 0, root: None, scope: Scope::OwnRun };
 
-    fn writer(prefix: Participant) -> WriterId {
+    fn writer(prefix: Participant) -> Guid {
         let mut id = [3; 16];
         id[..12].copy_from_slice(&prefix);
-        WriterId(id)
+        Guid(id)
     }
 
     fn process(below_root: bool) -> Process {

@@ -5,8 +5,8 @@ use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::Identity;
 use crate::offer::Offer;
-use crate::sample::{Sample, SampleId, WriterId};
-use grainlab_msgs::Topic;
+use crate::sample::{Sample, SampleId};
+use grainlab_msgs::{Guid, Published, Received, Topic};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -75,30 +75,6 @@ impl fmt::Debug for Sender {
     }
 }
 
-/// The statistics of one of our writers.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Published {
-    /// Resolved topic name, as in `/lab/stress`.
-    pub topic: String,
-    /// The writer.
-    pub writer: WriterId,
-    /// Number of samples published, which is the RTPS sequence number of the last one.
-    pub count: u64,
-    /// Number of samples dropped because a reliable reader was too far behind.
-    pub full: u64,
-}
-
-/// The statistics of one of our subscriptions.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Received {
-    /// Resolved topic name.
-    pub topic: String,
-    /// Number of samples taken.
-    pub taken: u64,
-    /// Number of samples whose content was refused: undecodable, or invalid for the node.
-    pub refused: u64,
-}
-
 /// Sends and receives serialized samples, and waits for events.
 ///
 /// Names are resolved with the node's namespace and remaps; the QoS is always that of the topic table.
@@ -161,10 +137,10 @@ pub trait Bus {
 
     /// Writers on the resolved topic that are not this process's own, of those that [`Bus::identity`] counts, sorted,
     /// as known at the last [`Bus::wait`].
-    fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId>;
+    fn foreign_writers(&self, topic: &Topic) -> Vec<Guid>;
 
     /// Writers on the resolved topic whose samples are not taken, sorted, as known at the last [`Bus::wait`].
-    fn strange_writers(&self, topic: &Topic) -> Vec<WriterId>;
+    fn strange_writers(&self, topic: &Topic) -> Vec<Guid>;
 
     /// Participants with a writer on the resolved topic whose messages are not read: they are of another type, or of another
     /// definition of the type. Sorted.
@@ -197,7 +173,7 @@ pub trait Bus {
     fn strangers(&self) -> Vec<Stranger>;
 
     /// The owner of this writer, for messages to users.
-    fn describe(&self, writer: WriterId) -> Stranger;
+    fn describe(&self, writer: Guid) -> Stranger;
 
     /// A flag that is true once the process was asked to end, for computations that take long; `None` on a bus without
     /// signals.

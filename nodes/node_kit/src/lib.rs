@@ -8,10 +8,9 @@
 //!   computations
 //! - `dds`: the bus over DDS; `memory`: the bus in memory, with virtual time and faults, for tests
 //! - `identity`: the run of a process; `admission`: the samples that a process accepts
-//! - `node`: a node as a state machine; `health`: its health; `run`: running it as a process
+//! - `node`: a node as a state machine; `run`: running it as a process, with its reports
 //! - [`PackingNode`]: the template of nodes that measure packings
-//! - `diagnostics`: the heartbeat of a process; `peers`: liveliness of processes; [`watchdog`]: detects
-//!   failed DDS threads
+//! - `peers`: liveliness of processes; [`watchdog`]: detects failed DDS threads
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
 //!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
@@ -25,9 +24,6 @@ mod bus;
 mod bus_error;
 mod dds;
 mod demand;
-mod diagnostics;
-mod exit;
-mod health;
 mod identity;
 mod logging;
 mod memory;
@@ -52,13 +48,11 @@ mod worker;
 pub use admission::{Participant, Process, Stranger};
 pub use args::{ArgsError, Assignment, Remap, RosArgs};
 pub use bulk::{BULK_LIMIT, BulkPublisher, BulkSubscription};
-pub use bus::{Bus, Caller, Published, PublisherId, Received, Sender, SubscriptionId, Wake};
+pub use bus::{Bus, Caller, PublisherId, Sender, SubscriptionId, Wake};
 pub use bus_error::BusError;
 pub use dds::{ClaimedDomain, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers};
 pub use demand::Demand;
-pub use diagnostics::Report;
-pub use exit::Exit;
-pub use health::{Health, Level};
+pub use grainlab_msgs::{Exit, Health, Level, Published, Received, Report};
 pub use identity::{
     Identity, MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId, RunIdError, Scope, may_be_ours, member_of,
     run_of,
@@ -74,7 +68,7 @@ pub use parameters::{
 };
 pub use peers::{Liveliness, Peer, PeerWatch, Peers, SILENCE};
 pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};
-pub use sample::{Sample, SampleId, SampleInfo, WriterId, WriterIdError};
+pub use sample::{Sample, SampleId, SampleInfo};
 pub use signals::Signals;
 pub use terminal::{Terminal, draw_live_line, erase_live_line, write_above_live_line};
 pub use typed::{Publisher, Subscription, TakeError};

@@ -2,10 +2,10 @@
 
 use crate::args::RosArgs;
 use crate::dds::LOG_TARGET;
-use crate::diagnostics::wall_stamp;
 use crate::terminal::{colour_wanted, write_above_live_line};
 use crate::wall_clock::wall_nanos;
 use grainlab_msgs::rcl_interfaces::Log;
+use grainlab_msgs::wall_stamp;
 use log::{Level, LevelFilter, Metadata, Record};
 use std::cell::Cell;
 use std::collections::VecDeque;

@@ -2,9 +2,8 @@
 
 use crate::bus::Bus;
 use crate::bus_error::BusError;
-use crate::exit::Exit;
-use crate::health::Health;
 use crate::peers::Peers;
+use grainlab_msgs::{Exit, Health};
 use std::time::Duration;
 
 /// What the run loop does after a step.

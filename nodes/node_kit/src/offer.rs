@@ -1,13 +1,12 @@
 //! What a writer of another process offers, and the names of topics and types in DDS.
 
-use crate::sample::WriterId;
-use grainlab_msgs::{Qos, TypeInfo};
+use grainlab_msgs::{Guid, Qos, TypeInfo};
 
 /// A writer of another process on a topic of ROS.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Offer {
     /// The writer.
-    pub writer: WriterId,
+    pub writer: Guid,
     /// Full name of the topic: `/lab/stress`.
     pub topic: String,
     /// Type of the messages: `grainlab_msgs/msg/Stress`.
@@ -40,7 +39,7 @@ impl Offer {
 
     /// From the names in DDS and the user data of the writer; `None` unless they are those of a topic of ROS.
     pub(crate) fn of_wire(
-        writer: WriterId,
+        writer: Guid,
         topic: &str,
         type_name: &str,
         qos: Qos,
@@ -111,7 +110,7 @@ mod tests {
         let qos = Qos { reliable: true, depth: 0, transient_local: false };
         let info = grainlab_msgs::topics::STRESS.info;
         let misfit = |type_name: &str, data: &[u8]| {
-            Offer::of_wire(WriterId([1; 16]), "rt/stress", &wire_type(type_name), qos, data)
+            Offer::of_wire(Guid([1; 16]), "rt/stress", &wire_type(type_name), qos, data)
                 .unwrap()
                 .misfit(&info)
         };
@@ -128,7 +127,7 @@ mod tests {
     fn names_on_the_wire_are_those_of_ros_or_no_offer() {
         let qos = Qos { reliable: true, depth: 0, transient_local: false };
         let of = |topic: &str, kind: &str, data: &[u8]| {
-            let offer = Offer::of_wire(WriterId([1; 16]), topic, kind, qos, data)?;
+            let offer = Offer::of_wire(Guid([1; 16]), topic, kind, qos, data)?;
             Some((offer.topic, offer.type_name, offer.type_hash))
         };
         let hash = format!("RIHS01_{}", "0f".repeat(32));

@@ -3,12 +3,11 @@
 //! A node is a type that implements [`Measure`], wrapped in `PackingNode`.
 
 use crate::bulk::BulkSubscription;
-use crate::exit::Exit;
 use crate::worker::Worker;
 use crate::{Bus, BusError, Demand, SampleId};
 use crate::{Health, Next, Node, NodeError};
 use grainlab_msgs::msg::Packing;
-use grainlab_msgs::{DecodeError, from_cdr, topics};
+use grainlab_msgs::{DecodeError, Exit, from_cdr, topics};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;

@@ -3,12 +3,10 @@
 use crate::bus::Bus;
 use crate::bus_error::BusError;
 use crate::demand::Demand;
-use crate::diagnostics::Report;
-use crate::exit::Exit;
 use crate::sample::SampleInfo;
 use crate::typed::Subscription;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::topics;
+use grainlab_msgs::{Exit, Report, topics};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -139,8 +137,8 @@ impl PeerWatch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::health::Health;
-    use crate::sample::WriterId;
+    use grainlab_msgs::Guid;
+    use grainlab_msgs::Health;
 
     fn beat(pid: u32, exit: Option<Exit>) -> (DiagnosticArray, SampleInfo) {
         let report = Report {
@@ -151,7 +149,7 @@ mod tests {
             published: Vec::new(),
             received: Vec::new(),
         };
-        let writer = WriterId([pid as u8; 16]);
+        let writer = Guid([pid as u8; 16]);
         (
             report.to_message(0),
             SampleInfo { writer, sequence: 1, source_time: None, received: 0, about: None },

@@ -4,8 +4,6 @@ use crate::args::RosArgs;
 use crate::bus::{Bus, Wake};
 use crate::bus_error::BusError;
 use crate::dds::{DdsBus, Network};
-use crate::diagnostics::Report;
-use crate::exit::Exit;
 use crate::identity::{Identity, Scope};
 use crate::logging::Logger;
 use crate::names::Names;
@@ -13,13 +11,12 @@ use crate::node::{Next, Node, NodeError};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::peers::PeerWatch;
 use crate::rosout::{Rosout, tolerate_full};
-use crate::sample::WriterId;
 use crate::services::{Declared, USE_SIM_TIME};
 use crate::signals::Signals;
 use crate::typed::Publisher;
 use crate::watchdog;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::topics;
+use grainlab_msgs::{Exit, Guid, Health, Received, Report, topics};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
@@ -170,7 +167,7 @@ struct Housekeeping {
     node_name: String,
     pid: u32,
     diagnostics: Publisher<DiagnosticArray>,
-    diagnostics_writer: Option<WriterId>,
+    diagnostics_writer: Option<Guid>,
     rosout: Rosout,
     watch: PeerWatch,
     next_beat: Duration,
@@ -220,7 +217,8 @@ impl Housekeeping {
     }
 
     fn report(&self, node: &dyn Node, bus: &mut dyn Bus, exit: Option<Exit>) -> Result<(), BusError> {
-        let report = Report::of(bus, &self.node_name, self.pid, node.health(), exit, self.diagnostics_writer);
+        let report =
+            current_report(bus, &self.node_name, self.pid, node.health(), exit, self.diagnostics_writer);
         let message = report.to_message(bus.node_nanos());
         tolerate_full(self.diagnostics.publish(bus, &message))
     }
@@ -233,4 +231,30 @@ impl Housekeeping {
         bus.flush(LAST_WORDS);
         Ok(())
     }
+}
+
+/// The current report of this process. `next` is the writer that will publish it: its count includes the report.
+fn current_report(
+    bus: &dyn Bus,
+    node: &str,
+    pid: u32,
+    health: Health,
+    exit: Option<Exit>,
+    next: Option<Guid>,
+) -> Report {
+    let mut published = bus.published();
+    for writer in published.iter_mut().filter(|w| Some(w.writer) == next) {
+        writer.count += 1;
+    }
+    let mut received: Vec<Received> = Vec::new();
+    for entry in bus.received() {
+        match received.iter_mut().find(|r| r.topic == entry.topic) {
+            Some(sum) => {
+                sum.taken = sum.taken.max(entry.taken);
+                sum.refused += entry.refused;
+            }
+            None => received.push(entry),
+        }
+    }
+    Report { node: node.into(), pid, health, exit, published, received }
 }

@@ -3,7 +3,7 @@
 //! A node of a launched run is ended by its launcher alone. A service manager or a batch system sends its signal to all
 //! processes of a run at once: the recorder and the readers of the simulator would end before its state is saved.
 
-use crate::exit::Exit;
+use grainlab_msgs::Exit;
 use mio::net::UnixStream;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::low_level::{self, pipe};

@@ -3,9 +3,9 @@
 //! The run is that of the first simulator that publishes. Its id is the participant of that simulator: answers and
 //! results refer to its samples (see `SampleInfo::about`).
 
-use grainlab_msgs::{Topic, topics};
+use grainlab_msgs::{Guid, Topic, topics};
 use grainlab_node_kit::Participant;
-use grainlab_node_kit::{SampleInfo, WriterId};
+use grainlab_node_kit::SampleInfo;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Maximum number of participants counted separately.
@@ -48,7 +48,7 @@ impl Binding {
         &mut self,
         topic: &Topic,
         info: &SampleInfo,
-        present: impl Fn(&Topic) -> Vec<WriterId>,
+        present: impl Fn(&Topic) -> Vec<Guid>,
     ) -> Result<(), Outside> {
         let verdict = self.judge(topic, info, present);
         if let Err(outside) = verdict {
@@ -67,7 +67,7 @@ impl Binding {
         &mut self,
         topic: &Topic,
         info: &SampleInfo,
-        present: impl Fn(&Topic) -> Vec<WriterId>,
+        present: impl Fn(&Topic) -> Vec<Guid>,
     ) -> Result<(), Outside> {
         let participant = info.writer.participant();
         let there = |topic: &Topic, who: Participant| present(topic).iter().any(|w| w.participant() == who);
@@ -120,13 +120,13 @@ mod tests {
     use grainlab_node_kit::SampleId;
 
     fn info(who: u8, about: Option<u8>) -> SampleInfo {
-        let about = about.map(|writer| SampleId { writer: WriterId([writer; 16]), sequence: 1 });
-        SampleInfo { writer: WriterId([who; 16]), sequence: 1, source_time: None, received: 0, about }
+        let about = about.map(|writer| SampleId { writer: Guid([writer; 16]), sequence: 1 });
+        SampleInfo { writer: Guid([who; 16]), sequence: 1, source_time: None, received: 0, about }
     }
 
     #[test]
     fn the_first_simulator_is_the_run_and_results_have_to_be_about_it() {
-        let everyone = |_: &Topic| vec![WriterId([1; 16]), WriterId([2; 16]), WriterId([3; 16])];
+        let everyone = |_: &Topic| vec![Guid([1; 16]), Guid([2; 16]), Guid([3; 16])];
         let mut binding = Binding::default();
         let mut takes = |topic, who, about| binding.takes(&topic, &info(who, about), everyone);
         assert_eq!(takes(topics::MODULI, 3, Some(1)), Err(Outside::Stranger), "there is no run yet");
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_writer_that_left_is_replaced() {
-        let alone = |_: &Topic| vec![WriterId([2; 16]), WriterId([4; 16])];
+        let alone = |_: &Topic| vec![Guid([2; 16]), Guid([4; 16])];
         let mut binding = Binding::default();
         let mut takes = |topic, who, about| binding.takes(&topic, &info(who, about), alone);
         assert_eq!(takes(topics::STRESS, 1, None), Ok(()));

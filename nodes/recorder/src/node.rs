@@ -8,14 +8,13 @@ use crate::snapshot::{Kept, Snapshot};
 use crate::strangers::{self, Authors, StrangerView};
 use crate::tallies::losses;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::{Topic, from_cdr, topics};
+use grainlab_msgs::{Guid, Topic, from_cdr, topics};
 use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, Stranger,
-    SubscriptionId, WriterId,
+    SubscriptionId,
 };
 use grainlab_node_kit::{Published, member_of, run_of};
 use grainlab_recordings::Finished;
-use grainlab_recordings::Guid;
 use grainlab_recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -124,19 +123,19 @@ struct Company {
 }
 
 impl Company {
-    fn note_writer(&mut self, writer: WriterId) {
+    fn note_writer(&mut self, writer: Guid) {
         self.heard.insert(writer.participant());
     }
 
     /// Number of processes that left without a last report.
-    fn missing(&self, present: &[WriterId]) -> usize {
-        let there: BTreeSet<_> = present.iter().map(WriterId::participant).chain(self.own).collect();
+    fn missing(&self, present: &[Guid]) -> usize {
+        let there: BTreeSet<_> = present.iter().map(Guid::participant).chain(self.own).collect();
         self.heard.iter().filter(|p| !self.left.contains(*p) && !there.contains(*p)).count()
     }
 
     /// Whether every process that published, or has a writer in `present`, has sent its last report.
-    fn all_left(&self, present: &[WriterId]) -> bool {
-        let mut known = self.heard.iter().copied().chain(present.iter().map(WriterId::participant));
+    fn all_left(&self, present: &[Guid]) -> bool {
+        let mut known = self.heard.iter().copied().chain(present.iter().map(Guid::participant));
         known.all(|p| Some(p) == self.own || self.left.contains(&p))
     }
 }
@@ -237,7 +236,7 @@ impl Recorder {
                     && let Err(outside) = binding.takes(topic, info, |t| bus.foreign_writers(t))
                 {
                     note_outside(outside, topic, bus.describe(info.writer), binding);
-                    writer.ledger_mut().leave_out(&channel.name, Guid(info.writer.0), info.sequence);
+                    writer.ledger_mut().leave_out(&channel.name, info.writer, info.sequence);
                     continue;
                 }
                 // Other programs send no reports.
@@ -295,7 +294,7 @@ impl Recorder {
         let of_bus = bus.strangers();
         let of_binding = self.binding.iter().flat_map(|b| b.ignored()).map(|(participant, topics)| {
             let ignored = topics.iter().map(|(topic, count)| ((*topic).to_owned(), *count)).collect();
-            Stranger { ignored, ..bus.describe(WriterId::of_participant(*participant)) }
+            Stranger { ignored, ..bus.describe(Guid::of_participant(*participant)) }
         });
         strangers::grouped(of_bus.into_iter().chain(of_binding))
     }
@@ -325,7 +324,7 @@ impl Recorder {
 
 fn incoming(sample: &Sample) -> Incoming<'_> {
     Incoming {
-        guid: Guid(sample.info.writer.0),
+        guid: sample.info.writer,
         sequence: sample.info.sequence,
         source_time: sample.info.source_time,
         receive_time: sample.info.received,
@@ -350,11 +349,11 @@ fn keep_last(snapshot: &mut Snapshot, writer: &mut RunWriter) -> Result<u64, Nod
 
 fn leave_out(writer: &mut RunWriter, kept: &Kept) {
     let info = &kept.sample.info;
-    writer.ledger_mut().leave_out(&kept.topic, Guid(info.writer.0), info.sequence);
+    writer.ledger_mut().leave_out(&kept.topic, info.writer, info.sequence);
 }
 
 /// The same value for a process of a launched run and for its restarted successor.
-fn author(writer: WriterId) -> u64 {
+fn author(writer: Guid) -> u64 {
     let participant = writer.participant();
     match (run_of(&participant), member_of(&participant)) {
         (Some(_), member @ 1..) => u64::from(member),
@@ -394,7 +393,7 @@ fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &S
         let own = |p: &&Published| p.writer.participant() == sample.info.writer.participant();
         is_last_report |= report.is_final() && report.published.iter().any(|p| own(&p));
         for published in report.published.iter().filter(own) {
-            let guid = Guid(published.writer.0);
+            let guid = published.writer;
             writer.ledger_mut().name(guid, &report.node);
             // Topics that are not recorded are not counted.
             if recorded.contains(&published.topic) {
@@ -442,7 +441,7 @@ impl Node for Recorder {
         writer.set_metadata(strangers::STRANGERS, &express(serde_json::to_string(&strangers))?);
         writer.set_metadata(strangers::AUTHORS, &express(serde_json::to_string(&self.authors))?);
         if let Some(run) = self.binding.as_ref().and_then(Binding::run) {
-            writer.set_metadata("run", &WriterId::of_participant(run).to_string()[..24]);
+            writer.set_metadata("run", &Guid::of_participant(run).to_string()[..24]);
         }
         let finished = writer.finish().map_err(|e| lost(&e))?;
         if let Some(finder) = &self.finder {
@@ -483,7 +482,7 @@ mod tests {
 
     #[test]
     fn everyone_has_left_after_the_last_report_of_each() {
-        let writer = |who| WriterId([who; 16]);
+        let writer = |who| Guid([who; 16]);
         let mut company = Company { own: Some([1; 12]), ..Company::default() };
         assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
         company.note_writer(writer(2));

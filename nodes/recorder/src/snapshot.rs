@@ -92,11 +92,12 @@ impl Snapshot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_node_kit::{SampleInfo, WriterId};
+    use grainlab_msgs::Guid;
+    use grainlab_node_kit::SampleInfo;
 
     fn kept(topic: &str, latched: bool, second: u64) -> Kept {
         let received = second * 1_000_000_000;
-        let (writer, sequence) = (WriterId([1; 16]), second as i64);
+        let (writer, sequence) = (Guid([1; 16]), second as i64);
         let info = SampleInfo { writer, sequence, source_time: None, received, about: None };
         Kept { topic: topic.into(), latched, sample: Sample { body: vec![0; 8], info } }
     }

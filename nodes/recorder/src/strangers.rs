@@ -1,8 +1,9 @@
 //! Processes on the bus that are not part of the run, and the writers of the results.
 
+use grainlab_msgs::Guid;
 use grainlab_node_kit::Stranger;
 use grainlab_node_kit::member_of;
-use grainlab_recordings::{Guid, METADATA_RECORD, Recording};
+use grainlab_recordings::{METADATA_RECORD, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

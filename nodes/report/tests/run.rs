@@ -2,8 +2,8 @@
 
 use grainlab_core::{Cell, ComponentControl, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_msgs::boundary::{StressRequest, packing_message};
-use grainlab_msgs::{msg, stamp, to_cdr, topics};
-use grainlab_recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
+use grainlab_msgs::{Guid, msg, stamp, to_cdr, topics};
+use grainlab_recordings::{Incoming, RunWriter, TopicSpec, WriterOptions};
 use grainlab_report::{FILE, Run, overview, write_report};
 use std::path::Path;
 

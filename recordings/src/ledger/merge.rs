@@ -101,7 +101,8 @@ fn common(a: &[(i64, i64)], b: &[(i64, i64)]) -> Vec<(i64, i64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ledger::{Guid, Ledger};
+    use crate::ledger::Ledger;
+    use grainlab_msgs::Guid;
 
     const A: Guid = Guid([1; 16]);
     const B: Guid = Guid([2; 16]);

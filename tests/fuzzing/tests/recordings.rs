@@ -1,12 +1,10 @@
 //! MCAP files: reading, checking, recovering.
 
 use fuzzing::{Counting, Target};
-use grainlab_msgs::{msg, to_cdr, topics};
+use grainlab_msgs::{Guid, msg, to_cdr, topics};
 use grainlab_recordings::copy::{CopyOptions, Preset, Select, copy};
 use grainlab_recordings::import::ImportOptions;
-use grainlab_recordings::{
-    Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions, recover,
-};
+use grainlab_recordings::{Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions, recover};
 use std::ops::ControlFlow;
 use std::path::Path;
 

@@ -142,6 +142,7 @@ fn unpublished(graph: &Graph) -> Vec<Finding> {
 mod tests {
     use super::*;
     use crate::graph::NodeEntry;
+    use grainlab_msgs::Guid;
     use ros2_client::QosProfile;
     use ros2_client::qos::Durability;
 
@@ -150,12 +151,12 @@ mod tests {
     fn endpoint(n: u8, topic: &str, type_name: &str, writes: bool, qos: QosProfile) -> Endpoint {
         let mut guid = [n; 16];
         guid[15] = u8::from(writes);
-        Endpoint::new(guid, topic, type_name, writes, qos)
+        Endpoint::new(Guid(guid), topic, type_name, writes, qos)
     }
 
     fn graph(endpoints: Vec<Endpoint>) -> Graph {
         let node = |e: &Endpoint| NodeEntry {
-            name: format!("/node_{}", e.guid[0]),
+            name: format!("/node_{}", e.guid.0[0]),
             participant: e.guid,
             endpoints: [e.guid].into(),
         };

@@ -36,7 +36,7 @@ pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
         let Some((_, what)) = single else { continue };
         // Runs with an identity of their own share a domain without mixing.
         let by_hand = || topic.publishers.iter().filter(|p| run_of_endpoint(p).is_none());
-        let count = by_hand().map(|p| p.participant()).collect::<BTreeSet<&[u8]>>().len();
+        let count = by_hand().map(|p| p.participant()).collect::<BTreeSet<[u8; 12]>>().len();
         if count > 1 {
             let owners: BTreeSet<String> = by_hand().map(|e| graph.owner(e)).collect();
             found.push(Finding::error(
@@ -52,7 +52,7 @@ pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
 }
 
 fn run_of_endpoint(endpoint: &Endpoint) -> Option<grainlab_node_kit::RunId> {
-    <&[u8; 12]>::try_from(endpoint.participant()).ok().and_then(run_of)
+    run_of(&endpoint.participant())
 }
 
 /// Nodes that publish reports and sent none, and those that report a fault.
@@ -113,11 +113,11 @@ pub(super) fn of_sim_time(observer: &mut Observer, graph: &Graph) -> Result<Vec<
 mod tests {
     use super::*;
     use crate::graph::NodeEntry;
+    use grainlab_msgs::Guid;
     use ros2_client::QosProfile;
 
     fn simulator(prefix: [u8; 12], name: &str) -> (Endpoint, NodeEntry) {
-        let mut guid = [3; 16];
-        guid[..12].copy_from_slice(&prefix);
+        let guid = Guid::of_participant(prefix);
         let qos = QosProfile::publisher_default();
         let endpoint = Endpoint::new(guid, "rt/stress", "grainlab_msgs::msg::dds_::Stress_", true, qos);
         (endpoint, NodeEntry { name: name.into(), participant: guid, endpoints: [guid].into() })

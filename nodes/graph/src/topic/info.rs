@@ -1,6 +1,6 @@
 //! `grainlab topic info`.
 
-use crate::graph::{Endpoint, Graph, QosView, hex};
+use crate::graph::{Endpoint, Graph, QosView};
 use crate::names::absolute;
 use crate::observer::Observer;
 use crate::view::Common;
@@ -41,7 +41,7 @@ fn view(graph: &Graph, endpoint: &Endpoint) -> EndpointView {
         node: graph.owner(endpoint),
         kind: if endpoint.writes { "publisher" } else { "subscription" },
         type_name: endpoint.type_name.clone(),
-        guid: hex(&endpoint.guid),
+        guid: endpoint.guid.to_string(),
         qos: QosView::from(&endpoint.qos),
     }
 }

@@ -1,6 +1,7 @@
 //! Statistics of a stream of samples.
 
-use grainlab_node_kit::{SampleInfo, WriterId};
+use grainlab_msgs::Guid;
+use grainlab_node_kit::SampleInfo;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -15,7 +16,7 @@ struct Span {
 /// What arrived in one window of time.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stream {
-    writers: BTreeMap<WriterId, Span>,
+    writers: BTreeMap<Guid, Span>,
     bytes: u64,
     intervals: Moments,
     transport: Moments,
@@ -136,7 +137,7 @@ mod tests {
 
     fn info(writer: u8, sequence: i64, time: u64) -> SampleInfo {
         SampleInfo {
-            writer: WriterId([writer; 16]),
+            writer: Guid([writer; 16]),
             sequence,
             source_time: Some(time),
             received: time + 50_000,

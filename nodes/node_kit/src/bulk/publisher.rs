@@ -6,10 +6,9 @@ use super::sender::Sender;
 use crate::bus::{Bus, PublisherId};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
-use crate::sample::WriterId;
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
-use grainlab_msgs::{Topic, topics};
+use grainlab_msgs::{Guid, Topic, topics};
 use std::time::Duration;
 
 /// Credits queued while a node computes: only the latest of each reader matters.
@@ -30,7 +29,7 @@ pub struct BulkPublisher {
     credits: Subscription<PackingCredit>,
     credit_topic: Topic,
     sender: Sender,
-    present: Vec<WriterId>,
+    present: Vec<Guid>,
     next_look: Duration,
     left_behind: u64,
 }

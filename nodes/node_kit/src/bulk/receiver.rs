@@ -3,7 +3,7 @@
 use super::assembly::Assembly;
 use super::limits::{CREDIT_PERIOD, IDLE_CREDIT_PERIOD};
 use super::part::{PartError, Shape};
-use crate::sample::WriterId;
+use grainlab_msgs::Guid;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -74,7 +74,7 @@ struct Source {
 /// All writers of one topic of parts. It has no clock and no bus: the caller provides both.
 #[derive(Debug)]
 pub(super) struct Receiver {
-    sources: BTreeMap<WriterId, Source>,
+    sources: BTreeMap<Guid, Source>,
     ready: bool,
     /// The credit to all writers while none has sent a part.
     broadcast: Repetition,
@@ -100,7 +100,7 @@ impl Receiver {
     }
 
     /// Processes one part.
-    pub(super) fn receive(&mut self, now: Duration, from: WriterId, part: &PackingChunk) -> PartOutcome {
+    pub(super) fn receive(&mut self, now: Duration, from: Guid, part: &PackingChunk) -> PartOutcome {
         let shape = match Shape::checked(part) {
             Ok(shape) => shape,
             Err(fault) => return PartOutcome { fault: Some(fault), ..PartOutcome::default() },
@@ -128,7 +128,7 @@ impl Receiver {
             return vec![PackingCredit { ready: self.ready, ..PackingCredit::default() }];
         }
         let due = self.sources.iter_mut().filter(|(_, source)| source.credit.due <= now);
-        let credit = |(id, source): (&WriterId, &mut Source)| {
+        let credit = |(id, source): (&Guid, &mut Source)| {
             source.credit.mark_sent(now, source.assembly.is_some());
             let (body, (next, held)) = match &source.assembly {
                 Some(assembly) => (assembly.shape.body, assembly.credit()),
@@ -151,14 +151,14 @@ impl Receiver {
     }
 
     /// Removes writers that left.
-    pub(super) fn forget_absent(&mut self, now: Duration, present: &[WriterId]) {
-        let stays = |id: &WriterId, source: &Source| {
+    pub(super) fn forget_absent(&mut self, now: Duration, present: &[Guid]) {
+        let stays = |id: &Guid, source: &Source| {
             present.contains(id) || now.saturating_sub(source.latest_part) < FORGET
         };
         self.sources.retain(|id, source| stays(id, source));
     }
 
-    fn make_room_for(&mut self, new: WriterId) {
+    fn make_room_for(&mut self, new: Guid) {
         if self.sources.len() < WRITERS || self.sources.contains_key(&new) {
             return;
         }

@@ -2,7 +2,7 @@
 
 use super::limits::{FIRST_CREDIT_LIMIT, HURRIED, LOST_AFTER, SILENCE, STALLED, WINDOW};
 use super::part::Shape;
-use crate::sample::WriterId;
+use grainlab_msgs::Guid;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
@@ -29,14 +29,14 @@ struct Reader {
 /// A reader that the sender does not wait for any longer, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct LeftBehind {
-    pub(super) reader: WriterId,
+    pub(super) reader: Guid,
     pub(super) reason: String,
 }
 
 /// The latest body and its readers. It has no clock and no bus: the caller provides both.
 #[derive(Debug)]
 pub(super) struct Sender {
-    own: WriterId,
+    own: Guid,
     /// Number of bodies so far, which is the number of the latest one.
     bodies: u64,
     bytes: Vec<u8>,
@@ -49,7 +49,7 @@ pub(super) struct Sender {
     when: Vec<Duration>,
     /// Parts to send again.
     again: BTreeSet<u32>,
-    readers: BTreeMap<WriterId, Reader>,
+    readers: BTreeMap<Guid, Reader>,
     /// Number of repeated parts.
     repeated: u64,
     /// The process is about to end.
@@ -57,7 +57,7 @@ pub(super) struct Sender {
 }
 
 impl Sender {
-    pub(super) fn new(own: WriterId) -> Self {
+    pub(super) fn new(own: Guid) -> Self {
         Self {
             own,
             bodies: 0,
@@ -102,7 +102,7 @@ impl Sender {
     }
 
     /// Processes one credit. A credit that arrives after a later one is ignored.
-    pub(super) fn receive(&mut self, now: Duration, from: WriterId, sequence: i64, credit: &PackingCredit) {
+    pub(super) fn receive(&mut self, now: Duration, from: Guid, sequence: i64, credit: &PackingCredit) {
         let new = Reader {
             sequence,
             latest_credit: now,
@@ -174,7 +174,7 @@ impl Sender {
     /// Removes readers that left the graph (`present`: writers of credits in the graph) and applies the time limits.
     ///
     /// Returns the readers with missing parts that are not waited for any longer.
-    pub(super) fn apply_time_limits(&mut self, now: Duration, present: &[WriterId]) -> Vec<LeftBehind> {
+    pub(super) fn apply_time_limits(&mut self, now: Duration, present: &[Guid]) -> Vec<LeftBehind> {
         let count = self.shape.map_or(0, |shape| shape.count);
         let mut left = Vec::new();
         self.readers.retain(|id, reader| {
@@ -205,7 +205,7 @@ impl Sender {
 
     /// Whether an active reader lacks parts of the latest body. Readers in the graph that have not sent a credit yet
     /// count for a short time: those of `present`, and the number of `matched` readers.
-    pub(super) fn is_busy(&self, now: Duration, present: &[WriterId], matched: usize) -> bool {
+    pub(super) fn is_busy(&self, now: Duration, present: &[Guid], matched: usize) -> bool {
         let Some(shape) = self.shape else { return false };
         let lacking = self.readers.values().any(|r| r.active && r.next < shape.count);
         let unheard =

@@ -36,7 +36,7 @@ pub struct BulkSubscription {
     queue: VecDeque<Sample>,
     depth: usize,
     /// For each writer, the source time of the first part of the body in transit.
-    written: BTreeMap<crate::sample::WriterId, Option<u64>>,
+    written: BTreeMap<grainlab_msgs::Guid, Option<u64>>,
     /// Number of matched writers of parts.
     writers: usize,
     next_look: Duration,

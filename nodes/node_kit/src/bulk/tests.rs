@@ -4,12 +4,12 @@ use super::limits::{LONGEST, SILENCE, STRIDE, WINDOW};
 use super::part::{PartError, Shape};
 use super::receiver::Receiver;
 use super::sender::Sender;
-use crate::sample::WriterId;
+use grainlab_msgs::Guid;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::time::Duration;
 
 const MS: Duration = Duration::from_millis(1);
-const SENDER: WriterId = WriterId([9; 16]);
+const SENDER: Guid = Guid([9; 16]);
 
 /// The SplitMix64 generator.
 struct Dice(u64);
@@ -38,13 +38,13 @@ fn body(seed: u64, length: usize) -> Vec<u8> {
     bytes
 }
 
-fn reader(name: u8) -> WriterId {
-    WriterId([name; 16])
+fn reader(name: u8) -> Guid {
+    Guid([name; 16])
 }
 
 enum Packet {
-    Part { to: WriterId, from: WriterId, part: PackingChunk },
-    Credit { from: WriterId, sequence: i64, credit: PackingCredit },
+    Part { to: Guid, from: Guid, part: PackingChunk },
+    Credit { from: Guid, sequence: i64, credit: PackingCredit },
 }
 
 #[derive(Clone, Copy, Default)]
@@ -57,7 +57,7 @@ struct Weather {
 }
 
 struct End {
-    id: WriterId,
+    id: Guid,
     receiver: Receiver,
     sequence: i64,
     bodies: Vec<Vec<u8>>,
@@ -70,7 +70,7 @@ struct World {
     dice: Dice,
     weather: Weather,
     sender: Sender,
-    own: WriterId,
+    own: Guid,
     ends: Vec<End>,
     packets: Vec<(Duration, Packet)>,
     left: Vec<String>,
@@ -100,7 +100,7 @@ impl World {
         self.ends.push(End { id: reader(name), receiver, sequence: 0, bodies, faults, suspended: false });
     }
 
-    fn present(&self) -> Vec<WriterId> {
+    fn present(&self) -> Vec<Guid> {
         self.ends.iter().map(|end| end.id).collect()
     }
 
@@ -337,7 +337,7 @@ fn a_restarted_writer_is_read_from_its_first_body_on() {
     let (first, second) = (body(7, 30 * STRIDE), body(8, 10 * STRIDE));
     world.offer(&first);
     (0..30).for_each(|_| world.tick());
-    world.own = WriterId([8; 16]);
+    world.own = Guid([8; 16]);
     world.sender = Sender::new(world.own);
     world.offer(&second);
     world.run_until("the new writer's body", 30, |w| w.ends.iter().all(|e| e.bodies.last() == Some(&second)));

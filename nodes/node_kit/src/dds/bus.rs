@@ -11,19 +11,19 @@ use super::lock::lock;
 use super::network::Network;
 use super::writer::Writer;
 use crate::admission::{Participant, Stranger};
-use crate::bus::{Bus, Caller, Published, PublisherId, Received, Sender, SubscriptionId, Wake};
+use crate::bus::{Bus, Caller, PublisherId, Sender, SubscriptionId, Wake};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::{Identity, Scope};
 use crate::names::Names;
 use crate::offer::Offer;
 use crate::parameters::Parameters;
-use crate::sample::{Sample, SampleId, WriterId};
+use crate::sample::{Sample, SampleId};
 use crate::services::{Declared, ServiceThread, SimTime};
 use crate::signals::Signals;
 use crate::wall_clock;
 use crate::watchdog::OpenParticipant;
-use grainlab_msgs::{Topic, TypeInfo};
+use grainlab_msgs::{Guid, Published, Received, Topic, TypeInfo};
 use mio::{Events, Interest, Poll, Token, Waker};
 use ros2_client::{Context, Gid, NodeName};
 use std::collections::{BTreeMap, BTreeSet};
@@ -84,7 +84,7 @@ pub struct DdsBus {
     /// The graph changed, and no wait has returned it yet.
     changed: bool,
     /// Writers that were said to be refused, by subscription.
-    refused: BTreeSet<(WriterId, usize)>,
+    refused: BTreeSet<(Guid, usize)>,
     gate: Arc<Gate>,
     node: Arc<Mutex<ros2_client::Node>>,
     /// Endpoints were made since the node was last announced to the ROS graph.
@@ -410,7 +410,7 @@ impl Bus for DdsBus {
         reader.map_or(0, |r| self.graph.matches_of(r.gid, |guid| self.counts(guid, &r.info)))
     }
 
-    fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId> {
+    fn foreign_writers(&self, topic: &Topic) -> Vec<Guid> {
         self.names
             .resolve(topic.name)
             .map(|name| self.graph.writers_of(&wire_name(&name), |guid| self.counts(guid, &topic.info)))
@@ -421,7 +421,7 @@ impl Bus for DdsBus {
         self.misfits_on(topic)
     }
 
-    fn strange_writers(&self, topic: &Topic) -> Vec<WriterId> {
+    fn strange_writers(&self, topic: &Topic) -> Vec<Guid> {
         self.names
             .resolve(topic.name)
             .map(|name| self.graph.writers_of(&wire_name(&name), |guid| !self.gate.admits(guid)))
@@ -470,7 +470,7 @@ impl Bus for DdsBus {
         self.gate.strangers()
     }
 
-    fn describe(&self, writer: WriterId) -> Stranger {
+    fn describe(&self, writer: Guid) -> Stranger {
         self.gate.describe(&writer.participant())
     }
 

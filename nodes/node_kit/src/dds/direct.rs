@@ -19,8 +19,8 @@ use super::network::{Network, Reach};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::offer::{Offer, user_data, wire_type};
-use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
-use grainlab_msgs::{Qos, Topic};
+use crate::sample::{Sample, SampleId, SampleInfo};
+use grainlab_msgs::{Guid, Qos, Topic};
 use ros2_client::{Context, Gid, Node};
 use rustdds::bytes::Bytes;
 use rustdds::dds::{ReadError, WriteError};
@@ -389,12 +389,12 @@ impl mio::event::Source for Inlet {
 
 fn sample(change: DeserializedCacheChange<RawBody>) -> Sample {
     let info = SampleInfo {
-        writer: WriterId(change.writer_guid.to_bytes()),
+        writer: Guid(change.writer_guid.to_bytes()),
         sequence: i64::from(change.sequence_number),
         source_time: change.source_timestamp().filter(|t| *t != Timestamp::INVALID).map(nanos),
         received: nanos(change.receive_instant),
         about: change.related_sample_identity().map(|sample| SampleId {
-            writer: WriterId(sample.writer_guid.to_bytes()),
+            writer: Guid(sample.writer_guid.to_bytes()),
             sequence: i64::from(sample.sequence_number),
         }),
     };
@@ -444,12 +444,12 @@ impl Discovery {
     pub(super) fn next(&self) -> Option<Change> {
         let misfit =
             |remote: GUID, what: &str, requested: &dyn std::fmt::Debug, offered: &dyn std::fmt::Debug| {
-                let remote = WriterId(remote.to_bytes());
+                let remote = Guid(remote.to_bytes());
                 Change::Misfit(format!("{what} ({remote}): requested {requested:?}, offered {offered:?}"))
             };
         Some(match self.0.try_recv_status()? {
             Event::WriterDetected { writer } => {
-                let id = WriterId(writer.guid.to_bytes());
+                let id = Guid(writer.guid.to_bytes());
                 let qos = offered_by(&writer.qos);
                 let offer = Offer::of_wire(id, &writer.topic_name, &writer.type_name, qos, &writer.user_data);
                 Change::Writer { writer: writer.guid.into(), topic: writer.topic_name, offer }

@@ -4,7 +4,7 @@ use super::lock::lock;
 use super::processes;
 use crate::admission::{Admission, Participant, Stranger};
 use crate::identity::{Identity, Scope};
-use crate::sample::WriterId;
+use grainlab_msgs::Guid;
 use ros2_client::Gid;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -20,7 +20,7 @@ pub(super) struct Gate {
 }
 
 fn prefix(guid: &Gid) -> Participant {
-    WriterId(guid.to_bytes16()).participant()
+    Guid(guid.to_bytes16()).participant()
 }
 
 impl Gate {
@@ -50,7 +50,7 @@ impl Gate {
         }
         // A reader without a topic is that of a service: anyone may ask.
         let Some(topic) = lock(&self.topics).get(&reader.to_bytes16()).cloned() else { return true };
-        let (taken, new) = admission.takes(WriterId(writer.to_bytes16()), &topic);
+        let (taken, new) = admission.takes(Guid(writer.to_bytes16()), &topic);
         if new {
             let stranger = admission.describe(&prefix(&writer));
             drop(admission);

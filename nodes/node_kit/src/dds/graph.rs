@@ -2,8 +2,7 @@
 
 use super::direct::Change;
 use crate::offer::{Misfit, Offer};
-use crate::sample::WriterId;
-use grainlab_msgs::TypeInfo;
+use grainlab_msgs::{Guid, TypeInfo};
 use ros2_client::Gid;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,7 +17,7 @@ pub(super) struct Graph {
 }
 
 fn prefix(guid: &Gid) -> [u8; 12] {
-    WriterId(guid.to_bytes16()).participant()
+    Guid(guid.to_bytes16()).participant()
 }
 
 impl Graph {
@@ -67,16 +66,16 @@ impl Graph {
     }
 
     /// Remote writers of a DDS topic name, sorted, of those that count.
-    pub(super) fn writers_of(&self, dds_topic: &str, counts: impl Fn(&Gid) -> bool) -> Vec<WriterId> {
+    pub(super) fn writers_of(&self, dds_topic: &str, counts: impl Fn(&Gid) -> bool) -> Vec<Guid> {
         self.writers
             .iter()
             .filter(|(guid, (topic, _))| topic == dds_topic && counts(guid))
-            .map(|(g, _)| WriterId(g.to_bytes16()))
+            .map(|(g, _)| Guid(g.to_bytes16()))
             .collect()
     }
 
     /// Why the messages of a writer must not be read as those of a type.
-    pub(super) fn misfit(&self, writer: &WriterId, info: &TypeInfo) -> Option<Misfit> {
+    pub(super) fn misfit(&self, writer: &Guid, info: &TypeInfo) -> Option<Misfit> {
         let (_, offer) = self.writers.get(&Gid::from(writer.0))?;
         offer.as_ref()?.misfit(info)
     }

@@ -2,9 +2,9 @@
 
 use super::direct::{CDR_BE, CDR_LE, HEADER, Outlet, WriteFailure};
 use super::lock::lock;
-use crate::bus::Published;
 use crate::bus_error::BusError;
-use crate::sample::{SampleId, WriterId};
+use crate::sample::SampleId;
+use grainlab_msgs::{Guid, Published};
 use ros2_client::Gid;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -31,8 +31,8 @@ impl Writer {
         Self { outlet, gid, topic, window, count, full, wholes }
     }
 
-    pub(super) fn id(&self) -> WriterId {
-        WriterId(self.gid.to_bytes16())
+    pub(super) fn id(&self) -> Guid {
+        Guid(self.gid.to_bytes16())
     }
 
     /// Publishes a body with its encapsulation header and returns the sequence number.

@@ -2,14 +2,14 @@
 
 use super::state::{Reader, State, Writer};
 use crate::admission::{Admission, Participant, Stranger};
-use crate::bus::{Bus, Caller, Published, PublisherId, Received, Sender, SubscriptionId, Wake};
+use crate::bus::{Bus, Caller, PublisherId, Sender, SubscriptionId, Wake};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::Identity;
 use crate::names::Names;
 use crate::offer::Offer;
-use crate::sample::{Sample, SampleId, WriterId};
-use grainlab_msgs::Topic;
+use crate::sample::{Sample, SampleId};
+use grainlab_msgs::{Guid, Published, Received, Topic};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -62,7 +62,7 @@ impl MemoryBus {
     }
 
     /// Whether it is an admitted writer of another process.
-    fn counts(&self, writer: WriterId) -> bool {
+    fn counts(&self, writer: Guid) -> bool {
         let participant = writer.participant();
         participant != self.participant && self.admission.admits(&participant)
     }
@@ -175,21 +175,21 @@ impl Bus for MemoryBus {
         })
     }
 
-    fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId> {
+    fn foreign_writers(&self, topic: &Topic) -> Vec<Guid> {
         let Ok(resolved) = self.names.resolve(topic.name) else { return Vec::new() };
         let state = self.state.borrow();
         let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == resolved);
-        let mut ids: Vec<WriterId> = on_topic.map(|w| w.id).filter(|id| self.counts(*id)).collect();
+        let mut ids: Vec<Guid> = on_topic.map(|w| w.id).filter(|id| self.counts(*id)).collect();
         ids.sort();
         ids
     }
 
-    fn strange_writers(&self, topic: &Topic) -> Vec<WriterId> {
+    fn strange_writers(&self, topic: &Topic) -> Vec<Guid> {
         let Ok(resolved) = self.names.resolve(topic.name) else { return Vec::new() };
         let state = self.state.borrow();
-        let strange = |id: &WriterId| !self.admission.admits(&id.participant());
+        let strange = |id: &Guid| !self.admission.admits(&id.participant());
         let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == resolved).map(|w| w.id);
-        let mut ids: Vec<WriterId> = on_topic.filter(strange).collect();
+        let mut ids: Vec<Guid> = on_topic.filter(strange).collect();
         ids.sort();
         ids
     }
@@ -251,7 +251,7 @@ impl Bus for MemoryBus {
         self.admission.strangers()
     }
 
-    fn describe(&self, writer: WriterId) -> Stranger {
+    fn describe(&self, writer: Guid) -> Stranger {
         self.admission.describe(&writer.participant())
     }
 

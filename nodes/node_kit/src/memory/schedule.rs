@@ -2,8 +2,8 @@
 
 use super::bus::MemoryBus;
 use super::hub::Hub;
-use crate::exit::Exit;
 use crate::node::{Next, Node, NodeError};
+use grainlab_msgs::Exit;
 use std::time::Duration;
 
 /// One node on its bus.

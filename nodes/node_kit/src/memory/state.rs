@@ -3,8 +3,8 @@
 use super::faults::{Dice, Faults};
 use crate::admission::Participant;
 use crate::demand::Demand;
-use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
-use grainlab_msgs::{Qos, Topic};
+use crate::sample::{Sample, SampleId, SampleInfo};
+use grainlab_msgs::{Guid, Qos, Topic};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
@@ -25,7 +25,7 @@ pub(super) struct State {
 
 #[derive(Debug)]
 pub(super) struct Writer {
-    pub(super) id: WriterId,
+    pub(super) id: Guid,
     pub(super) topic: String,
     pub(super) type_name: &'static str,
     pub(super) qos: Qos,
@@ -47,11 +47,11 @@ pub(super) struct Reader {
 }
 
 /// The GUID of a participant's endpoint.
-pub(super) fn writer_id(participant: Participant, entity: usize) -> WriterId {
+pub(super) fn writer_id(participant: Participant, entity: usize) -> Guid {
     let mut bytes = [0; 16];
     bytes[..12].copy_from_slice(&participant);
     bytes[12..].copy_from_slice(&(entity as u32).to_be_bytes());
-    WriterId(bytes)
+    Guid(bytes)
 }
 
 impl State {

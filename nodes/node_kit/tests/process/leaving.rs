@@ -2,10 +2,8 @@
 
 use super::{Role, TIME_LIMIT, claim};
 use grainlab_msgs::msg::StrainRate;
-use grainlab_msgs::topics;
-use grainlab_node_kit::{
-    Bus, BusError, DdsBus, Demand, Exit, Liveliness, Names, Network, PeerWatch, Report, WriterId,
-};
+use grainlab_msgs::{Guid, topics};
+use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Exit, Liveliness, Names, Network, PeerWatch, Report};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
@@ -15,7 +13,7 @@ struct Observer {
     watch: PeerWatch,
     subscriptions: Vec<grainlab_node_kit::SubscriptionId>,
     /// Highest sequence number and count of samples of each writer.
-    seen: BTreeMap<WriterId, (i64, u64)>,
+    seen: BTreeMap<Guid, (i64, u64)>,
     last: Option<Report>,
 }
 

@@ -5,14 +5,14 @@ use crate::admission::Participant;
 use crate::bus::SubscriptionId;
 use crate::bus_error::BusError;
 use crate::dds::lock::lock;
-use crate::sample::{Sample, WriterId};
-use grainlab_msgs::{Topic, TypeInfo};
+use crate::sample::Sample;
+use grainlab_msgs::{Guid, Topic, TypeInfo};
 use ros2_client::Gid;
 
 impl DdsBus {
     /// Whether a remote writer counts for a reader of this type: it is admitted, and its messages are read.
     pub(super) fn counts(&self, writer: &Gid, info: &TypeInfo) -> bool {
-        self.gate.admits(writer) && self.graph.misfit(&WriterId(writer.to_bytes16()), info).is_none()
+        self.gate.admits(writer) && self.graph.misfit(&Guid(writer.to_bytes16()), info).is_none()
     }
 
     /// The next sample whose writer fits the type of the subscription; others are counted and said once.
@@ -52,8 +52,8 @@ impl DdsBus {
     /// The participants with a writer on a topic that does not fit.
     pub(super) fn misfits_on(&self, topic: &Topic) -> Vec<Participant> {
         let Ok(name) = self.names.resolve(topic.name) else { return Vec::new() };
-        let misfits = |guid: &Gid| self.graph.misfit(&WriterId(guid.to_bytes16()), &topic.info).is_some();
+        let misfits = |guid: &Gid| self.graph.misfit(&Guid(guid.to_bytes16()), &topic.info).is_some();
         let found = self.graph.writers_of(&wire_name(&name), misfits);
-        found.iter().map(WriterId::participant).collect()
+        found.iter().map(Guid::participant).collect()
     }
 }

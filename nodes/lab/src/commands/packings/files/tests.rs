@@ -1,6 +1,6 @@
 use super::*;
-use grainlab_msgs::{msg, to_cdr, topics};
-use grainlab_recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
+use grainlab_msgs::{Guid, msg, to_cdr, topics};
+use grainlab_recordings::{Incoming, RunWriter, TopicSpec, WriterOptions};
 
 /// A recording whose one packing message is not a valid packing: the error and the exit code show whether it
 /// was reached.

@@ -1,12 +1,11 @@
 //! The report of a process on `/diagnostics`, as a value and as a message.
 
-use crate::bus::{Bus, Published, Received};
+use crate::clock::wall_stamp;
+use crate::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use crate::exit::Exit;
+use crate::guid::Guid;
 use crate::health::{Health, Level};
-use crate::sample::WriterId;
-use grainlab_msgs::builtin_interfaces::Time;
-use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
-use grainlab_msgs::std_msgs::Header;
+use crate::std_msgs::Header;
 
 const PID: &str = "pid:";
 const FINAL: &str = "final";
@@ -15,6 +14,30 @@ const PUBLISHED: &str = "published";
 const FULL: &str = "full";
 const RECEIVED: &str = "received";
 const REFUSED: &str = "refused";
+
+/// The statistics of one writer of a process.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Published {
+    /// Resolved topic name, as in `/lab/stress`.
+    pub topic: String,
+    /// The writer.
+    pub writer: Guid,
+    /// Number of samples published, which is the RTPS sequence number of the last one.
+    pub count: u64,
+    /// Number of samples dropped because a reliable reader was too far behind.
+    pub full: u64,
+}
+
+/// The statistics of one subscription of a process.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Received {
+    /// Resolved topic name.
+    pub topic: String,
+    /// Number of samples taken.
+    pub taken: u64,
+    /// Number of samples whose content was refused: undecodable, or invalid for the node.
+    pub refused: u64,
+}
 
 /// One heartbeat of one process.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,32 +58,6 @@ pub struct Report {
 }
 
 impl Report {
-    /// The current report of this process. `next` is the writer that will publish it: its count includes the report.
-    pub fn of(
-        bus: &dyn Bus,
-        node: &str,
-        pid: u32,
-        health: Health,
-        exit: Option<Exit>,
-        next: Option<WriterId>,
-    ) -> Self {
-        let mut published = bus.published();
-        for writer in published.iter_mut().filter(|w| Some(w.writer) == next) {
-            writer.count += 1;
-        }
-        let mut received: Vec<Received> = Vec::new();
-        for entry in bus.received() {
-            match received.iter_mut().find(|r| r.topic == entry.topic) {
-                Some(sum) => {
-                    sum.taken = sum.taken.max(entry.taken);
-                    sum.refused += entry.refused;
-                }
-                None => received.push(entry),
-            }
-        }
-        Self { node: node.into(), pid, health, exit, published, received }
-    }
-
     /// As a message; `nanos` is the time of the report, ns since 1970.
     pub fn to_message(&self, nanos: u64) -> DiagnosticArray {
         let mut values = Vec::new();
@@ -152,15 +149,9 @@ impl Report {
     }
 }
 
-fn writer_and_count(value: &str) -> Option<(WriterId, u64)> {
+fn writer_and_count(value: &str) -> Option<(Guid, u64)> {
     let (writer, count) = value.split_once(' ')?;
     Some((writer.parse().ok()?, count.parse().ok()?))
-}
-
-/// Wall-clock time as a ROS stamp.
-pub(crate) fn wall_stamp(wall_nanos: u64) -> Time {
-    let sec = i32::try_from(wall_nanos / 1_000_000_000).unwrap_or(i32::MAX);
-    Time { sec, nanosec: (wall_nanos % 1_000_000_000) as u32 }
 }
 
 #[cfg(test)]
@@ -168,7 +159,7 @@ mod tests {
     use super::*;
 
     fn report() -> Report {
-        let writer = WriterId([7; 16]);
+        let writer = Guid([7; 16]);
         Report {
             node: "/lab/servo".into(),
             pid: 4711,
@@ -176,7 +167,7 @@ mod tests {
             exit: Some(Exit::DataLoss),
             published: vec![
                 Published { topic: "/lab/strain_rate".into(), writer, count: 12, full: 3 },
-                Published { topic: "/diagnostics".into(), writer: WriterId([8; 16]), count: 2, full: 0 },
+                Published { topic: "/diagnostics".into(), writer: Guid([8; 16]), count: 2, full: 0 },
             ],
             received: vec![Received { topic: "/lab/stress".into(), taken: 12, refused: 1 }],
         }
