@@ -11,7 +11,8 @@
 //! - `player`: the schedule of a playback, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and recordings
 //! - [`export`]: packings to CSV and LAMMPS dump files
-//! - [`input`]: external files, regular and of bounded size; [`runs`]: run directories
+//! - [`input`]: external files, regular and of bounded size; [`runs`]: run directories; [`scenes`]: scenes by name or path
+//! - [`strangers`]: processes that are not part of a run, and the writers of its results
 //!
 //! This crate does not use DDS: the recorder and player nodes pass samples to the writer and take them from
 //! the player.
@@ -32,6 +33,8 @@ mod qos;
 mod reader;
 mod recover;
 pub mod runs;
+pub mod scenes;
+pub mod strangers;
 mod writer;
 
 pub use compression::Compression;

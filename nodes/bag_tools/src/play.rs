@@ -5,9 +5,8 @@ mod outlet;
 mod session;
 
 use grainlab_console::Failure;
-use grainlab_console::network::tool_bus;
 use grainlab_msgs::topics;
-use grainlab_node_kit::{Bus, Exit};
+use grainlab_node_kit::{Bus, Exit, tool_bus};
 use grainlab_recordings::{PlayOptions, Player, QosOverrides, Recording, StoredDefinition};
 use keys::Keys;
 use outlet::{Outlets, offer, pause, wait_for_readers};

@@ -14,9 +14,9 @@ mod verdict;
 
 use super::folder;
 use clap::ValueEnum;
-use grainlab_console::plot::Theme;
 use grainlab_console::{Failure, Format, json, print, say};
 use grainlab_node_kit::Exit;
+use grainlab_page::plot::Theme;
 use grainlab_scene::Scene;
 use knobs::{Knob, Servoed, Setting, converged};
 use report::Report;
@@ -140,7 +140,7 @@ fn seeds(scene: &Scene, count: u32) -> Vec<u64> {
 
 fn scene(args: &Args) -> Result<Scene, Failure> {
     match &args.scene {
-        Some(name) => Ok(grainlab_console::scenes::load(name, &[], None)?.scene),
+        Some(name) => Ok(grainlab_recordings::scenes::load(name, &[], None)?.scene),
         None => press(),
     }
 }

@@ -13,10 +13,10 @@ pub(crate) use report::Row;
 
 use super::folder;
 use super::packing::load;
-use grainlab_console::plot::Theme;
 use grainlab_console::{Failure, Format, json, print};
 use grainlab_core::Packing;
 use grainlab_node_kit::Exit;
+use grainlab_page::plot::Theme;
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if !args.noise.is_empty() {

@@ -9,9 +9,9 @@ mod row;
 mod waves;
 
 use super::folder;
-use grainlab_console::plot::Theme;
 use grainlab_console::{Failure, Format, json, print, say};
 use grainlab_node_kit::Exit;
+use grainlab_page::plot::Theme;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

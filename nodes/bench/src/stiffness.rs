@@ -10,11 +10,11 @@ pub(crate) use report::Row;
 
 use super::folder;
 use super::packing::{copies, load, repeated};
-use grainlab_console::plot::Theme;
 use grainlab_console::{Failure, Format, json, print};
 use grainlab_core::{Mat3, Packing};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 use grainlab_node_kit::Exit;
+use grainlab_page::plot::Theme;
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let paths = args.packing.iter().map(|path| load(Some(path)));

@@ -14,7 +14,7 @@ use crate::member::Member;
 use crate::progress::Progress;
 use crate::run_state::reason;
 use grainlab_console::{Failure, worse};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 
 /// Where the members of a campaign run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]

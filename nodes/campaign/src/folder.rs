@@ -5,7 +5,7 @@ use crate::lock::Lock;
 use crate::member::Member;
 use crate::run_state::{RunState, run_state};
 use grainlab_console::{Failure, json};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 use grainlab_recordings::input;
 use std::io;
 use std::path::{Path, PathBuf};

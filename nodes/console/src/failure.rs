@@ -1,6 +1,6 @@
 //! Failures of a command.
 
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 use std::fmt;
 
 /// A message for stderr and its exit code.

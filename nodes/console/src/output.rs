@@ -28,7 +28,7 @@ macro_rules! say {
 /// Prints a line on stderr, as [`say!`] does.
 pub fn say_line(mut line: String) {
     line.push('\n');
-    grainlab_node_kit::write_above_live_line(&line);
+    crate::terminal::write_above_live_line(&line);
 }
 
 /// Writes `text` to stdout. A closed pipe (`| head`) is not an error.

@@ -15,9 +15,9 @@ use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::Participant;
 use grainlab_node_kit::{
-    BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
+    BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Participant, Publisher,
+    Subscription,
 };
 use grainlab_scene::Scene;
 use std::time::Duration;

@@ -6,9 +6,9 @@ use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Measured};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Packing};
 use grainlab_msgs::topics;
-use grainlab_node_kit::ClaimedDomain;
 use grainlab_node_kit::{
-    BulkPublisher, Bus, BusError, DdsBus, Demand, Exit, Names, NodeError, Report, Subscription, drive,
+    BulkPublisher, Bus, BusError, ClaimedDomain, DdsBus, Demand, Exit, Names, NodeError, Report,
+    Subscription, drive,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

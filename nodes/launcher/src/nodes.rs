@@ -5,17 +5,18 @@
 use crate::last_packing;
 use clap::ValueEnum;
 use grainlab_acoustic_probe::AcousticProbe;
-use grainlab_console::{Failure, scenes};
+use grainlab_console::Failure;
 use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_foxglove_bridge::FoxgloveBridge;
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::NodeSpec;
-use grainlab_node_kit::{Bus, Exit, Names, Node, NodeError, ParameterSpec, Parameters, RosArgs, Scope};
+use grainlab_node_kit::{
+    Bus, Exit, Names, Node, NodeError, NodeSpec, ParameterSpec, Parameters, RosArgs, Scope,
+};
 use grainlab_packing_pictures::PackingPictures;
 use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
-use grainlab_recordings::input;
+use grainlab_recordings::{input, scenes};
 use grainlab_servo_controller::ServoController;
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -247,7 +248,7 @@ impl FromStr for NodeKind {
 fn simulator_parameters() -> Vec<ParameterSpec> {
     let mut all = vec![
         ParameterSpec::new("scene", "demo", "scene to simulate: a built-in one or a file"),
-        scenes::set_parameter(),
+        grainlab_recorder::set_parameter(),
         ParameterSpec::new("seed", -1_i64, "seed of every random choice; -1: the one of the scene"),
         ParameterSpec::new(
             "resume",

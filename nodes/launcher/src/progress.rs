@@ -2,9 +2,8 @@
 
 use crate::phase_line::{self, PhaseName, Rest};
 use crate::watch::PhaseReport;
-use grainlab_console::{Pace, say, say_line};
+use grainlab_console::{Pace, Terminal, draw_live_line, erase_live_line, say, say_line};
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
-use grainlab_node_kit::{Terminal, draw_live_line, erase_live_line};
 use std::time::{Duration, Instant};
 
 /// Interval of the lines during a long phase, where there is no terminal.

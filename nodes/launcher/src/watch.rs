@@ -3,16 +3,15 @@
 use crate::run::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::Failure;
-use grainlab_console::network::bus_named;
 use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
 use grainlab_fabric_analyzer::WITHOUT_MODULI;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Estimate, Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, stamp, topics};
-use grainlab_node_kit::member_of;
 use grainlab_node_kit::{
-    Bus, BusError, DdsBus, Demand, Identity, Names, Report, Stranger, Subscription, watchdog,
+    Bus, BusError, DdsBus, Demand, Identity, Names, Report, Stranger, Subscription, bus_named, member_of,
+    watchdog,
 };
 use grainlab_recorder::strangers::name;
 use std::collections::BTreeSet;

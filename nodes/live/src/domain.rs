@@ -1,8 +1,7 @@
 //! Where to look for a run.
 
 use grainlab_console::Failure;
-use grainlab_console::network::{is_in_use, is_launched};
-use grainlab_node_kit::Network;
+use grainlab_node_kit::{Network, is_in_use, is_launched};
 
 /// Domains that a launcher chooses from.
 const LAUNCHED: std::ops::RangeInclusive<u16> = 0..=101;

@@ -6,8 +6,8 @@ use crate::laboratory::Laboratory;
 use crate::server::Server;
 use crate::snapshot::{Pictures, Snapshot};
 use crate::status::waiting;
-use grainlab_console::{Failure, print};
-use grainlab_node_kit::{Exit, Logger, Names, RosArgs, Signals};
+use grainlab_console::{Failure, Signals, print};
+use grainlab_node_kit::{Exit, Logger, Names, RosArgs};
 use std::time::{Duration, Instant};
 
 /// Time between two snapshots.

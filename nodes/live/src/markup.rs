@@ -2,10 +2,10 @@
 
 use crate::laboratory::Laboratory;
 use grainlab_console::count;
-use grainlab_console::html::{Cell, escaped, paragraph, table};
 use grainlab_core::ComponentControl;
 use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::simulated_seconds;
+use grainlab_page::html::{Cell, escaped, paragraph, table};
 use grainlab_report::{COMPONENTS, card};
 use grainlab_results::{Inference, by_origin};
 use serde_json::json;

@@ -1,7 +1,7 @@
 //! The page: what stays while its parts change.
 
-use grainlab_console::html::{code, paragraph, section};
-use grainlab_console::plot::page_style;
+use grainlab_page::html::{code, paragraph, section};
+use grainlab_page::plot::page_style;
 use grainlab_report::{SCRIPT, STYLE};
 
 const OWN_STYLE: &str = include_str!("../assets/live.css");

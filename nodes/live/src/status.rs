@@ -2,9 +2,9 @@
 
 use crate::laboratory::{End, Laboratory};
 use grainlab_console::count;
-use grainlab_console::html::{Cell, escaped, paragraph, table};
 use grainlab_msgs::boundary::RunStatus;
 use grainlab_node_kit::{Level, Liveliness, Peer, run_of};
+use grainlab_page::html::{Cell, escaped, paragraph, table};
 use std::time::Duration;
 
 /// Silence of the simulator that is mentioned: it reports once a second.

@@ -14,8 +14,8 @@
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
 //!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
-//! - `exit`: exit codes; `signals`: SIGINT and SIGTERM; `logging`: log lines on stderr; `rosout`: the same on `/rosout`;
-//!   `wall_clock`: their stamps; `terminal`: its width and colours, and a line that is drawn again
+//! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants
+//! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`; `wall_clock`: their stamps
 
 mod admission;
 mod args;
@@ -24,6 +24,7 @@ mod bus;
 mod bus_error;
 mod dds;
 mod demand;
+mod free_domain;
 mod identity;
 mod logging;
 mod memory;
@@ -38,8 +39,7 @@ mod rosout;
 mod run;
 mod sample;
 mod services;
-mod signals;
-mod terminal;
+mod tool_bus;
 mod typed;
 mod wall_clock;
 pub mod watchdog;
@@ -52,6 +52,7 @@ pub use bus::{Bus, Caller, PublisherId, Sender, SubscriptionId, Wake};
 pub use bus_error::BusError;
 pub use dds::{ClaimedDomain, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers};
 pub use demand::Demand;
+pub use free_domain::{FreeDomain, is_in_use, is_launched};
 pub use grainlab_msgs::{Exit, Health, Level, Published, Received, Report};
 pub use identity::{
     Identity, MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId, RunIdError, Scope, may_be_ours, member_of,
@@ -69,7 +70,6 @@ pub use parameters::{
 pub use peers::{Liveliness, Peer, PeerWatch, Peers, SILENCE};
 pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};
 pub use sample::{Sample, SampleId, SampleInfo};
-pub use signals::Signals;
-pub use terminal::{Terminal, draw_live_line, erase_live_line, write_above_live_line};
+pub use tool_bus::{bus_in, bus_named, tool_bus};
 pub use typed::{Publisher, Subscription, TakeError};
 pub use worker::Worker;

@@ -2,8 +2,8 @@
 
 use crate::args::RosArgs;
 use crate::dds::LOG_TARGET;
-use crate::terminal::{colour_wanted, write_above_live_line};
 use crate::wall_clock::wall_nanos;
+use grainlab_console::{colour_wanted, write_above_live_line};
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::wall_stamp;
 use log::{Level, LevelFilter, Metadata, Record};

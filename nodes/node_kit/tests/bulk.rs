@@ -1,9 +1,8 @@
 //! Messages of any length on the bus in memory.
 
 use grainlab_msgs::topics;
-use grainlab_node_kit::BULK_LIMIT;
 use grainlab_node_kit::{
-    BulkPublisher, BulkSubscription, Bus, BusError, Demand, Faults, Hub, MemoryBus, Names, Sample,
+    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, BusError, Demand, Faults, Hub, MemoryBus, Names, Sample,
 };
 use std::time::Duration;
 

@@ -2,9 +2,9 @@
 
 use grainlab_msgs::msg::Packing;
 use grainlab_msgs::{from_cdr, to_cdr, topics};
-use grainlab_node_kit::BULK_LIMIT;
-use grainlab_node_kit::ClaimedDomain;
-use grainlab_node_kit::{BulkPublisher, BulkSubscription, Bus, BusError, DdsBus, Demand, Names, Network};
+use grainlab_node_kit::{
+    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, BusError, ClaimedDomain, DdsBus, Demand, Names, Network,
+};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};

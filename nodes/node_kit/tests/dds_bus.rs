@@ -3,8 +3,9 @@
 use grainlab_msgs::msg::{RunState, StrainRate};
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::{Qos, Topic, topics};
-use grainlab_node_kit::ClaimedDomain;
-use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake};
+use grainlab_node_kit::{
+    Bus, BusError, ClaimedDomain, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake,
+};
 use std::time::{Duration, Instant};
 
 /// Far above the time for discovery on an idle machine (0.2 s), so that the test passes on a loaded one.

@@ -1,8 +1,9 @@
 //! Writers whose messages have another definition than those of the reader: they are not read by position.
 
 use grainlab_msgs::{Topic, TypeInfo, topics};
-use grainlab_node_kit::{BULK_LIMIT, BulkPublisher, BulkSubscription};
-use grainlab_node_kit::{Bus, ClaimedDomain, DdsBus, Demand, Names};
+use grainlab_node_kit::{
+    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, ClaimedDomain, DdsBus, Demand, Names,
+};
 use std::time::{Duration, Instant};
 
 /// Far above the time for discovery on an idle machine (0.2 s), so that the test passes on a loaded one.

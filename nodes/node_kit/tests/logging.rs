@@ -2,9 +2,8 @@
 
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::topics;
-use grainlab_node_kit::Logger;
 use grainlab_node_kit::{
-    Bus, Demand, Exit, Health, Hub, Names, Next, Node, NodeError, RosArgs, Subscription, drive,
+    Bus, Demand, Exit, Health, Hub, Logger, Names, Next, Node, NodeError, RosArgs, Subscription, drive,
 };
 
 struct Idle;

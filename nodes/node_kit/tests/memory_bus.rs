@@ -2,10 +2,9 @@
 
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
-use grainlab_node_kit::{Actor, run_until};
 use grainlab_node_kit::{
-    Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, Publisher, Subscription,
-    Wake,
+    Actor, Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, Publisher,
+    Subscription, Wake, run_until,
 };
 use std::time::Duration;
 

@@ -4,10 +4,9 @@
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
-use grainlab_node_kit::ClaimedDomain;
 use grainlab_node_kit::{
-    Bus, DdsBus, Demand, Exit, Health, Hub, Names, Next, Node, NodeError, Publisher, Report, Subscription,
-    Worker, drive,
+    Bus, ClaimedDomain, DdsBus, Demand, Exit, Health, Hub, Names, Next, Node, NodeError, Publisher, Report,
+    Subscription, Worker, drive,
 };
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};

@@ -4,8 +4,7 @@
 //! results refer to its samples (see `SampleInfo::about`).
 
 use grainlab_msgs::{Guid, Topic, topics};
-use grainlab_node_kit::Participant;
-use grainlab_node_kit::SampleInfo;
+use grainlab_node_kit::{Participant, SampleInfo};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Maximum number of participants counted separately.

@@ -2,7 +2,7 @@
 //!
 //! - [`Settings`], [`parameters`]: what is recorded, and where to
 //! - `binding`: the messages of a run by hand; [`repeats`]: repetitions of recorded messages
-//! - [`strangers`]: processes on the bus that are not part of the run, and the writers of the results
+//! - [`strangers`]: processes on the bus that are not part of the run
 //! - [`OtherTopics`], [`Wanted`]: topics of other programs, found on the bus
 //! - [`Recorder`]: the node; [`ResultSlot`]: the finished recording
 //! - [`SnapshotSettings`]: the last seconds in memory, written when asked to
@@ -20,6 +20,6 @@ mod wanted;
 
 pub use discovery::OtherTopics;
 pub use node::{Recorder, ResultSlot};
-pub use settings::{Settings, contract_topics, parameters};
+pub use settings::{Settings, contract_topics, parameters, set_parameter};
 pub use snapshot::SnapshotSettings;
 pub use wanted::Wanted;

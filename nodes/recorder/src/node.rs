@@ -5,17 +5,16 @@ use crate::binding::{Binding, Outside};
 use crate::discovery::{Finder, Found};
 use crate::repeats::{Novelty, Repeats};
 use crate::snapshot::{Kept, Snapshot};
-use crate::strangers::{self, Authors, StrangerView};
+use crate::strangers::grouped;
 use crate::tallies::losses;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Guid, Topic, from_cdr, topics};
 use grainlab_node_kit::{
-    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, Stranger,
-    SubscriptionId,
+    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Published, Report, Sample,
+    Stranger, SubscriptionId, member_of, run_of,
 };
-use grainlab_node_kit::{Published, member_of, run_of};
-use grainlab_recordings::Finished;
-use grainlab_recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec};
+use grainlab_recordings::strangers::{self, Authors, StrangerView};
+use grainlab_recordings::{Finished, Incoming, Outcome, Recording, RunWriter, TopicSpec};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -296,7 +295,7 @@ impl Recorder {
             let ignored = topics.iter().map(|(topic, count)| ((*topic).to_owned(), *count)).collect();
             Stranger { ignored, ..bus.describe(Guid::of_participant(*participant)) }
         });
-        strangers::grouped(of_bus.into_iter().chain(of_binding))
+        grouped(of_bus.into_iter().chain(of_binding))
     }
 
     /// Waits for messages known to be in transit, then for a short pause if any process may still publish.

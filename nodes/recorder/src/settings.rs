@@ -3,12 +3,12 @@
 use crate::discovery::OtherTopics;
 use crate::snapshot::SnapshotSettings;
 use grainlab_console::Failure;
-use grainlab_console::scenes::{self, SceneText};
 use grainlab_msgs::Topic;
 use grainlab_msgs::topics::TOPICS;
 use grainlab_node_kit::{ParameterSpec, Parameters};
 use grainlab_recordings::WriterOptions;
 use grainlab_recordings::runs::{RUNS, create_run_directory};
+use grainlab_recordings::scenes::{self, SceneText};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -52,10 +52,16 @@ pub fn parameters() -> Vec<ParameterSpec> {
             "",
             "scene of the run, a built-in name or a file, attached to the recording",
         ),
-        scenes::set_parameter(),
+        set_parameter(),
         ParameterSpec::new("seed", -1_i64, "seed of the run; -1: the one of the scene"),
         ParameterSpec::new("append", false, "continue the recording in output, in its next file"),
     ]
+}
+
+/// The parameter of nodes for keys of the scene.
+pub fn set_parameter() -> ParameterSpec {
+    let meaning = "keys of the scene to set, as in [grains.count=500, friction=0.2]";
+    ParameterSpec::new("set", Vec::<String>::new(), meaning)
 }
 
 impl Settings {

@@ -4,8 +4,8 @@ use crate::figure::{PageFigure, number};
 use crate::phased::Phased;
 use crate::timeline::{COMPONENTS, Structure, Timeline};
 use grainlab_console::count;
-use grainlab_console::html::{escaped, paragraph};
-use grainlab_console::plot::{Axis, Band, Entry, Figure, Line, Marker, Point, Scale, Series, Strip};
+use grainlab_page::html::{escaped, paragraph};
+use grainlab_page::plot::{Axis, Band, Entry, Figure, Line, Marker, Point, Scale, Series, Strip};
 use std::fmt::Write;
 
 /// Seconds to milliseconds.

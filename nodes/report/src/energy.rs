@@ -2,9 +2,9 @@
 
 use crate::figure::{PageFigure, number};
 use crate::run::Run;
-use grainlab_console::html::{Cell, table};
-use grainlab_console::plot::{Bar, Bars};
 use grainlab_msgs::boundary::EnergyReading;
+use grainlab_page::html::{Cell, table};
+use grainlab_page::plot::{Bar, Bars};
 use std::fmt::Write;
 
 /// Columns of the table that add up several parts of a balance.

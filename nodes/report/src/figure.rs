@@ -1,6 +1,6 @@
 //! A plot with its caption, its data, and buttons that save both.
 
-use grainlab_console::html::{escaped, script_text};
+use grainlab_page::html::{escaped, script_text};
 
 /// A plot of a page.
 pub(crate) struct PageFigure<'a> {

@@ -2,7 +2,7 @@
 
 use crate::run::Run;
 use grainlab_console::count;
-use grainlab_console::html::{Cell, code, escaped, paragraph, table};
+use grainlab_page::html::{Cell, code, escaped, paragraph, table};
 
 impl Run {
     /// Counts and warnings.

@@ -3,9 +3,9 @@
 use crate::figure::{PageFigure, number};
 use crate::run::{Run, recommended};
 use grainlab_console::fixed;
-use grainlab_console::html::{Cell, escaped, paragraph, table};
-use grainlab_console::plot::{Bar, Bars};
 use grainlab_core::results::PackingReport;
+use grainlab_page::html::{Cell, escaped, paragraph, table};
+use grainlab_page::plot::{Bar, Bars};
 use grainlab_results::Inference;
 use grainlab_results::brief::moduli;
 use grainlab_results::read_back::InvertedPacking;

@@ -5,8 +5,8 @@ use crate::inferred::COUNTED;
 use crate::outliers::Outliers;
 use crate::page::whole;
 use crate::run::{Run, recommended};
-use grainlab_console::html::{escaped, paragraph};
 use grainlab_console::{CsvText, count};
+use grainlab_page::html::{escaped, paragraph};
 use grainlab_results::brief::moduli;
 use std::collections::BTreeMap;
 
@@ -142,7 +142,7 @@ pub fn overview(runs: &[(Run, String)]) -> String {
          <thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n\
          <p class=\"save\"><button type=\"button\" data-save=\"csv\">Save CSV</button></p>\
          <script type=\"text/csv\">{}</script></div>\n",
-        grainlab_console::html::script_text(&csv.finish())
+        grainlab_page::html::script_text(&csv.finish())
     );
     let title = format!("{} of {}", count(runs.len(), "run"), count(by_scene.len(), "scene"));
     let heading = format!("<p class=\"eyebrow\">grainlab</p>\n<h1>{title}</h1>\n");

@@ -2,9 +2,9 @@
 
 use crate::figure::{PageFigure, number};
 use crate::run::Run;
-use grainlab_console::html::{Cell, paragraph, table};
-use grainlab_console::plot::{Bar, Bars};
 use grainlab_core::Stiffness;
+use grainlab_page::html::{Cell, paragraph, table};
+use grainlab_page::plot::{Bar, Bars};
 use std::fmt::Write;
 
 /// Pa to MPa.
@@ -66,7 +66,7 @@ impl Run {
             axis.z,
             stiffness.method.name().replace('_', " ")
         );
-        let caption = grainlab_console::html::escaped(&caption);
+        let caption = grainlab_page::html::escaped(&caption);
         let header = ["modulus", "relaxed", "mean rotation", "affine", "relaxed / affine"];
         let about = "G12 is the shear modulus across the axis, G13 along it, Θ the bulk modulus under isotropic strain.";
         let figure = PageFigure { id: "moduli", svg, caption: about, csv }.html();

@@ -3,8 +3,8 @@
 use crate::inferred::COUNTED;
 use crate::run::{Run, recommended};
 use grainlab_console::fixed;
-use grainlab_console::html::{escaped, section};
-use grainlab_console::plot::page_style;
+use grainlab_page::html::{escaped, section};
+use grainlab_page::plot::page_style;
 use grainlab_results::brief::{ended, moduli};
 use grainlab_results::read_back::InvertedPacking;
 use grainlab_viewer::PictureError;

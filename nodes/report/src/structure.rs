@@ -2,10 +2,10 @@
 
 use crate::figure::{PageFigure, number};
 use crate::run::Run;
-use grainlab_console::html::paragraph;
-use grainlab_console::plot::{Axis, Entry, Figure, Line, Point, Rose, Series, Strip};
 use grainlab_core::results::{FORCE_BIN_WIDTH, ORIENTATION_BINS, PackingReport};
 use grainlab_core::{Packing, Vec3};
+use grainlab_page::html::paragraph;
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Point, Rose, Series, Strip};
 use std::fmt::Write;
 
 /// Values in the bins of orientation over their mean, and a of 1 + a (3 x² − 1).

@@ -2,11 +2,11 @@
 
 use crate::figure::{PageFigure, number};
 use crate::run::Run;
-use grainlab_console::html::{Cell, escaped, paragraph, table};
-use grainlab_console::plot::{Axis, Entry, Figure, Marker, Point, Series, Strip};
 use grainlab_console::{count, fixed};
 use grainlab_core::{MeasuredWave, Vec3};
 use grainlab_emt::Modulus;
+use grainlab_page::html::{Cell, escaped, paragraph, table};
+use grainlab_page::plot::{Axis, Entry, Figure, Marker, Point, Series, Strip};
 use grainlab_results::AcousticReport;
 use std::collections::BTreeSet;
 use std::fmt::Write;

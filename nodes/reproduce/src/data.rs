@@ -1,7 +1,8 @@
 //! The data of the page as JSON and CSV.
 
 use crate::Reproduction;
-use grainlab_console::{Cell, Dataset, Failure, json};
+use grainlab_console::{Cell, Failure, json};
+use grainlab_page::Dataset;
 use grainlab_paper::inversion::Errors;
 use grainlab_paper::{PAPER, PRESSURE};
 use serde_json::{Value, json as object};

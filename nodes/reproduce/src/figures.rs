@@ -1,9 +1,9 @@
 //! Figures 1 to 4, ours as filled symbols with error bars, the paper's as outlines.
 
 use crate::Reproduction;
-use grainlab_console::html::figure;
-use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
 use grainlab_emt::Modulus;
+use grainlab_page::html::figure;
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
 use grainlab_paper::inversion::{Judged, Row};
 use grainlab_paper::{Mean, PAPER, PRESSURE, PRESSURES, Quantity, SAMPLES};
 

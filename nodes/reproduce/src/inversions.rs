@@ -2,9 +2,9 @@
 
 use crate::Reproduction;
 use crate::tables::{mean, places};
-use grainlab_console::html::{Cell, code, escaped, table};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::Calibration;
+use grainlab_page::html::{Cell, code, escaped, table};
 use grainlab_paper::inversion::{Errors, Judged, of_the_paper};
 use grainlab_paper::{PAPER, PRESSURE, Quantity};
 

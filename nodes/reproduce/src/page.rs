@@ -1,7 +1,7 @@
 //! The HTML page: one file, without references to others.
 
 use crate::Reproduction;
-use grainlab_console::html::{Cell, code, escaped, paragraph, section, table};
+use grainlab_page::html::{Cell, code, escaped, paragraph, section, table};
 use grainlab_paper::{PAPER, PRESSURE};
 
 const STYLE: &str = "\

@@ -1,8 +1,8 @@
 //! Tables I, II and III, and the moduli, ours beside the paper's.
 
 use crate::Reproduction;
-use grainlab_console::html::{Cell, code, escaped, table};
 use grainlab_emt::Modulus;
+use grainlab_page::html::{Cell, code, escaped, table};
 use grainlab_paper::{Comparison, Mean, PAPER, PRESSURE, PRESSURES, Quantity, SAMPLES};
 
 /// A mean with its error, in `scale`.

@@ -2,9 +2,9 @@
 
 use crate::inference::Inference;
 use crate::read_back::{Film, InvertedPacking, ReadBack};
-use grainlab_node_kit::{Exit, Report};
-use grainlab_recorder::strangers::StrangerView;
+use grainlab_msgs::{Exit, Report};
 use grainlab_recordings::TopicTally;
+use grainlab_recordings::strangers::StrangerView;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -4,8 +4,9 @@ use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{stamp, to_cdr, topics};
-use grainlab_node_kit::{Actor, run_until};
-use grainlab_node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
+use grainlab_node_kit::{
+    Actor, Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription, run_until,
+};
 use grainlab_servo_controller::{Refusal, ServoController, Settings, answer};
 use std::time::Duration;
 

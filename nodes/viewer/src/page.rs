@@ -6,8 +6,8 @@ use crate::picture::{Picture, PictureError, Size};
 use crate::view::View;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use grainlab_console::html::{escaped, script_text};
-use grainlab_console::plot::page_style;
+use grainlab_page::html::{escaped, script_text};
+use grainlab_page::plot::page_style;
 
 /// Style of the figure. It uses the colours of [`page_style`].
 pub const HEAD: &str = include_str!("../assets/viewer.css");

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use crate::support::run_in;
-use grainlab_recordings::WarningKind;
-use grainlab_recordings::{ReadError, Recording, Selection};
+use grainlab_recordings::{ReadError, Recording, Selection, WarningKind};
 
 fn read(bytes: &[u8]) -> (Vec<(String, u32)>, Vec<WarningKind>) {
     let recording = Recording::from_bytes("damaged.mcap", bytes.to_vec()).unwrap();

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use crate::support::{SIMULATOR, START, contract, options, run_in, sample, stress};
-use grainlab_recordings::WarningKind;
-use grainlab_recordings::{METADATA_RECORD, Recording, RecoverError, RunWriter, Selection, recover};
+use grainlab_recordings::{
+    METADATA_RECORD, Recording, RecoverError, RunWriter, Selection, WarningKind, recover,
+};
 
 type Said = (String, u32, u64, u64, Vec<u8>);
 

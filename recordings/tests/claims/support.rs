@@ -6,8 +6,7 @@ use std::time::Duration;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::topics::TOPICS;
 use grainlab_msgs::{Guid, Topic, msg, rosgraph_msgs, stamp, std_msgs, to_cdr};
-use grainlab_recordings::Finished;
-use grainlab_recordings::{Incoming, RunWriter, TopicSpec, WriterOptions};
+use grainlab_recordings::{Finished, Incoming, RunWriter, TopicSpec, WriterOptions};
 
 pub(crate) const START: u64 = 1_700_000_000_000_000_000;
 pub(crate) const SIMULATOR: Guid = Guid([7; 16]);

@@ -4,7 +4,7 @@ use super::knobs::Knob;
 use super::report::Report;
 use super::row::Row;
 use clap::ValueEnum;
-use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 
 /// The legend.
 const NOTES: [&str; 4] = [

@@ -3,9 +3,9 @@
 use grainlab_acoustics::DispersionPoint;
 use grainlab_acoustics::{DispersionCurve, Modes, Ray, Survey, dispersion, standing_wave};
 use grainlab_console::Failure;
-use grainlab_console::plot::{self, Axis, Entry, Figure, Line, Marker, Series, Theme};
 use grainlab_core::{Packing, Vec3};
 use grainlab_node_kit::Exit;
+use grainlab_page::plot::{self, Axis, Entry, Figure, Line, Marker, Series, Theme};
 use std::f64::consts::TAU;
 
 /// Wavelengths shown, mean diameters: down to the shortest ones that propagate.

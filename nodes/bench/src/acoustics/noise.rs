@@ -4,7 +4,6 @@
 use super::args::Args;
 use crate::packing::load_all;
 use grainlab_acoustics::{Measurement, with_speed_noise};
-use grainlab_console::plot::{Bar, Bars};
 use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
 use grainlab_core::Packing;
 use grainlab_core::results::InferredQuantity;
@@ -12,6 +11,7 @@ use grainlab_core::results::PackingReport;
 use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::msg::Microstructure;
 use grainlab_node_kit::Exit;
+use grainlab_page::plot::{Bar, Bars};
 use rayon::prelude::*;
 use serde::Serialize;
 

@@ -3,7 +3,7 @@
 use super::args::Method;
 use super::report::{Report, Row};
 use clap::ValueEnum;
-use grainlab_console::plot::{Axis, Entry, Figure, Marker, Point, Series};
+use grainlab_page::plot::{Axis, Entry, Figure, Marker, Point, Series};
 
 /// The plot; each point has a tooltip.
 pub(super) fn figure(report: &Report) -> Figure {

@@ -3,8 +3,7 @@
 use grainlab_core::Packing;
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use grainlab_msgs::{Topic, from_cdr, msg, topics};
-use grainlab_node_kit::member_of;
-use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, SubscriptionId};
+use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, SubscriptionId, member_of};
 use grainlab_recorder::repeats::{Novelty, Repeats};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};

@@ -4,10 +4,9 @@ use super::forgery::Forgery;
 use super::plan;
 use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::{Message, from_cdr, to_cdr};
-use grainlab_node_kit::Dice;
-use grainlab_node_kit::run_of;
 use grainlab_node_kit::{
-    Bus, BusError, Demand, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId,
+    Bus, BusError, Demand, Dice, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId,
+    run_of,
 };
 
 /// One stranger on its bus.

@@ -1,9 +1,8 @@
 //! One round: its processes.
 
 use super::role::Role;
-use grainlab_console::network::{FreeDomain, bus_in};
 use grainlab_console::{Failure, print};
-use grainlab_node_kit::{Exit, Network, pingpong};
+use grainlab_node_kit::{Exit, FreeDomain, Network, bus_in, pingpong};
 use grainlab_recorder::tallies::losses;
 use grainlab_recordings::Recording;
 use std::path::PathBuf;

@@ -2,7 +2,7 @@
 
 use super::report::{Report, time};
 use super::row::{Family, Row};
-use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 
 /// Smaller errors are rounding, and drawn at this value.
 const ROUNDING: f64 = 1e-15;

@@ -3,7 +3,7 @@
 use super::args::Method;
 use super::report::{Report, Row};
 use clap::ValueEnum;
-use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 
 /// Smaller errors are rounding, and drawn at this value.
 const ROUNDING: f64 = 1e-16;
@@ -80,7 +80,7 @@ fn legend(report: &Report, sizes: &[(bool, usize)]) -> Vec<Entry> {
 mod tests {
     use super::*;
     use crate::stiffness::report::{Error, report};
-    use grainlab_console::plot::Theme;
+    use grainlab_page::plot::Theme;
 
     #[test]
     fn an_error_of_nothing_is_drawn_at_rounding() {

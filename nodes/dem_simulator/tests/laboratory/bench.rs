@@ -5,9 +5,9 @@ use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_msgs::msg::{Microstructure, RunState};
 use grainlab_msgs::{Message, Topic, from_cdr, topics};
-use grainlab_node_kit::{Actor, run_until};
 use grainlab_node_kit::{
-    Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, SubscriptionId,
+    Actor, Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, SubscriptionId,
+    run_until,
 };
 use grainlab_scene::Scene;
 use grainlab_servo_controller::ServoController;

@@ -6,8 +6,9 @@ use grainlab_dem_simulator::Settings;
 use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::msg::{self, Fabric, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::{Actor, run_until};
-use grainlab_node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription};
+use grainlab_node_kit::{
+    Actor, Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription, run_until,
+};
 use std::time::Duration;
 
 /// A servo that answers `honest` requests correctly and then invalidly.

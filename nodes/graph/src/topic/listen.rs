@@ -4,10 +4,9 @@ use crate::graph::{is_reliable, is_transient_local};
 use crate::names::absolute;
 use crate::observer::Observer;
 use grainlab_console::Failure;
-use grainlab_console::network::tool_bus;
 use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::{
-    BulkSubscription, Bus, BusError, DdsBus, Demand, Exit, Sample, SubscriptionId, Wake,
+    BulkSubscription, Bus, BusError, DdsBus, Demand, Exit, Sample, SubscriptionId, Wake, tool_bus,
 };
 use std::time::{Duration, Instant};
 

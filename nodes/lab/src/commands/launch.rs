@@ -1,13 +1,13 @@
 //! `grainlab launch`: the main job.
 
 use grainlab_campaign::{RunState, run_state};
-use grainlab_console::scenes::SceneText;
-use grainlab_console::{Failure, Format, scenes};
+use grainlab_console::{Failure, Format};
 use grainlab_launcher::agreement::names_of_run;
 use grainlab_launcher::{BUILT_IN, LaunchFile, NodePlan};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::input;
 use grainlab_recordings::runs::{RUNS, create_run_directory};
+use grainlab_recordings::scenes::SceneText;
+use grainlab_recordings::{input, scenes};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -1,10 +1,9 @@
 //! `grainlab scene`: scenes, and their faults.
 
 use clap::Subcommand;
-use grainlab_console::scenes;
-use grainlab_console::{Failure, worse};
-use grainlab_console::{Table, print, say};
+use grainlab_console::{Failure, Table, print, say, worse};
 use grainlab_node_kit::Exit;
+use grainlab_recordings::scenes;
 use grainlab_scene::BUILT_IN;
 use std::fs::OpenOptions;
 use std::io::Write;

@@ -10,8 +10,7 @@ mod roles;
 mod rtps;
 mod stopping;
 
-use grainlab_node_kit::ClaimedDomain;
-use grainlab_node_kit::Network;
+use grainlab_node_kit::{ClaimedDomain, Network};
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::thread::JoinHandle;

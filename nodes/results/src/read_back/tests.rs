@@ -6,8 +6,7 @@ use grainlab_emt_inversion::{Settings, microstructure_message, microstructure_of
 use grainlab_msgs::boundary::{fabric_message, moduli_message, packing_header, packing_message};
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::geometry_msgs::Vector3;
-use grainlab_msgs::{Guid, msg, to_cdr};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::{Exit, Guid, msg, to_cdr};
 use grainlab_recordings::{Incoming, RunWriter, TopicSpec, WriterOptions};
 use std::path::{Path, PathBuf};
 

@@ -4,11 +4,10 @@ use super::measure::Analysis;
 use super::outlet::Outlet;
 use crate::commands::packings::Measure;
 use crate::commands::packings::sink::{Ending, Sink};
-use grainlab_console::network::tool_bus;
 use grainlab_console::{Failure, worse};
 use grainlab_core::Packing;
 use grainlab_msgs::{Topic, from_cdr, msg, topics};
-use grainlab_node_kit::{BulkSubscription, Bus, Demand, Exit, Wake};
+use grainlab_node_kit::{BulkSubscription, Bus, Demand, Exit, Wake, tool_bus};
 use grainlab_recordings::import::Imported;
 use std::time::Duration;
 

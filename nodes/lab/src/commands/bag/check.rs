@@ -2,8 +2,7 @@
 
 use grainlab_console::{Failure, Format, Table, count, json, print, say};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::Check;
-use grainlab_recordings::Recording;
+use grainlab_recordings::{Check, Recording};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

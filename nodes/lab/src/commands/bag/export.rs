@@ -2,8 +2,7 @@
 
 use crate::commands::packings::import as import_flags;
 use clap::ValueEnum;
-use grainlab_console::Failure;
-use grainlab_console::{print, say};
+use grainlab_console::{Failure, print, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::export::{ExportFormat, Exporter, FilePart};
 use grainlab_recordings::import::{self, Imported};

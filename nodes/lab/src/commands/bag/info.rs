@@ -2,9 +2,8 @@
 
 use grainlab_console::{Failure, Format, Table, json, print};
 use grainlab_node_kit::Exit;
-use grainlab_recorder::strangers::{self, StrangerView};
-use grainlab_recordings::Info;
-use grainlab_recordings::{METADATA_RECORD, Recording};
+use grainlab_recordings::strangers::{self, StrangerView};
+use grainlab_recordings::{Info, METADATA_RECORD, Recording};
 use serde::Serialize;
 use std::path::PathBuf;
 

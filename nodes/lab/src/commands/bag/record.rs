@@ -5,8 +5,7 @@ use grainlab_bag_tools::Compression;
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
 use grainlab_msgs::Topic;
-use grainlab_node_kit::NodeSpec;
-use grainlab_node_kit::{Exit, RosArgs, Scope, run_node};
+use grainlab_node_kit::{Exit, NodeSpec, RosArgs, Scope, run_node};
 use grainlab_recorder::{
     OtherTopics, Recorder, ResultSlot, Settings, SnapshotSettings, Wanted, contract_topics,
 };
@@ -92,7 +91,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         output: args.output.clone(),
         topics,
         others: Some(others),
-        scene: args.scene.as_deref().map(|s| grainlab_console::scenes::load(s, &[], None)).transpose()?,
+        scene: args.scene.as_deref().map(|s| grainlab_recordings::scenes::load(s, &[], None)).transpose()?,
         whole_run: false,
         append: false,
         writer: writer(args),

@@ -1,11 +1,12 @@
 //! The states of a campaign in one table, from the recordings alone.
 
 use grainlab_campaign::{Campaign, Folder, Member, MemberState};
-use grainlab_console::{Cell, Dataset, Failure, count, print, scenes};
+use grainlab_console::{Cell, Failure, count, print};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
-use grainlab_recordings::Recording;
+use grainlab_page::Dataset;
+use grainlab_recordings::{Recording, scenes};
 use grainlab_results::quantities::{columns, typed_cells};
 use grainlab_results::read_back::{self, InvertedPacking};
 use grainlab_results::{Inference, ORIGIN};

@@ -3,8 +3,8 @@
 use super::order::Order;
 use grainlab_campaign::{Lock, RunState, run_state};
 use grainlab_console::Failure;
-use grainlab_console::scenes::SceneText;
 use grainlab_recordings::Recording;
+use grainlab_recordings::scenes::SceneText;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

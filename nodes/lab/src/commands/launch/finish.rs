@@ -1,14 +1,13 @@
 //! The result of a run, read back from its recording.
 
 use super::output::Output;
-use grainlab_console::scenes::SceneText;
-use grainlab_console::{Failure, worse};
-use grainlab_console::{Format, json, print, write_whole};
+use grainlab_console::{Failure, Format, json, print, worse, write_whole};
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::Run;
 use grainlab_launcher::{Received, Supervised};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
+use grainlab_recordings::scenes::SceneText;
 use grainlab_results::continuity::Exchanges;
 use grainlab_results::read_back::{self, ReadBack};
 use grainlab_results::{Launched, MeasuredPacking, NodeEnd, Printed, Summary};

@@ -3,9 +3,8 @@
 use super::bar::Bar;
 use super::sink::{Ending, Place, Sink};
 use super::{Measure, Outlet};
-use grainlab_console::{Failure, count, worse};
+use grainlab_console::{Failure, Signals, count, worse};
 use grainlab_node_kit::Exit;
-use grainlab_node_kit::Signals;
 use grainlab_recordings::Recording;
 use grainlab_recordings::import::{ImportError, ImportOptions, Imported, each};
 use std::collections::VecDeque;

@@ -1,7 +1,7 @@
 //! Inferred against true contact anisotropy, a colour for each model.
 
 use crate::commands::invert::way::Way;
-use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
 
 /// The plot as SVG. `points` has, for each way, the true and the inferred anisotropy of each row.
 pub(super) fn svg(ways: &[Way], points: Vec<Vec<[f64; 2]>>) -> String {

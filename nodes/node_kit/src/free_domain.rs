@@ -1,33 +1,7 @@
-//! Buses of tools, and free domains.
+//! Domains without participants.
 
-use crate::failure::Failure;
-use grainlab_node_kit::Logger;
-use grainlab_node_kit::RosArgs;
-use grainlab_node_kit::Signals;
-use grainlab_node_kit::{DdsBus, Identity, Names, Network, Scope};
+use grainlab_console::Failure;
 use std::net::{Ipv4Addr, UdpSocket};
-
-/// Joins the domain set in the environment as `name`; SIGINT and SIGTERM interrupt its waits.
-pub fn tool_bus(name: &str) -> Result<DdsBus, Failure> {
-    let network = Network::from_env().map_err(Failure::usage)?;
-    let signals = Signals::install().map_err(Failure::failed)?;
-    let mut bus = bus_in(network.domain, name)?;
-    bus.watch(signals).map_err(Failure::failed)?;
-    Ok(bus)
-}
-
-/// Joins a domain as `name`, with the discovery range of the environment. Logs warnings to stderr.
-pub fn bus_in(domain: u16, name: &str) -> Result<DdsBus, Failure> {
-    bus_named(domain, Names::new(name).map_err(Failure::usage)?, Identity::from_env(Scope::Everyone))
-}
-
-/// The same with these names of topics and this identity.
-pub fn bus_named(domain: u16, names: Names, identity: Identity) -> Result<DdsBus, Failure> {
-    let quiet = RosArgs { log_level: log::LevelFilter::Warn, rosout: false, ..RosArgs::default() };
-    Logger::install(names.node(), &quiet);
-    let network = Network { domain, ..Network::from_env().map_err(Failure::usage)? };
-    DdsBus::join(network, names, identity).map_err(Failure::failed)
-}
 
 /// A DDS domain without participants on this host, locked against other launchers until this is dropped.
 #[derive(Debug)]

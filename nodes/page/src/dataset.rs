@@ -1,12 +1,8 @@
 //! A table of typed columns, as CSV and as Parquet.
 
-mod cell;
 mod parquet;
 
-pub use cell::Cell;
-
-use crate::failure::Failure;
-use crate::output::CsvText;
+use grainlab_console::{Cell, CsvText, Failure};
 
 /// Rows with named columns.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,10 +1,10 @@
 //! Scenes by name or path, with their bases and overrides.
 
-use crate::failure::Failure;
+use crate::import::{StartError, start};
+use crate::input;
+use grainlab_console::Failure;
 use grainlab_core::Packing;
-use grainlab_node_kit::{Exit, ParameterSpec};
-use grainlab_recordings::import::{StartError, start};
-use grainlab_recordings::input;
+use grainlab_msgs::Exit;
 use grainlab_scene::{BUILT_IN, Draft, Scene, Source, assignment, built_in};
 use std::path::Path;
 
@@ -17,12 +17,6 @@ pub struct SceneText {
     pub scene: Scene,
     /// The packing that it starts from, if any.
     pub start: Option<Packing>,
-}
-
-/// The parameter of nodes for keys of the scene.
-pub fn set_parameter() -> ParameterSpec {
-    let meaning = "keys of the scene to set, as in [grains.count=500, friction=0.2]";
-    ParameterSpec::new("set", Vec::<String>::new(), meaning)
 }
 
 /// The scene of a built-in name or of a file, changed by `sets` such as `grains.count=500`; `seed` replaces
@@ -48,7 +42,7 @@ pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
         if matches!(e, StartError::File { .. }) { Failure::failed(message) } else { Failure::usage(message) }
     })?;
     for (start, note) in start.iter().flat_map(|s| s.notes.iter().map(move |note| (s, note))) {
-        crate::say!("grainlab: {}: {note}", start.path.display());
+        grainlab_console::say!("grainlab: {}: {note}", start.path.display());
     }
     let resolved = match &start {
         None => draft.resolve(),

@@ -46,7 +46,7 @@ impl Signals {
     }
 
     /// Installs the handlers of a node of the run of launcher `root`, if there is one.
-    pub(crate) fn of_node(root: Option<u32>) -> io::Result<Self> {
+    pub fn of_node(root: Option<u32>) -> io::Result<Self> {
         let launcher = launcher(root);
         let own = i32::try_from(std::process::id()).ok();
         let requested = Arc::new(AtomicBool::new(false));
@@ -83,12 +83,13 @@ impl Signals {
         Arc::clone(&self.requested)
     }
 
-    pub(crate) fn source(&mut self) -> &mut UnixStream {
+    /// The stream that becomes readable with a signal.
+    pub fn source(&mut self) -> &mut UnixStream {
         &mut self.arrivals
     }
 
     /// Clears the pending wake-ups; true if there were any and a signal was obeyed.
-    pub(crate) fn drain(&mut self) -> bool {
+    pub fn drain(&mut self) -> bool {
         let mut bytes = [0; 16];
         let mut any = false;
         while matches!(self.arrivals.read(&mut bytes), Ok(n) if n > 0) {

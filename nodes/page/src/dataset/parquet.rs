@@ -1,7 +1,6 @@
 //! Apache Parquet.
 
-use super::cell::Cell;
-use crate::failure::Failure;
+use grainlab_console::{Cell, Failure};
 use parquet::basic::{LogicalType, Repetition, Type as PhysicalType};
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;

@@ -64,7 +64,7 @@ pub fn write_above_live_line(text: &str) {
 
 /// Colour on a terminal that has it (not `TERM=dumb`), unless `NO_COLOR` or `CLICOLOR=0` says no. `CLICOLOR_FORCE` demands it
 /// everywhere, and so does `RCUTILS_COLORIZED_OUTPUT=1` of ROS 2, which comes first, as does its 0.
-pub(crate) fn colour_wanted(lookup: impl Fn(&str) -> Option<String>, terminal: bool) -> bool {
+pub fn colour_wanted(lookup: impl Fn(&str) -> Option<String>, terminal: bool) -> bool {
     let value = |name: &str| lookup(name).unwrap_or_default();
     match value("RCUTILS_COLORIZED_OUTPUT").as_str() {
         "1" => return true,
