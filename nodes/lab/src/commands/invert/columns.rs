@@ -202,8 +202,7 @@ impl Columns {
     fn project(&self, state: &mut State, stiffness: &Stiffness, axis: &Vec3) -> Result<(), String> {
         let medium = stiffness.transverse_isotropy_about(axis);
         let moduli = Moduli::of_medium(&medium);
-        // Columns c11_pa, c33_pa and c13_pa are entries of it.
-        for modulus in [Modulus::G12, Modulus::G13, Modulus::Theta] {
+        for modulus in Modulus::ALL {
             let Some(given) = state.moduli.get(modulus) else { continue };
             let projected = moduli.get(modulus).unwrap_or(f64::NAN);
             if (given - projected).abs() > SAME * stiffness.0.amax() {
