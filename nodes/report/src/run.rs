@@ -28,6 +28,8 @@ pub struct Run {
     /// Text of the scene; empty if there is none.
     pub(crate) scene_text: String,
     pub(crate) scene: Option<Scene>,
+    /// Launch file and arguments, as they are typed; `None` for a run that was started by hand.
+    pub(crate) launched: Option<Vec<String>>,
     /// Program that wrote the recording, if it says so.
     pub(crate) recorded_by: Option<String>,
     /// What could not be read, one line each.
@@ -60,6 +62,7 @@ impl Run {
             timeline: Timeline::of_phases(1),
             scene_text: String::new(),
             scene: None,
+            launched: launched(&directory.join("launch.json")),
             recorded_by: None,
             missing: Vec::new(),
         };
@@ -184,4 +187,14 @@ pub(crate) fn recommended(state: &InvertedPacking) -> Option<&Inference> {
     grainlab_results::by_origin(&state.results)
         .iter()
         .find_map(|(_, results)| Inference::recommended(results))
+}
+
+/// The words after `grainlab launch` in a file that it wrote.
+fn launched(path: &Path) -> Option<Vec<String>> {
+    #[derive(serde::Deserialize)]
+    struct Launched {
+        words: Vec<String>,
+    }
+    let text = input::text(path, input::SETTINGS).ok()?;
+    serde_json::from_str::<Launched>(&text).ok().map(|launched| launched.words)
 }

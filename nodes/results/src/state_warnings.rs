@@ -1,7 +1,7 @@
 //! Warnings about a measured state.
 
 use grainlab_core::Packing;
-use grainlab_core::results::{PackingReport, SpringNote};
+use grainlab_core::results::{ElasticStiffness, PackingReport, SpringNote};
 use grainlab_experiment::PathPosition;
 use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
@@ -29,11 +29,7 @@ pub fn state_warnings(
         position.and_then(within_phase),
         restless(report),
         below_its_bound(report),
-        yields(report).then(|| {
-            "some strain of the cell meets no resistance: the contacts do not span it in every direction; moduli of 0 are those of \
-             no packing at rest"
-                .to_owned()
-        }),
+        unresisted(report),
         pulling(packing),
         missing(packing, notes),
     ]
@@ -77,9 +73,24 @@ fn below_its_bound(report: &PackingReport) -> Option<String> {
 
 /// Whether a packing with a stiffness resists some strains, and not all.
 pub fn yields(report: &PackingReport) -> bool {
-    report.stiffness().is_some_and(|s| {
-        let least = s.tensor.0.symmetric_eigenvalues().min();
-        least < NO_RESISTANCE * s.bounds.affine.0.amax()
+    report.stiffness().is_some_and(|s| least(s) < NO_RESISTANCE)
+}
+
+/// Smallest eigenvalue over the largest entry of the affine stiffness.
+fn least(stiffness: &ElasticStiffness) -> f64 {
+    stiffness.tensor.0.symmetric_eigenvalues().min() / stiffness.bounds.affine.0.amax()
+}
+
+fn unresisted(report: &PackingReport) -> Option<String> {
+    let least = least(report.stiffness()?);
+    (least < NO_RESISTANCE).then(|| {
+        let text = if least < -NO_RESISTANCE {
+            "the stiffness is negative under some strain: the packing is stable only while that strain is held"
+        } else {
+            "some strain of the cell meets no resistance: the contacts do not span it in every direction; moduli of 0 are those of \
+             no packing at rest"
+        };
+        text.to_owned()
     })
 }
 

@@ -152,7 +152,13 @@ fn files_of_one_name_and_different_content_are_all_kept() {
 }
 
 #[test]
-fn a_topic_with_other_fields_is_an_error_and_one_with_other_comments_is_not() {
+fn a_topic_with_other_fields_is_an_error_whatever_its_hash_and_one_with_other_comments_is_not() {
+    for hash in ["", "RIHS01_00"] {
+        other_fields_and_comments(hash);
+    }
+}
+
+fn other_fields_and_comments(hash: &str) {
     let root = tempfile::tempdir().unwrap();
     let with = |name: &str, definition: &str| {
         let spec = TopicSpec {
@@ -160,7 +166,7 @@ fn a_topic_with_other_fields_is_an_error_and_one_with_other_comments_is_not() {
             ros_type: "p/msg/A".into(),
             definition: definition.into(),
             schema_encoding: "ros2msg".into(),
-            type_hash: String::new(),
+            type_hash: hash.into(),
             qos: String::new(),
         };
         let path = root.path().join(name);

@@ -87,6 +87,15 @@ pub enum MicroError {
         /// The offending eigenvalue, Pa.
         eigenvalue: f64,
     },
+    /// Prestress makes the stiffness negative under some strain.
+    #[error(
+        "the prestressed packing has a negative stiffness under some strain, {eigenvalue:e} Pa: it is stable only while that \
+         strain is held, and has no moduli"
+    )]
+    HeldOnly {
+        /// Smallest eigenvalue of the stiffness, Pa.
+        eigenvalue: f64,
+    },
     /// The explicit probe failed.
     #[error(transparent)]
     Probe(#[from] ProbeError),
