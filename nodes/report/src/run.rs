@@ -32,6 +32,8 @@ pub struct Run {
     pub(crate) launched: Option<Vec<String>>,
     /// Program that wrote the recording, if it says so.
     pub(crate) recorded_by: Option<String>,
+    /// Files whose recorder was killed, and left no count of lost messages.
+    pub(crate) uncounted_files: usize,
     /// What could not be read, one line each.
     pub(crate) missing: Vec<String>,
 }
@@ -64,6 +66,7 @@ impl Run {
             scene: None,
             launched: launched(&directory.join("launch.json")),
             recorded_by: None,
+            uncounted_files: 0,
             missing: Vec::new(),
         };
         run.read_summary(&directory.join("summary.json"));
@@ -101,6 +104,7 @@ impl Run {
 
     fn read_recording(&mut self, recording: &Recording) {
         self.recorded_by = Some(recording.info().library).filter(|by| !by.is_empty());
+        self.uncounted_files = recording.unaccounted().len();
         let back = read_back::read(recording);
         if back.several_runs.is_some() {
             return self.refuse(back.several_runs);
