@@ -16,6 +16,14 @@ pub enum MicroError {
         /// Contacts of the packing.
         packing: usize,
     },
+    /// Loads that are not one for each grain.
+    #[error("the network has {grains} grains, and there are {loads} loads: give one for each grain")]
+    Loads {
+        /// Grains of the network.
+        grains: usize,
+        /// Loads given.
+        loads: usize,
+    },
     /// A setting is out of its range.
     #[error("setting {name} = {value:e} is out of range: {requirement}")]
     Setting {
