@@ -8,13 +8,16 @@ use std::io::{self, ErrorKind, Read};
 use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 
-use flate2::read::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 
 /// Maximum size of scenes, launch files, parameters and calibrations, bytes.
 pub const SETTINGS: u64 = 1 << 20;
 
 /// Maximum size of tables and packings as text, bytes, decompressed.
 pub const TEXT: u64 = 4 << 30;
+
+/// First bytes of gzip.
+pub const MAGIC: [u8; 2] = [0x1f, 0x8b];
 
 /// Maximum compression ratio of a text. Numbers compress to a third, zeros to a thousandth.
 const RATIO: u64 = 64;
@@ -77,21 +80,37 @@ pub fn text(path: &Path, most: u64) -> io::Result<String> {
 /// Decompresses gzip: at most 64 times the compressed size, or 16 MiB if that is more.
 ///
 /// # Errors
-/// If it is truncated, damaged, or decompresses to more.
+/// If it is truncated, damaged, followed by other bytes, or decompresses to more.
 pub fn gunzip(compressed: &[u8]) -> io::Result<Vec<u8>> {
     let most = (compressed.len() as u64).saturating_mul(RATIO).clamp(SMALL, TEXT);
-    let mut content = Vec::new();
-    let read = MultiGzDecoder::new(compressed).take(most + 1).read_to_end(&mut content);
-    read.map_err(|e| match e.kind() {
-        ErrorKind::UnexpectedEof => {
-            let problem = format!(
-                "the compressed file is cut off after {} bytes of text: copy it again",
-                content.len()
-            );
-            io::Error::new(e.kind(), problem)
+    let (mut content, mut rest) = (Vec::new(), compressed);
+    // A file may have several members, one after the other.
+    loop {
+        let mut member = GzDecoder::new(rest);
+        let room = most + 1 - content.len() as u64;
+        member.by_ref().take(room).read_to_end(&mut content).map_err(|e| match e.kind() {
+            ErrorKind::UnexpectedEof => {
+                let problem = format!(
+                    "the compressed file is cut off after {} bytes of text: copy it again",
+                    content.len()
+                );
+                io::Error::new(e.kind(), problem)
+            }
+            kind => io::Error::new(kind, format!("the compressed file is damaged: {e}")),
+        })?;
+        rest = member.into_inner();
+        if rest.is_empty() || content.len() as u64 > most {
+            break;
         }
-        kind => io::Error::new(kind, format!("the compressed file is damaged: {e}")),
-    })?;
+        if !rest.starts_with(&MAGIC) {
+            let problem = format!(
+                "its compressed text ends at byte {} and {} other bytes follow: copy it again, or cut them off",
+                compressed.len() - rest.len(),
+                rest.len()
+            );
+            return Err(io::Error::new(ErrorKind::InvalidData, problem));
+        }
+    }
     if content.len() as u64 > most {
         let problem = format!(
             "its {} compressed bytes decompress to more than {most} bytes, the maximum for a table: unpack it first",
@@ -142,5 +161,21 @@ mod tests {
         let error = gunzip(&compressed).unwrap_err().to_string();
         assert!(error.contains("compressed bytes"), "{error}");
         assert!(gunzip(&compressed[..compressed.len() / 9]).unwrap_err().to_string().contains("cut off"));
+    }
+
+    #[test]
+    fn members_of_gzip_are_one_text_and_other_bytes_after_them_are_refused() {
+        let member = |text: &[u8]| {
+            let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+            encoder.write_all(text).unwrap();
+            encoder.finish().unwrap()
+        };
+        let whole = [member(b""), member(b"one "), member(b"two")].concat();
+        assert_eq!(gunzip(&whole).unwrap(), b"one two");
+        for more in [&b"\0"[..], b"an HTML page"] {
+            let error = gunzip(&[&whole, more].concat()).unwrap_err().to_string();
+            let place = format!("ends at byte {} and {} other bytes follow", whole.len(), more.len());
+            assert!(error.contains(&place), "{error}");
+        }
     }
 }

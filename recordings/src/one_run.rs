@@ -6,23 +6,36 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
 
 use grainlab_core::Packing;
+use grainlab_msgs::{Topic, msg, topics};
 
-use crate::reader::Recording;
+use crate::reader::{ChannelInfo, Recording, Selection};
 
 /// Most requests whose content is kept, 40 MB: those of two runs differ soon after their beginning.
 const REQUESTS: usize = 1 << 20;
 
 /// A recording holds several runs.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{path} holds several runs: {sign}. Results of several runs are not joined: give the recording of one of them, or cut one out \
-     by its time (grainlab bag cut)"
-)]
+#[error("{path} holds several runs: {sign}. Results of several runs are not joined: {}", sign.way_out())]
 pub struct SeveralRuns {
     /// The recording.
     pub path: PathBuf,
     /// What shows it.
     pub sign: RunSign,
+}
+
+impl SeveralRuns {
+    /// What shows it in the scenes, packings and requests of a recording; `None` if it is of one run.
+    pub fn of(recording: &Recording) -> Option<Self> {
+        let sign = || OneRun::messages(recording).err();
+        let path = recording.path();
+        Self::of_scenes(recording).or_else(|| Some(Self { path: path.to_owned(), sign: sign()? }))
+    }
+
+    /// What shows it in the scenes alone, without reading messages.
+    pub fn of_scenes(recording: &Recording) -> Option<Self> {
+        let sign = OneRun::scenes(recording).err()?;
+        Some(Self { path: recording.path().to_owned(), sign })
+    }
 }
 
 /// What shows that a recording holds several runs.
@@ -84,6 +97,20 @@ pub enum RunSign {
     },
 }
 
+impl RunSign {
+    /// What to do to have one run.
+    fn way_out(&self) -> &'static str {
+        match self {
+            Self::Topics { .. } => "take the topics of one of them (grainlab bag filter)",
+            // A cut keeps all stored files.
+            Self::Scenes { .. } => {
+                "give one of the recordings that it was merged from, which its metadata grainlab_copy names"
+            }
+            _ => "give the recording of one of them, or cut one out by its time (grainlab bag cut)",
+        }
+    }
+}
+
 /// Compares the packings and requests of a recording, in their order. What was published again has the same content.
 #[derive(Clone, Debug, Default)]
 pub struct OneRun {
@@ -131,6 +158,27 @@ impl OneRun {
             Some(known) if *known != found => return Err(RunSign::Requests { sequence }),
             None if self.requests.len() < REQUESTS => _ = self.requests.insert(sequence, found),
             _ => {}
+        }
+        Ok(())
+    }
+
+    /// Compares all packings and requests of a recording. Those that cannot be read show nothing.
+    fn messages(recording: &Recording) -> Result<(), RunSign> {
+        let of = |c: &ChannelInfo| Topic::of_channel(&c.topic, &c.ros_type).map(|t| t.name);
+        let wanted = [topics::PACKING.name, topics::STRESS.name];
+        let channels = recording.channels();
+        let names = channels.iter().filter(|c| of(c).is_some_and(|name| wanted.contains(&name)));
+        let selection = Selection::topics(names.map(|c| c.topic.clone()));
+        let mut run = Self::default();
+        for message in recording.messages(&selection).into_iter().flatten() {
+            if of(&message.channel) == Some(topics::PACKING.name) {
+                let packing = message.decoded::<msg::Packing>().ok();
+                if let Some(packing) = packing.and_then(|m| Packing::try_from(&m).ok()) {
+                    run.packing(&message.channel.topic, &packing)?;
+                }
+            } else if let Ok(request) = message.decoded::<msg::Stress>() {
+                run.request(request.sequence, &message.payload)?;
+            }
         }
         Ok(())
     }

@@ -95,6 +95,27 @@ fn a_run_whose_processes_are_all_terminated_at_once_saves_its_state() {
 }
 
 #[test]
+fn a_second_interrupt_ends_every_process_at_once_and_the_recording_is_whole() {
+    let lab = Lab::new();
+    let (launcher, run) = launched(&lab);
+    let nodes = children(launcher.pid(), "run ");
+    let [simulator] = children(launcher.pid(), "run dem_simulator")[..] else { panic!("no simulator") };
+    // It saves nothing, and the launcher would wait for it.
+    send(simulator, libc::SIGSTOP);
+    launcher.signal(libc::SIGINT);
+    let begin = Instant::now();
+    while !children(launcher.pid(), "run emt_inversion").is_empty() {
+        assert!(begin.elapsed() < LIMIT, "the end has not begun");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    launcher.signal(libc::SIGINT);
+    assert_eq!(says_what_is_saved(&launcher.ended(LIMIT), &run), None);
+    assert!(nodes.iter().all(|pid| !Path::new(&format!("/proc/{pid}/exe")).exists()), "a process is left");
+    let recording = grainlab_recordings::Recording::open(&run).unwrap();
+    assert!(recording.verify().is_empty() && recording.unaccounted().is_empty());
+}
+
+#[test]
 fn a_run_interrupted_before_it_has_a_state_says_that_nothing_was_saved_and_begins_anew() {
     let (quiet, lab) = (Lab::new(), Lab::new());
     let scene = golden("scenes/tiny.toml").to_string_lossy().into_owned();

@@ -83,6 +83,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if args.pictures {
         return Err(Failure::usage("--pictures are added to recordings: leave --format out, or choose mcap"));
     }
+    args.form.refuse_given()?;
     let recordings = open(paths)?;
     args.topics.check(&recordings)?;
     let (start, end) = args.interval.of(&recordings)?;

@@ -50,7 +50,23 @@ pub(crate) enum Preset {
 }
 
 impl Form {
-    fn options(&self, operation: &str) -> CopyOptions {
+    /// Refuses options of recordings for another output.
+    pub(crate) fn refuse_given(&self) -> Result<(), Failure> {
+        let given = [
+            ("--compression", self.compression.is_some()),
+            ("--level", self.level.is_some()),
+            ("--preset", self.preset.is_some()),
+            ("--chunk-size", self.chunk_size.is_some()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            Some((name, _)) => {
+                Err(Failure::usage(format!("{name} is of recordings: leave it out, or choose --format mcap")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn options(&self, operation: &str) -> Result<CopyOptions, Failure> {
         let mut options = match self.preset {
             None => CopyOptions::default(),
             Some(Preset::Fastwrite) => CopyOptions::of_preset(copy::Preset::FastWrite),
@@ -61,10 +77,15 @@ impl Form {
             options.compression = kind.into();
             options.chunk_size = options.chunk_size.or(Some(1 << 20));
         }
+        if self.level.is_some() && options.compression == grainlab_recordings::Compression::None {
+            return Err(Failure::usage(
+                "--level has no effect without compression: leave it out, or choose --compression lz4 or zstd",
+            ));
+        }
         options.level = self.level.unwrap_or(options.level);
         options.chunk_size = self.chunk_size.or(options.chunk_size);
         options.operation = operation.to_owned();
-        options
+        Ok(options)
     }
 }
 
@@ -89,11 +110,11 @@ impl Job<'_> {
 
     /// The same with the parts of the arguments.
     pub(crate) fn write(&self, output: &Path, form: &Form) -> Result<Exit, Failure> {
+        let options = CopyOptions { pictures: self.pictures, ..form.options(self.operation)? };
         let recordings = open(self.paths)?;
         self.topics.check(&recordings)?;
         let (start, end) = self.interval.of(&recordings)?;
         let select = Select { topic: &|c| self.topics.take(c), start, end, latched: self.latched };
-        let options = CopyOptions { pictures: self.pictures, ..form.options(self.operation) };
         let copied = copy::copy(&recordings, &select, output, &options);
         let copied = copied.map_err(|e| match e {
             CopyError::Clash { .. }
@@ -120,5 +141,23 @@ impl Job<'_> {
         ))?;
         let complete = if copied.without_picture == 0 { Exit::Done } else { Exit::DataLoss };
         Ok(worse(losses(&recordings), complete))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_without_compression_and_options_of_recordings_for_tables_are_refused() {
+        let level = Form { level: Some(5), ..Form::default() };
+        assert_eq!(level.options("compress").unwrap().level, 5);
+        let none = Form { compression: Some(Compression::None), ..level.clone() };
+        let fast = Form { preset: Some(Preset::Fastwrite), ..level.clone() };
+        for form in [none, fast] {
+            assert!(form.options("compress").unwrap_err().to_string().starts_with("--level"));
+        }
+        assert!(level.refuse_given().unwrap_err().to_string().starts_with("--level"));
+        assert!(Form::default().refuse_given().is_ok());
     }
 }

@@ -13,6 +13,9 @@ use std::io::{BufWriter, Write as _};
 use std::path::Path;
 use std::sync::Arc;
 
+/// Longest name of a file without number and extension: file systems take 255 bytes.
+const LONGEST_NAME: usize = 240;
+
 /// Formats of one file per topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TableFormat {
@@ -133,7 +136,7 @@ impl<'a> Tables<'a> {
     fn create(&mut self) -> Result<(), Failure> {
         let mut names: Vec<String> = Vec::new();
         for table in &mut self.list {
-            let base = file_name(&table.channel.topic);
+            let base = file_name(&table.channel.topic)?;
             let taken = names.iter().filter(|name| **name == base).count();
             let number = if taken == 0 { String::new() } else { format!(".{}", taken + 1) };
             let path = |extension: &str| self.folder.join(format!("{base}{number}.{extension}"));
@@ -170,8 +173,28 @@ fn too_wide(channel: &ChannelInfo) -> Failure {
 }
 
 /// `/a/b` as `a_b`; other characters than letters, digits, `_`, `-` and `.` become `_`.
-fn file_name(topic: &str) -> String {
+fn file_name(topic: &str) -> Result<String, Failure> {
     let safe = |c: char| if c.is_ascii_alphanumeric() || "-.".contains(c) { c } else { '_' };
     let name: String = topic.trim_matches('/').chars().map(safe).collect();
-    if name.trim_matches('.').is_empty() { "topic".to_owned() } else { name }
+    if name.len() > LONGEST_NAME {
+        return Err(Failure::usage(format!(
+            "{topic}: a file can have a name of {LONGEST_NAME} characters at most, and this would be {}: leave the topic out \
+             (--exclude), or use --format mcap",
+            name.len()
+        )));
+    }
+    Ok(if name.trim_matches('.').is_empty() { "topic".to_owned() } else { name })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_topic_too_long_for_the_name_of_a_file_is_refused() {
+        let of = |length: usize| format!("/{}", "a".repeat(length));
+        assert_eq!(file_name("/a/b c").unwrap(), "a_b_c");
+        assert_eq!(file_name(&of(LONGEST_NAME)).unwrap().len(), LONGEST_NAME);
+        assert!(file_name(&of(300)).unwrap_err().to_string().contains("this would be 300"));
+    }
 }

@@ -126,6 +126,14 @@ fn product(group: &Group, common: &Table, folder: &Path) -> Result<Vec<Member>, 
     if group.scenes.is_empty() != seeds.is_empty() {
         return Err(Failure::usage("scenes and seeds: both are needed, and neither may be empty"));
     }
+    if group.scenes.is_empty()
+        && let Some(key) = flat(&group.vary).first().map(|setting| &setting.key)
+    {
+        return Err(Failure::usage(format!(
+            "vary.{key} has no effect without scenes beside it: name scenes and seeds, or give each row of a table and each \
+             [[member]] its own values"
+        )));
+    }
     let mut combinations = vec![merged(&Table::new(), &group.set)];
     for Setting { key, value } in flat(&group.vary) {
         let values = values(&key, &value)?;
@@ -195,6 +203,14 @@ fn table_of(path: &Path, common: &Table, folder: &Path) -> Result<Vec<Member>, F
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let bad = |e: csv::Error| Failure::usage(format!("table {}: {e}", path.display()));
     let header = reader.headers().map_err(bad)?.clone();
+    if let Some((_, twice)) =
+        header.iter().enumerate().find(|(n, name)| header.iter().take(*n).any(|h| h == *name))
+    {
+        let path = path.display();
+        return Err(Failure::usage(format!(
+            "table {path}: the column {twice} occurs twice: leave one of them"
+        )));
+    }
     let column = |name: &str| {
         header
             .iter()

@@ -20,12 +20,20 @@ pub(crate) struct Endpoint {
     pub(crate) qos: QosProfile,
     /// `RIHS01_…`, or empty if it is not announced.
     pub(crate) type_hash: String,
+    /// Data representations by their numbers in DDS-XTypes, the preferred one first: 0 is XCDR1, and meant if there is none.
+    pub(crate) representations: Vec<i16>,
 }
 
 impl Endpoint {
     pub(crate) fn new(guid: Guid, topic: &str, type_name: &str, writes: bool, qos: QosProfile) -> Self {
-        let type_hash = String::new();
-        Self { guid, name: RosName::of(topic), type_name: ros_type(type_name), writes, qos, type_hash }
+        let (name, type_name, type_hash) = (RosName::of(topic), ros_type(type_name), String::new());
+        Self { guid, name, type_name, writes, qos, type_hash, representations: vec![0] }
+    }
+
+    /// The same with the data representations that it announces.
+    pub(crate) fn represented(self, announced: Option<Vec<i16>>) -> Self {
+        let representations = announced.filter(|all| !all.is_empty()).unwrap_or_else(|| vec![0]);
+        Self { representations, ..self }
     }
 
     /// The same with the hash in its user data.

@@ -96,16 +96,18 @@ impl Observer {
         let writers = participant.discovered_writers().into_iter().map(|writer| {
             let data = &writer.publication_topic_data;
             let guid = writer.writer_proxy.remote_writer_guid.to_bytes();
-            let qos = QosProfile::from(&data.qos());
-            Endpoint::new(Guid(guid), &data.topic_name, &data.type_name, true, qos)
+            let qos = data.qos();
+            Endpoint::new(Guid(guid), &data.topic_name, &data.type_name, true, QosProfile::from(&qos))
                 .announcing(&writer.user_data)
+                .represented(qos.data_representation().map(|all| all.value))
         });
         let readers = participant.discovered_readers().into_iter().map(|reader| {
             let data = &reader.subscription_topic_data;
             let guid = reader.reader_proxy.remote_reader_guid.to_bytes();
-            let qos = QosProfile::from(&data.qos());
-            Endpoint::new(Guid(guid), data.topic_name(), data.type_name(), false, qos)
+            let qos = data.qos();
+            Endpoint::new(Guid(guid), data.topic_name(), data.type_name(), false, QosProfile::from(&qos))
                 .announcing(&reader.user_data)
+                .represented(qos.data_representation().map(|all| all.value))
         });
         let endpoints: Vec<Endpoint> =
             writers.chain(readers).filter(|e| e.participant() != self.own).collect();

@@ -16,8 +16,7 @@ const MODULI_WITHIN: Duration = Duration::from_secs(5);
 const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
 
 /// Why a run is not complete whose instruments measured other packings.
-const NONE_OF_LAST: &str =
-    "a program that the launch file lists sent wave speeds of other packings, and none or fewer of the last";
+const NONE_OF_LAST: &str = "a program that the launch file lists sent wave speeds of other packings, and none or fewer of the last arrived";
 
 /// Time without further data of a program after which there are none.
 const QUIET: Duration = Duration::from_secs(2);

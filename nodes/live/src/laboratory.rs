@@ -217,9 +217,9 @@ impl Laboratory {
         of_state.max(self.latest.as_ref().map(|r| r.phase))
     }
 
-    /// Step of the simulation.
+    /// Step of the values that are shown: that of the last request.
     pub(crate) fn step(&self) -> Option<u64> {
-        self.state.as_ref().map(|s| s.step).max(self.latest.as_ref().map(|r| r.step))
+        self.latest.as_ref().map(|r| r.step).or_else(|| self.state.as_ref().map(|s| s.step))
     }
 }
 

@@ -102,7 +102,7 @@ impl PyRecording {
     /// The last packing.
     #[pyo3(signature = (topic="packing"))]
     fn last_packing(&self, py: Python<'_>, topic: &str) -> PyResult<PyPacking> {
-        let message = py.detach(|| self.recording.last_before(topic, u64::MAX)).map_err(error::file)?;
+        let message = py.detach(|| self.recording.last(topic)).map_err(error::file)?;
         let message = message.ok_or_else(|| PyIndexError::new_err("the recording has no packing"))?;
         Ok(packing(&message).map_err(error::file)?.into())
     }

@@ -27,6 +27,13 @@ def golden():
 
 
 @pytest.fixture(scope="session")
+def smooth():
+    """500 grains without friction."""
+    (packing,) = grainlab.load(TOP / "tests/golden/packings/smooth_500.csv.gz")
+    return packing
+
+
+@pytest.fixture(scope="session")
 def recording():
     """A recorded run, made by the code that runs these tests; None if it made none."""
     import os

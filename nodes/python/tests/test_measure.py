@@ -15,6 +15,14 @@ def test_the_stiffness_is_that_of_analyze_symmetric_and_below_the_affine_one(gol
     assert np.allclose(grainlab.stiffness(golden, solver="direct"), c, rtol=1e-9, atol=1e-6 * c.max())
 
 
+def test_a_packing_without_friction_has_the_moduli_of_normal_springs_to_the_last_digit(smooth):
+    assert smooth.friction == 0
+    carried, normal = (grainlab.analyze(smooth, springs=springs) for springs in ("carried", "normal"))
+    assert [carried[key] for key in ("g12_pa", "theta_pa")] == [normal[key] for key in ("g12_pa", "theta_pa")]
+    assert (grainlab.stiffness(smooth) == carried["stiffness_pa"]).all()
+    assert carried["g12_pa"] < 0.8 * grainlab.analyze(smooth, springs="both")["g12_pa"]
+
+
 def test_every_key_of_analyze_has_symbol_unit_and_meaning(golden):
     assert set(grainlab.analyze(golden)) == set(grainlab.quantities())
     assert grainlab.quantities()["phi"][:2] == ("φ", "1")

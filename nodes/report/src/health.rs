@@ -82,8 +82,13 @@ impl Run {
         let folder = grainlab_results::brief::quoted(&self.directory.display().to_string());
         let scene = grainlab_results::brief::quoted(&self.directory.join("scene.toml").display().to_string());
         let seed = self.seed().map_or_else(String::new, |s| format!(" --seed {s}"));
+        let again = self.launched.as_ref().map(|words| {
+            let words: String =
+                words.iter().map(|w| format!("{} ", grainlab_results::brief::quoted(w))).collect();
+            format!("grainlab launch {words}--scene {scene}{seed}    # the same run: the same bytes")
+        });
         let lines = [
-            format!("grainlab launch --scene {scene}{seed}    # the same run: the same bytes"),
+            again.unwrap_or_else(|| "# how it was launched is not recorded".to_owned()),
             format!("grainlab analyze {folder}    # all that is measured"),
             format!("grainlab bag info {folder}    # what was recorded"),
             format!("grainlab view {folder}    # the packings alone"),

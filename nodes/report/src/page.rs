@@ -5,7 +5,7 @@ use crate::run::{Run, recommended};
 use grainlab_console::fixed;
 use grainlab_page::html::{escaped, section};
 use grainlab_page::plot::page_style;
-use grainlab_results::brief::{ended, moduli};
+use grainlab_results::brief::{ended, lost_words, moduli};
 use grainlab_results::read_back::InvertedPacking;
 use grainlab_viewer::PictureError;
 
@@ -127,7 +127,7 @@ impl Run {
         }
         if !s.topics.is_empty() {
             let (recorded, lost) = (s.total(|t| t.recorded), s.total(|t| t.lost));
-            words += &format!(" · {recorded} messages recorded, {lost} lost");
+            words += &format!(" · {recorded} messages recorded, {}", lost_words(lost, self.uncounted_files));
         }
         format!("<p class=\"verdict {class}\">{}</p>\n", escaped(&words))
     }

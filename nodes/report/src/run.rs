@@ -28,8 +28,12 @@ pub struct Run {
     /// Text of the scene; empty if there is none.
     pub(crate) scene_text: String,
     pub(crate) scene: Option<Scene>,
+    /// Launch file and arguments, as they are typed; `None` for a run that was started by hand.
+    pub(crate) launched: Option<Vec<String>>,
     /// Program that wrote the recording, if it says so.
     pub(crate) recorded_by: Option<String>,
+    /// Files whose recorder was killed, and left no count of lost messages.
+    pub(crate) uncounted_files: usize,
     /// What could not be read, one line each.
     pub(crate) missing: Vec<String>,
 }
@@ -60,7 +64,9 @@ impl Run {
             timeline: Timeline::of_phases(1),
             scene_text: String::new(),
             scene: None,
+            launched: launched(&directory.join("launch.json")),
             recorded_by: None,
+            uncounted_files: 0,
             missing: Vec::new(),
         };
         run.read_summary(&directory.join("summary.json"));
@@ -98,6 +104,7 @@ impl Run {
 
     fn read_recording(&mut self, recording: &Recording) {
         self.recorded_by = Some(recording.info().library).filter(|by| !by.is_empty());
+        self.uncounted_files = recording.unaccounted().len();
         let back = read_back::read(recording);
         if back.several_runs.is_some() {
             return self.refuse(back.several_runs);
@@ -184,4 +191,14 @@ pub(crate) fn recommended(state: &InvertedPacking) -> Option<&Inference> {
     grainlab_results::by_origin(&state.results)
         .iter()
         .find_map(|(_, results)| Inference::recommended(results))
+}
+
+/// The words after `grainlab launch` in a file that it wrote.
+fn launched(path: &Path) -> Option<Vec<String>> {
+    #[derive(serde::Deserialize)]
+    struct Launched {
+        words: Vec<String>,
+    }
+    let text = input::text(path, input::SETTINGS).ok()?;
+    serde_json::from_str::<Launched>(&text).ok().map(|launched| launched.words)
 }

@@ -250,3 +250,17 @@ fn requests_of_two_runs_are_not_drawn_as_one() {
     assert!(several.contains("two different requests of number 2"), "{several}");
     assert!(run.html().unwrap().contains("holds several runs"));
 }
+
+#[test]
+fn a_run_with_a_part_of_a_killed_recorder_does_not_claim_that_nothing_was_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path());
+    summarise(folder.path(), 0);
+    let page = || Run::read(folder.path()).html().unwrap();
+    assert!(!page().contains("not counting"));
+    let file = folder.path().join("r_0.mcap");
+    let bytes = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &bytes[..bytes.len() * 2 / 3]).unwrap();
+    grainlab_recordings::recover(folder.path()).unwrap();
+    assert!(page().contains(" lost, not counting 1 file, whose recorder was killed"));
+}

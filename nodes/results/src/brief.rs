@@ -62,6 +62,14 @@ pub fn goes_on(saved_step: Option<u64>) -> String {
         .map_or_else(|| "begins anew: no state was saved".to_owned(), |n| format!("goes on from step {n}"))
 }
 
+/// Number of lost messages. A killed recorder did not count those of its file.
+pub fn lost_words(lost: u64, uncounted_files: usize) -> String {
+    match uncounted_files {
+        0 => format!("{lost} lost"),
+        n => format!("{lost} lost, not counting {}, whose recorder was killed", count(n, "file")),
+    }
+}
+
 /// What an exit code other than 0 means for the lines below it, with the step of the last packing in the recording.
 pub fn ended(code: u8, reason: Option<&str>, saved_step: Option<u64>) -> Option<String> {
     let exit = Exit::ALL.into_iter().find(|e| e.code() == code)?;
@@ -242,7 +250,9 @@ fn pace(s: &Summary) -> String {
     // A killed recorder leaves no counts.
     text += &match s.topics.is_empty() {
         true => "; messages were not counted".to_owned(),
-        false => format!("; {} recorded, {lost} lost", count(messages, "message")),
+        false => {
+            format!("; {} recorded, {}", count(messages, "message"), lost_words(lost, s.uncounted_files))
+        }
     };
     if s.film.packings > 0 {
         text += &format!(", {} within phases", count(s.film.packings, "packing"));
@@ -277,6 +287,12 @@ mod tests {
         let of = |reason| ended(Exit::DataLoss.code(), reason, None).unwrap();
         assert!(of(None).ends_with("missing in the recording"));
         assert!(of(Some("speed = NaN is refused")).ends_with("missing or refused: speed = NaN is refused"));
+    }
+
+    #[test]
+    fn losses_that_a_killed_recorder_did_not_count_are_not_called_none() {
+        assert_eq!(lost_words(0, 0), "0 lost");
+        assert_eq!(lost_words(2, 1), "2 lost, not counting 1 file, whose recorder was killed");
     }
 
     #[test]

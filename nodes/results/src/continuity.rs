@@ -22,9 +22,9 @@ impl Exchanges {
         })
     }
 
-    /// Number of answered requests.
+    /// Number of answered requests, up to the last answer in the recording; those before it may be missing.
     pub fn count(&self) -> u64 {
-        self.rates.len() as u64
+        self.rates.last().map_or(0, |last| last + 1)
     }
 
     /// Missing messages of a finished run, one line per topic.
@@ -56,4 +56,17 @@ fn numbers(
     numbers.sort_unstable();
     numbers.dedup();
     Ok(numbers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exchanges_that_are_not_in_the_recording_are_counted_and_named() {
+        let exchanges = Exchanges { stress: vec![0, 1, 4, 5], rates: vec![0, 4] };
+        assert_eq!(exchanges.count(), 5);
+        let missing = exchanges.missing().join("\n");
+        assert!(missing.contains("2 of 6 messages of stress") && missing.contains("4 of 6"), "{missing}");
+    }
 }

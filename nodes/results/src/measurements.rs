@@ -2,7 +2,7 @@
 
 use grainlab_msgs::builtin_interfaces::Time;
 use serde::{Serialize, Serializer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One of several sets of data about one packing on one topic.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -148,6 +148,12 @@ impl Measurements {
         }
         (self.sent.len(), open)
     }
+
+    /// Number of sets of data that were answered and not found.
+    pub(crate) fn not_found(&self) -> usize {
+        let answered: BTreeSet<&Identity> = self.answers.keys().map(|(identity, _)| identity).collect();
+        answered.into_iter().filter(|identity| self.alike(identity) == 0).count()
+    }
 }
 
 #[cfg(test)]
@@ -192,6 +198,16 @@ mod tests {
         let [bench, own] = ["bench", ""].map(|name| all.label(&shot(name, 1), 0).unwrap());
         assert_eq!((bench.label.as_str(), own.label.as_str()), ("bench", "by /analyzer"));
         assert!(own < bench);
+    }
+
+    #[test]
+    fn an_answer_without_its_data_shows_that_they_were_lost() {
+        let mut all = of(&[shot("a", 1), shot("b", 1)]);
+        assert_eq!(all.not_found(), 0);
+        for inversion in ["one", "other"] {
+            all.answered(shot("c", 1), Some(inversion.to_owned()));
+        }
+        assert_eq!(all.not_found(), 1);
     }
 
     #[test]

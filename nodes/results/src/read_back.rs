@@ -221,9 +221,14 @@ pub fn read(recording: &Recording) -> ReadBack {
 }
 
 impl ReadBack {
-    /// Counts data without an answer. Those of packings within a phase may have none.
+    /// Counts data without an answer, and answers without their data. Those of packings within a phase may have none.
     fn note_unanswered(&mut self, step: u64, about: &About) {
         for (topic, data) in about.data.iter().filter(|_| step > 0 && !about.is_within_phase()) {
+            if let lost @ 1.. = data.not_found() {
+                self.complaints.push(format!(
+                    "{lost} {topic} of step {step} were inverted, and are not in the recording"
+                ));
+            }
             match data.unanswered() {
                 (_, 0) => {}
                 (sent, open) if sent == open => {

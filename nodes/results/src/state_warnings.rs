@@ -1,7 +1,8 @@
 //! Warnings about a measured state.
 
 use grainlab_core::Packing;
-use grainlab_core::results::{PackingReport, SpringNote};
+use grainlab_core::non_rattlers;
+use grainlab_core::results::{ElasticStiffness, PackingReport, SpringNote};
 use grainlab_experiment::PathPosition;
 use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
@@ -10,6 +11,9 @@ use std::collections::BTreeSet;
 /// meaningful. Packings at rest are below 1e-3; contact forces that do not match the positions give some
 /// tenths.
 const RESTLESS: f64 = 0.01;
+
+/// Kinetic over elastic energy above which a packing is in motion. Packings at rest are below 1e-6.
+const MOVING: f64 = 0.01;
 
 /// Relative margin of the lower bound of Θ: for packings whose stress is not exactly isotropic.
 const BELOW: f64 = 1e-3;
@@ -28,12 +32,9 @@ pub fn state_warnings(
     [
         position.and_then(within_phase),
         restless(report),
+        moving(packing),
         below_its_bound(report),
-        yields(report).then(|| {
-            "some strain of the cell meets no resistance: the contacts do not span it in every direction; moduli of 0 are those of \
-             no packing at rest"
-                .to_owned()
-        }),
+        unresisted(report),
         pulling(packing),
         missing(packing, notes),
     ]
@@ -59,6 +60,25 @@ fn restless(report: &PackingReport) -> Option<String> {
     ))
 }
 
+/// Kinetic energy of the grains that carry force, relative to the affine motion, over F_n overlap/2 summed over contacts.
+fn moving(packing: &Packing) -> Option<String> {
+    let elastic: f64 = packing.contacts.iter().map(|c| 0.5 * c.normal_force.abs() * c.overlap).sum();
+    let carries = non_rattlers(packing);
+    let energy = |g: usize| {
+        let (radius, v, w) = (packing.radii[g], packing.velocities[g], packing.spins[g]);
+        let squares = v.norm_squared() + 0.4 * radius * radius * w.norm_squared();
+        0.5 * packing.material.sphere_mass(radius) * squares
+    };
+    let kinetic: f64 = (0..packing.grains()).filter(|g| carries[*g]).map(energy).sum();
+    (elastic > 0.0 && kinetic > MOVING * elastic).then(|| {
+        format!(
+            "the packing is in motion: the kinetic energy of its grains is {:.1e} of the elastic energy of its contacts (more \
+             than {MOVING}); check the velocities and their units, or let it come to rest",
+            kinetic / elastic
+        )
+    })
+}
+
 fn below_its_bound(report: &PackingReport) -> Option<String> {
     let stiffness = report.stiffness()?;
     // The stiffness of a network leaves out springs that resist rolling, and the bound then does not hold.
@@ -77,9 +97,24 @@ fn below_its_bound(report: &PackingReport) -> Option<String> {
 
 /// Whether a packing with a stiffness resists some strains, and not all.
 pub fn yields(report: &PackingReport) -> bool {
-    report.stiffness().is_some_and(|s| {
-        let least = s.tensor.0.symmetric_eigenvalues().min();
-        least < NO_RESISTANCE * s.bounds.affine.0.amax()
+    report.stiffness().is_some_and(|s| least(s) < NO_RESISTANCE)
+}
+
+/// Smallest eigenvalue over the largest entry of the affine stiffness.
+fn least(stiffness: &ElasticStiffness) -> f64 {
+    stiffness.tensor.0.symmetric_eigenvalues().min() / stiffness.bounds.affine.0.amax()
+}
+
+fn unresisted(report: &PackingReport) -> Option<String> {
+    let least = least(report.stiffness()?);
+    (least < NO_RESISTANCE).then(|| {
+        let text = if least < -NO_RESISTANCE {
+            "the stiffness is negative under some strain: the packing is stable only while that strain is held"
+        } else {
+            "some strain of the cell meets no resistance: the contacts do not span it in every direction; moduli of 0 are those of \
+             no packing at rest"
+        };
+        text.to_owned()
     })
 }
 
@@ -201,6 +236,14 @@ mod tests {
         );
         let pulls = warnings(|p| p.contacts[1].normal_force *= -1.0);
         assert!(pulls.contains("1 contact pulls") && pulls.contains("grains 5 and 5"), "{pulls}");
+    }
+
+    #[test]
+    fn grains_that_carry_force_and_move_are_reported() {
+        for (speed, spin, is_reported) in [(100.0, 0.0, true), (0.0, 1e6, true), (1e-6, 1e-2, false)] {
+            let found = warnings(|p| (p.velocities[0].x, p.spins[0].y) = (speed, spin));
+            assert_eq!(found.contains("in motion: the kinetic energy"), is_reported, "{found}");
+        }
     }
 
     #[test]

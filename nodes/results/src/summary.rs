@@ -23,6 +23,8 @@ pub struct Summary {
     /// Processes whose messages were left out.
     pub(crate) strangers: Vec<StrangerView>,
     pub(crate) topics: Vec<TopicCount>,
+    /// Files of the recording whose recorder was killed: the counts of lost messages are without theirs.
+    pub(crate) uncounted_files: usize,
     pub(crate) exchanges: Option<u64>,
     pub(crate) exchanges_per_second: Option<f64>,
     /// Fraction of the run's time that the simulator waited for answers.
@@ -132,6 +134,7 @@ impl Summary {
             wall_seconds: launched.wall_seconds,
             nodes: launched.nodes,
             topics: TopicCount::of(tallies.unwrap_or_default(), &launched.recorded),
+            uncounted_files: launched.uncounted_files,
             exchanges: launched.exchanges,
             exchanges_per_second: per_wall(counters.exchanges),
             waiting_fraction: per_wall(counters.waiting),
@@ -167,6 +170,8 @@ pub struct Launched {
     pub exchanges: Option<u64>,
     /// Messages in the recording, by topic.
     pub recorded: BTreeMap<String, u64>,
+    /// Files of the recording whose recorder was killed.
+    pub uncounted_files: usize,
     /// Every process.
     pub nodes: Vec<NodeEnd>,
     /// The directory of the recording; `None` if it cannot be read.
@@ -190,6 +195,7 @@ impl Summary {
             resumed: false,
             exchanges: None,
             recorded: BTreeMap::new(),
+            uncounted_files: 0,
             nodes: Vec::new(),
             recording: None,
             exit,

@@ -72,9 +72,15 @@ fn same_messages(a: &ChannelInfo, b: &ChannelInfo) -> bool {
     if a.ros_type != b.ros_type || encodings(a) != encodings(b) {
         return false;
     }
-    if a.schema == b.schema || !a.type_hash.is_empty() && a.type_hash == b.type_hash {
+    if a.schema == b.schema {
         return true;
     }
-    let parsed = |c: &ChannelInfo| Schema::parse(&c.ros_type, &c.definition);
-    a.schema_encoding == "ros2msg" && matches!((parsed(a), parsed(b)), (Ok(a), Ok(b)) if a == b)
+    let parsed = |c: &ChannelInfo| {
+        Schema::parse(&c.ros_type, &c.definition).ok().filter(|_| c.schema_encoding == "ros2msg")
+    };
+    match (parsed(a), parsed(b)) {
+        // A copy may have the hash of another definition.
+        (Some(a), Some(b)) => a == b,
+        _ => !a.type_hash.is_empty() && a.type_hash == b.type_hash,
+    }
 }

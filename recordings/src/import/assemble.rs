@@ -104,7 +104,7 @@ impl GrainTable {
     /// What to know about the grains of a packing with this material.
     fn notes(&self, material: &Material) -> Vec<String> {
         let other =
-            |(mass, radius): &(&f64, &f64)| (**mass / material.sphere_mass(**radius) - 1.0).abs() > 1e-5;
+            |(mass, radius): &(&f64, &f64)| !((**mass / material.sphere_mass(**radius) - 1.0).abs() <= 1e-5);
         let heavier = self.masses.iter().zip(&self.radii).filter(other).count();
         let masses = (heavier > 0).then(|| {
             format!("{heavier} grain(s) have another mass than density and radius give; the density is used")

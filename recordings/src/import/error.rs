@@ -148,11 +148,11 @@ pub enum ImportError {
     },
     /// Grains and contact forces are of different steps.
     #[error(
-        "the contact forces are of step {forces} and the grains of step {grains}: dump both at the same step"
+        "the contact forces are of step {} and the grains of step {grains}: dump both at the same step", some(.forces)
     )]
     OtherStep {
-        /// Step of the contact forces.
-        forces: u64,
+        /// Steps of the contact forces.
+        forces: Vec<u64>,
         /// Step of the grains.
         grains: u64,
     },
@@ -206,4 +206,14 @@ pub enum ImportError {
 fn list(settings: &[Setting]) -> String {
     let names: Vec<String> = settings.iter().map(|s| format!("{} (give {})", s.what(), s.flag())).collect();
     names.join(", ")
+}
+
+/// The steps, or the first and the last of many.
+fn some(steps: &[u64]) -> String {
+    match steps {
+        [first, second, .., last] if steps.len() > 6 => {
+            format!("{first}, {second}, ... {last} ({} frames)", steps.len())
+        }
+        _ => steps.iter().map(u64::to_string).collect::<Vec<_>>().join(", "),
+    }
 }

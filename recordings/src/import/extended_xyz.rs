@@ -1,7 +1,7 @@
 //! Extended XYZ, as OVITO, ASE and `grainlab bag export` write it.
 //!
 //! Each frame is the number of grains, a comment with `Lattice="..."` and `Properties=...`, and a line per grain. Columns that are
-//! read: `pos:R:3`, `radius:R:1`, and where they are `id:I:1`, `velo:R:3`, `angular_velocity:R:3`; SI units. Of the comment also
+//! read: `pos:R:3`, `radius:R:1` or `diameter:R:1`, and where they are `id:I:1`, `velo:R:3`, `angular_velocity:R:3`; SI units. Of the comment also
 //! `shear_modulus`, `poisson_ratio`, `density`, `friction`, `contact_law`, `contact_law_parameters`, `Time` and `step`; `units` and
 //! `pbc` must be SI and periodic in all directions. Contacts are found from positions.
 
@@ -154,7 +154,7 @@ impl Frame {
         };
         let position = vector("pos")?.ok_or_else(|| line.error("Properties has no column pos:R:3"))?;
         let number = |name: &str| column(name, 1).map(|field| line.number::<f64>(name, field[0])).transpose();
-        let radius = grains.radius(number("radius")?, options)?;
+        let radius = grains.radius(stated::radius(line, number("radius")?, number("diameter")?)?, options)?;
         grains.masses.extend(number("mass")?);
         grains.kinds.extend(column("species", 1).map(|kind| kind[0].to_owned()));
         let id = match column("id", 1) {

@@ -21,8 +21,6 @@ use super::text::{Line, lines};
 /// # Errors
 /// If the text is invalid, has another style or unit or mixed densities, or settings are missing.
 pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportError> {
-    let forces = options.contact_forces.as_deref();
-    let local = forces.map(|text| lammps_local::contacts(text, &options.contact_columns)).transpose()?;
     let mut file = DataFile::default();
     let mut section = Section::Header;
     for line in lines(text) {
@@ -44,6 +42,8 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
             }
         }
     }
+    let of_step = |text| lammps_local::contacts(text, &options.contact_columns, file.step);
+    let local = options.contact_forces.as_deref().map(of_step).transpose()?;
     file.finish(options, local.as_ref())
 }
 
@@ -211,7 +211,7 @@ impl DataFile {
                 .push(4.0 / 3.0 * std::f64::consts::PI * self.densities[k] * self.grains.radii[k].powi(3));
         }
         let grains = self.grains.sorted_by_id();
-        forces.map_or(Ok(()), |forces| forces.check(self.step, &grains, &settings.cell))?;
+        forces.map_or(Ok(()), |forces| forces.check(&grains, &settings.cell))?;
         let contacts = forces.map(|forces| forces.contacts.as_slice());
         let state = State::at(self.step);
         let imported =

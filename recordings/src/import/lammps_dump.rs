@@ -2,7 +2,7 @@
 //!
 //! It reads the time step, the box (orthogonal or restricted triclinic, periodic), and from the columns `id`,
 //! `radius` or `diameter`, positions as `x`, `xu`, `xs` or `xsu` …, `mass`, `vx` …, `omegax` …. Contacts are
-//! found from positions, unless a `dump local` with their forces is given beside a single frame
+//! found from positions, unless a `dump local` with their forces at the same steps is given
 //! ([`ImportOptions::contact_forces`]).
 
 use std::collections::BTreeMap;
@@ -18,6 +18,7 @@ use super::imported::Imported;
 use super::lammps_cell::lammps_cell;
 use super::lammps_local::{self, Local};
 use super::settings::{ImportOptions, Known};
+use super::stated;
 use super::text::{Line, cut, lines, shown};
 
 /// The packings of a dump, in order.
@@ -43,22 +44,15 @@ pub fn each(
     take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
 ) -> Result<(), ImportError> {
     let count = text.matches("ITEM: ATOMS").count();
-    if let (Some(_), true) = (&options.contact_forces, count > 1) {
-        let (line, what) = (1, format!("a dump of {count} frames with contact forces"));
-        return Err(ImportError::Unsupported {
-            line,
-            what,
-            reason: "give the forces with one frame at a time",
-        });
-    }
     let forces = options.contact_forces.as_deref();
-    let local = forces.map(|text| lammps_local::contacts(text, &options.contact_columns)).transpose()?;
     let mut frames = Frames::new(text);
     let mut number = 0;
     while let Some(frame) = frames.next()? {
         number += 1;
         let source =
             if count > 1 { format!("LAMMPS dump, frame {number} of {count}") } else { "LAMMPS dump".into() };
+        let of_step = |text| lammps_local::contacts(text, &options.contact_columns, frame.step);
+        let local = forces.map(of_step).transpose()?;
         let imported = frame.packing(options, local.as_ref(), source)?;
         local.as_ref().map_or(Ok(()), |local| local.whole(&imported.packing))?;
         if take(imported).is_break() {
@@ -245,13 +239,11 @@ impl Columns {
             [Some(&x), Some(&y), Some(&z)] => line.vector(name, [words[x], words[y], words[z]]),
             _ => Ok(Vec3::zeros()),
         };
-        let [radius, half] = [number("radius")?, number("diameter")?.map(|d| 0.5 * d)];
-        same(line, "radius and half of the diameter", radius, half)?;
-        let radius = radius.or(half);
+        let radius = stated::radius(line, number("radius")?, number("diameter")?)?;
         let of_density = |(density, radius): (f64, f64)| 4.0 / 3.0 * PI * density * radius.powi(3);
         let of_density = number("density")?.zip(radius).map(of_density);
         let mass = number("mass")?;
-        same(line, "mass and that of density and radius", mass, of_density)?;
+        stated::same(line, "mass and that of density and radius", mass, of_density)?;
         Ok(Row {
             line: *line,
             coordinates: self.position.map(|k| words[k]),
@@ -289,20 +281,10 @@ impl Frame<'_> {
         let density = grains.density();
         let settings = Known { cell: Some(self.cell), density, ..Known::default() }.complete(options)?;
         let grains = grains.sorted_by_id().folded_if_far(&settings.cell);
-        forces.map_or(Ok(()), |forces| forces.check(self.step, &grains, &settings.cell))?;
+        forces.map_or(Ok(()), |forces| forces.check(&grains, &settings.cell))?;
         let contacts = forces.map(|forces| forces.contacts.as_slice());
         let state = State { time: self.time, ..State::at(self.step) };
         assemble::packing(grains, &settings, contacts, state, source, Vec::new())
-    }
-}
-
-/// Refuses two values of one quantity that differ by more than the rounding of six digits.
-fn same(line: &Line<'_>, what: &str, a: Option<f64>, b: Option<f64>) -> Result<(), ImportError> {
-    match (a, b) {
-        (Some(a), Some(b)) if (a - b).abs() > 1e-5 * b.abs() => {
-            Err(line.error(format!("{what} contradict each other: {a} and {b}")))
-        }
-        _ => Ok(()),
     }
 }
 

@@ -13,7 +13,8 @@
 //! By default the columns have the names above. Columns renamed by `dump_modify colname` to `patom1 patom2 fx
 //! fy fz p1 p2 p3` are found by these names, and others by
 //! [`ImportOptions::contact_columns`](super::ImportOptions::contact_columns). Pairs that do not touch, which
-//! LAMMPS lists as long as they are neighbours, have no force and are left out.
+//! LAMMPS lists as long as they are neighbours, have no force and are left out. Of several frames, that of the step of the
+//! grains is read.
 
 use std::collections::BTreeMap;
 
@@ -37,9 +38,7 @@ const CENTRAL: f64 = 1e-9;
 
 /// The content of a dump.
 pub(super) struct Local<'a> {
-    /// Time step of the last frame, if given.
-    pub(super) step: Option<u64>,
-    /// Its pairs that carry force.
+    /// Pairs that carry force.
     pub(super) contacts: Vec<ListedContact>,
     /// Whether the columns include tangential forces.
     tangential: bool,
@@ -49,18 +48,18 @@ pub(super) struct Local<'a> {
     rows: Vec<Row<'a>>,
 }
 
-/// The contacts of the last frame. `chosen` are the columns in the default order, five or eight; none for
-/// the default ones.
-pub(super) fn contacts<'a>(text: &'a str, chosen: &[String]) -> Result<Local<'a>, ImportError> {
+/// The contacts of the frame of this step, that of the grains; a dump without steps has one frame. `chosen` are the columns in
+/// the default order, five or eight; none for the default ones.
+pub(super) fn contacts<'a>(text: &'a str, chosen: &[String], step: u64) -> Result<Local<'a>, ImportError> {
     let mut columns: Option<Vec<usize>> = None;
     let mut local = Local {
-        step: None,
         contacts: Vec::new(),
         tangential: false,
         names: Vec::new(),
         columns: Vec::new(),
         rows: Vec::new(),
     };
+    let (mut steps, mut is_of_step, mut frames) = (Vec::new(), true, 0);
     let (mut entries, mut rows, mut last) = (None, 0usize, None);
     let mut text = lines(text).filter(|l| !l.text.trim().is_empty());
     while let Some(line) = text.next() {
@@ -71,18 +70,22 @@ pub(super) fn contacts<'a>(text: &'a str, chosen: &[String]) -> Result<Local<'a>
                 || text.next().ok_or_else(|| line.error(format!("the file ends within ITEM: {item}")));
             if item == "TIMESTEP" {
                 let value = follow()?;
-                local.step = Some(value.number("the time step", value.text)?);
-            } else if item.starts_with("NUMBER OF") {
+                steps.push(value.number("the time step", value.text)?);
+                is_of_step = steps.last() == Some(&step);
+            } else if item.starts_with("NUMBER OF") && is_of_step {
                 let value = follow()?;
                 entries = Some(value.number::<usize>("the number of entries", value.text)?);
-            } else if let Some(names) = item.strip_prefix("ENTRIES") {
+            } else if let Some(names) = item.strip_prefix("ENTRIES").filter(|_| is_of_step) {
+                frames += 1;
+                if frames > 1 {
+                    return Err(
+                        line.error(format!("a second frame of contact forces for step {step}: leave one"))
+                    );
+                }
                 let names: Vec<&str> = names.split_whitespace().collect();
                 let found = find(&names, chosen).map_err(|problem| line.error(problem))?;
                 local.tangential = found.len() == BY_NAME.len();
-                local.contacts.clear();
-                local.rows.clear();
                 (local.names, local.columns) = (names, found.clone());
-                rows = 0;
                 columns = Some(found);
             }
         } else if let Some(columns) = &columns {
@@ -113,21 +116,20 @@ pub(super) fn contacts<'a>(text: &'a str, chosen: &[String]) -> Result<Local<'a>
     }
     match (last, entries) {
         (None, _) => Err(ImportError::Empty),
-        (Some(line), Some(entries)) if entries != rows => {
-            Err(line.error(format!("the last frame has {rows} of {entries} entries: the file is truncated")))
+        _ if !steps.is_empty() && !steps.contains(&step) => {
+            Err(ImportError::OtherStep { forces: steps, grains: step })
         }
-        (Some(line), _) if columns.is_none() => Err(line.error(NEEDED)),
+        (Some(line), _) if frames == 0 => Err(line.error(NEEDED)),
+        (Some(line), Some(entries)) if entries != rows => {
+            Err(line.error(format!("the frame has {rows} of {entries} entries: the file is truncated")))
+        }
         _ => Ok(local),
     }
 }
 
 impl Local<'_> {
-    /// Refuses contacts of another step than that of the grains, and columns that are not those of a normal and a tangential
-    /// force.
-    pub(super) fn check(&self, step: u64, grains: &GrainTable, cell: &Cell) -> Result<(), ImportError> {
-        if let Some(forces) = self.step.filter(|forces| *forces != step) {
-            return Err(ImportError::OtherStep { forces, grains: step });
-        }
+    /// Refuses a pair that occurs twice, and columns that are not those of a normal and a tangential force.
+    pub(super) fn check(&self, grains: &GrainTable, cell: &Cell) -> Result<(), ImportError> {
         let mut pairs = BTreeMap::new();
         for c in &self.contacts {
             let (a, b) = c.ids;

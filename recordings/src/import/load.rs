@@ -195,7 +195,7 @@ pub fn text(path: &Path) -> Result<String, ImportError> {
         path: path.to_owned(),
         source: io::Error::new(kind, problem),
     };
-    if bytes.starts_with(&[0x1f, 0x8b]) {
+    if bytes.starts_with(&input::MAGIC) {
         bytes = input::gunzip(&bytes).map_err(io)?;
     }
     if [&b"BZh"[..], b"\xfd7zXZ", b"\x28\xb5\x2f\xfd", b"PK\x03\x04"].iter().any(|m| bytes.starts_with(m)) {

@@ -25,7 +25,7 @@ pub struct ImportOptions {
     pub radius: Option<f64>,
     /// Topic of a recording; `packing` if not given.
     pub topic: Option<String>,
-    /// Text of a LAMMPS `dump local` with the contact forces of a data file, or of the one frame of a dump.
+    /// Text of a LAMMPS `dump local` with the contact forces of a data file or a dump, at the same steps.
     pub contact_forces: Option<String>,
     /// Its columns, if not the default ones: ids of the two grains, normal force on the first, tangential
     /// force on the first (`patom1 patom2 fx fy fz p1 p2 p3`); or the first five, with the whole force. Empty for the

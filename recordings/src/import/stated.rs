@@ -1,7 +1,7 @@
-//! What a file states about itself and packings here cannot be otherwise: SI units, and periodic boundaries on all sides.
+//! Statements of a file that are checked: SI units, periodic boundaries on all sides, and quantities stated twice.
 
 use super::error::ImportError;
-use super::text::cut;
+use super::text::{Line, cut};
 
 /// Refuses other units than m, kg and s, under any of their names.
 pub(super) fn units(line: usize, text: &str) -> Result<(), ImportError> {
@@ -28,4 +28,25 @@ pub(super) fn periodic(line: usize, text: &str) -> Result<(), ImportError> {
         what,
         reason: "the cell must be periodic in all directions: there are no walls",
     })
+}
+
+/// The radius of a grain, stated as radius, as diameter, or as both.
+pub(super) fn radius(
+    line: &Line<'_>,
+    radius: Option<f64>,
+    diameter: Option<f64>,
+) -> Result<Option<f64>, ImportError> {
+    let half = diameter.map(|d| 0.5 * d);
+    same(line, "radius and half of the diameter", radius, half)?;
+    Ok(radius.or(half))
+}
+
+/// Refuses two values of one quantity that differ by more than the rounding of six digits.
+pub(super) fn same(line: &Line<'_>, what: &str, a: Option<f64>, b: Option<f64>) -> Result<(), ImportError> {
+    match (a, b) {
+        (Some(a), Some(b)) if (a - b).abs() > 1e-5 * b.abs() => {
+            Err(line.error(format!("{what} contradict each other: {a} and {b}")))
+        }
+        _ => Ok(()),
+    }
 }

@@ -10,7 +10,7 @@ use super::imported::Imported;
 use super::settings::{ImportOptions, Known};
 use super::text::Line;
 use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Mat3, Packing, Vec3};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use hdf5_pure::{AttrValue, File, H5Element};
 
 /// The first bytes of every HDF5 file.
@@ -55,8 +55,10 @@ pub fn packing(
         deformation: matrix("deformation")?.unwrap_or_else(Packing::no_reference),
         time_step: field("time_step")?.unwrap_or(0.0),
     };
+    file.check_stated()?;
     let table = file.grains(options)?;
-    let listed = contacts.map(|bytes| Data::open(bytes)?.contacts()).transpose()?;
+    file.check_points(&table, &settings.cell)?;
+    let listed = contacts.map(|bytes| file.contacts_of(&Data::open(bytes)?)).transpose()?;
     assemble::packing(table, &settings, listed.as_deref(), state, "VTKHDF".into(), Vec::new())
 }
 
@@ -88,7 +90,61 @@ impl Data {
     }
 
     fn scalar(&self, name: &str) -> Result<Option<f64>, ImportError> {
-        Ok(self.numbers::<f64>(name)?.and_then(|n| n.first().copied()))
+        match self.numbers::<f64>(name)?.as_deref() {
+            None | Some([]) => Ok(None),
+            Some([value]) => Ok(Some(*value)),
+            Some(values) => Err(damaged(format!("{name} has {} numbers; it must have one", values.len()))),
+        }
+    }
+
+    /// Refuses what a file states and no packing can have here.
+    fn check_stated(&self) -> Result<(), ImportError> {
+        let named = |name: &str| self.0.dataset(&format!("VTKHDF/FieldData/{name}"));
+        if named("units").is_ok() {
+            return Err(damaged(
+                "FieldData/units is stated: lengths must be in m, and all else in SI units, without it",
+            ));
+        }
+        let sides = self.numbers::<i64>("FieldData/pbc")?.unwrap_or_default();
+        if sides.contains(&0) {
+            return Err(damaged(format!(
+                "FieldData/pbc is {sides:?}: the cell must be periodic along all edges"
+            )));
+        }
+        Ok(())
+    }
+
+    /// Refuses points that are not the places of the grains in the cell.
+    fn check_points(&self, table: &GrainTable, cell: &Cell) -> Result<(), ImportError> {
+        let points = self.vectors("Points", table.positions.len())?.unwrap_or_default();
+        for (k, (point, position)) in points.iter().zip(&table.positions).enumerate() {
+            let apart = cell.fractional(&(point - position));
+            let off = (cell.matrix() * apart.map(|a| a - a.round())).norm();
+            // Points may have single precision.
+            let rounding = 1e-6 * (point.norm() + position.norm() + cell.matrix().amax());
+            if !(off <= rounding) {
+                return Err(damaged(format!(
+                    "Points and PointData/position_unwrapped of row {} are {off:.3e} m apart: which of them is right is not known",
+                    k + 1
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// The contacts of a file that belongs to this one of grains.
+    fn contacts_of(&self, other: &Self) -> Result<Vec<ListedContact>, ImportError> {
+        for name in ["step", "TimeValue", "friction", "shear_modulus", "poisson_ratio", "density", "cell"] {
+            let of = |file: &Self| file.numbers::<f64>(&format!("FieldData/{name}"));
+            if let (Some(own), Some(its)) = (of(self)?, of(other)?)
+                && own != its
+            {
+                return Err(damaged(format!(
+                    "{name} is {its:?} in the file of contacts and {own:?} in that of the grains"
+                )));
+            }
+        }
+        other.contacts()
     }
 
     fn vectors(&self, name: &str, count: usize) -> Result<Option<Vec<Vec3>>, ImportError> {
@@ -148,7 +204,10 @@ impl Data {
         let zeros = || vec![Vec3::zeros(); count];
         let velocities = self.vectors("PointData/velocity", count)?.unwrap_or_else(zeros);
         let spins = self.vectors("PointData/angular_velocity", count)?.unwrap_or_else(zeros);
-        let ids = self.column::<u32>("PointData/id", count)?.unwrap_or_else(|| (0..count as u32).collect());
+        let ids = self.column::<i64>("PointData/id", count)?.unwrap_or_else(|| (0..count as i64).collect());
+        let whole =
+            |id: i64| u32::try_from(id).map_err(|_| damaged(format!("id {id} is outside 0 to 4294967295")));
+        let ids = ids.into_iter().map(whole).collect::<Result<Vec<u32>, _>>()?;
         let masses = self.column::<f64>("PointData/mass", count)?.unwrap_or_default();
         let mut table = GrainTable { masses, ..GrainTable::default() };
         for k in 0..count {

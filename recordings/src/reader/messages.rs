@@ -93,13 +93,22 @@ impl Recording {
         Ok(self.some_before(topic, time, 1)?.pop())
     }
 
+    /// The last message on `topic`, whatever its log time.
+    ///
+    /// # Errors
+    /// If the topic does not exist.
+    pub fn last(&self, topic: &str) -> Result<Option<Message>, ReadError> {
+        let topic = self.channel(topic)?.topic.clone();
+        Ok(some_before(self, &topic, None, 1).pop())
+    }
+
     /// The last `count` messages on `topic` whose log time is below `time` (ns since 1970), in order of log time.
     ///
     /// # Errors
     /// If the topic does not exist.
     pub fn some_before(&self, topic: &str, time: u64, count: usize) -> Result<Vec<Message>, ReadError> {
         let topic = self.channel(topic)?.topic.clone();
-        Ok(some_before(self, &topic, time, count))
+        Ok(some_before(self, &topic, Some(time), count))
     }
 }
 
@@ -170,13 +179,14 @@ impl Iterator for Messages<'_> {
     }
 }
 
-/// The last `count` messages on `topic` before `time`.
-fn some_before(recording: &Recording, topic: &str, time: u64, count: usize) -> Vec<Message> {
+/// The last `count` messages on `topic` before `time`, or of all.
+fn some_before(recording: &Recording, topic: &str, time: Option<u64>, count: usize) -> Vec<Message> {
+    let is_before = |at: u64| time.is_none_or(|time| at < time);
     let topics = BTreeSet::from([topic.to_owned()]);
     let mut best: Vec<Message> = Vec::new();
     let mut blocks: Vec<(&OpenFile, &Block)> =
         recording.files.iter().flat_map(|f| f.blocks().iter().map(move |b| (f, b))).collect();
-    blocks.retain(|(f, b)| b.start < time && holds(f, b, Some(&topics)));
+    blocks.retain(|(f, b)| is_before(b.start) && holds(f, b, Some(&topics)));
     blocks.sort_by_key(|(_, b)| Reverse(b.end));
     for (file, block) in blocks {
         if best.len() >= count && best.first().is_some_and(|m| m.log_time >= block.end) {
@@ -185,7 +195,7 @@ fn some_before(recording: &Recording, topic: &str, time: u64, count: usize) -> V
         let wanted = |channel: u16| file.index.channels.get(&channel).filter(|info| info.topic == topic);
         let mut earlier = Vec::new();
         decode(recording, file, block, &Held::new(recording.size()), wanted, |message| {
-            if message.log_time < time {
+            if is_before(message.log_time) {
                 earlier.push(message);
             }
         });

@@ -164,10 +164,18 @@ impl Recording {
         Some(merge(accounts.into_iter().map(|(_, tallies)| tallies).collect()))
     }
 
-    /// The files without a ledger: the recorder was killed, or is still running. Copies have none either, but say so.
+    /// The files of this program's recorder without a ledger: it was killed, or is still running.
     pub fn unaccounted(&self) -> Vec<PathBuf> {
-        let is_copy = |f: &&OpenFile| f.index.metadata.iter().any(|m| m.name == COPY_RECORD);
-        let files = self.files.iter().filter(|f| !is_copy(f) && self.account(f).is_none());
+        self.without_ledger(|file| is_of_a_recorder(file))
+    }
+
+    /// The files that never had a ledger: copies, and those of other programs.
+    pub fn unjudged(&self) -> Vec<PathBuf> {
+        self.without_ledger(|file| !is_of_a_recorder(file))
+    }
+
+    fn without_ledger(&self, wanted: impl Fn(&OpenFile) -> bool) -> Vec<PathBuf> {
+        let files = self.files.iter().filter(|f| wanted(f) && self.account(f).is_none());
         files.map(|f| f.path.clone()).collect()
     }
 
@@ -189,4 +197,9 @@ impl Recording {
     pub(crate) fn count(&self, topic: &str) -> u64 {
         self.files.iter().map(|f| f.count_of(topic)).sum()
     }
+}
+
+/// Whether a recorder of this program wrote the file: such a file gets a ledger at its end.
+fn is_of_a_recorder(file: &OpenFile) -> bool {
+    file.index.library.starts_with("grainlab ") && !file.index.metadata.iter().any(|m| m.name == COPY_RECORD)
 }

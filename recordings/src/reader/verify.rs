@@ -31,8 +31,10 @@ pub struct Check {
     pub attachments: u64,
     /// Lost messages according to the ledger of the recorders; `None` without a ledger.
     pub lost: Option<u64>,
-    /// Files without a ledger: the recorder was killed, or is still running.
+    /// Files without a ledger whose recorder was killed, or is still running.
     pub unaccounted: Vec<PathBuf>,
+    /// Files that never had a ledger, copies and those of other programs: their losses cannot be judged.
+    pub unjudged: Vec<PathBuf>,
     /// Topics whose definition is not that of this program, with what differs.
     pub definitions: Vec<String>,
     /// Whether messages of such a topic cannot be read by this program.
@@ -81,6 +83,7 @@ impl Recording {
             attachments: found.attachments,
             lost: ledger.map(|l| l.iter().map(|t| t.lost).fold(0, u64::saturating_add)),
             unaccounted,
+            unjudged: self.unjudged(),
             definitions: self.differing(),
             refused: self.all_channels().any(|c| matches!(c.stored, StoredDefinition::Refused(_))),
             warnings: self.warnings(),

@@ -7,7 +7,8 @@ use grainlab_msgs::to_cdr;
 use grainlab_pictures::{Drawn, Picture};
 use grainlab_recordings::copy::{CopyError, CopyOptions, Preset, Select, copy};
 use grainlab_recordings::{
-    COPY_RECORD, ChannelInfo, Compression, METADATA_RECORD, Recording, RunWriter, Selection, TopicSpec,
+    COPY_RECORD, ChannelInfo, Compression, METADATA_RECORD, Recording, RunSign, RunWriter, Selection,
+    SeveralRuns, TopicSpec,
 };
 use std::path::Path;
 
@@ -152,7 +153,13 @@ fn files_of_one_name_and_different_content_are_all_kept() {
 }
 
 #[test]
-fn a_topic_with_other_fields_is_an_error_and_one_with_other_comments_is_not() {
+fn a_topic_with_other_fields_is_an_error_whatever_its_hash_and_one_with_other_comments_is_not() {
+    for hash in ["", "RIHS01_00"] {
+        other_fields_and_comments(hash);
+    }
+}
+
+fn other_fields_and_comments(hash: &str) {
     let root = tempfile::tempdir().unwrap();
     let with = |name: &str, definition: &str| {
         let spec = TopicSpec {
@@ -160,7 +167,7 @@ fn a_topic_with_other_fields_is_an_error_and_one_with_other_comments_is_not() {
             ros_type: "p/msg/A".into(),
             definition: definition.into(),
             schema_encoding: "ros2msg".into(),
-            type_hash: String::new(),
+            type_hash: hash.into(),
             qos: String::new(),
         };
         let path = root.path().join(name);
@@ -285,4 +292,31 @@ fn reference_packing() -> Packing {
         friction: 0.3,
         time_step: 1e-8,
     }
+}
+
+#[test]
+fn a_merged_recording_of_two_runs_is_told_from_that_of_one() {
+    let root = tempfile::tempdir().unwrap();
+    let run = |name: &str, scene: Option<&str>, n: u64| {
+        let path = root.path().join(name);
+        let mut run = RunWriter::create(&path, name, &contract(), options()).unwrap();
+        scene.iter().for_each(|text| run.attach("scene.toml", "application/toml", text.as_bytes()).unwrap());
+        let request = to_cdr(&grainlab_msgs::msg::Stress { sequence: 1, step: n, ..Default::default() });
+        run.write("/stress", &sample(SIMULATOR, n as i64, START + n, &request)).unwrap();
+        run.finish().unwrap();
+        open(&path)
+    };
+    let merged = |name: &str, runs: [Recording; 2]| {
+        let to = root.path().join(name);
+        copy(&runs, &Select::default(), &to, &CopyOptions::default()).unwrap();
+        open(&to)
+    };
+    let one = run("a", Some("seed = 1"), 1);
+    assert_eq!(SeveralRuns::of(&one), None);
+    let of_two = SeveralRuns::of_scenes(&merged("ab", [one, run("b", Some("seed = 2"), 2)])).unwrap();
+    assert_eq!(of_two.sign, RunSign::Scenes { count: 2, names: "scene.2.toml, scene.toml".into() });
+    assert!(of_two.to_string().ends_with("which its metadata grainlab_copy names"), "a cut has all scenes");
+    let without_scene = merged("cd", [run("c", None, 1), run("d", None, 2)]);
+    assert_eq!(SeveralRuns::of_scenes(&without_scene), None);
+    assert_eq!(SeveralRuns::of(&without_scene).unwrap().sign, RunSign::Requests { sequence: 1 });
 }

@@ -52,6 +52,27 @@ fn vtkhdf_without_contacts_beside_it_has_those_of_the_positions() {
 }
 
 #[test]
+fn vtkhdf_files_that_contradict_each_other_or_themselves_are_refused() {
+    let packing = golden();
+    let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::VtkHdf);
+    let (_other, later) =
+        export(&[Packing { step: packing.step + 1, ..packing.clone() }], ExportFormat::VtkHdf);
+    let read = |path: &Path| std::fs::read(path).unwrap();
+    let refused = |grains, contacts| {
+        vtkhdf::packing(grains, contacts, &ImportOptions::default()).unwrap_err().to_string()
+    };
+    let error = refused(read(&files[0]), Some(read(&later[1])));
+    assert!(error.contains("step is") && error.contains("in the file of contacts"), "{error}");
+    // One coordinate, in one of the two places that have it.
+    let mut bytes = read(&files[0]);
+    let x = packing.positions.iter().map(|p| p.x).find(|x| *x > 0.0).unwrap();
+    let at = bytes.windows(8).position(|eight| eight == x.to_le_bytes()).unwrap();
+    bytes[at..at + 8].copy_from_slice(&(1.01 * x).to_le_bytes());
+    let error = refused(bytes, None);
+    assert!(error.contains("position_unwrapped of row"), "{error}");
+}
+
+#[test]
 fn every_cut_of_a_vtkhdf_file_is_an_error_or_the_packing_and_no_panic() {
     let packing = golden();
     let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::VtkHdf);

@@ -154,10 +154,15 @@ fn normal_forces_alone_are_refused_where_friction_acts_and_the_columns_are_named
 }
 
 #[test]
-fn forces_of_another_step_and_cut_files_are_refused() {
+fn forces_are_those_of_the_step_of_the_grains_and_of_another_step_or_cut_they_are_refused() {
     let later = forces().replacen("TIMESTEP\n1", "TIMESTEP\n9", 1);
-    assert!(problem(&options(later, &[])).contains("same step"), "another step");
+    assert!(problem(&options(later.clone(), &[])).contains("same step"), "another step");
+    let three = [later.as_str(), &forces(), &later.replacen("TIMESTEP\n9", "TIMESTEP\n17", 1)].concat();
+    assert_eq!(packing(&options(three, &[])).unwrap(), packing(&options(forces(), &[])).unwrap());
+    let error = problem(&options(format!("{later}{later}"), &[]));
     let text = forces();
+    assert!(error.contains("of step 9") && error.contains("same step"), "{error}");
+    assert!(problem(&options(format!("{text}{text}"), &[])).contains("a second frame"), "twice");
     let cut = text.trim_end().rfind('\n').unwrap();
     assert!(problem(&options(text[..cut].to_owned(), &[])).contains("truncated"), "a line less");
 }

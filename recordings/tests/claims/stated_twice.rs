@@ -46,6 +46,18 @@ fn masses_of_extended_xyz_give_the_density_and_a_left_handed_cell_is_the_same_ce
 }
 
 #[test]
+fn a_diameter_of_extended_xyz_is_twice_the_radius_and_is_refused_beside_another() {
+    let read = |columns: &str, sizes: &str| {
+        let comment = format!("{LATTICE} density=2500 Properties=pos:R:3:{columns}");
+        xyz(&comment, &format!("0.1 0 0 {sizes}\n0.25 0 0 {sizes}\n"))
+    };
+    assert_eq!(read("diameter:R:1", "0.2").unwrap().packing.radii, [0.1, 0.1]);
+    assert_eq!(read("diameter:R:1:radius:R:1", "0.2 0.1").unwrap().packing.radii, [0.1, 0.1]);
+    let error = read("diameter:R:1:radius:R:1", "0.2 0.2").unwrap_err().to_string();
+    assert!(error.contains("half of the diameter contradict"), "{error}");
+}
+
+#[test]
 fn velocities_under_a_name_that_is_not_read_are_noted() {
     let comment = format!("{LATTICE} density=2500 Properties=pos:R:3:radius:R:1:momenta:R:3");
     let notes = xyz(&comment, "0.1 0 0 0.1 1 0 0\n0.25 0 0 0.1 0 0 0\n").unwrap().notes.concat();

@@ -250,3 +250,34 @@ fn the_message_of_the_greatest_log_time_is_read_and_an_end_leaves_it_out() {
     let count = |end| recording.messages(&Selection { end, ..Selection::default() }).unwrap().count();
     assert_eq!((count(None), count(Some(u64::MAX)), count(Some(5))), (2, 1, 0));
 }
+
+#[test]
+fn the_last_message_is_found_whatever_its_time() {
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path().join("late");
+    let mut run = RunWriter::create(&path, "late", &contract(), options()).unwrap();
+    for (n, time) in [(1, START), (2, u64::MAX)] {
+        run.write("/stress", &sample(SIMULATOR, n, time, &stress(n as u64))).unwrap();
+    }
+    run.finish().unwrap();
+    let recording = Recording::open(&path).unwrap();
+    assert_eq!(recording.last("stress").unwrap().unwrap().log_time, u64::MAX);
+    assert_eq!(recording.last_before("stress", u64::MAX).unwrap().unwrap().log_time, START);
+    assert!(recording.last("/packing").unwrap().is_none() && recording.last("/none").is_err());
+}
+
+#[test]
+fn a_whole_file_of_another_program_is_sound_and_its_losses_are_not_judged() {
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path().join("foreign.mcap");
+    let file = std::fs::File::create(&path).unwrap();
+    let mut made = mcap::WriteOptions::new().library("libmcap 2.0").create(file).unwrap();
+    let channel = made.add_channel(0, "/imu", "cdr", &Default::default()).unwrap();
+    let header =
+        mcap::records::MessageHeader { channel_id: channel, sequence: 1, log_time: 5, publish_time: 5 };
+    made.write_to_known_channel(&header, &[0, 1, 0, 0]).unwrap();
+    made.finish().unwrap();
+    let check = Recording::open(&path).unwrap().check();
+    assert!(check.warnings.is_empty() && check.unaccounted.is_empty(), "{check:?}");
+    assert_eq!((check.messages, check.lost, check.unjudged), (1, None, vec![path]));
+}

@@ -67,9 +67,18 @@ fn faults_are_named() {
         ("name = 'x'\nscenes = ['s1']\nseeds = [1]\nvary = { friction = 0.1 }", "vary.friction is 0.1"),
         ("name = 'x'\nscenes = ['s1']\nseed = [1]", "unknown field `seed`"),
         ("name = 'x'\ntable = 'lost.csv'", "lost.csv"),
+        ("name = 'x'\ntable = 'runs.csv'\nvary = { friction = [0.1, 0.2] }", "vary.friction has no effect"),
         ("name = 'x'\nscenes = ['s1']\nseeds = { first = 1, count = 200000 }", "more than 100000"),
     ] {
         let error = parse(text).unwrap_err();
         assert!(error.contains(named), "{text}: {error}");
     }
+}
+
+#[test]
+fn a_column_of_a_table_that_occurs_twice_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("runs.csv"), "seed,scene,friction,friction\n1,s3,0.2,0.3\n").unwrap();
+    let error = Campaign::parse("name = 'x'\ntable = 'runs.csv'", folder.path()).unwrap_err().to_string();
+    assert!(error.contains("runs.csv: the column friction occurs twice"), "{error}");
 }

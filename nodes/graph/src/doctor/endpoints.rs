@@ -88,6 +88,17 @@ fn policies(graph: &Graph, name: &str, writer: &Endpoint, reader: &Endpoint) -> 
             "subscribe with volatile, or publish with transient_local",
         );
     }
+    // A writer uses the first one that it lists.
+    if let Some(first) = writer.representations.first()
+        && !reader.representations.contains(first)
+    {
+        let list = |all: &[i16]| all.iter().map(|r| representation(*r)).collect::<Vec<_>>().join(", ");
+        add(
+            "representation_mismatch",
+            &format!("it reads {}, and {} is written", list(&reader.representations), representation(*first)),
+            "set both to XCDR1, the only data representation of grainlab and of ROS 2 by default",
+        );
+    }
     if let Some(limit) = requested.deadline
         && offered.deadline.is_none_or(|offer| offer > limit)
     {
@@ -107,6 +118,16 @@ fn policies(graph: &Graph, name: &str, writer: &Endpoint, reader: &Endpoint) -> 
         );
     }
     found
+}
+
+/// Name of a data representation of DDS-XTypes (1.3, 7.6.3.1).
+fn representation(number: i16) -> String {
+    match number {
+        0 => "XCDR1".to_owned(),
+        1 => "XML".to_owned(),
+        2 => "XCDR2".to_owned(),
+        n => format!("representation {n}"),
+    }
 }
 
 /// Subscriptions without publisher, while the same type is published under the same last name elsewhere: a namespace or
@@ -195,6 +216,25 @@ mod tests {
                 found[0].what
             );
             assert!(kinds(pair(requested, offered)).is_empty(), "offering more is no fault: {expected}");
+        }
+    }
+
+    #[test]
+    fn a_representation_that_the_reader_does_not_read_is_named() {
+        let qos = QosProfile::publisher_default;
+        let (xcdr1, xcdr2) = (vec![0], vec![2]);
+        for (written, read, expected) in [
+            (Some(xcdr2.clone()), None, 1),
+            (None, Some(xcdr2.clone()), 1),
+            (Some(xcdr2.clone()), Some(vec![0, 2]), 0),
+            (Some(Vec::new()), Some(xcdr1), 0),
+            (None, None, 0),
+        ] {
+            let writer = endpoint(1, "rt/stress", TYPE, true, qos()).represented(written);
+            let reader = endpoint(2, "rt/stress", TYPE, false, qos()).represented(read);
+            let found = findings(&graph(vec![writer, reader]));
+            assert_eq!(found.len(), expected, "{found:?}");
+            assert!(found.iter().all(|f| f.kind == "representation_mismatch" && f.what.contains("XCDR2")));
         }
     }
 

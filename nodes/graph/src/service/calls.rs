@@ -10,6 +10,7 @@ use grainlab_node_kit::Exit;
 use ros2_client::Message;
 use ros2_client::rcl_interfaces as rcl;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 /// Arguments of `grainlab service call`.
 #[derive(Debug, clap::Args)]
@@ -64,10 +65,23 @@ impl Call<'_> {
         Req: Message + Clone + for<'de> Deserialize<'de> + 'static,
         Resp: Message + Serialize + 'static,
     {
-        let request: Req = serde_saphyr::from_str(self.request)
+        let request: Req = request(self.request)
             .map_err(|e| Failure::usage(format!("the request is not one of {package}/srv/{name}: {e}")))?;
         let answer: Resp = call(self.observer, self.graph, self.service, (package, name), &request)?;
         json(&answer)
+    }
+}
+
+/// A request from its text, which may have no field that the request has not.
+fn request<Req: Message>(text: &str) -> Result<Req, String> {
+    let read: Req = serde_saphyr::from_str(text).map_err(|e| e.to_string())?;
+    let given: Value = serde_saphyr::from_str(text).map_err(|e| e.to_string())?;
+    let known = serde_json::to_value(&read).map_err(|e| e.to_string())?;
+    let names = |value: &Value| value.as_object().into_iter().flat_map(|m| m.keys().cloned()).collect();
+    let [given, known]: [Vec<String>; 2] = [&given, &known].map(names);
+    match given.iter().find(|name| !known.contains(name)) {
+        Some(name) => Err(format!("it has no field {name:?}; its fields are: {}", known.join(", "))),
+        None => Ok(read),
     }
 }
 
@@ -121,4 +135,20 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     }?;
     print(&answer)?;
     Ok(Exit::Done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_field_of_a_request_is_refused_with_those_there_are() {
+        let list = |text: &str| request::<rcl::ListParametersRequest>(text);
+        assert_eq!(list("{prefixes: [a], depth: 2}").unwrap().depth, 2);
+        let error = list("{prefixes: [], depth: 0, dephts: 3}").unwrap_err();
+        assert!(["\"dephts\"", "depth", "prefixes"].iter().all(|name| error.contains(name)), "{error}");
+        assert!(list("{prefixes: []}").unwrap_err().contains("depth"));
+        assert!(request::<Switch>("{data: true}").unwrap().data && request::<Nothing>("{}").is_ok());
+        assert!(request::<Nothing>("{data: true}").is_err());
+    }
 }

@@ -44,7 +44,9 @@ use bloch::Bloch;
 use christoffel_modes::long_wave_polarizations;
 use error::SolveError;
 use extrapolation::Extrapolation;
+use grainlab_core::results::NotJammed;
 use grainlab_core::{Packing, Vec3};
+use grainlab_micromechanics::network::{Solver, SpringNetwork, relaxed_stiffness};
 use modes::modes;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -68,6 +70,10 @@ const REACHED: f64 = 3e-4;
 /// Doublings of the wavelengths at once: near the frequency of a loosely held grain the modes are costly, and far below it
 /// they are not.
 const AT_ONCE: u32 = 3;
+
+/// Relative residual and iterations for whether a network resists any strain at all.
+const RESISTS: f64 = 1e-6;
+const ITERATIONS: u32 = 20_000;
 
 /// The curves of all polarizations of all rays, in that order.
 ///
@@ -230,17 +236,8 @@ fn acoustic_tensors(
         let wavenumber = TAU / (wavelength * diameter);
         let bloch = Bloch::new(backbone, &(ray.direction * wavenumber));
         let Settings { tolerance, max_iterations, .. } = *settings;
-        let modes = modes(&bloch, polarizations, &near, tolerance, max_iterations).map_err(|error| {
-            let contacts = backbone.network.contacts();
-            match error {
-                SolveError::Floppy => grainlab_core::results::NotJammed::Floppy { contacts }.into(),
-                error => AcousticsError::NotConverged {
-                    direction: ray.direction.into(),
-                    wavelength: wavelength * diameter,
-                    reason: error.to_string(),
-                },
-            }
-        })?;
+        let modes = modes(&bloch, polarizations, &near, tolerance, max_iterations)
+            .map_err(|error| failure(&backbone.network, error, ray.direction, wavelength * diameter))?;
         found.push(AcousticTensor {
             wavenumber,
             over_square: modes.acoustic_tensor / (wavenumber * wavenumber),
@@ -253,4 +250,30 @@ fn acoustic_tensors(
         near = modes.found;
     }
     Ok(found)
+}
+
+/// The error of modes that were not found. A motion without resistance is no sign that the whole network has none.
+fn failure(network: &SpringNetwork, error: SolveError, direction: Vec3, wavelength: f64) -> AcousticsError {
+    let resists =
+        || relaxed_stiffness(network, Solver::Iterative, RESISTS, ITERATIONS).is_ok_and(|c| c.is_some());
+    if error == SolveError::Floppy && !resists() {
+        return NotJammed::Floppy { contacts: network.contacts() }.into();
+    }
+    AcousticsError::NotConverged { direction: direction.into(), wavelength, reason: error.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_without_resistance_does_not_make_a_packing_loose_that_resists_strains() {
+        let network = |packing: &Packing| Backbone::new(packing).unwrap().network;
+        let reason = |packing: &Packing| failure(&network(packing), SolveError::Floppy, Vec3::z(), 1e-2);
+        let mut packing = lattice_sample::lattice();
+        let text = reason(&packing).to_string();
+        assert!(text.contains("some grains move without resistance"), "{text}");
+        packing.contacts.retain(|c| c.image == [0; 3]);
+        assert!(matches!(reason(&packing), AcousticsError::NotJammed(NotJammed::Floppy { .. })));
+    }
 }

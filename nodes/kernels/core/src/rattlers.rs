@@ -10,6 +10,9 @@ pub fn min_contacts(friction: f64) -> u32 {
 /// For each grain, whether it is part of the contact network: grains with fewer than [`min_contacts`]
 /// contacts with remaining grains are removed, again and again. A contact with an own image counts twice,
 /// because it touches the grain on two sides.
+///
+/// # Panics
+/// If a contact names a grain that does not exist, which [`Packing::check`] refuses.
 pub fn non_rattlers(packing: &Packing) -> Vec<bool> {
     let needed = min_contacts(packing.friction);
     let n = packing.grains();

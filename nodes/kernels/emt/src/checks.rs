@@ -127,7 +127,8 @@ fn state_errors(conditions: &Conditions, calibration: &Calibration) -> [(&'stati
     let stddevs = conditions.stddevs(calibration.material());
     // E* = G/(1 − ν).
     let of_poisson = stddevs[6] / (1.0 - grains.poisson_ratio);
-    [(0, stddevs[0]), (5, stddevs[5]), (6, of_poisson)].map(|(at, error)| (INPUT_NAMES[MODULI + at], error))
+    let named = |at: usize| INPUT_NAMES[MODULI + at];
+    [(named(0), stddevs[0]), (named(5), stddevs[5]), ("factor 1 - nu of the grains", of_poisson)]
 }
 
 /// What of the state is outside the packings on which the errors of the models were learned.

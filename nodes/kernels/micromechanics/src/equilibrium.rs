@@ -7,6 +7,9 @@ use grainlab_core::{Packing, Vec3};
 /// force.
 ///
 /// `non_rattlers` is one entry per grain, from [`grainlab_core::non_rattlers`].
+///
+/// # Panics
+/// If a contact names a grain that does not exist, which [`Packing::check`] refuses.
 pub fn unbalanced_force_ratio(packing: &Packing, non_rattlers: &[bool]) -> Option<f64> {
     let mut net = vec![Vec3::zeros(); packing.grains()];
     let mut contact_force = 0.0;

@@ -16,6 +16,14 @@ pub enum MicroError {
         /// Contacts of the packing.
         packing: usize,
     },
+    /// Loads that are not one for each grain.
+    #[error("the network has {grains} grains, and there are {loads} loads: give one for each grain")]
+    Loads {
+        /// Grains of the network.
+        grains: usize,
+        /// Loads given.
+        loads: usize,
+    },
     /// A setting is out of its range.
     #[error("setting {name} = {value:e} is out of range: {requirement}")]
     Setting {
@@ -85,6 +93,15 @@ pub enum MicroError {
         /// rotation.
         what: &'static str,
         /// The offending eigenvalue, Pa.
+        eigenvalue: f64,
+    },
+    /// Prestress makes the stiffness negative under some strain.
+    #[error(
+        "the prestressed packing has a negative stiffness under some strain, {eigenvalue:e} Pa: it is stable only while that \
+         strain is held, and has no moduli"
+    )]
+    HeldOnly {
+        /// Smallest eigenvalue of the stiffness, Pa.
         eigenvalue: f64,
     },
     /// The explicit probe failed.

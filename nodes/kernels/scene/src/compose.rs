@@ -36,7 +36,12 @@ pub struct Draft {
     table: Table,
     /// The sources that contain the paths of files to start from, by key of `[start]`.
     start_from: BTreeMap<&'static str, String>,
+    /// Keys set outside the texts, as `KEY=VALUE`.
+    overrides: Vec<String>,
 }
+
+/// Keys that no description contradicts.
+const NEVER_DESCRIBED: [&str; 3] = ["name", "description", "seed"];
 
 /// The keys of `[start]` that name files.
 const FILES: [&str; 2] = ["packing", "contact_forces"];
@@ -114,11 +119,16 @@ impl Draft {
         for (_, layer) in layers.into_iter().rev() {
             faults.extend(overlay(&mut table, layer));
         }
-        if faults.is_empty() { Ok(Draft { table, start_from }) } else { Err(SceneError { faults }) }
+        if faults.is_empty() {
+            Ok(Draft { table, start_from, overrides: Vec::new() })
+        } else {
+            Err(SceneError { faults })
+        }
     }
 
-    /// Merges keys into the scene, as [`crate::assignment`] parses them.
+    /// Merges keys into the scene, as [`crate::assignment`] parses them. They are added to its description.
     pub fn set(&mut self, keys: Table) -> Result<(), SceneError> {
+        named(&keys, "", &mut self.overrides);
         self.start_from.retain(|key, _| !has_key(&keys, key));
         let faults = overlay(&mut self.table, keys);
         if faults.is_empty() { Ok(()) } else { Err(SceneError { faults }) }
@@ -169,12 +179,35 @@ impl Draft {
 
     /// The scene, if all its values are valid. If it starts from a packing, use [`Draft::resolve_from`].
     pub fn resolve(&self) -> Result<Resolved, SceneError> {
-        read(&self.table, None)
+        read(&self.described(), None)
     }
 
     /// A scene that starts from this packing.
     pub fn resolve_from(&self, packing: &Packing) -> Result<Resolved, SceneError> {
-        read(&self.table, Some(packing))
+        read(&self.described(), Some(packing))
+    }
+
+    /// The table whose description, that of the texts, is followed by the keys set outside them.
+    fn described(&self) -> Table {
+        let mut table = self.table.clone();
+        if let Some(Value::String(text)) = table.get_mut("description")
+            && !(text.is_empty() || self.overrides.is_empty())
+        {
+            *text += &format!(", with {}", self.overrides.join(", "));
+        }
+        table
+    }
+}
+
+/// Adds the keys of a table with their values as `KEY=VALUE`.
+fn named(keys: &Table, place: &str, found: &mut Vec<String>) {
+    for (key, value) in keys {
+        match value {
+            _ if place.is_empty() && NEVER_DESCRIBED.contains(&key.as_str()) => {}
+            Value::Table(inner) => named(inner, &format!("{place}{key}."), found),
+            Value::String(text) => found.push(format!("{place}{key}={text}")),
+            value => found.push(format!("{place}{key}={value}")),
+        }
     }
 }
 

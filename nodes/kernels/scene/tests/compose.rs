@@ -69,7 +69,9 @@ fn the_scenes_of_the_ensembles_are_what_they_were_as_whole_files() {
         draft.set(assignment("friction=0.3").unwrap()).unwrap();
         let turned: Vec<&str> =
             flat.lines().map(|line| if line.ends_with("# mu2") { "friction = 0.3" } else { line }).collect();
-        assert_eq!(draft.resolve().unwrap().scene, Scene::parse(&turned.join("\n")).unwrap(), "{name}");
+        let turned = Scene::parse(&turned.join("\n")).unwrap();
+        let description = [&turned.description, ", with friction=0.3"].concat();
+        assert_eq!(draft.resolve().unwrap().scene, Scene { description, ..turned }, "{name}");
     }
 }
 
@@ -200,4 +202,16 @@ fn what_changes_a_base_needs_one() {
     let error = Scene::parse("name = 'x'\nremove = ['rest']\nphase.rest.drag = 1").unwrap_err().to_string();
     assert!(error.contains("remove: changes a base, and this scene has none"), "{error}");
     assert!(error.contains("phase: is a table; it must be an array of tables"), "{error}");
+}
+
+#[test]
+fn a_description_is_followed_by_the_keys_that_are_set_and_by_no_seed_or_name() {
+    let mut draft = compose(&[], "demo").unwrap();
+    let own = draft.resolve().unwrap().scene.description;
+    for set in ["seed=7", "name=small", "grains.count=200", "phase.rest.drag=1e3"] {
+        draft.set(assignment(set).unwrap()).unwrap();
+    }
+    let resolved = draft.resolve().unwrap();
+    assert_eq!(resolved.scene.description, format!("{own}, with grains.count=200, phase.rest.drag=1000.0"));
+    assert_eq!(Scene::parse(&resolved.toml).unwrap(), resolved.scene);
 }

@@ -136,9 +136,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         print(yade::EXPORTER)?;
         return Ok(Exit::Done);
     }
-    args.without_effect()?;
     let options = args.import.options()?;
     let measure = Analysis { settings: settings(args)?, scan: scan(args)? };
+    args.without_effect()?;
     let printer = Printer::new(args.format, args.columns.clone())?;
     let recorded = [topics::FABRIC, topics::MODULI];
     let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "analyze")).transpose()?;

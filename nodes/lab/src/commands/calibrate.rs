@@ -61,6 +61,8 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let naming = Naming { preparation: &args.preparation, packing: &args.packing };
     let isotropic = packings::read(&args.isotropic, &naming)?;
+    packings::check_isotropic(&isotropic)
+        .map_err(|e| Failure::usage(format!("{}: {e}", args.isotropic.display())))?;
     let anisotropic = match &args.anisotropic {
         Some(path) => packings::read(path, &naming)?,
         None => Vec::new(),

@@ -325,6 +325,10 @@ impl Args {
         ] {
             in_range(flag, Some(stddev), "0 or more and finite", |v| v >= 0.0 && v.is_finite())?;
         }
+        in_range("poisson-sigma", Some(self.poisson_sigma), "at most 0.5", |v| v <= 0.5)?;
+        if self.speeds.is_none() && self.table.is_none() && self.density.is_some() {
+            return Err(Failure::usage("--density has no effect without --speeds: moduli are given in Pa"));
+        }
         Ok(Defaults {
             relative_error: self.error,
             grain_shear_modulus: self.grain_shear_modulus,

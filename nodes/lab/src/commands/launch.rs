@@ -136,12 +136,21 @@ fn planned(args: &Args) -> Result<(SceneText, Order), Failure> {
         launch: file.text().to_owned(),
         arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
         seed: scene.scene.seed,
+        words: args.words.iter().map(|word| whole_path(word, path)).collect(),
     };
     let plans = order.plans(Path::new("."))?;
     refuse_unknown(&plans)?;
     plans.iter().try_for_each(NodePlan::check_parameters).map_err(Failure::usage)?;
     names_of_run(&plans).map_err(Failure::usage)?;
     Ok((scene, order))
+}
+
+/// A word of the command; the path of a launch file so that it is found from every directory.
+fn whole_path(word: &str, file: Option<&Path>) -> String {
+    let is_built_in = BUILT_IN.iter().any(|(name, _)| word == *name);
+    let path = file.filter(|file| !is_built_in && *file == Path::new(word));
+    let whole = path.and_then(|path| path.canonicalize().ok());
+    whole.map_or_else(|| word.to_owned(), |path| path.to_string_lossy().into_owned())
 }
 
 /// Refuses a launch that could not begin, or whose directory has another run. `words` are the launch file and its arguments.

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum SolveError {
     /// A motion without stiffness, other than those of a few grains.
-    #[error("it has no stiffness")]
+    #[error("some grains move without resistance, and carry the wave in part; use another method")]
     Floppy,
     /// The maximum number of iterations was reached.
     #[error(

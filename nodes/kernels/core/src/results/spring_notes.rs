@@ -19,6 +19,12 @@ pub enum SpringNote {
          that"
     )]
     Frictionless,
+    /// The prestress is left out, although the packing has no friction.
+    #[error(
+        "without prestress, which lowers the moduli of packings without friction near isostaticity (analyze has --method \
+         prestressed)"
+    )]
+    WithoutPrestress,
     /// There are no tangential springs, although the packing has friction.
     #[error(
         "without tangential springs, as asked, although contacts carry tangential forces (friction {friction}); no inversion is \
@@ -60,6 +66,8 @@ impl SpringNote {
         };
         let network = !matches!(method, StiffnessMethod::StrainProbe);
         let rolling = (network && packing.law.rolling.is_some()).then_some(Self::WithoutRolling);
-        tangential.into_iter().chain(rolling).collect()
+        let unstressed = matches!(method, StiffnessMethod::FrozenNetwork);
+        let prestress = (unstressed && smooth && friction <= 0.0).then_some(Self::WithoutPrestress);
+        tangential.into_iter().chain(rolling).chain(prestress).collect()
     }
 }

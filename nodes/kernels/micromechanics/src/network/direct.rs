@@ -32,6 +32,9 @@ const ROUNDS: u32 = 100;
 
 /// Solves K x = `load` like [`super::solve()`], with a factorisation instead of iterations. Each round of
 /// refinement counts as one iteration.
+///
+/// # Errors
+/// As [`super::solve()`].
 pub fn solve<const L: usize>(
     network: &SpringNetwork,
     load: &[GrainDofs<L>],
@@ -39,7 +42,7 @@ pub fn solve<const L: usize>(
     tolerance: f64,
     max_iterations: u32,
 ) -> Result<Solution<L>, MicroError> {
-    let mut refinement = Refinement::new(load, scale, tolerance, max_iterations.min(ROUNDS));
+    let mut refinement = Refinement::new(network, load, scale, tolerance, max_iterations.min(ROUNDS))?;
     if let Some(factor) = Factor::new(network) {
         let mut step = vec![[[0.0; L]; 6]; load.len()];
         let mut image = step.clone();

@@ -97,6 +97,9 @@ pub fn relaxed_stiffness(
         [("C", relaxed), ("B - C", uniform_rotation.0 - relaxed), ("A - B", affine.0 - uniform_rotation.0)];
     for (what, matrix) in bounds {
         let eigenvalue = matrix.symmetric_eigenvalues().min();
+        if network.prestressed() && what == "C" && eigenvalue < -BOUND_SLACK * scale {
+            return Err(MicroError::HeldOnly { eigenvalue });
+        }
         if eigenvalue.is_nan() || eigenvalue < -BOUND_SLACK * scale {
             return Err(MicroError::OutOfBounds { what, eigenvalue });
         }

@@ -55,6 +55,9 @@ pub struct Solution<const L: usize> {
 
 /// Solves K x = `load` (one entry per grain, N) for `L` columns at once, at most eight, until the norm of each residual
 /// is at most `tolerance` times its entry in `scale` (N). Columns with a scale of zero are left at zero.
+///
+/// # Errors
+/// Another number of loads than of grains, and a solve that does not converge.
 pub fn solve<const L: usize>(
     network: &SpringNetwork,
     load: &[GrainDofs<L>],
@@ -63,7 +66,7 @@ pub fn solve<const L: usize>(
     max_iterations: u32,
 ) -> Result<Solution<L>, MicroError> {
     const { assert!(L <= WIDTH) }
-    let mut refinement = Refinement::new(load, scale, tolerance, max_iterations);
+    let mut refinement = Refinement::new(network, load, scale, tolerance, max_iterations)?;
     if network.prestressed() {
         refinement.solve::<true>(network)?;
     } else {
@@ -101,11 +104,15 @@ pub(crate) struct Refinement<'a, const L: usize> {
 
 impl<'a, const L: usize> Refinement<'a, L> {
     pub(crate) fn new(
+        network: &SpringNetwork,
         load: &'a [GrainDofs<L>],
         scale: &'a [f64; L],
         tolerance: f64,
         max_iterations: u32,
-    ) -> Self {
+    ) -> Result<Self, MicroError> {
+        if load.len() != network.grains() {
+            return Err(MicroError::Loads { grains: network.grains(), loads: load.len() });
+        }
         let zero = vec![[[0.0; L]; 6]; load.len()];
         let (squares, residual) = ([0.0; L], f64::INFINITY);
         let mut new = Self {
@@ -120,7 +127,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
             iterations: 0,
         };
         new.look();
-        new
+        Ok(new)
     }
 
     /// The residual.

@@ -227,6 +227,9 @@ impl SpringNetwork {
 
     /// y = K x for `L` motions at once, one entry per grain; returns xᵀ K x of each, J. Contacts are summed in the
     /// order of the packing, so the result is the same bit for bit on every call.
+    ///
+    /// # Panics
+    /// If `x` and `y` have not one entry for each of [`SpringNetwork::grains`].
     pub fn apply<const L: usize>(&self, x: &[GrainDofs<L>], y: &mut [GrainDofs<L>]) -> [f64; L] {
         assert_eq!((x.len(), y.len()), (self.grains, self.grains), "one motion per grain");
         y.fill([[0.0; L]; 6]);
@@ -292,6 +295,9 @@ impl SpringNetwork {
     /// Stiffness, Pa, of the network whose grains move with the unit strains plus `motion`, in two forms: by energy,
     /// Σ u_aᵀ k u_b/V, symmetric and never negative; and by stress, Σ (E_a l)ᵀ k u_b/V. They agree where `motion` balances
     /// all forces.
+    ///
+    /// # Panics
+    /// If `motion` has fewer entries than the network has grains.
     pub fn stiffness_with(&self, motion: &[GrainDofs<6>]) -> (Matrix6<f64>, Matrix6<f64>) {
         self.stiffness(Some(motion))
     }

@@ -3,8 +3,8 @@
 use crate::samples::{Dice, packing, random};
 use grainlab_core::results::ElasticStiffness;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_micromechanics::network::{Solver, Springs};
-use grainlab_micromechanics::{MicroError, Settings, analyze};
+use grainlab_micromechanics::network::{Solver, SpringNetwork, Springs, solve, solve_directly};
+use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
 
 fn moduli(packing: &Packing, solver: Solver, tangential: bool) -> ElasticStiffness {
     let springs = if tangential { Springs::NormalAndTangential } else { Springs::Normal };
@@ -105,4 +105,14 @@ fn the_same_packing_gives_the_same_bits_and_a_round_too_few_is_an_error() {
         Settings { solver: Solver::Direct, tolerance: 1e-13, max_iterations: 0, ..Settings::default() };
     let refused = analyze(&p, &settings);
     assert!(matches!(refused, Err(MicroError::NotConverged { iterations: 0, .. })), "{refused:?}");
+}
+
+#[test]
+fn another_number_of_loads_than_of_grains_is_refused_by_either_solver() {
+    let p = random(30, 1.3, 1);
+    let network = SpringNetwork::new(&PackingView::new(&p).unwrap(), Springs::Carried).unwrap();
+    let refused = MicroError::Loads { grains: 30, loads: 29 };
+    let loads = vec![[[0.0]; 6]; 29];
+    assert_eq!(solve(&network, &loads, &[1.0], 1e-9, 10).unwrap_err(), refused);
+    assert_eq!(solve_directly(&network, &loads, &[1.0], 1e-9, 10).unwrap_err(), refused);
 }

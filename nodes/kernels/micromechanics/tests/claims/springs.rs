@@ -51,7 +51,10 @@ fn contacts_that_slide_keep_their_tangential_springs_and_a_note_says_so() {
 fn springs_that_differ_from_those_of_the_contacts_are_noted() {
     let network = StiffnessMethod::FrozenNetwork;
     let smooth = frictionless();
-    assert_eq!(SpringNote::of(&smooth, network, true), [SpringNote::Frictionless]);
+    assert_eq!(
+        SpringNote::of(&smooth, network, true),
+        [SpringNote::Frictionless, SpringNote::WithoutPrestress]
+    );
     assert_eq!(SpringNote::of(&smooth, network, false), [SpringNote::TangentialAdded]);
     let mut rough = Packing { friction: 0.3, ..frictionless() };
     assert_eq!(SpringNote::of(&rough, network, true), [SpringNote::TangentialLeftOut { friction: 0.3 }]);

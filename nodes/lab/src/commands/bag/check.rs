@@ -2,7 +2,8 @@
 
 use grainlab_console::{Failure, Format, Table, count, json, print, say};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::{Check, Recording};
+use grainlab_recordings::{Check, Recording, SeveralRuns};
+use serde::Serialize;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -12,7 +13,8 @@ Examples:
 
 Reads every record: framing, checksums of chunks, attachments, summary and data, the index against the messages, the order
 of files, the recorder's ledger against the messages, and the definitions of types against those of this program. Exit 0 without
-faults, else 3; a definition that is read by the names of its fields is no fault.";
+faults, else 3; a definition that is read by the names of its fields is no fault, nor are several runs in one recording, nor a
+ledger that is absent because another program, or a copy, wrote the file: then losses cannot be judged.";
 
 /// Arguments of `grainlab bag check`.
 #[derive(Debug, clap::Args)]
@@ -27,24 +29,37 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let check = Recording::open(&args.path).map_err(Failure::failed)?.check();
+    let recording = Recording::open(&args.path).map_err(Failure::failed)?;
+    let check = recording.check();
+    let view = View { check, several_runs: SeveralRuns::of(&recording).map(|s| s.to_string()) };
+    let check = &view.check;
     let sound = check.warnings.is_empty()
         && check.unaccounted.is_empty()
         && !check.refused
         && check.lost.unwrap_or(0) == 0;
     print(&match args.format {
-        Format::Table => text(&check),
-        Format::Json => json(&check)?,
-        Format::Csv => csv(&check),
+        Format::Table => text(&view),
+        Format::Json => json(&view)?,
+        Format::Csv => csv(check),
     })?;
     if args.format != Format::Table {
         check.warnings.iter().for_each(|w| say!("grainlab: {w}"));
-        check.definitions.iter().for_each(|line| say!("grainlab: {line}"));
+        check.definitions.iter().chain(&view.several_runs).for_each(|line| say!("grainlab: {line}"));
     }
     Ok(if sound { Exit::Done } else { Exit::DataLoss })
 }
 
-fn text(check: &Check) -> String {
+/// The check, and the runs that it found.
+#[derive(Serialize)]
+struct View {
+    #[serde(flatten)]
+    check: Check,
+    /// That the recording holds several runs, and by what; null if it is of one.
+    several_runs: Option<String>,
+}
+
+fn text(view: &View) -> String {
+    let check = &view.check;
     let mut lines = vec![format!(
         "{}, {}: {}, {}, {}, {}",
         count(check.files.len(), "file"),
@@ -56,7 +71,7 @@ fn text(check: &Check) -> String {
     )];
     lines.extend(check.warnings.iter().map(ToString::to_string));
     for path in &check.unaccounted {
-        let what = "it has no ledger: its recorder was killed, is still running, or is another program";
+        let what = "it has no ledger: its recorder was killed, or is still running";
         lines.push(format!("{}: {what}", path.display()));
     }
     if let Some(lost) = check.lost.filter(|n| *n > 0) {
@@ -66,6 +81,11 @@ fn text(check: &Check) -> String {
     if lines.len() == 1 {
         lines.push("all records, checksums, indexes, ledgers and definitions are valid".to_owned());
     }
+    for path in &check.unjudged {
+        let what = "it has no ledger, as a copy or a file of another program: whether messages were lost cannot be judged";
+        lines.push(format!("{}: {what}", path.display()));
+    }
+    lines.extend(view.several_runs.clone());
     lines.join("\n") + "\n"
 }
 

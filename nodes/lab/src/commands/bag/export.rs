@@ -3,9 +3,12 @@
 use crate::commands::packings::import as import_flags;
 use clap::ValueEnum;
 use grainlab_console::{Failure, print, say};
+use grainlab_core::Packing;
+use grainlab_experiment::{PathPosition, StrainOrigin};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::export::{ExportFormat, Exporter, FilePart};
 use grainlab_recordings::import::{self, Imported};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Write as _;
@@ -27,7 +30,8 @@ Writes every packing of a recording, or of a file of any format that `grainlab a
   vtk          grains_1.vtp and contacts_1.vtp, ..., and the collections grains.pvd and contacts.pvd
   vtkhdf       grains_1.vtkhdf and contacts_1.vtkhdf, ...: no loss
 `grainlab analyze` reads csv, lammps, lammps-data, xyz and vtkhdf back. In vtk and vtkhdf, contacts are lines between centres, with their
-forces. In files for LAMMPS, ids count from 1: those of the packing, or one more if it has an id 0. Data that PATH lacks are given as to
+forces. In files for LAMMPS, ids count from 1: those of the packing, or one more if it has an id 0. A strain since the first step of
+a run, in which no phase has set a reference state, is left out. Data that PATH lacks are given as to
 `grainlab analyze`. Existing files are not overwritten. Exit 3 if a part of the recording could not be read.";
 
 /// Arguments of `grainlab bag export`.
@@ -112,11 +116,26 @@ struct Writer<'a> {
     packings: u64,
     /// The files made so far, which further parts extend.
     made: BTreeSet<String>,
+    /// Whether the strain of a packing was left out, and a line has said so.
+    strain_is_left_out: bool,
+}
+
+/// The packing, without a strain that counts from the first step of its run: in a file it would be that since a reference
+/// state.
+fn referred(imported: &Imported) -> Cow<'_, Packing> {
+    let packing = &imported.packing;
+    match PathPosition::of(&imported.run_state) {
+        Some(position) if position.strain_origin != StrainOrigin::Reference => {
+            Cow::Owned(Packing { deformation: Packing::no_reference(), ..packing.clone() })
+        }
+        _ => Cow::Borrowed(packing),
+    }
 }
 
 impl<'a> Writer<'a> {
     fn new(format: ExportFormat, path: &'a Path, folder: &'a Path) -> Self {
-        Self { exporter: Exporter::new(format), path, folder, packings: 0, made: BTreeSet::new() }
+        let exporter = Exporter::new(format);
+        Self { exporter, path, folder, packings: 0, made: BTreeSet::new(), strain_is_left_out: false }
     }
 
     fn write(&mut self, imported: &Imported) -> Result<(), Failure> {
@@ -127,7 +146,15 @@ impl<'a> Writer<'a> {
                 "grainlab: {source}: contacts resist rolling, and files for LAMMPS have neither this law nor its forces"
             );
         }
-        let parts = self.exporter.next(&imported.packing).map_err(Failure::failed)?;
+        let packing = referred(imported);
+        if !self.strain_is_left_out && matches!(packing, Cow::Owned(_)) {
+            self.strain_is_left_out = true;
+            say!(
+                "grainlab: {source}, from step {}: the strain is left out: no phase of the run has set a reference state",
+                imported.step
+            );
+        }
+        let parts = self.exporter.next(&packing).map_err(Failure::failed)?;
         self.packings += 1;
         parts.iter().try_for_each(|part| self.append(part))
     }
@@ -186,6 +213,26 @@ mod tests {
         let dump = std::fs::read_to_string(out.join("packings.dump")).unwrap();
         assert_eq!(dump, lammps_dump(&packing));
         assert!(run(&args(path, out, Format::Lammps)).unwrap_err().to_string().contains("packings.dump"));
+    }
+
+    #[test]
+    fn a_strain_that_counts_from_no_reference_state_is_not_exported() {
+        let text = "base = 'demo'\nname = 'few'\ngrains.count = 20";
+        let scene = grainlab_scene::Scene::parse(text).unwrap();
+        let run = grainlab_experiment::Simulation::new(scene).unwrap();
+        let (packing, run_state) = (run.packing(), run.run_state());
+        let imported = |run_state| Imported {
+            header: grainlab_msgs::boundary::packing_header(&packing),
+            packing: packing.clone(),
+            step: 0,
+            run_state,
+            source: String::new(),
+            notes: Vec::new(),
+        };
+        assert!(packing.strain().is_some());
+        assert_eq!(referred(&imported(run_state)).strain(), None);
+        // A file without a run states what its strain counts from.
+        assert_eq!(referred(&imported(Vec::new())).strain(), packing.strain());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use grainlab_console::{Failure, Format, Table, json, print};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::strangers::{self, StrangerView};
-use grainlab_recordings::{Info, METADATA_RECORD, Recording};
+use grainlab_recordings::{Info, METADATA_RECORD, Recording, SeveralRuns};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -25,6 +25,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         info: recording.info(),
         run: recording.metadata(METADATA_RECORD).and_then(|record| record.get("run").cloned()),
         strangers: strangers::strangers(&recording),
+        several_runs: SeveralRuns::of_scenes(&recording).map(|s| s.to_string()),
+        unaccounted: recording.unaccounted(),
     };
     let text = match args.format {
         Format::Table => table(&view),
@@ -32,6 +34,9 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         Format::Csv => csv(&view.info),
     };
     print(&text)?;
+    if args.format == Format::Csv {
+        notes(&view).iter().for_each(|line| grainlab_console::say!("grainlab: {line}"));
+    }
     let warnings = recording.warnings();
     warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
@@ -46,6 +51,21 @@ struct View {
     run: Option<String>,
     /// Processes whose messages were left out.
     strangers: Vec<StrangerView>,
+    /// That the recording has the scenes of several runs; null if it has one or none.
+    several_runs: Option<String>,
+    /// Files whose recorder was killed, or is still running: their messages are not in the counts of lost ones.
+    unaccounted: Vec<PathBuf>,
+}
+
+/// What the table of topics does not show.
+fn notes(view: &View) -> Vec<String> {
+    let uncounted = |path: &PathBuf| {
+        format!(
+            "{}: its recorder was killed, or is still running: published, lost and repeated do not count it",
+            path.display()
+        )
+    };
+    view.several_runs.iter().cloned().chain(view.unaccounted.iter().map(uncounted)).collect()
 }
 
 fn table(view: &View) -> String {
@@ -54,6 +74,7 @@ fn table(view: &View) -> String {
         text += &format!("\nrun {run}\n");
     }
     view.strangers.iter().for_each(|s| text += &format!("{}\n", s.line()));
+    notes(view).iter().for_each(|line| text += &format!("\n{line}\n"));
     text
 }
 

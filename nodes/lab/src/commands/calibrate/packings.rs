@@ -7,6 +7,11 @@ use grainlab_core::contact::SpringLaw;
 use grainlab_emt::{CalibrationSample, Modulus};
 use std::path::Path;
 
+/// Largest median of |eps| of isotropic packings, and what chance makes of it over the root of the number of grains: .27 in
+/// those of the built-in calibration.
+const ISOTROPIC: f64 = 0.03;
+const CHANCE: f64 = 0.7;
+
 /// The columns that identify packings.
 pub(super) struct Naming<'a> {
     pub(super) preparation: &'a [String],
@@ -42,6 +47,24 @@ pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSa
         return Err(Failure::usage(format!("{name}: there is no packing below the header")));
     }
     Ok(samples)
+}
+
+/// Refuses packings most of which are anisotropic: the laws of isotropic ones are fitted to them.
+pub(super) fn check_isotropic(samples: &[CalibrationSample]) -> Result<(), String> {
+    let median = |of: fn(&CalibrationSample) -> f64| {
+        let mut values: Vec<f64> = samples.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let (eps, grains) = (median(|s| s.eps.abs()), median(|s| f64::from(s.grains)));
+    let limit = ISOTROPIC.max(CHANCE / grains.sqrt());
+    if eps <= limit {
+        return Ok(());
+    }
+    Err(format!(
+        "these packings are not isotropic: the median of |eps| is {eps:.3}, and at most {limit:.3} is expected; are the tables of \
+         --isotropic and --anisotropic exchanged?"
+    ))
 }
 
 /// The first `preparation` cells grouped by identify the preparation, those after them the packing.

@@ -3,11 +3,14 @@
 use super::state::State;
 use super::way::Way;
 use grainlab_console::{Failure, json, say};
-use grainlab_emt::{Draws, EmtError, Posterior, PosteriorSettings};
+use grainlab_emt::{Draws, EmtError, Estimate, InferredQuantity, Posterior, PosteriorSettings};
 use grainlab_node_kit::Exit;
 use grainlab_results::posterior_draws;
 use serde_json::{Map, Value, json};
 use std::path::Path;
+
+/// Ratio of the scatter of the draws to that of the estimate, or its inverse, from which the two are said to differ.
+const UNLIKE: f64 = 1.2;
 
 /// How many draws.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +31,7 @@ pub(super) fn write(state: &State, ways: &[Way], number: Number, path: &Path) ->
         return Err(Failure::usage(format!("{name}: draws are written as .csv or .json (for ArviZ)")));
     }
     let Number { chains, per_chain, seed } = number;
-    let draws = drawn(state, way, chains * per_chain, seed).map_err(|e| {
+    let (draws, estimate) = drawn(state, way, chains * per_chain, seed).map_err(|e| {
         let exit = if e.is_input_error() { Exit::Usage } else { Exit::PhysicsInvalid };
         Failure::new(exit, format!("{}: {e}", way.model.name()))
     })?;
@@ -43,16 +46,37 @@ pub(super) fn write(state: &State, ways: &[Way], number: Number, path: &Path) ->
         way.model.name(),
         100.0 * draws.acceptance
     );
+    draws
+        .quantities
+        .iter()
+        .filter_map(|q| unlike(&draws, &estimate, *q))
+        .for_each(|line| say!("grainlab: {line}"));
     Ok(())
 }
 
-fn drawn(state: &State, way: &Way, count: usize, seed: u64) -> Result<Draws, EmtError> {
+/// A note where the draws of a quantity scatter otherwise than the estimate states.
+fn unlike(draws: &Draws, estimate: &Estimate, quantity: InferredQuantity) -> Option<String> {
+    let stated = estimate.stddev(quantity)?;
+    let values: Vec<f64> = draws.draws.iter().filter_map(|draw| draw.structure.get(quantity)).collect();
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let scatter = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
+    (!(1.0 / UNLIKE..UNLIKE).contains(&(scatter / stated))).then(|| {
+        format!(
+            "the draws of {} scatter by {scatter:.4}, and the estimate states {stated:.4}: the posterior is not normal, and its \
+             intervals are those of the draws",
+            quantity.name()
+        )
+    })
+}
+
+fn drawn(state: &State, way: &Way, count: usize, seed: u64) -> Result<(Draws, Estimate), EmtError> {
     let prior = way.prior.as_deref().cloned().unwrap_or_default();
     let settings = PosteriorSettings { seed, ..PosteriorSettings::default() };
     let observation = state.observation(way)?;
     // What has no estimate has no posterior worth drawing from: it is far outside the packings of the calibration.
-    way.model.infer(&observation, &way.calibration)?;
-    Posterior::new(way.model, &observation, &way.calibration, &prior, settings)?.draws(count)
+    let estimate = way.model.infer(&observation, &way.calibration)?;
+    let posterior = Posterior::new(way.model, &observation, &way.calibration, &prior, settings)?;
+    Ok((posterior.draws(count)?, estimate))
 }
 
 fn attributes(way: &Way, draws: &Draws, seed: u64) -> Map<String, Value> {

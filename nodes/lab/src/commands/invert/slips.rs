@@ -1,17 +1,19 @@
 //! Columns of a table that are named almost like one that is read.
 
 /// Words for the same thing, in a column's name and in that of the input.
-const WORDS: [(&str, &str); 6] = [
-    ("stddev", "sigma"),
-    ("std", "sigma"),
-    ("sd", "sigma"),
-    ("error", "sigma"),
-    ("err", "sigma"),
-    ("stdev", "sigma"),
-];
+const WORDS: [(&str, &str); 2] = [("p", "pressure"), ("nu", "poisson")];
+
+/// Words for a standard deviation, wherever they stand in a name.
+const SIGMA: [&str; 11] =
+    ["sigma", "stddev", "std", "stdev", "sd", "se", "sem", "error", "err", "uncertainty", "unc"];
+
+/// Letters before a quantity for its error, as in dG12 and u_G12.
+const DELTA: [&str; 2] = ["d", "u"];
 
 /// Names of the flags and of Python for what a table calls otherwise.
-const SYNONYMS: [(&str, &str); 6] = [
+const SYNONYMS: [(&str, &str); 8] = [
+    ("q_pressure", "axial_q_over_p"),
+    ("gamma_delta", "gamma_over_delta"),
     ("stress_ratio", "axial_q_over_p"),
     ("stress_ratio_sigma", "axial_q_over_p_sigma"),
     ("solid_fraction", "phi"),
@@ -34,22 +36,39 @@ pub(super) fn meant<'a>(column: &str, known: &[&'a str]) -> Option<&'a str> {
     let words = |name: &str| -> Vec<String> {
         let lower = name.to_lowercase();
         let words = lower.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty());
-        words.map(|w| WORDS.iter().find(|(from, _)| *from == w).map_or(w, |(_, to)| to).to_owned()).collect()
+        let words: Vec<&str> =
+            words.map(|w| WORDS.iter().find(|(from, _)| *from == w).map_or(w, |(_, to)| *to)).collect();
+        let is_error =
+            |(n, w): (usize, &&str)| SIGMA.contains(w) || n == 0 && words.len() > 1 && DELTA.contains(w);
+        let (errors, others): (Vec<_>, Vec<_>) =
+            words.iter().enumerate().partition(|(n, w)| is_error((*n, w)));
+        let last = (!errors.is_empty()).then_some("sigma");
+        others.into_iter().map(|(_, w)| *w).chain(last).map(str::to_owned).collect()
     };
     let bare = |words: &[String]| -> Vec<String> {
         words.iter().filter(|w| !UNITS.contains(&w.as_str())).cloned().collect()
     };
     let written = words(column);
     let whole = written.join("_");
-    if let Some((_, meant)) = SYNONYMS.iter().find(|(synonym, _)| *synonym == whole) {
-        return known.iter().copied().find(|name| name == meant);
+    let synonyms = SYNONYMS.iter().filter(|(synonym, _)| *synonym == whole);
+    if let Some(name) =
+        synonyms.flat_map(|(_, meant)| known.iter().copied().find(|name| name == meant)).next()
+    {
+        return Some(name);
     }
     let (short, joined) = (bare(&written), written.concat());
     let same = |name: &&str| {
         let full = bare(&words(name));
         let without_first = full.get(1..).filter(|rest| rest.len() > 1 && rest[0] != "sigma");
+        let of_delta = DELTA
+            .iter()
+            .filter_map(|d| joined.strip_prefix(d))
+            .any(|rest| format!("{rest}sigma") == full.concat());
         !short.is_empty() && (short == full || short.concat() == full.concat())
             || without_first == Some(&short[..])
+            || of_delta
+            // An error of nothing in particular.
+            || short == ["sigma"] && full.last().is_some_and(|w| w == "sigma")
     };
     let nearly = |name: &&str| {
         let of_name = words(name).concat();
@@ -104,6 +123,16 @@ mod tests {
             ("g12_sigma", "g12_sigma_pa"),
             ("g12_stddev_pa", "g12_sigma_pa"),
             ("g12_error", "g12_sigma_pa"),
+            ("sigma_g12", "g12_sigma_pa"),
+            ("stddev_g12_pa", "g12_sigma_pa"),
+            ("g12_unc_pa", "g12_sigma_pa"),
+            ("u_g12", "g12_sigma_pa"),
+            ("dG12", "g12_sigma_pa"),
+            ("error", "g12_sigma_pa"),
+            ("q/p", "axial_q_over_p"),
+            ("q_p", "axial_q_over_p"),
+            ("nu", "poisson"),
+            ("gamma_delta", "gamma_over_delta"),
             ("Pressure", "pressure_pa"),
             ("presure_pa", "pressure_pa"),
             ("p", "p_kpa"),

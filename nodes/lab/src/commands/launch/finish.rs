@@ -65,6 +65,13 @@ pub(super) fn finish(
         exit = worse(exit, Exit::DataLoss);
         back.complaints.extend(missing);
     }
+    let uncounted = recording.as_ref().map_or_else(|_| Vec::new(), Recording::unaccounted);
+    back.complaints.extend(uncounted.iter().map(|path| {
+        let path = path.display();
+        format!(
+            "{path}: its recorder was killed: messages sent then may be missing, and are not counted as lost"
+        )
+    }));
     let nodes = supervised.children.iter().map(|c| NodeEnd {
         name: c.plan.name.clone(),
         pid: c.last_pid,
@@ -79,6 +86,7 @@ pub(super) fn finish(
         resumed: output.resumed,
         exchanges: exchanges.map(|e| e.count()),
         recorded: topics.into_iter().map(|t| (t.name, t.messages)).collect(),
+        uncounted_files: uncounted.len(),
         wall_seconds: supervised.wall.as_secs_f64(),
         nodes: nodes.collect(),
         recording: recording.is_ok().then(|| directory.display().to_string()),

@@ -19,9 +19,17 @@ pub(super) struct Order {
     pub(super) arguments: BTreeMap<String, String>,
     /// The seed of the run.
     pub(super) seed: u64,
+    /// The launch file, by its built-in name or whole path, and the arguments: the words of the command.
+    #[serde(default)]
+    pub(super) words: Vec<String>,
 }
 
 impl Order {
+    /// Whether the other one starts the same processes, wherever its launch file is.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        self.launch == other.launch && self.arguments == other.arguments && self.seed == other.seed
+    }
+
     /// Writes it into the run directory.
     pub(super) fn keep(&self, directory: &Path) -> Result<(), Failure> {
         let path = directory.join(FILE);
@@ -73,10 +81,13 @@ mod tests {
     fn what_was_launched_is_read_back_as_it_was() {
         let directory = tempfile::tempdir().unwrap();
         let arguments = BTreeMap::from([("simd".to_owned(), "scalar".to_owned())]);
-        let order = Order { launch: BUILT_IN[0].1.to_owned(), arguments, seed: 7 };
+        let order =
+            Order { launch: BUILT_IN[0].1.to_owned(), arguments, seed: 7, words: vec!["demo".to_owned()] };
         order.keep(directory.path()).unwrap();
         let known = Order::read(directory.path()).unwrap();
         assert_eq!(known, order);
+        assert!(known.is_same(&Order { words: Vec::new(), ..order.clone() }));
+        assert!(!known.is_same(&Order { seed: 8, ..order }));
         let plans = known.plans(directory.path()).unwrap();
         let simulator = plans.iter().find(|p| p.is(NodeKind::DemSimulator)).unwrap();
         assert!(

@@ -51,7 +51,7 @@ pub(crate) struct Args {
     /// Topic of the packings: of recordings, or of a live run
     #[arg(long, value_name = "NAME", default_value = "packing")]
     pub(crate) topic: String,
-    /// LAMMPS `dump local` with the contact forces of a data file or of a single-frame dump, also as .gz, of normal and
+    /// LAMMPS `dump local` with the contact forces of a data file or a dump at the same steps, also as .gz, of normal and
     /// tangential force (see `grainlab analyze --help`)
     #[arg(long, value_name = "FILE")]
     contact_forces: Option<PathBuf>,
