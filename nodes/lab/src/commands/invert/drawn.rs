@@ -3,7 +3,8 @@
 use super::state::State;
 use super::way::Way;
 use grainlab_console::{Failure, json, say};
-use grainlab_emt::{Draws, EmtError, Estimate, InferredQuantity, Posterior, PosteriorSettings};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{Draws, EmtError, Estimate, Posterior, PosteriorSettings};
 use grainlab_node_kit::Exit;
 use grainlab_results::posterior_draws;
 use serde_json::{Map, Value, json};
