@@ -166,7 +166,7 @@ impl Recording {
 
     /// The files of this program's recorder without a ledger: it was killed, or is still running.
     pub fn unaccounted(&self) -> Vec<PathBuf> {
-        self.without_ledger(|file| is_of_a_recorder(file))
+        self.without_ledger(is_of_a_recorder)
     }
 
     /// The files that never had a ledger: copies, and those of other programs.

@@ -79,7 +79,8 @@ fn text(view: &View) -> String {
     }
     lines.extend(check.definitions.iter().cloned());
     if lines.len() == 1 {
-        lines.push("all records, checksums, indexes, ledgers and definitions are valid".to_owned());
+        let ledgers = if check.unjudged.is_empty() { ", ledgers" } else { "" };
+        lines.push(format!("all records, checksums, indexes{ledgers} and definitions are valid"));
     }
     for path in &check.unjudged {
         let what = "it has no ledger, as a copy or a file of another program: whether messages were lost cannot be judged";
