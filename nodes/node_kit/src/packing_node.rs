@@ -5,9 +5,9 @@
 use crate::bulk::BulkSubscription;
 use crate::worker::Worker;
 use crate::{Bus, BusError, Demand, SampleId};
-use crate::{Health, Next, Node, NodeError};
+use crate::{Next, Node, NodeError};
 use grainlab_msgs::msg::Packing;
-use grainlab_msgs::{DecodeError, Exit, from_cdr, topics};
+use grainlab_msgs::{DecodeError, Exit, Health, from_cdr, topics};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;

@@ -2,7 +2,7 @@
 
 use crate::summary_file::SummaryFile;
 use crate::timeline::Timeline;
-use grainlab_recordings::{Recording, SeveralRuns, input};
+use grainlab_recordings::{METADATA_RECORD, Recording, SeveralRuns, input};
 use grainlab_results::Inference;
 use grainlab_results::read_back::{self, InvertedPacking};
 use grainlab_scene::Scene;
@@ -104,6 +104,7 @@ impl Run {
 
     fn read_recording(&mut self, recording: &Recording) {
         self.recorded_by = Some(recording.info().library).filter(|by| !by.is_empty());
+        self.leave_out_another_summary(recording);
         self.uncounted_files = recording.unaccounted().len();
         let back = read_back::read(recording);
         if back.several_runs.is_some() {
@@ -140,6 +141,20 @@ impl Run {
                 grainlab_console::count(self.timeline.unreadable, "message")
             ));
         }
+    }
+
+    /// Leaves out a summary of another run. A file of a killed recorder does not name its run.
+    fn leave_out_another_summary(&mut self, recording: &Recording) {
+        let of_recording = recording.metadata(METADATA_RECORD).and_then(|mut record| record.remove("run"));
+        let Some(id) = of_recording.filter(|_| recording.unaccounted().is_empty()) else { return };
+        if self.summary.run.is_empty() || self.summary.run == id {
+            return;
+        }
+        self.missing.push(format!(
+            "summary.json is of run {}, and the recording of run {id}: the summary was left out",
+            self.summary.run
+        ));
+        self.summary = SummaryFile::default();
     }
 
     /// Leaves out all that was joined.

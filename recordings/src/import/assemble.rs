@@ -103,8 +103,9 @@ impl GrainTable {
 
     /// What to know about the grains of a packing with this material.
     fn notes(&self, material: &Material) -> Vec<String> {
-        let other =
-            |(mass, radius): &(&f64, &f64)| !((**mass / material.sphere_mass(**radius) - 1.0).abs() <= 1e-5);
+        let other = |(mass, radius): &(&f64, &f64)| {
+            is_beyond((**mass / material.sphere_mass(**radius) - 1.0).abs(), 1e-5)
+        };
         let heavier = self.masses.iter().zip(&self.radii).filter(other).count();
         let masses = (heavier > 0).then(|| {
             format!("{heavier} grain(s) have another mass than density and radius give; the density is used")
@@ -175,6 +176,11 @@ impl GrainTable {
         }
         self
     }
+}
+
+/// Whether a deviation is more than `limit`, or NaN.
+pub(super) fn is_beyond(deviation: f64, limit: f64) -> bool {
+    deviation.is_nan() || deviation > limit
 }
 
 /// The packing of these grains; contacts that are not listed (`None`) are found from positions.

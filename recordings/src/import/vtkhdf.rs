@@ -122,7 +122,7 @@ impl Data {
             let off = (cell.matrix() * apart.map(|a| a - a.round())).norm();
             // Points may have single precision.
             let rounding = 1e-6 * (point.norm() + position.norm() + cell.matrix().amax());
-            if !(off <= rounding) {
+            if assemble::is_beyond(off, rounding) {
                 return Err(damaged(format!(
                     "Points and PointData/position_unwrapped of row {} are {off:.3e} m apart: which of them is right is not known",
                     k + 1

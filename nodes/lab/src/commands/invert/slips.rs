@@ -135,7 +135,7 @@ mod tests {
             ("gamma_delta", "gamma_over_delta"),
             ("Pressure", "pressure_pa"),
             ("presure_pa", "pressure_pa"),
-            ("p", "p_kpa"),
+            ("p", "pressure_pa"),
             ("q_over_p", "axial_q_over_p"),
             ("stress_ratio", "axial_q_over_p"),
             ("shear_modulus_pa", "grain_shear_modulus_pa"),

@@ -34,7 +34,16 @@ pub(super) fn given(directory: &Path, scene: &SceneText, order: &Order) -> Resul
         return Ok(Given::Empty(directory, lock));
     }
     refuse_another(&directory, scene, order)?;
-    if run_state(&directory) == RunState::Ended(0) && Recording::open(&directory).is_ok() {
+    if run_state(&directory) == RunState::Ended(0) {
+        let recording = Recording::open(&directory).map_err(|e| {
+            Failure::failed(format!(
+                "{}: the run is finished, and its recording is damaged: {e}",
+                directory.display()
+            ))
+        })?;
+        for warning in recording.warnings() {
+            grainlab_console::say!("grainlab: {warning}");
+        }
         grainlab_console::say!("grainlab: {}: the run is finished", directory.display());
         return Ok(Given::Finished);
     }
