@@ -20,7 +20,7 @@ pub(crate) struct Endpoint {
     pub(crate) qos: QosProfile,
     /// `RIHS01_…`, or empty if it is not announced.
     pub(crate) type_hash: String,
-    /// Data representations by their numbers in DDS-XTypes, the preferred one first: 0 is XCDR1, and meant if there is none.
+    /// Numbers of the data representations (DDS-XTypes), the preferred one first. 0 is XCDR1; so is an empty list.
     pub(crate) representations: Vec<i16>,
 }
 

@@ -96,3 +96,11 @@ fn packings_that_determine_no_constants_are_refused_with_the_reason() {
         }
     }
 }
+
+#[test]
+fn tables_of_isotropic_and_anisotropic_packings_that_are_exchanged_are_refused() {
+    let [isotropic, anisotropic] = ["anisotropic", "isotropic"].map(ensemble);
+    let ended = grainlab(&["calibrate", "--isotropic", &isotropic, "--anisotropic", &anisotropic]);
+    let err = text(&ended.stderr);
+    assert!(ended.status.code() == Some(2) && err.contains("are not isotropic"), "{err}");
+}

@@ -74,6 +74,7 @@ fn record(folder: &Path) {
     };
     (0..2 * EXCHANGES).for_each(|n| write("/stress", n + 1, &to_cdr(&request(n))));
     write("/packing", 1, &to_cdr(&packing_message(&packing(), "made", Vec::new())));
+    run.set_metadata("run", "a0b1");
     run.finish().unwrap();
 }
 
@@ -263,4 +264,30 @@ fn a_run_with_a_part_of_a_killed_recorder_does_not_claim_that_nothing_was_lost()
     std::fs::write(&file, &bytes[..bytes.len() * 2 / 3]).unwrap();
     grainlab_recordings::recover(folder.path()).unwrap();
     assert!(page().contains(" lost, not counting 1 file, whose recorder was killed"));
+}
+
+#[test]
+fn a_summary_of_another_run_is_left_out_and_said_to_be() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path());
+    let page = |run: &str| {
+        let text = format!(r#"{{"run": "{run}", "wall_seconds": 12.34, "exit": 0}}"#);
+        std::fs::write(folder.path().join("summary.json"), text).unwrap();
+        Run::read(folder.path()).html().unwrap()
+    };
+    assert!(page("a0b1").contains("12.3 s"));
+    let other = page("c2d3");
+    assert!(other.contains("summary.json is of run c2d3, and the recording of run a0b1"));
+    assert!(!other.contains("12.3 s") && !other.contains(">Complete"));
+}
+
+#[test]
+fn the_command_that_repeats_a_run_has_its_launch_file_and_arguments() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path());
+    let page = || Run::read(folder.path()).html().unwrap();
+    assert!(page().contains("how it was launched is not recorded") && !page().contains("the same bytes"));
+    let launched = r#"{"launch": "", "arguments": {}, "seed": 1, "words": ["my lab.yaml", "simd:=scalar"]}"#;
+    std::fs::write(folder.path().join("launch.json"), launched).unwrap();
+    assert!(visible(&page()).contains("grainlab launch 'my lab.yaml' 'simd:=scalar' --scene"));
 }

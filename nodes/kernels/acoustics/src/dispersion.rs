@@ -71,7 +71,7 @@ const REACHED: f64 = 3e-4;
 /// they are not.
 const AT_ONCE: u32 = 3;
 
-/// Relative residual and iterations for whether a network resists any strain at all.
+/// Relative residual, also least ratio of stiffnesses, and iterations for whether a network resists every strain.
 const RESISTS: f64 = 1e-6;
 const ITERATIONS: u32 = 20_000;
 
@@ -254,8 +254,13 @@ fn acoustic_tensors(
 
 /// The error of modes that were not found. A motion without resistance is no sign that the whole network has none.
 fn failure(network: &SpringNetwork, error: SolveError, direction: Vec3, wavelength: f64) -> AcousticsError {
-    let resists =
-        || relaxed_stiffness(network, Solver::Iterative, RESISTS, ITERATIONS).is_ok_and(|c| c.is_some());
+    let stiffness = || relaxed_stiffness(network, Solver::Iterative, RESISTS, ITERATIONS).ok().flatten();
+    let resists = || {
+        stiffness().is_some_and(|c| {
+            let stiffnesses = c.relaxed.mandel().symmetric_eigenvalues();
+            stiffnesses.min() > RESISTS * stiffnesses.max()
+        })
+    };
     if error == SolveError::Floppy && !resists() {
         return NotJammed::Floppy { contacts: network.contacts() }.into();
     }

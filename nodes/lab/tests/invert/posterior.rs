@@ -199,3 +199,18 @@ fn a_rank_test_prints_a_probability_of_each_quantity() {
         assert!(r["p"].as_f64().unwrap() > 1e-3 && r["simulations"].as_u64().unwrap() > 90, "{r}");
     }
 }
+
+#[test]
+fn draws_that_scatter_otherwise_than_the_estimate_are_said_to_do_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("draws.csv").to_string_lossy().into_owned();
+    let said = |pressure: &str| {
+        let state =
+            ["invert", "--g12=104.2e6", "--g13=112.4e6", "--theta=136e6", "--pressure=50e3", "--error=0.01"];
+        let rest = ["--stress-ratio=0", "--size-spread=0", "--model=relaxed", "--draws", &path, pressure];
+        let output = grainlab(&[&state[..], &rest].concat(), b"");
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        text(&output.stderr).contains("the draws of eps scatter by")
+    };
+    assert!(said("--pressure-sigma=40e3"));
+}

@@ -123,6 +123,18 @@ fn prestress_is_a_negative_tangential_spring_of_a_smooth_lattice() {
     assert!(f > 5e-3 * k, "no prestress to speak of: the test shows nothing");
 }
 
+/// Simple cubic without tangential springs: C44 = −F/(2 D²), and no motion of grains is unstable.
+#[test]
+fn a_lattice_that_only_its_cell_keeps_from_shearing_is_an_error_by_name() {
+    let edge = D * (1.0 - 1e-2);
+    let p = packing(Cell::cube(edge).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.0, None);
+    let expected = -p.contacts[0].normal_force / (2.0 * edge.powi(2));
+    match relaxed_stiffness(&prestressed(&p, Springs::Normal), Solver::Iterative, 1e-9, 100) {
+        Err(MicroError::HeldOnly { eigenvalue }) => assert!((eigenvalue / expected - 1.0).abs() < 1e-12),
+        other => panic!("{other:?}"),
+    }
+}
+
 /// Loose networks under compression: the solve with prestress against the operator, column by column.
 #[test]
 fn a_prestressed_network_balances_its_loads() {
