@@ -217,15 +217,15 @@ fn each_fault_of_a_packing_is_refused_by_name() {
             (|m| m.radius = vec![0.7, 0.7], "Packing is refused: solid_fraction[0] = 2.8"),
             (
                 |m| m.contact_overlap[0] = 1e-4,
-                "Packing is refused: overlap (m) of contact 0, of grains 0 and 1, is 1e-4, but positions and radii give",
+                "Packing is refused: overlap (m) of the contact of grains 4 and 9 is 1e-4, but positions and radii give",
             ),
             (
                 |m| m.contact_normal.copy_from_slice(&[0.0, 1.0, 0.0]),
-                "Packing is refused: angle of the normal (rad) of contact 0",
+                "Packing is refused: angle of the normal (rad) of the contact of grains",
             ),
             (
                 |m| m.contact_normal_force[0] = 1e12,
-                "Packing is refused: normal force (N), at most a hundred times that of the contact law, of contact 0",
+                "Packing is refused: normal force (N), at most a hundred times that of the contact law, of the contact of grains",
             ),
             (
                 |m| m.contact_tangential_force[1] = INF,

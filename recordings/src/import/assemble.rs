@@ -183,6 +183,12 @@ pub(super) fn is_beyond(deviation: f64, limit: f64) -> bool {
     deviation.is_nan() || deviation > limit
 }
 
+/// Length of a difference of two places to the nearest image, m.
+pub(super) fn apart_in_cell(cell: &Cell, difference: &Vec3) -> f64 {
+    let apart = cell.fractional(difference);
+    (cell.matrix() * apart.map(|a| a - a.round())).norm()
+}
+
 /// The packing of these grains; contacts that are not listed (`None`) are found from positions.
 pub(super) fn packing(
     grains: GrainTable,

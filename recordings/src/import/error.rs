@@ -158,7 +158,7 @@ pub enum ImportError {
     },
     /// The cell is so small, or the grains so large, that they would fill it many times over.
     #[error(
-        "the cell is too small for its grains: they fill it {solid_fraction:.3e} times over, the largest is {diameter:.3e} m wide and the cell {width:.3e} m: check the units of the cell and of the radii"
+        "the cell is too small for its grains, or too skewed: they fill it {solid_fraction:.3e} times over, the largest is {diameter:.3e} m wide and the cell {width:.3e} m between its sides: check the units of the cell and of the radii, or state the shortest edges"
     )]
     Crowded {
         /// Volume of the spheres over volume of the cell.

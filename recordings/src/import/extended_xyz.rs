@@ -155,7 +155,9 @@ impl Frame {
         let position = vector("pos")?.ok_or_else(|| line.error("Properties has no column pos:R:3"))?;
         let number = |name: &str| column(name, 1).map(|field| line.number::<f64>(name, field[0])).transpose();
         let radius = grains.radius(stated::radius(line, number("radius")?, number("diameter")?)?, options)?;
-        grains.masses.extend(number("mass")?);
+        let [mass, masses] = [number("mass")?, number("masses")?];
+        stated::same(line, "mass and masses", mass, masses)?;
+        grains.masses.extend(mass.or(masses));
         grains.kinds.extend(column("species", 1).map(|kind| kind[0].to_owned()));
         let id = match column("id", 1) {
             Some(&[id]) => line.id("id", id)?,

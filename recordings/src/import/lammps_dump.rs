@@ -62,6 +62,9 @@ pub fn each(
     if number == 0 { Err(ImportError::Empty) } else { Ok(()) }
 }
 
+/// Forms of a position may differ by this fraction of the cell: numbers of six digits do.
+const ROUNDING: f64 = 1e-5;
+
 struct Frame<'a> {
     step: u64,
     /// s; 0 if the dump has none.
@@ -79,8 +82,8 @@ struct Row<'a> {
     radius: Option<f64>,
     mass: Option<f64>,
     kind: Option<&'a str>,
-    position: Vec3,
-    scaled: bool,
+    /// Forms of the position, and whether each is scaled by the cell.
+    positions: Vec<(Vec3, bool)>,
     velocity: Vec3,
     spin: Vec3,
 }
@@ -199,8 +202,8 @@ fn bounds(item: &Line<'_>, words: &str, rows: [Line<'_>; 3]) -> Result<(Vec3, Ma
 struct Columns {
     names: BTreeMap<String, usize>,
     id: Option<usize>,
-    position: [usize; 3],
-    scaled: bool,
+    /// Columns of the position, and whether it is scaled by the cell: one or more forms.
+    positions: Vec<([usize; 3], bool)>,
 }
 
 impl Columns {
@@ -221,12 +224,14 @@ impl Columns {
             Some([find("x")?, find("y")?, find("z")?])
         };
         let forms = [("", false), ("u", false), ("s", true), ("su", true)];
-        let Some((position, scaled)) = forms.iter().find_map(|(f, scaled)| Some((three(f)?, *scaled))) else {
+        let positions: Vec<_> =
+            forms.iter().filter_map(|(form, scaled)| Some((three(form)?, *scaled))).collect();
+        if positions.is_empty() {
             return Err(
                 line.error("there are no positions: columns x y z, xu yu zu, xs ys zs or xsu ysu zsu")
             );
-        };
-        Ok(Self { id: names.get("id").copied(), names, position, scaled })
+        }
+        Ok(Self { id: names.get("id").copied(), names, positions })
     }
 
     fn row<'a>(&self, line: &Line<'a>, before: usize) -> Result<Row<'a>, ImportError> {
@@ -246,14 +251,17 @@ impl Columns {
         stated::same(line, "mass and that of density and radius", mass, of_density)?;
         Ok(Row {
             line: *line,
-            coordinates: self.position.map(|k| words[k]),
+            coordinates: self.positions[0].0.map(|k| words[k]),
             // Without an id column, the row number is the id.
             id: self.id.map_or(Ok(before as u32 + 1), |k| line.id("id", words[k]))?,
             radius,
             mass: mass.or(of_density),
             kind: self.names.get("type").map(|&k| words[k]),
-            position: line.vector("position", self.position.map(|k| words[k]))?,
-            scaled: self.scaled,
+            positions: self
+                .positions
+                .iter()
+                .map(|(columns, scaled)| Ok((line.vector("position", columns.map(|k| words[k]))?, *scaled)))
+                .collect::<Result<_, ImportError>>()?,
             velocity: vector("v")?,
             spin: vector("omega")?,
         })
@@ -268,10 +276,11 @@ impl Frame<'_> {
         source: String,
     ) -> Result<Imported, ImportError> {
         let mut grains = GrainTable::default();
+        let at = |&(r, scaled): &(Vec3, bool)| if scaled { self.origin + self.cell * r } else { r };
         for row in &self.rows {
             let radius = grains.radius(row.radius, options)?;
-            let position = if row.scaled { self.origin + self.cell * row.position } else { row.position };
-            if !row.scaled {
+            let position = at(&row.positions[0]);
+            if !row.positions[0].1 {
                 grains.printed(row.coordinates);
             }
             grains.push(&row.line, row.id, radius, [position, row.velocity, row.spin])?;
@@ -280,6 +289,12 @@ impl Frame<'_> {
         }
         let density = grains.density();
         let settings = Known { cell: Some(self.cell), density, ..Known::default() }.complete(options)?;
+        for (row, other) in self.rows.iter().flat_map(|row| row.positions[1..].iter().map(move |r| (row, r))) {
+            let off = assemble::apart_in_cell(&settings.cell, &(at(other) - at(&row.positions[0])));
+            if assemble::is_beyond(off, ROUNDING * self.cell.amax()) {
+                return Err(row.line.error(format!("two forms of its position are {off:.3e} m apart")));
+            }
+        }
         let grains = grains.sorted_by_id().folded_if_far(&settings.cell);
         forces.map_or(Ok(()), |forces| forces.check(&grains, &settings.cell))?;
         let contacts = forces.map(|forces| forces.contacts.as_slice());

@@ -105,6 +105,9 @@ impl Data {
                 "FieldData/units is stated: lengths must be in m, and all else in SI units, without it",
             ));
         }
+        if self.0.group("VTKHDF/Steps").is_ok() {
+            return Err(damaged("it holds several steps (Steps): write each to a file of its own"));
+        }
         let sides = self.numbers::<i64>("FieldData/pbc")?.unwrap_or_default();
         if sides.contains(&0) {
             return Err(damaged(format!(
@@ -118,8 +121,7 @@ impl Data {
     fn check_points(&self, table: &GrainTable, cell: &Cell) -> Result<(), ImportError> {
         let points = self.vectors("Points", table.positions.len())?.unwrap_or_default();
         for (k, (point, position)) in points.iter().zip(&table.positions).enumerate() {
-            let apart = cell.fractional(&(point - position));
-            let off = (cell.matrix() * apart.map(|a| a - a.round())).norm();
+            let off = assemble::apart_in_cell(cell, &(point - position));
             // Points may have single precision.
             let rounding = 1e-6 * (point.norm() + position.norm() + cell.matrix().amax());
             if assemble::is_beyond(off, rounding) {

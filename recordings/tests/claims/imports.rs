@@ -307,6 +307,7 @@ fn what_a_dump_must_not_be_is_refused() {
     for (from, to, expected) in [
         ("pp pp pp", "pp pp ff", "periodic"),
         ("xs ys zs", "a b c", "no positions"),
+        ("diameter vx vy vz", "diameter xu yu zu", "forms of its position"),
         ("2 1 0.95 0.5 0.5 0.3 0 0 7\n", "", "1 atoms follow, 2 were announced"),
         ("0.3 0 0 7", "0.3 0 0", "8 columns, 9 were announced"),
         ("diameter", "size", "--radius"),

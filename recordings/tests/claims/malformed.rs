@@ -158,10 +158,10 @@ fn a_cell_far_smaller_than_its_grains_is_refused_at_once() {
         c[(2, 2)] = 1e-9;
         c
     });
-    assert!(folder.refusal(CSV, &narrow).contains("too small for its grains"));
+    assert!(folder.refusal(CSV, &narrow).contains("too small for its grains, or too skewed"));
     let thousands: String =
         (0..5000).map(|k| format!("p,{k},0.{k:04},0.5,0.5,100,1,0,0,0,0,0,0\n")).collect();
-    assert!(folder.refusal(thousands, &in_cube(1.0)).contains("too small for its grains"));
+    assert!(folder.refusal(thousands, &in_cube(1.0)).contains("too small for its grains, or too skewed"));
     assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
 }
 

@@ -75,7 +75,8 @@ impl Packing {
         let branch = self.branch(c);
         let distance = branch.norm();
         let fault = |quantity, given, found| {
-            Err(PackingError::Contradiction { contact: index, i: c.i, j: c.j, quantity, given, found })
+            let [i, j] = [c.i, c.j].map(|g| self.ids[g as usize]);
+            Err(PackingError::Contradiction { i, j, quantity, given, found })
         };
         let steps = c.image.iter().map(|k| f64::from(k.unsigned_abs())).fold(1.0, f64::max);
         let largest = self.positions[i].amax() + self.positions[j].amax() + steps * cell;
@@ -162,7 +163,7 @@ mod tests {
         assert!(fault(|p| p.ids[1] = 7).contains("same id 7"));
         assert!(
             fault(|p| p.contacts[0].overlap *= 1.0 + 1e-7)
-                .contains("overlap (m) of contact 0, of grains 0 and 1")
+                .contains("overlap (m) of the contact of grains 7 and 3")
         );
         assert!(fault(|p| p.positions[1].x -= 1e-7).contains("overlap"));
         assert!(fault(|p| p.radii[0] *= 1e-3).contains("overlap"));

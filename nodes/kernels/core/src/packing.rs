@@ -148,15 +148,13 @@ pub enum PackingError {
     },
     /// A contact does not belong to the positions and radii.
     #[error(
-        "{quantity} of contact {contact}, of grains {i} and {j}, is {given:e}, but positions and radii give {found:e}: contacts \
-         and positions are not of the same state"
+        "{quantity} of the contact of grains {i} and {j} is {given:e}, but positions and radii give {found:e}: contacts and positions \
+         are not of the same state"
     )]
     Contradiction {
-        /// Index of the contact.
-        contact: usize,
-        /// Its first grain.
+        /// Id of the first grain.
         i: u32,
-        /// Its second grain.
+        /// Id of the second grain.
         j: u32,
         /// What disagrees, with its unit.
         quantity: &'static str,

@@ -177,8 +177,8 @@ impl Args {
 
 fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     let axis = <[f64; 3]>::try_from(args.axis.as_slice()).ok().map(Vec3::from);
-    let axis = axis.filter(|v| v.norm() > 0.0 && v.norm().is_finite());
-    let axis = axis.ok_or_else(|| Failure::usage("--axis takes three numbers that are not all zero"))?;
+    let axis = axis.map(|v| v / v.amax()).filter(|v| v.norm().is_finite());
+    let axis = axis.ok_or_else(|| Failure::usage("--axis takes three finite numbers, not all of them 0"))?;
     let settings = grainlab_micromechanics::Settings::default();
     let tolerance = args.tolerance.unwrap_or(settings.tolerance);
     if !(1e-13..=1e-2).contains(&tolerance) {

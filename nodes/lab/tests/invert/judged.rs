@@ -115,3 +115,14 @@ fn invalid_rows_are_named_and_not_judged() {
     let no_truth = grainlab(&["invert", "--table=-", "--judge"], b"p_kpa,g12_pa\n50,1e8\n");
     assert!(text(&no_truth.stderr).contains("no column to judge by"), "{}", text(&no_truth.stderr));
 }
+
+#[test]
+fn a_table_without_any_estimate_ends_with_the_reason() {
+    let pascals = said(&[(5.73, 0.016), (5.73, 0.02)]);
+    let output = grainlab(
+        &["invert", "--table=-", "--judge", "--model=relaxed"],
+        pascals.replace(",50,", ",50000000,").as_bytes(),
+    );
+    let err = text(&output.stderr);
+    assert!(output.status.code() == Some(4) && err.contains("2 rows without an estimate"), "{err}");
+}

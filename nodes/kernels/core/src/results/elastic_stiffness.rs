@@ -116,7 +116,7 @@ pub enum NotJammed {
     },
     /// Contacts exist but resist no deformation of the cell.
     #[error(
-        "no contact network: the {contacts} contacts do not span the cell, every strain relaxes to zero stress; \
+        "no strain is resisted: the {contacts} contacts do not span the cell, or are too few for the springs that they have; \
          compress the packing first"
     )]
     Floppy {

@@ -80,7 +80,7 @@ fn one_sided(probe: &StrainProbeResult) -> Option<String> {
     (worst > ONE_SIDED).then(|| {
         format!(
             "the probe's forward and backward strain give stiffnesses that differ by {:.1} %, {changed} contacts opened \
-             or closed: lower --amplitude",
+             or closed: compare other values of --amplitude",
             100.0 * worst
         )
     })

@@ -11,7 +11,7 @@ use super::rows::Rows;
 use super::state::State;
 use super::table::Tally;
 use super::way::Way;
-use grainlab_console::{Failure, Format, Table, exact, fixed, json, print, write_whole};
+use grainlab_console::{Failure, Format, Table, count, exact, fixed, json, print, say, write_whole};
 use grainlab_core::results::InferredQuantity;
 use grainlab_node_kit::Exit;
 use score::Score;
@@ -35,8 +35,9 @@ struct Judged {
     score: Score,
 }
 
-/// The result of one way for one row: the γ/Δ used, and the error of each quantity whose truth is known.
+/// The result of one way for one row: whether there is an estimate, the γ/Δ used, and the error of each quantity whose truth is known.
 struct Verdict {
+    solved: bool,
     gamma: &'static str,
     errors: [Option<score::Error>; grainlab_core::results::InferredQuantity::COUNT],
     /// True and inferred contact anisotropy.
@@ -59,17 +60,23 @@ pub(super) fn run(
     let mut tally = Tally::new();
     let mut board = Board::default();
     let mut points = vec![Vec::new(); ways.len()];
+    let mut unsolved = Vec::new();
     loop {
         let piece = rows.next(|number, row| {
             let row = row.map_err(|bad| (number, bad))?;
-            let verdicts = ways.iter().map(|way| Verdict::of(&row.state, way)).collect();
-            Ok::<(_, Vec<_>), (u64, BadRow)>((row.group, verdicts))
+            let verdicts: Vec<_> = ways.iter().map(|way| Verdict::of(&row.state, way)).collect();
+            let unsolved = verdicts.iter().all(|v| !v.solved).then(|| {
+                let answer = Answer::of(row.state, Some(number), ways);
+                (answer.exit(ways), answer.complaint(ways))
+            });
+            Ok::<_, (u64, BadRow)>((row.group, verdicts, unsolved))
         })?;
         let Some(piece) = piece else { break };
         for row in piece {
             match row {
-                Ok((group, verdicts)) => {
+                Ok((group, verdicts, reason)) => {
                     tally.add(Exit::Done, "");
+                    unsolved.extend(reason);
                     for (points, verdict) in points.iter_mut().zip(&verdicts) {
                         points.extend(verdict.anisotropy);
                     }
@@ -104,6 +111,10 @@ pub(super) fn run(
         write_whole(path, plot::svg(ways, points))
             .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
     }
+    if let Some((exit, complaint)) = unsolved.first() {
+        say!("{complaint}\ngrainlab: {} without an estimate, this the first", count(unsolved.len(), "row"));
+        tally.unsolved(unsolved.len(), *exit);
+    }
     tally.end(rows.name())
 }
 
@@ -116,7 +127,7 @@ impl Verdict {
         });
         let found = estimate.as_ref().and_then(|e| e.structure.eps);
         let anisotropy = state.truth.eps.zip(found).map(<[f64; 2]>::from);
-        Self { gamma: state.gamma_source(way), errors, anisotropy }
+        Self { solved: estimate.is_some(), gamma: state.gamma_source(way), errors, anisotropy }
     }
 }
 

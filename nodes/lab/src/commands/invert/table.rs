@@ -36,6 +36,13 @@ impl Tally {
         }
     }
 
+    /// Ends with `exit` if no row has an estimate.
+    pub(super) fn unsolved(&mut self, rows: usize, exit: Exit) {
+        if rows as u64 == self.rows - self.bad {
+            self.exit = worse(self.exit, exit);
+        }
+    }
+
     /// Ends the output; returns the exit code.
     pub(super) fn end(self, name: &str) -> Result<Exit, Failure> {
         if self.rows == 0 {
