@@ -3,12 +3,13 @@
 //! - `modules`: the modules of a crate, one file each
 //! - `imports`: the modules that a module uses, with re-exports resolved
 //! - `rules`: violations of the rules, as text
-//! - `layers`: the order of crates
+//! - `layers`: the order of crates; `dependencies`: what they link through others
 //! - `samples`: tests of the rules on small crates; `workspace`: every crate keeps them
 
 // All of it is tests: a build without tests does not pay for it.
 #![cfg(test)]
 
+mod dependencies;
 mod imports;
 mod layers;
 mod modules;
