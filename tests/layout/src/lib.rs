@@ -4,11 +4,13 @@
 //! - `imports`: the modules that a module uses, with re-exports resolved
 //! - `rules`: violations of the rules, as text
 //! - `layers`: the order of crates; `dependencies`: what they link through others
+//! - `counts`: how much source there is
 //! - `samples`: tests of the rules on small crates; `workspace`: every crate keeps them
 
 // All of it is tests: a build without tests does not pay for it.
 #![cfg(test)]
 
+mod counts;
 mod dependencies;
 mod imports;
 mod layers;

@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn the_table_of_the_readme_has_exactly_the_commands_and_their_descriptions() {
         const MARKS: [&str; 2] =
-            ["<!-- commands: written by a test of nodes/lab/src/cli.rs -->\n", "<!-- end -->\n"];
+            ["<!-- commands: written by a test of nodes/command/src/cli.rs -->\n", "<!-- end -->\n"];
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md");
         let page = std::fs::read_to_string(path).unwrap();
         let (before, rest) = page.split_once(MARKS[0]).expect("the README has a mark before the table");

@@ -118,12 +118,12 @@ mod tests {
     /// once.
     #[test]
     fn the_written_reference_is_that_of_the_tables() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../quantities.md");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../quantities.md");
         let text = format!(
             "# Quantities\n\nWhat `grainlab analyze`, `grainlab probe` and `grainlab launch` report: keys of JSON and columns\n\
              of CSV, as `grainlab invert --table` and `grainlab calibrate` read them. Values that are undefined or not known are\n\
              null in JSON and empty in CSV. The tests of the crate `grainlab_results` write this page from the tables in\n\
-             `nodes/kernels/core/src/results/quantities.rs` and `nodes/results/src/`.\n\n## Origin\n\n{}\n## Packing\n\n{}\n\
+             `nodes/kernels/core/src/results/quantities.rs` and `nodes/laboratory/results/src/`.\n\n## Origin\n\n{}\n## Packing\n\n{}\n\
              ## Waves, by `grainlab probe`\n\nIn JSON under `acoustic`.\n\n{}\n{WAVE_ARRAYS}",
             markdown(ORIGIN),
             markdown(QUANTITIES),

@@ -22,7 +22,7 @@ fn paths(value: &Value, found: &mut Vec<String>) {
 
 #[test]
 fn every_value_of_the_layout_is_a_field_of_its_topic() {
-    let layout: Value = serde_json::from_str(include_str!("../../launch/foxglove.layout.json")).unwrap();
+    let layout: Value = serde_json::from_str(include_str!("../../../launch/foxglove.layout.json")).unwrap();
     let mut found = Vec::new();
     paths(&layout, &mut found);
     assert!(found.len() > 12, "{found:?}");

@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The built-in launch files; the first one is the default.
 pub const BUILT_IN: [(&str, &str); 2] = [
-    ("demo", include_str!("../../launch/demo.launch.yaml")),
-    ("acoustic", include_str!("../../launch/acoustic.launch.yaml")),
+    ("demo", include_str!("../../../launch/demo.launch.yaml")),
+    ("acoustic", include_str!("../../../launch/acoustic.launch.yaml")),
 ];
 
 /// Errors of a launch file.

@@ -8,7 +8,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// 2,000 glass spheres from LAMMPS at 100 kPa, z = 5.11: see its README.
-const BUILT_IN: &[u8] = include_bytes!("../../../tests/golden/packings/packing_2000.data.gz");
+const BUILT_IN: &[u8] = include_bytes!("../../../../tests/golden/packings/packing_2000.data.gz");
 
 /// The first packing of the file, or the built-in one. Glass if a file does not contain the material.
 pub(crate) fn load(path: Option<&Path>) -> Result<Packing, Failure> {

@@ -13,7 +13,7 @@ use grainlab_emt::{
 use serde::Deserialize;
 
 /// 384 states, with their moduli and their counted structure: see its README.
-const HELD_OUT: &str = include_str!("../../../../tests/golden/ensembles/held_out.csv");
+const HELD_OUT: &str = include_str!("../../../../../tests/golden/ensembles/held_out.csv");
 
 /// The calibration of every model.
 const CALIBRATION: &str = "grainlab";

@@ -1,0 +1,167 @@
+//! How much source there is: lines of code, which are neither blank nor comment, of every language alike.
+
+use crate::modules::modules;
+use crate::workspace::roots;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
+/// rise only by what a feature states.
+const LABORATORY: usize = 56_000;
+const STUDIO_AND_COMMAND: usize = 28_500;
+const TESTS: usize = 44_700;
+
+/// Most comments that begin with a word that names nothing.
+const HEADLESS: usize = 1_112;
+
+/// First words that leave open what is described.
+const OPENINGS: [&str; 9] = ["What", "How", "Where", "Which", "Whether", "Its", "Their", "Of", "The same"];
+
+fn top() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
+}
+
+/// Every file under `folder` that is written by hand.
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir()
+            && !["vendor", "generated", "target", "golden", "runs", "campaigns"].contains(&name.as_str())
+        {
+            files(&path, found);
+        } else if path
+            .extension()
+            .is_some_and(|e| ["rs", "py", "html", "js", "css"].iter().any(|known| e == *known))
+        {
+            found.push(path);
+        }
+    }
+}
+
+/// Lines of `text` that are neither blank nor comment, in the language with this extension.
+fn code(text: &str, extension: &str) -> usize {
+    let (line, block): (&[&str], &[(&str, &str)]) = match extension {
+        "py" => (&["#"], &[("\"\"\"", "\"\"\"")]),
+        "html" => (&[], &[("<!--", "-->")]),
+        "css" => (&[], &[("/*", "*/")]),
+        _ => (&["//"], &[("/*", "*/")]),
+    };
+    let mut end: Option<&str> = None;
+    let is_code = |raw: &&str| {
+        let text = raw.trim();
+        if let Some(closing) = end {
+            end = if text.contains(closing) { None } else { end };
+            return false;
+        }
+        if let Some((opening, closing)) = block.iter().find(|(opening, _)| text.starts_with(opening)) {
+            end = if text[opening.len()..].contains(closing) { None } else { Some(closing) };
+            return false;
+        }
+        !text.is_empty() && !line.iter().any(|mark| text.starts_with(mark))
+    };
+    text.lines().filter(is_code).count()
+}
+
+/// A Rust file without the inline modules and functions of its tests.
+fn without_tests(text: &str) -> String {
+    let mut kept = String::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        if line.trim() != "#[cfg(test)]" {
+            kept += line;
+            kept.push('\n');
+            continue;
+        }
+        // The item ends with its first line, or with a brace that is indented as it is.
+        let end = line.replace("#[cfg(test)]", "}");
+        let mut item = lines.by_ref().skip_while(|l| l.trim_start().starts_with("#["));
+        if !item.next().is_none_or(|first| first.ends_with(';')) {
+            item.find(|l| *l == end);
+        }
+    }
+    kept
+}
+
+/// Comments of Rust that begin with one of the openings.
+fn headless(text: &str) -> usize {
+    let marks = ["//!", "///", "//"];
+    let comment = |line: &str| {
+        marks.iter().find_map(|mark| line.trim().strip_prefix(mark)).map(str::trim_start).map(str::to_owned)
+    };
+    let lines: Vec<Option<String>> = text.lines().map(comment).collect();
+    let first =
+        lines.iter().enumerate().filter(|(n, line)| line.is_some() && (*n == 0 || lines[n - 1].is_none()));
+    let opens = |text: &str| {
+        OPENINGS.iter().any(|word| text.strip_prefix(word).is_some_and(|rest| rest.starts_with([' ', ','])))
+    };
+    first.filter(|(_, line)| line.as_deref().is_some_and(opens)).count()
+}
+
+/// Lines of code of the laboratory, of studio and command, of tests; and headless comments.
+fn counted() -> [usize; 4] {
+    let top = top();
+    let source: BTreeSet<PathBuf> = roots()
+        .iter()
+        .flat_map(|root| modules(root).into_values().map(|m| m.file.canonicalize().unwrap()))
+        .collect();
+    let mut all = Vec::new();
+    for folder in ["msgs", "recordings", "nodes", "tests"] {
+        files(&top.join(folder), &mut all);
+    }
+    let mut counts = [0; 4];
+    for file in all {
+        let short = file.strip_prefix(&top).unwrap();
+        let extension = file.extension().unwrap().to_str().unwrap();
+        let text = std::fs::read_to_string(&file).unwrap();
+        let total = code(&text, extension);
+        let own = match extension {
+            _ if short.starts_with("tests") || short.components().any(|c| c.as_os_str() == "tests") => 0,
+            "rs" if source.contains(&file) => code(&without_tests(&text), extension),
+            // Tests, examples and generators in files of their own.
+            "rs" => 0,
+            _ => total,
+        };
+        let studio = short.starts_with("nodes/studio") || short.starts_with("nodes/command");
+        counts[usize::from(studio)] += own;
+        counts[2] += total - own;
+        counts[3] += if extension == "rs" { headless(&text) } else { 0 };
+    }
+    counts
+}
+
+/// A limit that is far above the count holds nothing: it is lowered with what is deleted.
+const SLACK: usize = 300;
+
+#[test]
+fn the_source_is_as_long_as_its_budget() {
+    let names =
+        ["lines of the laboratory", "lines of studio and command", "lines of tests", "headless comments"];
+    let limits = [LABORATORY, STUDIO_AND_COMMAND, TESTS, HEADLESS];
+    let mut faults = Vec::new();
+    for ((name, limit), count) in names.iter().zip(limits).zip(counted()) {
+        if count > limit {
+            faults.push(format!("{name}: {count}, at most {limit}: delete, merge, or use a library"));
+        } else if count + SLACK < limit {
+            faults.push(format!("{name}: {count}; lower the limit of {limit} to it"));
+        }
+    }
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+#[test]
+fn blank_lines_comments_and_tests_do_not_count() {
+    let rust = "//! A module.\n\nfn a() {\n    // why\n    b();\n}\n\n/* long\n comment */\n#[cfg(test)]\nmod tests {\n    fn t() {}\n}\n";
+    assert_eq!((code(rust, "rs"), code(&without_tests(rust), "rs")), (7, 3));
+    assert_eq!(code(&without_tests("#[cfg(test)]\nmod tests;\nfn a() {}\n"), "rs"), 1);
+    assert_eq!(code("\"\"\"A module.\n\nMore.\n\"\"\"\n# why\nx = 1\n", "py"), 1);
+    assert_eq!(code("<!-- why -->\n<p>text</p>\n", "html"), 1);
+    assert_eq!(code("/* why */\na { b: c }\n", "css"), 1);
+}
+
+#[test]
+fn a_comment_that_begins_with_what_is_headless() {
+    let text = "/// What is sought.\nfn a() {}\n/// Whatever\n// Its value.\n/// A value.\n/// What it is for.\nfn b() {}\n";
+    assert_eq!(headless(text), 1);
+    assert_eq!(headless("// Its value.\nfn a() {}\n// The same, twice.\n"), 2);
+}
