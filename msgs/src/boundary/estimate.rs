@@ -65,11 +65,11 @@ pub struct StrainRatio {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inferred {
     /// The values, at least one of them known; `None`: undetermined, or not part of the model.
-    pub values: [Option<f64>; 5],
+    pub values: [Option<f64>; N],
     /// Covariance from data and model, row-major; 0 for unknown values.
-    pub covariance: Option<[f64; 25]>,
+    pub covariance: Option<[f64; N * N]>,
     /// Its part due to the model.
-    pub covariance_model: Option<[f64; 25]>,
+    pub covariance_model: Option<[f64; N * N]>,
     /// Credible intervals.
     pub interval: Option<Interval>,
     /// Misfit if there are more data than unknowns; else `None`.
@@ -78,7 +78,7 @@ pub struct Inferred {
     pub condition_number: Option<f64>,
     /// Contribution of each of [`DATA`] to the variance of each quantity from the data; the sum of a row is
     /// 1.
-    pub information: [Option<[f64; DATA.len()]>; 5],
+    pub information: [Option<[f64; DATA.len()]>; N],
 }
 
 /// Credible intervals.
@@ -87,7 +87,7 @@ pub struct Interval {
     /// Probability inside each, between 0 and 1.
     pub level: f64,
     /// Low and high of each known quantity.
-    pub bounds: [Option<[f64; 2]>; 5],
+    pub bounds: [Option<[f64; 2]>; N],
 }
 
 /// Misfit of the data about the best structure.
@@ -100,6 +100,20 @@ pub struct Misfit {
 }
 
 const CHECK: Check = Check("Estimate");
+
+const N: usize = InferredQuantity::COUNT;
+
+impl Estimate {
+    /// The fields of the inferred quantities, each with one number or none, in the order of [`InferredQuantity::ALL`].
+    pub fn quantities(&self) -> [&Vec<f64>; N] {
+        [&self.k, &self.k_hat, &self.z, &self.eps, &self.eps_stiffness]
+    }
+
+    /// The same fields, to be written.
+    pub fn quantities_mut(&mut self) -> [&mut Vec<f64>; N] {
+        [&mut self.k, &mut self.k_hat, &mut self.z, &mut self.eps, &mut self.eps_stiffness]
+    }
+}
 
 impl TryFrom<&Estimate> for EstimateReading {
     type Error = BoundaryError;
@@ -151,9 +165,9 @@ fn inferred(m: &Estimate) -> Result<Inferred, BoundaryError> {
     })
 }
 
-fn values(m: &Estimate) -> Result<[Option<f64>; 5], BoundaryError> {
-    let mut values = [None; 5];
-    for (i, value) in [&m.k, &m.k_hat, &m.z, &m.eps, &m.eps_stiffness].into_iter().enumerate() {
+fn values(m: &Estimate) -> Result<[Option<f64>; N], BoundaryError> {
+    let mut values = [None; N];
+    for (i, value) in m.quantities().into_iter().enumerate() {
         values[i] = CHECK.optional_finite(InferredQuantity::ALL[i].name(), value)?;
     }
     let any = values.iter().any(Option::is_some);
@@ -167,19 +181,19 @@ const NOTHING: &str = "0, because its quantity is not known";
 fn covariance(
     field: &'static str,
     values: &[f64],
-    known: &[bool; 5],
-) -> Result<Option<[f64; 25]>, BoundaryError> {
+    known: &[bool; N],
+) -> Result<Option<[f64; N * N]>, BoundaryError> {
     let checked = CHECK.covariance(field, values)?;
     for (at, value) in values.iter().enumerate() {
-        let both = known[at / 5] && known[at % 5];
+        let both = known[at / N] && known[at % N];
         CHECK.that(both || *value == 0.0, &format!("{field}[{at}]"), *value, NOTHING)?;
     }
     Ok(checked)
 }
 
-fn covariance_model(m: &Estimate, known: &[bool; 5]) -> Result<Option<[f64; 25]>, BoundaryError> {
+fn covariance_model(m: &Estimate, known: &[bool; N]) -> Result<Option<[f64; N * N]>, BoundaryError> {
     let part = covariance("covariance_model", &m.covariance_model, known)?;
-    for at in (0..m.covariance_model.len()).step_by(6) {
+    for at in (0..m.covariance_model.len()).step_by(N + 1) {
         let whole = m.covariance.get(at).copied().unwrap_or_default();
         let part = m.covariance_model[at];
         let fits = part <= whole * (1.0 + 1e-9);
@@ -188,14 +202,14 @@ fn covariance_model(m: &Estimate, known: &[bool; 5]) -> Result<Option<[f64; 25]>
     Ok(part)
 }
 
-fn interval(m: &Estimate, known: &[bool; 5]) -> Result<Option<Interval>, BoundaryError> {
+fn interval(m: &Estimate, known: &[bool; N]) -> Result<Option<Interval>, BoundaryError> {
     let level = CHECK.share("credible_level", m.credible_level)?;
     if level == 0.0 {
         return Ok(None);
     }
     CHECK.all_finite("interval", &m.interval)?;
-    let ends = CHECK.array::<10>("interval", &m.interval)?.unwrap_or_default();
-    let mut bounds = [None; 5];
+    let ends = CHECK.array::<{ 2 * N }>("interval", &m.interval)?.unwrap_or_default();
+    let mut bounds = [None; N];
     for (i, bounds) in bounds.iter_mut().enumerate() {
         let (low, high) = (ends[2 * i], ends[2 * i + 1]);
         let name = format!("interval[{}]", 2 * i);
@@ -225,9 +239,9 @@ fn condition_number(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
     })
 }
 
-fn information(m: &Estimate, known: &[bool; 5]) -> Result<[Option<[f64; DATA.len()]>; 5], BoundaryError> {
+fn information(m: &Estimate, known: &[bool; N]) -> Result<[Option<[f64; DATA.len()]>; N], BoundaryError> {
     CHECK.all_finite("information", &m.information)?;
-    let mut rows = [None; 5];
+    let mut rows = [None; N];
     for (i, row) in rows.iter_mut().enumerate() {
         let start = DATA.len() * i;
         let shares: [f64; DATA.len()] = std::array::from_fn(|j| m.information[start + j]);

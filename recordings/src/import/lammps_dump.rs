@@ -289,7 +289,8 @@ impl Frame<'_> {
         }
         let density = grains.density();
         let settings = Known { cell: Some(self.cell), density, ..Known::default() }.complete(options)?;
-        for (row, other) in self.rows.iter().flat_map(|row| row.positions[1..].iter().map(move |r| (row, r))) {
+        for (row, other) in self.rows.iter().flat_map(|row| row.positions[1..].iter().map(move |r| (row, r)))
+        {
             let off = assemble::apart_in_cell(&settings.cell, &(at(other) - at(&row.positions[0])));
             if assemble::is_beyond(off, ROUNDING * self.cell.amax()) {
                 return Err(row.line.error(format!("two forms of its position are {off:.3e} m apart")));

@@ -34,7 +34,7 @@ impl Packing {
         }
         let cell = self.cell.matrix().amax();
         for (index, c) in self.contacts.iter().enumerate() {
-            self.check_contact(index, c, cell)?;
+            self.check_contact(c, cell)?;
             // Both names of the contact with an own image are next to each other in the list of that grain.
             let opposite = c.image.map(|k| k.saturating_neg());
             if c.i == c.j && opposite < c.image {
@@ -70,7 +70,7 @@ impl Packing {
         }
     }
 
-    fn check_contact(&self, index: usize, c: &Contact, cell: f64) -> Result<(), PackingError> {
+    fn check_contact(&self, c: &Contact, cell: f64) -> Result<(), PackingError> {
         let (i, j) = (c.i as usize, c.j as usize);
         let branch = self.branch(c);
         let distance = branch.norm();

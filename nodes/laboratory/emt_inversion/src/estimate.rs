@@ -24,8 +24,6 @@ pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg:
 }
 
 fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
-    let structure = &estimate.structure;
-    let [k, k_hat, z, eps, eps_stiffness] = structure.values().map(|v| v.into_iter().collect());
     let status = match estimate.status {
         Status::Unknown => msg::Estimate::STATUS_UNKNOWN,
         _ if observed.in_conflict => msg::Estimate::STATUS_CONTRADICTORY,
@@ -38,17 +36,12 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let bounds = InferredQuantity::ALL.map(|q| covariance.and_then(|_| estimate.interval(q)));
     let shares = InferredQuantity::ALL.map(|q| estimate.information(q));
     let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(estimate.gamma);
-    msg::Estimate {
+    let mut message = msg::Estimate {
         model: estimate.model.to_owned(),
         calibration: estimate.calibration.clone(),
         status,
         gamma_over_delta,
         gamma_over_delta_source,
-        k,
-        k_hat,
-        z,
-        eps,
-        eps_stiffness,
         covariance: entries(covariance),
         covariance_model: entries(known_covariance(estimate.model_covariance)),
         interval: covariance
@@ -64,7 +57,12 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
             .cloned()
             .chain(estimate.warnings.iter().map(ToString::to_string))
             .collect(),
+        ..Default::default()
+    };
+    for (field, value) in message.quantities_mut().into_iter().zip(estimate.structure.values()) {
+        field.extend(value);
     }
+    message
 }
 
 /// Misfit of the speeds about the moduli and of the moduli about the structure: squares and degrees of

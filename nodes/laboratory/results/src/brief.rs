@@ -11,7 +11,7 @@ use crate::read_back::InvertedPacking;
 use crate::summary::Summary;
 use grainlab_console::{count, fixed};
 use grainlab_core::Vec3;
-use grainlab_core::results::PackingReport;
+use grainlab_core::results::{InferredQuantity, PackingReport};
 use grainlab_msgs::{Exit, topics};
 use shown::eps;
 use std::collections::BTreeSet;
@@ -148,7 +148,9 @@ fn recommended(e: &Inference, source: &str, truth: &PackingReport) -> Vec<String
 }
 
 fn by_the_paper(results: &[&Inference], truth: &PackingReport) -> Option<String> {
-    let e = results.iter().find(|r| r.model == PAPER && r.values.k.or(r.values.eps).is_some())?;
+    let e = results.iter().find(|r| {
+        r.model == PAPER && r.values[InferredQuantity::K].or(r.values[InferredQuantity::Eps]).is_some()
+    })?;
     let values = estimate(e, truth).map(|(name, value, _, error)| format!("{name} {value} (error {error})"));
     let values = values.collect::<Vec<_>>().join(", ");
     Some(row("Paper", &format!("by its model {}: {values}, {}", e.model, e.status)))
@@ -221,18 +223,10 @@ fn estimate(
     e: &Inference,
     truth: &PackingReport,
 ) -> impl Iterator<Item = (&'static str, String, Option<String>, String)> {
-    let c = &truth.contacts;
-    let parts = [
-        ("k", e.values.k, e.sigma.k, c.coordination, 3),
-        ("z", e.values.z, e.sigma.z, c.mechanical_coordination, 3),
-        ("eps", e.values.eps, e.sigma.eps, truth.fabric.contact_anisotropy, 4),
-    ]
-    .map(|(name, value, sigma, truth, digits)| (name, value, sigma, Some(truth), digits));
-    let weighted = ("eps_k", e.values.eps_stiffness, e.sigma.eps_stiffness, truth.stiffness_anisotropy(), 4);
-    parts.into_iter().chain([weighted]).filter_map(|(name, value, sigma, truth, digits)| {
-        let (value, truth) = (value?, truth?);
-        let sigma = sigma.map(|s| format!("{s:.digits$}"));
-        Some((name, format!("{value:.digits$}"), sigma, format!("{:+.digits$}", value - truth)))
+    InferredQuantity::ALL.into_iter().filter_map(|q| {
+        let (value, truth, digits) = (e.values[q]?, truth.counted(q)?, q.digits());
+        let sigma = e.sigma[q].map(|s| format!("{s:.digits$}"));
+        Some((q.text(), format!("{value:.digits$}"), sigma, format!("{:+.digits$}", value - truth)))
     })
 }
 

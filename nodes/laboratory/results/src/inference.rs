@@ -4,8 +4,9 @@ use crate::measurements::Measurement;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Status, recommended};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
+use std::ops::Index;
 
 /// One model's result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -47,32 +48,27 @@ pub struct Inference {
     pub warnings: Vec<String>,
 }
 
-/// One value per quantity of the microstructure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Quantities<T> {
-    /// Coordination number.
-    pub k: T,
-    /// Coordination number of the equivalent isotropic packing, in the sense of the calibration.
-    pub(crate) k_hat: T,
-    /// Coordination number without rattlers.
-    pub z: T,
-    /// Contact anisotropy.
-    pub eps: T,
-    /// Contact anisotropy weighted by contact stiffness.
-    pub eps_stiffness: T,
-}
+/// One value per quantity of the microstructure, in the order of [`InferredQuantity::ALL`]; as JSON by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Quantities<T>(pub(crate) [T; InferredQuantity::COUNT]);
 
 impl<T> Quantities<T> {
     pub(crate) fn of(value: impl FnMut(InferredQuantity) -> T) -> Self {
-        let [k, k_hat, z, eps, eps_stiffness] = InferredQuantity::ALL.map(value);
-        Self { k, k_hat, z, eps, eps_stiffness }
+        Self(InferredQuantity::ALL.map(value))
     }
 }
 
-impl<T: Copy> Quantities<T> {
-    /// In the order of [`InferredQuantity::ALL`].
-    pub fn all(&self) -> [T; grainlab_core::results::InferredQuantity::COUNT] {
-        [self.k, self.k_hat, self.z, self.eps, self.eps_stiffness]
+impl<T> Index<InferredQuantity> for Quantities<T> {
+    type Output = T;
+
+    fn index(&self, quantity: InferredQuantity) -> &T {
+        &self.0[quantity as usize]
+    }
+}
+
+impl<T: Serialize> Serialize for Quantities<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(InferredQuantity::ALL.map(InferredQuantity::name).into_iter().zip(&self.0))
     }
 }
 
@@ -189,8 +185,10 @@ impl Inference {
         };
         let Some(found) = &e.inferred else { return without_values };
         let value = |q: InferredQuantity| found.values[q as usize];
-        let sigma = |covariance: Option<[f64; 25]>| {
-            Quantities::of(|q| value(q).and(covariance).map(|c| c[6 * q as usize].sqrt()))
+        let sigma = |covariance: Option<[f64; InferredQuantity::COUNT * InferredQuantity::COUNT]>| {
+            Quantities::of(|q| {
+                value(q).and(covariance).map(|c| c[(InferredQuantity::COUNT + 1) * q as usize].sqrt())
+            })
         };
         Self {
             values: Quantities::of(value),
@@ -279,7 +277,7 @@ mod tests {
         let observation = observation.with_relative_error(0.01);
         let outcome = grainlab_emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER);
         let direct = Inference::of("ratio", "paper", &outcome);
-        assert!(direct.sigma.k.is_some() && direct.interval.level.is_some(), "{direct:?}");
+        assert!(direct.sigma[InferredQuantity::K].is_some() && direct.interval.level.is_some(), "{direct:?}");
         assert_eq!(read, Inference { source: Some("moduli".to_owned()), ..direct });
     }
 

@@ -6,17 +6,19 @@ use grainlab_core::results::InferredQuantity;
 
 impl Inference {
     /// Names of the cells of [`Inference::cells`].
-    pub const COLUMNS: [&str; 11] =
-        ["model", "calibration", "k", "sigma", "k_hat", "sigma", "z", "sigma", "eps", "sigma", "status"];
+    pub fn columns() -> impl Iterator<Item = &'static str> {
+        let quantities = InferredQuantity::ALL.into_iter().flat_map(|q| [q.text(), "sigma"]);
+        ["model", "calibration"].into_iter().chain(quantities).chain(["status"])
+    }
 
     /// Cells of a text table; columns without values should be left out.
     pub fn cells(&self) -> Vec<String> {
-        let (v, s) = (&self.values, &self.sigma);
         let mut cells = vec![self.model.clone(), self.calibration.clone()];
-        for (value, sigma, digits) in [(v.k, s.k, 3), (v.k_hat, s.k_hat, 3), (v.z, s.z, 3), (v.eps, s.eps, 4)]
-        {
-            cells.extend([fixed(value, digits), fixed(sigma, digits)]);
-        }
+        cells.extend(
+            InferredQuantity::ALL
+                .into_iter()
+                .flat_map(|q| [self.values[q], self.sigma[q]].map(|number| fixed(number, q.digits()))),
+        );
         cells.push(self.status.to_owned());
         cells
     }
@@ -36,9 +38,9 @@ impl Inference {
     pub fn exact_cells(&self) -> Vec<String> {
         let mut cells = vec![self.model.clone(), self.calibration.clone()];
         for numbers in [&self.values, &self.sigma, &self.sigma_model] {
-            cells.extend(numbers.all().map(exact));
+            cells.extend(numbers.0.map(exact));
         }
-        for bound in self.interval.bounds.all() {
+        for bound in self.interval.bounds.0 {
             cells.extend([bound.map(|b| b[0]), bound.map(|b| b[1])].map(exact));
         }
         cells.push(exact(self.chi_square));
@@ -64,7 +66,7 @@ pub fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>) -> St
 
 /// Results as a text table, warnings below.
 pub fn table(results: &[Inference]) -> String {
-    let mut t = Table::new(Inference::COLUMNS);
+    let mut t = Table::new(Inference::columns());
     results.iter().for_each(|r| t.row(r.cells()));
     let best = Inference::recommended(&results.iter().collect::<Vec<_>>());
     let best = best.filter(|_| results.len() > 1);
@@ -75,6 +77,7 @@ pub fn table(results: &[Inference]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::inference::Quantities;
     use grainlab_emt::{Calibration, Observation, StrainRatio};
 
     fn s1(modulus_error: f64) -> Inference {
@@ -96,16 +99,17 @@ mod tests {
         assert_eq!(words, ["model", "calibration", "k", "sigma", "k_hat", "sigma", "eps", "sigma", "status"]);
         assert!(text.contains("5.73") && text.ends_with("  ours: because\n"), "{text}");
         let mut with_z = s1(0.01);
-        with_z.values.z = Some(5.9);
+        with_z.values = Quantities::of(|q| (q == InferredQuantity::Z).then_some(5.9));
         assert!(table(&[with_z, failed()]).contains("  5.900"), "one model that knows z brings its column");
     }
 
     #[test]
     fn every_exact_cell_stands_under_its_name() {
         let mut r = s1(0.01);
-        (r.values.z, r.values.eps_stiffness) = (Some(5.9), Some(0.02));
-        (r.sigma_model.z, r.sigma_model.eps_stiffness) = (Some(0.04), None);
-        r.interval.bounds.eps_stiffness = Some([-0.01, 0.05]);
+        let [z, eps_stiffness] = [InferredQuantity::Z, InferredQuantity::EpsStiffness].map(|q| q as usize);
+        (r.values.0[z], r.values.0[eps_stiffness]) = (Some(5.9), Some(0.02));
+        (r.sigma_model.0[z], r.sigma_model.0[eps_stiffness]) = (Some(0.04), None);
+        r.interval.bounds.0[eps_stiffness] = Some([-0.01, 0.05]);
         (r.chi_square, r.degrees_of_freedom) = (Some(1.5), Some(2));
         let cells = r.exact_cells();
         let columns = Inference::exact_columns();
@@ -116,9 +120,12 @@ mod tests {
         assert_eq!((cell("sigma_model_z"), cell("sigma_model_eps_stiffness")), ("0.04", ""));
         assert_eq!((cell("eps_stiffness_low"), cell("eps_stiffness_high")), ("-0.01", "0.05"));
         assert_eq!((cell("chi_square"), cell("degrees_of_freedom")), ("1.5", "2"));
-        assert_eq!(cell("k_low").parse::<f64>().ok(), r.interval.bounds.k.map(|b| b[0]));
-        assert_eq!(cell("eps_high").parse::<f64>().ok(), r.interval.bounds.eps.map(|b| b[1]));
-        assert_eq!(cell("sigma_eps").parse::<f64>().ok(), r.sigma.eps);
+        assert_eq!(cell("k_low").parse::<f64>().ok(), r.interval.bounds[InferredQuantity::K].map(|b| b[0]));
+        assert_eq!(
+            cell("eps_high").parse::<f64>().ok(),
+            r.interval.bounds[InferredQuantity::Eps].map(|b| b[1])
+        );
+        assert_eq!(cell("sigma_eps").parse::<f64>().ok(), r.sigma[InferredQuantity::Eps]);
         assert!(cell("condition_number").parse::<f64>().unwrap() >= 1.0);
     }
 }

@@ -8,6 +8,7 @@ use crate::packing_text::indented;
 use crate::read_back::{Film, InvertedPacking};
 use crate::summary::Summary;
 use grainlab_console::{Table, count, fixed};
+use grainlab_core::results::InferredQuantity;
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 
@@ -89,45 +90,19 @@ fn inferred(s: &InvertedPacking) -> String {
 
 /// The results of each model from one kind of data, with errors against the measured values.
 fn block(results: &[&Inference], s: &InvertedPacking) -> String {
-    let mut t = Table::new([
-        "inferred by",
-        "k",
-        "sigma",
-        "error",
-        "k_hat",
-        "sigma",
-        "z",
-        "sigma",
-        "error",
-        "eps",
-        "sigma",
-        "error",
-        "status",
-    ]);
-    let off = |found: Option<f64>, truth: f64, digits: usize| {
-        found.map_or_else(|| "-".to_owned(), |v| format!("{:+.digits$}", v - truth))
-    };
-    let truth = &s.packing.report.contacts;
+    let counted = |q: InferredQuantity| s.packing.report.counted(q);
+    let columns = InferredQuantity::ALL.into_iter().flat_map(|q| [q.text(), "sigma", "error"]);
+    let mut t = Table::new(["inferred by"].into_iter().chain(columns).chain(["status"]));
     for r in results {
-        let (v, sigma) = (&r.values, &r.sigma);
-        t.row([
-            r.model.clone(),
-            fixed(v.k, 3),
-            fixed(sigma.k, 3),
-            off(v.k, truth.coordination, 3),
-            fixed(v.k_hat, 3),
-            fixed(sigma.k_hat, 3),
-            fixed(v.z, 3),
-            fixed(sigma.z, 3),
-            off(v.z, truth.mechanical_coordination, 3),
-            fixed(v.eps, 4),
-            fixed(sigma.eps, 4),
-            off(v.eps, s.packing.report.fabric.contact_anisotropy, 4),
-            r.status.to_owned(),
-        ]);
+        let cells = InferredQuantity::ALL.into_iter().flat_map(|q| {
+            let (value, digits) = (r.values[q], q.digits());
+            let off = value.zip(counted(q)).map(|(v, truth)| format!("{:+.digits$}", v - truth));
+            [fixed(value, digits), fixed(r.sigma[q], digits), off.unwrap_or_else(|| "-".to_owned())]
+        });
+        t.row([r.model.clone()].into_iter().chain(cells).chain([r.status.to_owned()]));
     }
     let mut text = indented(&t.without_empty_columns().text());
-    text += "  errors against k, z and eps measured";
+    text += "  errors against the values counted";
     let taken = results.iter().find_map(|r| r.gamma_over_delta.zip(r.gamma_over_delta_source.as_ref()));
     if let Some((g, source)) = taken {
         text += &format!("; gamma/Delta taken, by the models that need it: {g:.4} ({source})");

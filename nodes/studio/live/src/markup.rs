@@ -3,6 +3,7 @@
 use crate::laboratory::Laboratory;
 use grainlab_console::count;
 use grainlab_core::ComponentControl;
+use grainlab_core::results::InferredQuantity;
 use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::simulated_seconds;
 use grainlab_page::html::{Cell, escaped, paragraph, table};
@@ -133,39 +134,27 @@ impl Laboratory {
             .iter()
             .find_map(|(_, results)| Inference::recommended(results))
             .filter(|_| inferred_step == step);
-        let row = |symbol: &str,
-                   meaning: &str,
-                   digits: usize,
-                   counted: f64,
-                   found: Option<(Option<f64>, Option<f64>)>| {
-            let (value, sigma) = found.unwrap_or_default();
-            vec![
-                Cell::text(symbol),
-                Cell::text(meaning),
-                Cell::number(format!("{counted:.digits$}")),
-                Cell::number(value.map_or_else(|| "–".to_owned(), |v| format!("{v:.digits$}"))),
-                Cell::number(sigma.map_or_else(String::new, |s| format!("± {s:.digits$}"))),
-                Cell::number(value.map_or_else(String::new, |v| format!("{:+.digits$}", v - counted))),
-            ]
-        };
-        let c = &fabric.contacts;
-        let rows = [
-            row("k", "coordination number", 3, c.coordination, best.map(|b| (b.values.k, b.sigma.k))),
-            row(
-                "z",
-                "coordination without rattlers",
-                3,
-                c.mechanical_coordination,
-                best.map(|b| (b.values.z, b.sigma.z)),
-            ),
-            row(
-                "ε",
-                "contact anisotropy",
-                4,
-                fabric.fabric.contact_anisotropy,
-                best.map(|b| (b.values.eps, b.sigma.eps)),
-            ),
-        ];
+        let rows: Vec<Vec<Cell>> = InferredQuantity::countable()
+            .map(|q| {
+                let (counted, digits) = (q.counted(&fabric.contacts, &fabric.fabric), q.digits());
+                let value = best.and_then(|b| b.values[q]);
+                let sigma =
+                    best.and_then(|b| b.sigma[q]).map_or_else(String::new, |s| format!("± {s:.digits$}"));
+                let error =
+                    value.zip(counted).map_or_else(String::new, |(v, c)| format!("{:+.digits$}", v - c));
+                let number = |v: Option<f64>| {
+                    Cell::number(v.map_or_else(|| "–".to_owned(), |v| format!("{v:.digits$}")))
+                };
+                vec![
+                    Cell::text(q.symbol()),
+                    Cell::text(q.meaning()),
+                    number(counted),
+                    number(value),
+                    Cell::number(sigma),
+                    Cell::number(error),
+                ]
+            })
+            .collect();
         let which = best.filter(|b| b.measurement.is_some()).and_then(|b| b.origin().data());
         let which = which.map_or_else(String::new, |data| format!(" from {}", escaped(&data)));
         let by = best.map_or_else(String::new, |b| format!(", by model {}{which}", escaped(&b.model)));

@@ -3,7 +3,7 @@
 use crate::figure::{PageFigure, number};
 use crate::run::{Run, recommended};
 use grainlab_console::fixed;
-use grainlab_core::results::PackingReport;
+use grainlab_core::results::InferredQuantity;
 use grainlab_page::html::{Cell, escaped, paragraph, table};
 use grainlab_page::plot::{Bar, Bars};
 use grainlab_results::Inference;
@@ -11,62 +11,8 @@ use grainlab_results::brief::moduli;
 use grainlab_results::read_back::InvertedPacking;
 use std::fmt::Write;
 
-/// A quantity that is counted and inferred.
-pub(crate) struct Counted {
-    /// Its symbol.
-    pub(crate) symbol: &'static str,
-    pub(crate) meaning: &'static str,
-    /// Decimal places.
-    pub(crate) digits: usize,
-    /// `None` without contacts.
-    pub(crate) counted: fn(&PackingReport) -> Option<f64>,
-    pub(crate) inferred: fn(&Inference) -> Option<f64>,
-    pub(crate) sigma: fn(&Inference) -> Option<f64>,
-    interval: fn(&Inference) -> Option<[f64; 2]>,
-}
-
 /// Most bars of a plot; its data have all.
 const MOST_BARS: usize = 60;
-
-/// k, z, ε, and ε weighted by contact stiffness.
-pub(crate) const COUNTED: [Counted; 4] = [
-    Counted {
-        symbol: "k",
-        meaning: "coordination number",
-        digits: 3,
-        counted: |r| Some(r.contacts.coordination),
-        inferred: |e| e.values.k,
-        sigma: |e| e.sigma.k,
-        interval: |e| e.interval.bounds.k,
-    },
-    Counted {
-        symbol: "z",
-        meaning: "coordination without rattlers",
-        digits: 3,
-        counted: |r| Some(r.contacts.mechanical_coordination),
-        inferred: |e| e.values.z,
-        sigma: |e| e.sigma.z,
-        interval: |e| e.interval.bounds.z,
-    },
-    Counted {
-        symbol: "ε",
-        meaning: "contact anisotropy",
-        digits: 4,
-        counted: |r| Some(r.fabric.contact_anisotropy),
-        inferred: |e| e.values.eps,
-        sigma: |e| e.sigma.eps,
-        interval: |e| e.interval.bounds.eps,
-    },
-    Counted {
-        symbol: "ε_k",
-        meaning: "the same, weighted by stiffness",
-        digits: 4,
-        counted: PackingReport::stiffness_anisotropy,
-        inferred: |e| e.values.eps_stiffness,
-        sigma: |e| e.sigma.eps_stiffness,
-        interval: |e| e.interval.bounds.eps_stiffness,
-    },
-];
 
 /// Name of a result: its model, and its data unless these are moduli.
 fn name(e: &Inference) -> String {
@@ -78,55 +24,56 @@ fn name(e: &Inference) -> String {
     format!("{}{}{}", e.model, data.unwrap_or_default(), by.unwrap_or_default())
 }
 
-impl Counted {
-    fn figure(&self, state: &InvertedPacking) -> Option<String> {
-        let counted = (self.counted)(&state.packing.report)?;
-        let digits = self.digits;
-        let mut csv = String::from("model,status,inferred,low,high,counted\n");
-        let mut bars = Vec::new();
-        let best = recommended(state);
-        let is_best = |e: &&Inference| best.is_some_and(|b| std::ptr::eq(b, *e));
-        let others = state.results.iter().filter(|e| !is_best(e));
-        for e in best.into_iter().chain(others) {
-            let Some(value) = (self.inferred)(e) else { continue };
-            let by_sigma = || (self.sigma)(e).map(|s| [value - 1.96 * s, value + 1.96 * s]);
-            let interval = (self.interval)(e).or_else(by_sigma);
-            let [low, high] = interval.map_or([String::new(), String::new()], |i| i.map(number));
-            let _ = writeln!(
-                csv,
-                "{},{},{},{low},{high},{}",
-                name(e).replace(',', ""),
-                e.status,
-                number(value),
-                number(counted)
-            );
-            if bars.len() >= MOST_BARS {
-                continue;
-            }
-            let colour = if e.status == "ok" { 0 } else { 1 };
-            let error = format!("{value:.digits$} ({:+.digits$})", value - counted);
-            bars.push(Bar { name: name(e), colour, value, interval, text: error });
+fn figure(quantity: InferredQuantity, state: &InvertedPacking) -> Option<String> {
+    let counted = state.packing.report.counted(quantity)?;
+    let digits = quantity.digits();
+    let mut csv = String::from("model,status,inferred,low,high,counted\n");
+    let mut bars = Vec::new();
+    let best = recommended(state);
+    let is_best = |e: &&Inference| best.is_some_and(|b| std::ptr::eq(b, *e));
+    let others = state.results.iter().filter(|e| !is_best(e));
+    for e in best.into_iter().chain(others) {
+        let Some(value) = e.values[quantity] else { continue };
+        let by_sigma = || e.sigma[quantity].map(|s| [value - 1.96 * s, value + 1.96 * s]);
+        let interval = e.interval.bounds[quantity].or_else(by_sigma);
+        let [low, high] = interval.map_or([String::new(), String::new()], |i| i.map(number));
+        let _ = writeln!(
+            csv,
+            "{},{},{},{low},{high},{}",
+            name(e).replace(',', ""),
+            e.status,
+            number(value),
+            number(counted)
+        );
+        if bars.len() >= MOST_BARS {
+            continue;
         }
-        let reference = Some((counted, format!("counted {counted:.digits$}")));
-        let title = format!("{}: {}", self.symbol, self.meaning);
-        let id = match self.symbol {
-            "k" => "inferred-k",
-            "z" => "inferred-z",
-            "ε" => "inferred-eps",
-            _ => "inferred-eps-k",
-        };
-        (!bars.is_empty()).then(|| {
-            let svg = Bars { title, from_zero: false, bars, reference }.svg();
-            PageFigure { id, svg, caption: "", csv }.html()
-        })
+        let colour = if e.status == "ok" { 0 } else { 1 };
+        let error = format!("{value:.digits$} ({:+.digits$})", value - counted);
+        bars.push(Bar { name: name(e), colour, value, interval, text: error });
     }
+    let reference = Some((counted, format!("counted {counted:.digits$}")));
+    let title = format!("{}: {}", quantity.symbol(), quantity.meaning());
+    let id = format!("inferred-{}", quantity.text().replace('_', "-"));
+    (!bars.is_empty()).then(|| {
+        let svg = Bars { title, from_zero: false, bars, reference }.svg();
+        PageFigure { id: &id, svg, caption: "", csv }.html()
+    })
+}
+
+/// Cells of the inferred quantities; empty without an estimate.
+fn of_best(best: Option<&Inference>) -> impl Iterator<Item = Cell> {
+    InferredQuantity::countable().map(move |q| {
+        let sigma = best.and_then(|b| b.sigma[q]).map(|s| format!(" ± {s:.*}", q.digits()));
+        Cell::number(fixed(best.and_then(|b| b.values[q]), q.digits()) + &sigma.unwrap_or_default())
+    })
 }
 
 impl Run {
     /// Inferred against counted, of the last state, and all states as a table.
     pub(crate) fn inferred(&self) -> String {
         let Some(state) = self.last() else { return paragraph("No packing was measured.") };
-        let figures: String = COUNTED.iter().filter_map(|c| c.figure(state)).collect();
+        let figures: String = InferredQuantity::countable().filter_map(|q| figure(q, state)).collect();
         let level = state.results.iter().find_map(|e| e.interval.level).unwrap_or(0.95);
         let about = if figures.is_empty() {
             paragraph("Nothing was inferred.")
@@ -160,43 +107,28 @@ impl Run {
                 Cell::text(e.origin().data().unwrap_or_default()),
                 Cell::text(format!("{} ({})", e.model, e.status)),
             ];
-            cells.extend(COUNTED.map(|c| Cell::number(fixed((c.inferred)(e), c.digits))));
+            cells.extend(InferredQuantity::countable().map(|q| Cell::number(fixed(e.values[q], q.digits()))));
             cells
         };
         let rows: Vec<Vec<Cell>> = self.of_instruments.iter().map(row).collect();
         if rows.is_empty() {
             return String::new();
         }
-        table("Inferred from data of no packing of the run", &["data", "model", "k", "z", "ε", "ε_k"], &rows)
+        let symbols = InferredQuantity::countable().map(InferredQuantity::symbol);
+        let header: Vec<&str> = ["data", "model"].into_iter().chain(symbols).collect();
+        table("Inferred from data of no packing of the run", &header, &rows)
     }
 
     /// The measured states, one a row.
     pub(crate) fn states_table(&self) -> String {
-        let header = [
-            "phase",
-            "p, kPa",
-            "φ",
-            "k",
-            "z",
-            "ε",
-            "ε_k",
-            "G12, MPa",
-            "G13, MPa",
-            "Θ, MPa",
-            "inferred k",
-            "z",
-            "ε",
-            "ε_k",
-            "by",
-        ];
-        let of_best = |best: Option<&Inference>| {
-            COUNTED.map(|c| {
-                let sigma = best
-                    .and_then(|b| (c.sigma)(b))
-                    .map_or_else(String::new, |s| format!(" ± {s:.*}", c.digits));
-                Cell::number(fixed(best.and_then(|b| (c.inferred)(b)), c.digits) + &sigma)
-            })
-        };
+        let symbols = || InferredQuantity::countable().map(InferredQuantity::symbol);
+        let counted = ["phase", "p, kPa", "φ"].into_iter().chain(symbols());
+        let measured = counted.chain(["G12, MPa", "G13, MPa", "Θ, MPa"]);
+        let before = measured.clone().count();
+        let inferred = symbols().map(|symbol| format!("inferred {symbol}"));
+        let header: Vec<String> =
+            measured.map(str::to_owned).chain(inferred).chain(["by".to_owned()]).collect();
+        let header: Vec<&str> = header.iter().map(String::as_str).collect();
         let row = |s: &InvertedPacking| {
             let r = &s.packing.report;
             let phase = s.packing.position.filter(|p| p.phase > 0).map_or_else(String::new, |p| {
@@ -208,7 +140,8 @@ impl Run {
                 Cell::number(format!("{:.2}", r.pressure() / 1e3)),
                 Cell::number(format!("{:.4}", r.solid_fraction)),
             ];
-            cells.extend(COUNTED.map(|c| Cell::number(fixed((c.counted)(r), c.digits))));
+            cells
+                .extend(InferredQuantity::countable().map(|q| Cell::number(fixed(r.counted(q), q.digits()))));
             cells.extend(moduli(r).map(|m| Cell::number(fixed(m, 2))));
             cells.extend(of_best(best));
             let unknown = if s.results.is_empty() { "" } else { "unknown" };
@@ -229,7 +162,7 @@ impl Run {
                 let best = Inference::recommended(results);
                 let by = best.map_or_else(|| "unknown".to_owned(), |b| format!("{} ({})", b.model, b.status));
                 let mut cells = vec![Cell::text(origin.data().unwrap_or_default())];
-                cells.extend((1..10).map(|_| Cell::text("")));
+                cells.extend((1..before).map(|_| Cell::text("")));
                 cells.extend(of_best(best));
                 cells.push(Cell::text(by));
                 cells

@@ -1,68 +1,71 @@
 //! The page of many runs: one row per run, sortable, with outliers marked.
 
 use crate::figure::number;
-use crate::inferred::COUNTED;
 use crate::outliers::Outliers;
 use crate::page::whole;
 use crate::run::{Run, recommended};
 use grainlab_console::{CsvText, count};
+use grainlab_core::results::InferredQuantity;
 use grainlab_page::html::{escaped, paragraph};
 use grainlab_results::brief::moduli;
 use std::collections::BTreeMap;
 
+/// A number of a run.
+type ValueOfRun = Box<dyn Fn(&Run) -> Option<f64>>;
+
 /// A column: header, decimal places, and its value for a run.
 struct Column {
-    name: &'static str,
+    name: String,
     digits: usize,
-    value: fn(&Run) -> Option<f64>,
-}
-
-/// A modulus of the last state, MPa.
-fn modulus(run: &Run, n: usize) -> Option<f64> {
-    run.last().and_then(|s| moduli(&s.packing.report)[n])
-}
-
-/// Error of a quantity inferred from the last state.
-fn error(run: &Run, n: usize) -> Option<f64> {
-    let state = run.last()?;
-    Some((COUNTED[n].inferred)(recommended(state)?)? - (COUNTED[n].counted)(&state.packing.report)?)
+    value: ValueOfRun,
 }
 
 /// Numbers that are compared between runs of one scene.
-const COLUMNS: [Column; 16] = [
-    Column { name: "p, kPa", digits: 2, value: |r| Some(r.last()?.packing.report.pressure() / 1e3) },
-    Column { name: "φ", digits: 4, value: |r| Some(r.last()?.packing.report.solid_fraction) },
-    Column { name: "k", digits: 3, value: |r| Some(r.last()?.packing.report.contacts.coordination) },
-    Column {
-        name: "z",
-        digits: 3,
-        value: |r| Some(r.last()?.packing.report.contacts.mechanical_coordination),
-    },
-    Column { name: "ε", digits: 4, value: |r| Some(r.last()?.packing.report.fabric.contact_anisotropy) },
-    Column { name: "ε_k", digits: 4, value: |r| r.last()?.packing.report.stiffness_anisotropy() },
-    Column { name: "G12, MPa", digits: 2, value: |r| modulus(r, 0) },
-    Column { name: "G13, MPa", digits: 2, value: |r| modulus(r, 1) },
-    Column { name: "Θ, MPa", digits: 2, value: |r| modulus(r, 2) },
-    Column { name: "error of k", digits: 3, value: |r| error(r, 0) },
-    Column { name: "of z", digits: 3, value: |r| error(r, 1) },
-    Column { name: "of ε", digits: 4, value: |r| error(r, 2) },
-    Column { name: "of ε_k", digits: 4, value: |r| error(r, 3) },
-    Column { name: "unbalanced", digits: 9, value: |r| r.last()?.packing.report.unbalanced_force_ratio },
-    Column { name: "wall, s", digits: 1, value: |r| r.summary.wall_seconds },
-    Column {
-        name: "lost",
-        digits: 0,
-        value: |r| (!r.summary.topics.is_empty()).then(|| r.summary.total(|t| t.lost) as f64),
-    },
-];
+fn columns() -> Vec<Column> {
+    let column = |name: &str, digits, value: fn(&Run) -> Option<f64>| Column {
+        name: name.to_owned(),
+        digits,
+        value: Box::new(value),
+    };
+    let counted = InferredQuantity::countable().map(|q| Column {
+        name: q.symbol().to_owned(),
+        digits: q.digits(),
+        value: Box::new(move |r| r.last()?.packing.report.counted(q)),
+    });
+    let measured = ["G12, MPa", "G13, MPa", "Θ, MPa"].into_iter().enumerate().map(|(n, name)| Column {
+        name: name.to_owned(),
+        digits: 2,
+        value: Box::new(move |r| moduli(&r.last()?.packing.report)[n]),
+    });
+    let errors = InferredQuantity::countable().map(|q| Column {
+        name: format!("error of {}", q.symbol()),
+        digits: q.digits(),
+        value: Box::new(move |r| {
+            let state = r.last()?;
+            Some(recommended(state)?.values[q]? - state.packing.report.counted(q)?)
+        }),
+    });
+    let mut columns = vec![
+        column("p, kPa", 2, |r| Some(r.last()?.packing.report.pressure() / 1e3)),
+        column("φ", 4, |r| Some(r.last()?.packing.report.solid_fraction)),
+    ];
+    columns.extend(counted.chain(measured).chain(errors));
+    columns.extend([
+        column("unbalanced", 9, |r| r.last()?.packing.report.unbalanced_force_ratio),
+        column("wall, s", 1, |r| r.summary.wall_seconds),
+        column("lost", 0, |r| (!r.summary.topics.is_empty()).then(|| r.summary.total(|t| t.lost) as f64)),
+    ]);
+    columns
+}
 
 /// Column of times and counts of a computer: far values say nothing about a packing.
 fn is_compared(column: &Column) -> bool {
-    !matches!(column.name, "wall, s" | "lost" | "unbalanced")
+    !matches!(column.name.as_str(), "wall, s" | "lost" | "unbalanced")
 }
 
 /// The page of many runs, each with the link to its own report.
 pub fn overview(runs: &[(Run, String)]) -> String {
+    let columns = columns();
     let mut by_scene: BTreeMap<String, Vec<&Run>> = BTreeMap::new();
     for (run, _) in runs {
         by_scene.entry(run.scene_name()).or_default().push(run);
@@ -73,12 +76,12 @@ pub fn overview(runs: &[(Run, String)]) -> String {
             let of = |c: &Column| {
                 if is_compared(c) { Outliers::of(runs.iter().filter_map(|r| (c.value)(r))) } else { None }
             };
-            (scene.as_str(), COLUMNS.iter().map(of).collect())
+            (scene.as_str(), columns.iter().map(of).collect())
         })
         .collect();
     let mut marked = 0;
     let mut csv = CsvText::new();
-    let header = ["run", "scene", "seed", "end"].into_iter().chain(COLUMNS.iter().map(|c| c.name));
+    let header = ["run", "scene", "seed", "end"].into_iter().chain(columns.iter().map(|c| c.name.as_str()));
     csv.row(header.clone());
     let mut rows = String::new();
     for (run, link) in runs {
@@ -99,13 +102,13 @@ pub fn overview(runs: &[(Run, String)]) -> String {
             escaped(&scene)
         );
         let mut cells = vec![run.name(), scene.clone(), seed, end];
-        for (n, column) in COLUMNS.iter().enumerate() {
+        for (n, column) in columns.iter().enumerate() {
             let value = (column.value)(run);
             let score = value.and_then(|v| {
                 let o = distributions.get(scene.as_str())?[n]?;
                 o.has(v).then(|| o.score(v))
             });
-            let text = value.map_or_else(String::new, |v| match column.name {
+            let text = value.map_or_else(String::new, |v| match column.name.as_str() {
                 "unbalanced" => format!("{v:.1e}"),
                 _ => format!("{v:.*}", column.digits),
             });

@@ -1,8 +1,8 @@
 //! The page of one run: one file, without references to others.
 
-use crate::inferred::COUNTED;
 use crate::run::{Run, recommended};
 use grainlab_console::fixed;
+use grainlab_core::results::InferredQuantity;
 use grainlab_page::html::{escaped, section};
 use grainlab_page::plot::page_style;
 use grainlab_results::brief::{ended, lost_words, moduli};
@@ -138,13 +138,13 @@ fn cards(state: &InvertedPacking) -> String {
     let r = &state.packing.report;
     let best = recommended(state);
     let mut text = String::from("<div class=\"cards\">\n");
-    for c in &COUNTED {
-        let (counted, digits) = ((c.counted)(r), c.digits);
-        let inferred = best.and_then(|b| (c.inferred)(b)).map_or_else(
+    for q in InferredQuantity::countable() {
+        let (counted, digits) = (r.counted(q), q.digits());
+        let inferred = best.and_then(|b| b.values[q]).map_or_else(
             || "not inferred".to_owned(),
             |v| {
                 let sigma =
-                    best.and_then(|b| (c.sigma)(b)).map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
+                    best.and_then(|b| b.sigma[q]).map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
                 let error = counted.map_or_else(String::new, |c| {
                     format!(" <span class=\"error\">{:+.digits$}</span>", v - c)
                 });
@@ -153,7 +153,7 @@ fn cards(state: &InvertedPacking) -> String {
                 format!("inferred {v:.digits$}{sigma}{error}{status}")
             },
         );
-        text += &card(c.symbol, &fixed(counted, digits), c.meaning, &inferred);
+        text += &card(q.symbol(), &fixed(counted, digits), q.meaning(), &inferred);
     }
     let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 2));
     let shear = format!("{g12}, {g13} <small>MPa</small>");

@@ -289,5 +289,5 @@ fn the_command_that_repeats_a_run_has_its_launch_file_and_arguments() {
     assert!(page().contains("how it was launched is not recorded") && !page().contains("the same bytes"));
     let launched = r#"{"launch": "", "arguments": {}, "seed": 1, "words": ["my lab.yaml", "simd:=scalar"]}"#;
     std::fs::write(folder.path().join("launch.json"), launched).unwrap();
-    assert!(visible(&page()).contains("grainlab launch 'my lab.yaml' 'simd:=scalar' --scene"));
+    assert!(visible(&page()).contains("grainlab launch 'my lab.yaml' simd:=scalar --scene"));
 }

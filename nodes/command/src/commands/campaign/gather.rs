@@ -138,10 +138,10 @@ fn inferred(results: &[Inference]) -> BTreeMap<String, Cell> {
         let parts = [data, measurement, by, Some(&r.model)];
         let prefix = parts.into_iter().flatten().collect::<Vec<_>>().join(".");
         let number = |v: Option<f64>| v.map_or(Cell::Unknown, Cell::Number);
-        for (n, q) in InferredQuantity::ALL.into_iter().enumerate() {
-            if let Some(value) = r.values.all()[n] {
+        for q in InferredQuantity::ALL {
+            if let Some(value) = r.values[q] {
                 cells.insert(format!("{prefix}.{q}"), Cell::Number(value));
-                cells.insert(format!("{prefix}.{q}_stddev"), number(r.sigma.all()[n]));
+                cells.insert(format!("{prefix}.{q}_stddev"), number(r.sigma[q]));
             }
         }
         cells.insert(format!("{prefix}.status"), Cell::Text(r.status.to_owned()));

@@ -65,7 +65,7 @@ impl Columns {
         let stiffness = stiffness_columns(&find)?;
         let entries = entries();
         let mut inputs = Vec::new();
-        for input in INPUTS {
+        for input in INPUTS.iter() {
             let mut found = Vec::new();
             for alias in input.names() {
                 // A column of a whole stiffness is one of its entries, and no modulus of its projection.
@@ -114,7 +114,7 @@ impl Columns {
 
     /// Whether a column contains the truth of an estimate.
     pub(crate) fn has_truth(&self) -> bool {
-        self.inputs.iter().any(|(input, ..)| input.role == Role::Truth)
+        self.inputs.iter().any(|(input, ..)| matches!(input.role, Role::Truth(_)))
     }
 
     /// The state of a line; `None` if it is blank or a comment.
@@ -167,8 +167,8 @@ impl Columns {
             if input.role == Role::Stddev && !(value >= 0.0 && value.is_finite()) {
                 return Err(format!("column {}: {value} is not a standard deviation", self.names[*column]));
             }
-            (input.set)(&mut state, value * factor);
-            if input.role == Role::Truth {
+            input.set(&mut state, value * factor);
+            if matches!(input.role, Role::Truth(_)) {
                 check_structure(&state.truth).map_err(|e| format!("column {}: {e}", self.names[*column]))?;
             }
         }
@@ -189,7 +189,7 @@ impl Columns {
             self.project(&mut state, &stiffness, &self.axis(cells)?)?;
         }
         for (input, column, _) in self.inputs.iter().filter(|(input, ..)| input.role == Role::Stddev) {
-            if !cells.get(*column).is_empty() && (input.get)(&state).is_none() {
+            if !cells.get(*column).is_empty() && input.get(&state).is_none() {
                 let name = &self.names[*column];
                 return Err(format!("column {name} is a standard deviation of a quantity that is not there"));
             }

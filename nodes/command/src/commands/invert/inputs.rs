@@ -2,9 +2,10 @@
 
 use super::state::State;
 use grainlab_core::quantity::{Alias, by_key};
-use grainlab_core::results::QUANTITIES;
+use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_emt::{Measured, Modulus};
 use serde::ser::{Serialize, SerializeMap, Serializer};
+use std::sync::LazyLock;
 
 /// One number of a state.
 pub(super) struct Input {
@@ -13,8 +14,8 @@ pub(super) struct Input {
     /// Its meaning; empty if the table of quantities contains it.
     meaning: &'static str,
     pub(super) role: Role,
-    pub(super) get: fn(&State) -> Option<f64>,
-    pub(super) set: fn(&mut State, f64),
+    get: fn(&State) -> Option<f64>,
+    set: fn(&mut State, f64),
 }
 
 /// The role of an input.
@@ -29,13 +30,13 @@ pub(super) enum Role {
     /// Another input of a model.
     Datum,
     /// The truth for comparisons.
-    Truth,
+    Truth(InferredQuantity),
 }
 
 /// The inputs, one per row: key, role, meaning, getter and setter.
 macro_rules! inputs {
     ($($key:literal $role:ident $meaning:literal |$from:ident| $get:expr, |$state:ident, $value:ident| $set:expr;)*) => {
-        &[$(Input {
+        [$(Input {
             key: $key,
             meaning: $meaning,
             role: Role::$role,
@@ -45,8 +46,20 @@ macro_rules! inputs {
     };
 }
 
-/// Every input that a table may contain, in the order of JSON.
-pub(super) static INPUTS: &[Input] = inputs! {
+/// Every input that a table may contain, in the order of JSON; the truths follow from the inferred quantities.
+pub(super) static INPUTS: LazyLock<Vec<Input>> = LazyLock::new(|| {
+    let truth = |q: InferredQuantity| Input {
+        key: q.name(),
+        meaning: q.meaning(),
+        role: Role::Truth(q),
+        get: |_| None,
+        set: |_, _| {},
+    };
+    DATA.into_iter().chain(InferredQuantity::ALL.map(truth)).collect()
+});
+
+/// Inputs of the models.
+const DATA: [Input; 30] = inputs! {
     "g12_pa" Modulus "" |s| s.moduli.get(Modulus::G12), |s, v| s.set_modulus(Modulus::G12, v);
     "g12_sigma_pa" Stddev "standard deviation of g12_pa" |s| s.sigma_of(Modulus::G12), |s, v| s.set_sigma(Modulus::G12, v);
     "g13_pa" Modulus "" |s| s.moduli.get(Modulus::G13), |s, v| s.set_modulus(Modulus::G13, v);
@@ -84,14 +97,25 @@ pub(super) static INPUTS: &[Input] = inputs! {
         |s| s.stress_ratio.map(|r| r.stddev), |s, v| if let Some(ratio) = &mut s.stress_ratio { ratio.stddev = v };
     "size_spread" Datum "" |s| s.size_spread, |s, v| s.size_spread = Some(v);
     "grains" Datum "" |s| s.grains, |s, v| s.grains = Some(v);
-    "k" Truth "" |s| s.truth.k, |s, v| s.truth.k = Some(v);
-    "k_hat" Truth "k of the equivalent isotropic packing, in the calibration's sense" |s| s.truth.k_hat, |s, v| s.truth.k_hat = Some(v);
-    "z" Truth "" |s| s.truth.z, |s, v| s.truth.z = Some(v);
-    "eps" Truth "" |s| s.truth.eps, |s, v| s.truth.eps = Some(v);
-    "eps_stiffness" Truth "" |s| s.truth.eps_stiffness, |s, v| s.truth.eps_stiffness = Some(v);
 };
 
 impl Input {
+    /// Value of this input in a state.
+    pub(super) fn get(&self, state: &State) -> Option<f64> {
+        match self.role {
+            Role::Truth(q) => state.truth.get(q),
+            _ => (self.get)(state),
+        }
+    }
+
+    /// Sets it in a state.
+    pub(super) fn set(&self, state: &mut State, value: f64) {
+        match self.role {
+            Role::Truth(q) => state.truth = state.truth.with(q, value),
+            _ => (self.set)(state, value),
+        }
+    }
+
     /// Column names of an input, the preferred one first, with its unit in SI: the quantity of a packing with
     /// this key or alias, and all its aliases.
     pub(super) fn names(&self) -> Vec<Alias> {
@@ -105,7 +129,8 @@ impl Input {
 
     fn meaning(&self) -> &'static str {
         let quantity = self.names().first().and_then(|name| by_key(QUANTITIES, name.name));
-        quantity.filter(|_| self.meaning.is_empty()).map_or(self.meaning, |q| q.meaning)
+        let is_known = self.meaning.is_empty() || matches!(self.role, Role::Truth(_));
+        quantity.filter(|_| is_known).map_or(self.meaning, |q| q.meaning)
     }
 }
 
@@ -126,8 +151,8 @@ impl Serialize for State {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("sample", &self.sample)?;
-        for input in INPUTS.iter().filter(|input| input.role != Role::Truth) {
-            map.serialize_entry(input.key, &(input.get)(self))?;
+        for input in INPUTS.iter().filter(|input| !matches!(input.role, Role::Truth(_))) {
+            map.serialize_entry(input.key, &input.get(self))?;
         }
         map.serialize_entry("contact_law", &self.contact_law.map(|law| law.to_string()))?;
         map.serialize_entry("asymmetry", &self.asymmetry)?;

@@ -59,7 +59,7 @@ impl Printer<'_> {
 
     /// Many states, warnings below.
     pub(super) fn people(&self, answers: &[Answer]) -> String {
-        let mut t = Table::new(["sample", "p/kPa", "gamma/Delta"].into_iter().chain(Inference::COLUMNS));
+        let mut t = Table::new(["sample", "p/kPa", "gamma/Delta"].into_iter().chain(Inference::columns()));
         let mut warnings = String::new();
         for answer in answers {
             let line = answer.line.map_or_else(String::new, |l| format!("line {l}"));

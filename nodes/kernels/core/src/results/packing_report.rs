@@ -3,6 +3,7 @@
 use super::contact_statistics::ContactStatistics;
 use super::elastic_stiffness::{ElasticStiffness, Elasticity};
 use super::fabric::Fabric;
+use super::microstructure::InferredQuantity;
 use super::strain_ratios::StrainRatios;
 use super::stress_decomposition::StressDecomposition;
 use crate::contact::ContactLaw;
@@ -66,9 +67,14 @@ impl PackingReport {
         self.stress.tensor.axial_ratio(&self.fabric.reference_axis)
     }
 
+    /// Value of an inferred quantity that is counted in this packing; `None` where it is undefined or cannot be counted.
+    pub fn counted(&self, quantity: InferredQuantity) -> Option<f64> {
+        quantity.counted(&self.contacts, &self.fabric)
+    }
+
     /// ε of the contacts weighted by their normal stiffness; `None` without contacts.
     pub fn stiffness_anisotropy(&self) -> Option<f64> {
-        (self.contacts.contacts > 0).then(|| self.fabric.stiffness_anisotropy())
+        self.counted(InferredQuantity::EpsStiffness)
     }
 
     /// The stiffness, if there is one.

@@ -5,18 +5,8 @@ use super::error::PriorError;
 use super::set::Prior;
 use grainlab_core::results::InferredQuantity;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::fmt::Write;
-
-/// The whole file.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    k: Option<Section>,
-    k_hat: Option<Section>,
-    z: Option<Section>,
-    eps: Option<Section>,
-    eps_stiffness: Option<Section>,
-}
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -39,18 +29,20 @@ enum Kind {
 impl Prior {
     /// Reads the text of a prior file.
     pub fn parse(text: &str) -> Result<Self, PriorError> {
-        let file: File = toml::from_str(text).map_err(|e| PriorError::Text(e.to_string()))?;
-        let sections = [file.k, file.k_hat, file.z, file.eps, file.eps_stiffness];
+        let sections: BTreeMap<String, Section> =
+            toml::from_str(text).map_err(|e| PriorError::Text(e.to_string()))?;
+        let known = InferredQuantity::ALL.map(|q| format!("[{q}]")).join(", ");
         let mut prior = Self::default();
-        for (quantity, section) in InferredQuantity::ALL.into_iter().zip(sections) {
-            let Some(section) = section else { continue };
+        for (name, section) in sections {
+            let quantity = InferredQuantity::ALL.into_iter().find(|q| q.name() == name);
+            let quantity = quantity
+                .ok_or_else(|| PriorError::Text(format!("no quantity [{name}]; there are {known}")))?;
             let density = section
                 .density()
                 .map_err(|fault| PriorError::Section { quantity: quantity.name(), fault })?;
             prior = prior.with(quantity, density);
         }
         if prior.quantities().next().is_none() {
-            let known = InferredQuantity::ALL.map(|q| format!("[{q}]")).join(", ");
             return Err(PriorError::Text(format!("it has no section; there are {known}")));
         }
         Ok(prior)

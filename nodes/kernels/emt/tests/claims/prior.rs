@@ -143,7 +143,7 @@ fn faults_of_a_prior_file_are_named() {
     let section = |lines: &str| format!("[eps]\n{lines}");
     for (text, words) in [
         ("", &["[z]", "no section"][..]),
-        ("[zz]\ndistribution = \"normal\"", &["unknown field `zz`", "eps_stiffness"]),
+        ("[zz]\ndistribution = \"normal\"", &["no quantity [zz]", "eps_stiffness"]),
         (&section("distribution = \"gaussian\""), &["gaussian", "truncated-normal", "line 2"]),
         (&section("distribution = \"normal\"\nmean = 0\nsigma = 1"), &["unknown field `sigma`", "stddev"]),
         (&section("distribution = \"normal\"\nmean = 0"), &["[eps]", "stddev is missing"]),

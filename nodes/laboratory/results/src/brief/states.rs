@@ -4,6 +4,7 @@ use super::shown::{eps, moduli};
 use crate::inference::{Inference, Origin, by_origin};
 use crate::read_back::InvertedPacking;
 use grainlab_console::{Table, count, fixed};
+use grainlab_core::results::InferredQuantity;
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 
@@ -111,5 +112,7 @@ fn estimated(best: Option<&Inference>, unknown: &str) -> [String; 4] {
         status if status == OUTSIDE.1 => b.model.clone() + OUTSIDE.0,
         status => format!("{}, {status}", b.model),
     };
-    [fixed(b.values.k, 3), fixed(b.values.z, 3), fixed(b.values.eps, 4), by]
+    let [k, z, eps] = [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps]
+        .map(|q| fixed(b.values[q], q.digits()));
+    [k, z, eps, by]
 }

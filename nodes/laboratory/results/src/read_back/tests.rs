@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::measured_packing::tests::{lattice, measured};
+use grainlab_core::results::InferredQuantity;
 use grainlab_emt_inversion::{Settings, microstructure_message, microstructure_of_speeds};
 use grainlab_msgs::boundary::{fabric_message, moduli_message, packing_header, packing_message};
 use grainlab_msgs::builtin_interfaces::Time;
@@ -162,7 +163,11 @@ fn every_shot_of_a_packing_keeps_its_own_speeds_and_estimates() {
         assert_eq!(own.reading.speeds[1].wave.speed, sent.speeds[1].speed, "{origin:?}");
         let answer = microstructure_of_speeds(&sent, &Settings::default()).message;
         let expected: Vec<Option<f64>> = answer.estimates.iter().map(|e| e.k.first().copied()).collect();
-        assert_eq!(results.iter().map(|r| r.values.k).collect::<Vec<_>>(), expected, "{origin:?}");
+        assert_eq!(
+            results.iter().map(|r| r.values[InferredQuantity::K]).collect::<Vec<_>>(),
+            expected,
+            "{origin:?}"
+        );
     }
     let json = serde_json::to_value(state).unwrap();
     assert_eq!(json["acoustic"]["measurement"], "shot 0");

@@ -111,15 +111,9 @@ fn compared(found: &Microstructure, truth: &PackingReport) -> Errors {
     let inferred = reading.and_then(|r| r.estimates.into_iter().next()?.inferred);
     let of = |quantity: InferredQuantity| {
         let (inferred, at) = (inferred.as_ref()?, quantity as usize);
-        let counted = match quantity {
-            InferredQuantity::K => truth.contacts.coordination,
-            InferredQuantity::Z => truth.contacts.mechanical_coordination,
-            InferredQuantity::Eps => truth.fabric.contact_anisotropy,
-            InferredQuantity::EpsStiffness => truth.stiffness_anisotropy()?,
-            InferredQuantity::KHat => return None,
-        };
+        let counted = truth.counted(quantity)?;
         let error = inferred.values[at]? - counted;
-        Some((error, error / inferred.covariance?[6 * at].sqrt()))
+        Some((error, error / inferred.covariance?[(InferredQuantity::COUNT + 1) * at].sqrt()))
     };
     JUDGED.map(of)
 }
