@@ -17,18 +17,28 @@ pub struct SceneText {
     pub scene: Scene,
     /// The packing that it starts from, if any.
     pub start: Option<Packing>,
+    /// What to know about that packing.
+    pub notes: Vec<String>,
 }
 
-/// The scene of a built-in name or of a file, changed by `sets` such as `grains.count=500`; `seed` replaces
-/// that of the scene.
+/// [`read`], with the notes printed.
 pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<SceneText, Failure> {
+    let found = read(name_or_path, sets, seed)?;
+    found.notes.iter().for_each(|note| grainlab_console::say!("grainlab: {note}"));
+    Ok(found)
+}
+
+/// The scene of a built-in name, of a file, or of a text of several lines, changed by `sets` such as `grains.count=500`; `seed`
+/// replaces that of the scene.
+pub fn read(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<SceneText, Failure> {
     let source = find(name_or_path, None).map_err(|f| match f.exit {
         Exit::Usage => f,
         exit => Failure::new(exit, format!("scene {name_or_path}: {f}")),
     })?;
+    let name = if name_or_path.contains('\n') { "scene" } else { name_or_path };
     let with = |sets: &[String]| match sets {
-        [] => name_or_path.to_owned(),
-        sets => format!("{name_or_path} with {}", sets.join(" ")),
+        [] => name.to_owned(),
+        sets => format!("{name} with {}", sets.join(" ")),
     };
     let library = |base: &str, from: &str| find(base, Some(Path::new(from))).map_err(|f| f.to_string());
     let refused = |e: grainlab_scene::SceneError| Failure::usage(format!("{}: {e}", with(sets)));
@@ -41,9 +51,9 @@ pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
         let message = format!("{}: {e}", with(sets));
         if matches!(e, StartError::File { .. }) { Failure::failed(message) } else { Failure::usage(message) }
     })?;
-    for (start, note) in start.iter().flat_map(|s| s.notes.iter().map(move |note| (s, note))) {
-        grainlab_console::say!("grainlab: {}: {note}", start.path.display());
-    }
+    let of_start =
+        start.iter().flat_map(|s| s.notes.iter().map(|note| format!("{}: {note}", s.path.display())));
+    let notes = of_start.collect();
     let resolved = match &start {
         None => draft.resolve(),
         Some(found) => {
@@ -54,11 +64,19 @@ pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
         }
     };
     let resolved = resolved.map_err(refused)?;
-    Ok(SceneText { text: resolved.toml, scene: resolved.scene, start: start.map(|found| found.packing) })
+    Ok(SceneText {
+        text: resolved.toml,
+        scene: resolved.scene,
+        start: start.map(|found| found.packing),
+        notes,
+    })
 }
 
 /// A built-in scene or a file; one named in the file `from` is searched for beside it.
 fn find(name: &str, from: Option<&Path>) -> Result<Source, Failure> {
+    if name.contains('\n') {
+        return Ok(Source { name: "scene".to_owned(), text: name.to_owned() });
+    }
     if let Some(text) = built_in(name) {
         return Ok(Source { name: name.to_owned(), text: text.to_owned() });
     }

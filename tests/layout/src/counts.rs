@@ -4,6 +4,7 @@ use crate::modules::modules;
 use crate::workspace::roots;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use syn::{Item, UseTree, Visibility};
 
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
@@ -147,6 +148,33 @@ fn the_source_is_as_long_as_its_budget() {
         }
     }
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+/// Names that `text`, the root of a library, makes public.
+fn public_names(text: &str) -> usize {
+    fn used(tree: &UseTree) -> usize {
+        match tree {
+            UseTree::Path(path) => used(&path.tree),
+            UseTree::Group(group) => group.items.iter().map(used).sum(),
+            _ => 1,
+        }
+    }
+    let is_public = |visibility: &Visibility| matches!(visibility, Visibility::Public(_));
+    let names = |item: &Item| match item {
+        Item::Use(item) if is_public(&item.vis) => used(&item.tree),
+        Item::Fn(item) => usize::from(is_public(&item.vis)),
+        Item::Struct(item) => usize::from(is_public(&item.vis)),
+        Item::Mod(item) => usize::from(is_public(&item.vis)),
+        _ => 0,
+    };
+    syn::parse_file(text).unwrap().items.iter().map(names).sum()
+}
+
+#[test]
+fn the_library_has_at_most_40_public_names() {
+    let names = public_names(&std::fs::read_to_string(top().join("nodes/grainlab/src/lib.rs")).unwrap());
+    assert!((10..=40).contains(&names), "{names}");
+    assert_eq!(public_names("pub use a::{b, c::D};\npub fn e() {}\nuse f::g;\nmod h;\n"), 3);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! - `rules`: violations of the rules, as text
 //! - `layers`: the order of crates; `dependencies`: what they link through others
 //! - `counts`: how much source there is
+//! - `outside`: a crate outside of the workspace uses ours
 //! - `samples`: tests of the rules on small crates; `workspace`: every crate keeps them
 
 // All of it is tests: a build without tests does not pay for it.
@@ -15,6 +16,7 @@ mod dependencies;
 mod imports;
 mod layers;
 mod modules;
+mod outside;
 mod rules;
 mod samples;
 mod workspace;

@@ -1,8 +1,9 @@
 //! What is observed on a packing.
 
-use crate::conditions::{Conditions, STATE_INPUTS, StrainRatio};
+use crate::conditions::{Conditions, Measured, STATE_INPUTS, StrainRatio};
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
+use grainlab_core::results::PackingReport;
 use grainlab_core::{Mat3, Material, Stiffness};
 use nalgebra::{SMatrix, SymmetricEigen};
 
@@ -86,6 +87,27 @@ impl Observation {
     pub fn of_stiffness(stiffness: &Stiffness, conditions: Conditions) -> Self {
         let t = stiffness.transverse_isotropy();
         Self { asymmetry: Some(t.residual), ..Self::new(Moduli::of_medium(&t), conditions) }
+    }
+
+    /// The moduli of a packing about the reference axis of its report, and its state, as exact numbers; `None` without a
+    /// stiffness.
+    pub fn of(report: &PackingReport) -> Option<Self> {
+        let (stiffness, medium) = (report.stiffness()?, report.projected()?);
+        let conditions = Conditions {
+            gamma: StrainRatio::preferred(&report.strain_ratios),
+            solid_fraction: Some(Measured::exact(report.solid_fraction)),
+            stress_ratio: report.axial_stress_ratio().map(Measured::exact),
+            size_spread: Some(report.size_spread),
+            material: Some(report.material),
+            contact_law: Some(report.law),
+            smooth: stiffness.smooth,
+            ..Conditions::at(report.pressure())
+        };
+        Some(Self {
+            asymmetry: Some(medium.residual),
+            grains: Some(report.contacts.grains),
+            ..Self::new(Moduli::of_medium(&medium), conditions)
+        })
     }
 
     /// The same with independent errors of this relative standard deviation for all moduli: 0.01 is one percent.

@@ -20,6 +20,15 @@ create_exception!(
     "Physics that cannot go on: a packing that is not jammed, an unstable run, moduli without a solution."
 );
 
+/// The exception of an error of the library.
+pub(crate) fn of(error: grainlab::Error) -> PyErr {
+    match error {
+        grainlab::Error::Scene(_) => scene(error),
+        grainlab::Error::File(_) => file(error),
+        _ => physics(error),
+    }
+}
+
 pub(crate) fn file(error: impl Display) -> PyErr {
     FileError::new_err(error.to_string())
 }

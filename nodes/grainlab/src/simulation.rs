@@ -1,0 +1,122 @@
+//! Runs of scenes in one process.
+
+use crate::Error;
+use grainlab_core::Packing;
+use grainlab_dem::{Compute, Simd};
+use grainlab_recordings::scenes;
+use std::time::{Duration, Instant};
+
+/// A run of a scene: an iterator over the packings that the scene publishes, the same bit for bit as those of
+/// `grainlab launch`. After an error it has ended.
+#[derive(Debug)]
+pub struct Simulation {
+    run: grainlab_experiment::Simulation,
+    /// The packing that the scene starts from, which is returned first.
+    start: Option<Packing>,
+    notes: Vec<String>,
+    failed: bool,
+}
+
+/// Starts a run of a scene: a built-in name such as `demo`, a file, or a text of several lines. `settings` replace keys, as
+/// `grainlab launch --set`: `grains.count=500`, `seed=2`.
+///
+/// # Errors
+/// If there is no such scene, or it has faults; all of them are named.
+pub fn simulate(scene: &str, settings: &[&str]) -> Result<Simulation, Error> {
+    let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
+    let found = scenes::read(scene, &settings, None).map_err(|e| match e.exit {
+        grainlab_msgs::Exit::Failure => Error::File(e.to_string()),
+        _ => Error::Scene(e.to_string()),
+    })?;
+    let simulation = |e: grainlab_experiment::ExperimentError| Error::Simulation(e.to_string());
+    let run = match &found.start {
+        Some(packing) => grainlab_experiment::Simulation::from_packing(found.scene, packing),
+        None => grainlab_experiment::Simulation::new(found.scene),
+    };
+    let run = run.map_err(simulation)?;
+    // As the run holds it: at its first step, without the strain of the file.
+    let start = found.start.is_some().then(|| run.packing());
+    Ok(Simulation { run, start, notes: found.notes, failed: false })
+}
+
+impl Simulation {
+    /// The same run with this number of threads, 1 or more. The packings stay the same bit for bit.
+    ///
+    /// # Errors
+    /// If there are no or too many threads.
+    pub fn with_threads(mut self, threads: usize) -> Result<Self, Error> {
+        let compute = Compute::new(Simd::best(), threads).map_err(|e| Error::Scene(e.to_string()))?;
+        self.run.set_compute(compute);
+        Ok(self)
+    }
+
+    /// Name of the scene.
+    pub fn name(&self) -> &str {
+        &self.run.scene().name
+    }
+
+    /// Steps so far.
+    pub fn steps(&self) -> u64 {
+        self.run.engine().steps()
+    }
+
+    /// Whether the loading path is done.
+    pub fn finished(&self) -> bool {
+        self.failed || self.start.is_none() && self.run.finished()
+    }
+
+    /// What to know about the packing that the scene starts from.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Where on its loading path the run is, as recorded with a packing: the two resume the run bit for bit.
+    pub fn run_state(&self) -> Vec<u8> {
+        self.run.run_state()
+    }
+
+    /// Goes on until a packing is due, `limit` has passed, or the path is done; the packing, if one is due. For programs that
+    /// have to look for signals.
+    ///
+    /// # Errors
+    /// If the run cannot go on; it has ended then.
+    pub fn advance(&mut self, limit: Duration) -> Result<Option<Packing>, Error> {
+        let found = self.try_advance(limit);
+        self.failed |= found.is_err();
+        found
+    }
+
+    fn try_advance(&mut self, limit: Duration) -> Result<Option<Packing>, Error> {
+        if self.failed {
+            return Ok(None);
+        }
+        if let Some(packing) = self.start.take() {
+            return Ok(Some(packing));
+        }
+        let began = Instant::now();
+        while began.elapsed() < limit
+            && let Some(request) = self.run.request()
+        {
+            let simulation = |e: &dyn std::fmt::Display| Error::Simulation(e.to_string());
+            let output = grainlab_servo::control(&request.servo_input()).map_err(|e| simulation(&e))?;
+            if self.run.advance(&output.rate).map_err(|e| simulation(&e))?.packing_due {
+                return Ok(Some(self.run.packing()));
+            }
+        }
+        Ok(None)
+    }
+}
+
+impl Iterator for Simulation {
+    type Item = Result<Packing, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            match self.advance(Duration::MAX).transpose() {
+                None if self.finished() => return None,
+                None => {}
+                found => return found,
+            }
+        }
+    }
+}
