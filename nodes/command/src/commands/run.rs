@@ -3,7 +3,7 @@
 use grainlab_console::{Failure, print};
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::pipe;
-use grainlab_node_kit::{Exit, RosArgs, run_node};
+use grainlab_node_kit::{Exit, Names, RosArgs, run_node};
 use grainlab_recorder::{ResultSlot, tallies};
 
 /// One node, with ROS 2 arguments.
@@ -41,6 +41,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         let message = format!("unexpected argument {stranger:?}; ROS arguments come after --ros-args");
         return Err(Failure::usage(message));
     }
+    // Invalid names are refused by the node.
+    Names::from_args(node.name(), &ros)
+        .map_or(Ok(()), |names| node.check_remaps(&names))
+        .map_err(Failure::usage)?;
     let recorded = ResultSlot::default();
     let exit = run_node(&node.spec(), &ros, |bus, parameters| node.build(bus, parameters, &recorded));
     print_recorded(&recorded)?;

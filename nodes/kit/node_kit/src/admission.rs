@@ -86,9 +86,12 @@ impl Admission {
         }
     }
 
-    /// Removes a participant that left.
+    /// Removes a participant that left. One of the run stays: samples that it sent before may still arrive, as after this process
+    /// was stopped for a while.
     pub(crate) fn lost(&mut self, participant: &Participant) {
-        self.processes.remove(participant);
+        if self.processes.get(participant).is_some_and(|process| !process.below_root) {
+            self.processes.remove(participant);
+        }
     }
 
     /// Whether samples of this participant are accepted.
@@ -187,7 +190,10 @@ mod tests {
         admission.discovered(instrument, process(true));
         assert!(admission.admits(&instrument));
         admission.lost(&instrument);
-        assert!(!admission.admits(&instrument));
+        assert!(
+            admission.admits(&instrument),
+            "what it sent before it left, or before this process was continued"
+        );
     }
 
     #[test]

@@ -120,6 +120,14 @@ impl Names {
         Ok(self.remaps.iter().find(|(from, _)| *from == expanded).map_or(expanded, |(_, to)| to.clone()))
     }
 
+    /// A remapped name that is neither one of `topics` nor below the node's own name, as its services are.
+    pub fn unknown_remap<'a>(&self, topics: impl IntoIterator<Item = &'a str>) -> Option<&str> {
+        let known: Vec<String> = topics.into_iter().filter_map(|topic| self.expand(topic).ok()).collect();
+        let own = self.fully_qualified() + "/";
+        let is_known = |from: &&String| known.contains(*from) || from.starts_with(&own);
+        self.remaps.iter().map(|(from, _)| from).find(|from| !is_known(from)).map(String::as_str)
+    }
+
     /// Makes a name absolute: `x` becomes `/ns/x`, `~/x` becomes `/ns/node/x`, `/x` stays.
     fn expand(&self, name: &str) -> Result<String, NameError> {
         let absolute = if let Some(rest) = name.strip_prefix("~/") {
@@ -189,6 +197,21 @@ mod tests {
     fn the_root_namespace_adds_no_second_slash() {
         assert_eq!(names(&[]).resolve("stress").unwrap(), "/stress");
         assert_eq!(names(&["-r", "__ns:=/"]).fully_qualified(), "/servo");
+    }
+
+    #[test]
+    fn a_remap_of_no_topic_is_found() {
+        let of = |rule: &str| {
+            let (ros, _) =
+                RosArgs::parse(&["--ros-args", "-r", "__ns:=/lab", "-r", rule].map(str::to_owned)).unwrap();
+            let names = Names::from_args("dem", &ros).unwrap();
+            names.unknown_remap(["stress", "/clock"]).map(str::to_owned)
+        };
+        for rule in ["stress:=p", "/lab/stress:=/p", "/clock:=/time", "~/get_parameters:=/get"] {
+            assert_eq!(of(rule), None, "{rule}");
+        }
+        assert_eq!(of("stresss:=p").as_deref(), Some("/lab/stresss"));
+        assert_eq!(of("clock:=time").as_deref(), Some("/lab/clock"), "the clock is in no namespace");
     }
 
     #[test]

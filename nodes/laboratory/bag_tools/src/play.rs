@@ -157,6 +157,13 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let wanted = Player::new(&recording, &options).map_err(play_failure)?.channels().to_vec();
     let topics: Vec<(&str, &str)> = wanted.iter().map(|c| (c.topic.as_str(), c.ros_type.as_str())).collect();
     check_remaps(&args.remap, &topics).map_err(Failure::usage)?;
+    let is_played = |name: &&str| topics.iter().any(|(topic, _)| topic.trim_start_matches('/') == *name);
+    if let Some(name) = overrides.topics().find(|name| !is_played(name)) {
+        let known = topics.iter().map(|(topic, _)| *topic).collect::<Vec<_>>().join(", ");
+        return Err(Failure::usage(format!(
+            "--qos-profile-overrides-path: /{name} is not played; played are: {known}"
+        )));
+    }
 
     let mut bus = tool_bus("player")?;
     pause(&mut bus, LOOK_AROUND);

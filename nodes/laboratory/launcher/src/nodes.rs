@@ -135,8 +135,22 @@ impl NodeKind {
             return Err(format!("unexpected argument {word:?}; ROS arguments come after --ros-args"));
         }
         let names = Names::from_args(self.name(), &ros).map_err(|e| text(&e))?;
+        self.check_remaps(&names)?;
         let parameters = Parameters::resolve(&self.parameters(), self.name(), &names, &ros);
         Ok((names, parameters.map_err(|e| text(&e))?))
+    }
+
+    /// Refuses a remap of a topic that does not exist, which would have no effect.
+    pub fn check_remaps(self, names: &Names) -> Result<(), String> {
+        // It passes on topics of any name.
+        if self == Self::FoxgloveBridge {
+            return Ok(());
+        }
+        let known = || topics::TOPICS.iter().chain(topics::PICTURES).map(|topic| topic.name);
+        names.unknown_remap(known()).map_or(Ok(()), |from| {
+            let known = known().collect::<Vec<_>>().join(", ");
+            Err(format!("remap of {from}: {self} has no such topic; there are, in its namespace unless with a slash: {known}"))
+        })
     }
 
     /// The topics that it publishes or reads in a run, of those that are recorded.

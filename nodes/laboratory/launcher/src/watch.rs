@@ -4,6 +4,7 @@ use crate::run::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::Failure;
 use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
+use grainlab_emt::{Status, recommended};
 use grainlab_fabric_analyzer::WITHOUT_MODULI;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
@@ -256,12 +257,26 @@ fn strangers(bus: &dyn Bus) -> Vec<(&'static str, Stranger)> {
     OF_THE_RUN.iter().flat_map(|topic| -> Vec<_> { of(topic) }).collect()
 }
 
-/// Why a microstructure has no estimate; `None` if a model has one.
+/// Why no estimate of a microstructure is recommended; `None` if one is.
 fn without_estimate(found: &Microstructure) -> Option<String> {
-    let unknown = found.estimates.iter().all(|e| e.status == Estimate::STATUS_UNKNOWN);
-    let why =
-        found.estimates.iter().find_map(|e| e.warnings.first()).map_or("no model was asked", String::as_str);
-    unknown.then(|| why.to_owned())
+    let status = |e: &Estimate| match e.status {
+        Estimate::STATUS_OK => Status::Ok,
+        Estimate::STATUS_EXTRAPOLATED => Status::Extrapolated,
+        Estimate::STATUS_CONTRADICTORY => Status::Contradictory,
+        _ => Status::Unknown,
+    };
+    let asked = || found.estimates.iter().map(|e| (e.model.as_str(), status(e)));
+    // The reason of the model that would be recommended.
+    let first = recommended(asked().map(|(model, _)| (model, Status::Ok)));
+    let without =
+        found.estimates.iter().find(|e| Some(e.model.as_str()) == first).or(found.estimates.first());
+    let why = without.and_then(|e| e.warnings.first()).map_or("no model was asked", String::as_str);
+    // Of models that this program does not have, any.
+    let nothing = match first {
+        Some(_) => recommended(asked()).is_none(),
+        None => asked().all(|(_, status)| status == Status::Unknown),
+    };
+    nothing.then(|| why.to_owned())
 }
 
 /// How far the present phase is, if the report is that of a simulator.
@@ -297,5 +312,9 @@ mod tests {
         assert_eq!(of(vec![refused(), refused()]).as_deref(), Some("speeds[0].speed = NaN is refused"));
         assert_eq!(of(vec![refused(), estimate(Estimate::STATUS_OK, "")]), None);
         assert!(of(Vec::new()).is_some());
+        let by = |model: &str, e: Estimate| Estimate { model: model.to_owned(), ..e };
+        let others =
+            vec![by("relaxed", refused()), by("emt", estimate(Estimate::STATUS_EXTRAPOLATED, "far"))];
+        assert_eq!(of(others).as_deref(), Some("speeds[0].speed = NaN is refused"), "emt is no substitute");
     }
 }

@@ -456,6 +456,13 @@ impl Node for Recorder {
             log::error!("{lost} messages were published and are not in the recording");
             return Ok(Exit::DataLoss);
         }
+        let refused: u64 = bus.received().iter().map(|r| r.refused).sum();
+        if refused > 0 && !self.whole_run {
+            log::error!(
+                "{refused} messages could not be read, and are not in the recording: the reasons are above"
+            );
+            return Ok(Exit::DataLoss);
+        }
         if self.stalled && missing > 0 && !self.whole_run {
             log::error!(
                 "{missing} processes left without a last report, and the recorder was stopped for a while: the number of their \

@@ -130,6 +130,9 @@ fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
     topics.retain(|topic| wanted.takes(&topic.absolute_name()));
     let qos = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose();
     let qos = qos.map_err(Failure::usage)?.unwrap_or_default();
+    if let Some(name) = qos.topics().map(|name| format!("/{name}")).find(|name| !wanted.takes(name)) {
+        return Err(Failure::usage(format!("--qos-profile-overrides-path: {name} is not recorded")));
+    }
     Ok((topics, OtherTopics { wanted, definitions: Definitions::with_folders(&args.msg_path), qos }))
 }
 

@@ -21,7 +21,8 @@ pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     let directory = directory.canonicalize().map_err(|e| failed(&e))?;
     let order = Order::read(&directory)?;
-    let scene = scenes::load(&directory.join("scene.toml").to_string_lossy(), &[], Some(order.seed))?;
+    let path_of_scene = directory.join("scene.toml").to_string_lossy().into_owned();
+    let scene = scenes::load(&path_of_scene, &[], Some(order.seed))?;
     let mut plans = order.plans(&directory)?;
     if matches!(run_state(&directory), RunState::Ended(0)) {
         return Err(Failure::usage(format!("{}: the run is finished", directory.display())));
@@ -32,7 +33,18 @@ pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
         grainlab_recordings::recover(&directory).map_err(|e| failed(&e))?;
         let recording = Recording::open(&directory).map_err(|e| failed(&e))?;
         let recorded = recording.stored_files().into_iter().find(|file| file.name == "scene.toml");
-        if recorded.is_some_and(|file| file.bytes != scene.text.as_bytes()) {
+        let differs = |text: &str| recorded.as_ref().is_some_and(|file| file.bytes != text.as_bytes());
+        if differs(&scene.text)
+            && scenes::load(&path_of_scene, &[], None).is_ok_and(|own| !differs(&own.text))
+        {
+            return Err(Failure::failed(format!(
+                "{}: launch.json: the seed {} is not the one that the recording began with, which scene.toml has: put it back, or \
+                 launch a new run",
+                directory.display(),
+                order.seed
+            )));
+        }
+        if differs(&scene.text) {
             return Err(Failure::failed(format!(
                 "{}: scene.toml is not the scene that the recording began with: the run cannot continue with another one. Put the \
                  recorded one back, or launch a new run",
