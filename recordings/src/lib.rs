@@ -11,7 +11,7 @@
 //! - `player`: the schedule of a playback, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and recordings
 //! - [`export`]: packings to CSV and LAMMPS dump files
-//! - [`input`]: external files, regular and of bounded size; [`runs`]: run directories; [`scenes`]: scenes by name or path
+//! - [`input`]: external files, regular and of bounded size; [`runs`]: run directories; [`Lock`], [`run_state()`]: one process at a time in each, and how far it came; [`scenes`]: scenes by name or path
 //! - [`strangers`]: processes that are not part of a run, and the writers of its results
 //!
 //! This crate does not use DDS: the recorder and player nodes pass samples to the writer and take them from
@@ -25,6 +25,7 @@ pub mod export;
 pub mod import;
 pub mod input;
 mod ledger;
+mod lock;
 mod metadata_keys;
 mod new_path;
 mod one_run;
@@ -32,6 +33,7 @@ mod player;
 mod qos;
 mod reader;
 mod recover;
+mod run_state;
 pub mod runs;
 pub mod scenes;
 pub mod strangers;
@@ -40,6 +42,7 @@ mod writer;
 pub use compression::Compression;
 pub use definitions::{DefinitionError, Definitions};
 pub use ledger::{Ledger, TopicTally, WriterTally, merge};
+pub use lock::Lock;
 pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 pub use new_path::NewPath;
 pub use one_run::{OneRun, RunSign, SeveralRuns};
@@ -50,4 +53,5 @@ pub use reader::{
     StoredFile, TopicInfo, Warning, WarningKind,
 };
 pub use recover::{RecoverError, RecoveredFile, Recovery, recover};
+pub use run_state::{RunState, end_reason, run_state};
 pub use writer::{Finished, Incoming, Outcome, RunWriter, TopicSpec, WriteError, WriterOptions};

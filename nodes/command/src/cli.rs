@@ -1,12 +1,13 @@
 //! The command line.
 
-use crate::commands::{
-    analyze, bag, calibrate, campaign, completions, invert, launch, man, probe, report, reproduce, run,
-    scene, verify, view,
-};
+use crate::commands::{analyze, bag, calibrate, completions, invert, launch, man, probe, run, scene};
+#[cfg(feature = "studio")]
+use crate::commands::{campaign, report, reproduce, verify, view};
 use clap::{CommandFactory, Parser, Subcommand};
+#[cfg(feature = "studio")]
 use grainlab_bench as bench;
 use grainlab_console::Failure;
+#[cfg(feature = "studio")]
 use grainlab_graph::{doctor, node, param, service, topic};
 use grainlab_node_kit::Exit;
 use std::process::ExitCode;
@@ -30,14 +31,6 @@ struct Cli {
 enum Command {
     /// Run a scene: every node as its own process, recorded, measured, inverted. The default.
     Launch(launch::Args),
-    /// Run many scenes: each a recorded run in a folder of its own, on this machine or a cluster.
-    Campaign(campaign::Args),
-    /// Report runs: a page with results, plots and packings; for many runs one row per run.
-    Report(report::Args),
-    /// Show packings in three dimensions, as a page or PNG, or with --live a running laboratory.
-    View(view::Args),
-    /// Reproduce the tables and figures of the paper: sixteen states, one page.
-    Reproduce(reproduce::Args),
     /// List, show, check and create scenes: what a run simulates.
     #[command(subcommand)]
     Scene(scene::Command),
@@ -46,6 +39,36 @@ enum Command {
     /// Record, play and inspect recordings.
     #[command(subcommand)]
     Bag(bag::Command),
+    /// Infer the microstructure from moduli: coordination and anisotropy with uncertainty.
+    Invert(invert::Args),
+    /// Learn the constants of the models from measured packings.
+    Calibrate(calibrate::Args),
+    /// Measure packings from files: structure, stress and the full stiffness.
+    Analyze(analyze::Args),
+    /// Send waves through packings from files: their speeds, and the moduli that follow.
+    Probe(probe::Args),
+    /// Print completions of this command line for a shell.
+    Completions(completions::Args),
+    /// Write a manual page for each command.
+    Man(man::Args),
+    #[cfg(feature = "studio")]
+    #[command(flatten)]
+    Studio(Studio),
+}
+
+/// Commands of the studio: what people look at, and compare with.
+#[cfg(feature = "studio")]
+#[derive(Debug, Subcommand)]
+#[expect(clippy::large_enum_variant, reason = "there is one")]
+enum Studio {
+    /// Run many scenes: each a recorded run in a folder of its own, on this machine or a cluster.
+    Campaign(campaign::Args),
+    /// Report runs: a page with results, plots and packings; for many runs one row per run.
+    Report(report::Args),
+    /// Show packings in three dimensions, as a page or PNG, or with --live a running laboratory.
+    View(view::Args),
+    /// Reproduce the tables and figures of the paper: sixteen states, one page.
+    Reproduce(reproduce::Args),
     /// List and measure topics: rate, bandwidth, delay, publishers and subscriptions.
     #[command(subcommand)]
     Topic(topic::Command),
@@ -60,23 +83,11 @@ enum Command {
     Service(service::Command),
     /// Find what keeps nodes from working together: QoS, types, names, network.
     Doctor(doctor::Args),
-    /// Infer the microstructure from moduli: coordination and anisotropy with uncertainty.
-    Invert(invert::Args),
-    /// Learn the constants of the models from measured packings.
-    Calibrate(calibrate::Args),
-    /// Measure packings from files: structure, stress and the full stiffness.
-    Analyze(analyze::Args),
-    /// Send waves through packings from files: their speeds, and the moduli that follow.
-    Probe(probe::Args),
     /// Compare with other codes and the literature: one table of numbers, tolerances and verdicts.
     Verify(verify::Args),
     /// Measure cost and accuracy on this machine.
     #[command(subcommand)]
     Bench(bench::Command),
-    /// Print completions of this command line for a shell.
-    Completions(completions::Args),
-    /// Write a manual page for each command.
-    Man(man::Args),
 }
 
 /// Parses, runs, reports.
@@ -85,30 +96,38 @@ pub(crate) fn main() -> ExitCode {
     let outcome = match cli.command {
         None => launch::run(&launch::Args::default()),
         Some(Command::Launch(args)) => launch::run(&args),
-        Some(Command::Campaign(args)) => campaign::run(&args),
-        Some(Command::Report(args)) => report::run(&args),
-        Some(Command::View(args)) => view::run(&args),
-        Some(Command::Reproduce(args)) => reproduce::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Bag(command)) => bag::run(&command),
-        Some(Command::Topic(command)) => topic::run(&command),
-        Some(Command::Node(command)) => node::run(&command),
-        Some(Command::Param(command)) => param::run(&command),
-        Some(Command::Service(command)) => service::run(&command),
-        Some(Command::Doctor(args)) => doctor::run(&args),
         Some(Command::Invert(args)) => invert::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Analyze(args)) => analyze::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),
-        Some(Command::Verify(args)) => verify::run(&args),
-        Some(Command::Bench(command)) => bench::run(&command),
         Some(Command::Completions(args)) => completions::run(&args, Cli::command()),
         Some(Command::Man(args)) => man::run(&args, Cli::command()),
+        #[cfg(feature = "studio")]
+        Some(Command::Studio(command)) => studio(&command),
     };
     match outcome {
         Ok(exit) => exit.into(),
         Err(failure) => report(&failure).into(),
+    }
+}
+
+#[cfg(feature = "studio")]
+fn studio(command: &Studio) -> Result<Exit, Failure> {
+    match command {
+        Studio::Campaign(args) => campaign::run(args),
+        Studio::Report(args) => report::run(args),
+        Studio::View(args) => view::run(args),
+        Studio::Reproduce(args) => reproduce::run(args),
+        Studio::Topic(command) => topic::run(command),
+        Studio::Node(command) => node::run(command),
+        Studio::Param(command) => param::run(command),
+        Studio::Service(command) => service::run(command),
+        Studio::Doctor(args) => doctor::run(args),
+        Studio::Verify(args) => verify::run(args),
+        Studio::Bench(command) => bench::run(command),
     }
 }
 

@@ -31,11 +31,21 @@ struct Graph {
 
 impl Graph {
     fn of_workspace() -> Self {
-        let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../Cargo.toml");
+        Self::built("Cargo.toml", &[])
+    }
+
+    /// As the package of this manifest is built with these options.
+    fn built(manifest: &str, more: &[&str]) -> Self {
+        let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(manifest);
         // One platform: otherwise crates of all systems count.
-        let options =
-            ["--offline", "--locked", "--filter-platform", "x86_64-unknown-linux-gnu"].map(str::to_owned);
-        Self::of(&MetadataCommand::new().manifest_path(manifest).other_options(options).exec().unwrap())
+        let options = ["--offline", "--locked", "--filter-platform", "x86_64-unknown-linux-gnu"];
+        Self::of(
+            &MetadataCommand::new()
+                .manifest_path(manifest)
+                .other_options([&options, more].concat().iter().map(|&o| o.to_owned()).collect::<Vec<_>>())
+                .exec()
+                .unwrap(),
+        )
     }
 
     fn of(metadata: &Metadata) -> Self {
@@ -148,6 +158,14 @@ fn a_planted_dependency_is_a_fault() {
         let faults = graph.faults();
         assert!(faults.iter().any(|fault| fault.contains(expected)), "{from} -> {to}: {faults:?}");
     }
+}
+
+#[test]
+fn the_laboratory_is_built_without_the_studio() {
+    let laboratory = Graph::built("nodes/command/Cargo.toml", &["--no-default-features"]);
+    let studio = |_: &str, folder: &str| folder.starts_with("nodes/studio");
+    assert_eq!(laboratory.forbidden(&["grainlab_command"], studio), Vec::<String>::new());
+    assert!(!Graph::of_workspace().forbidden(&["grainlab_command"], studio).is_empty());
 }
 
 /// A folder whose names fit on a line shows what there is.

@@ -3,9 +3,10 @@
 pub(crate) mod gather;
 
 use super::launch;
-use grainlab_campaign::{Campaign, Engine, Folder, Lock, MemberState, Options};
+use grainlab_campaign::{Campaign, Engine, Folder, MemberState, Options};
 use grainlab_console::{Failure, Table, print, worse};
 use grainlab_node_kit::Exit;
+use grainlab_recordings::Lock;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\

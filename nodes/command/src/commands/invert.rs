@@ -41,7 +41,7 @@ use grainlab_node_kit::Exit;
 use print::Printer;
 pub(super) use rows::Rows;
 pub(super) use state::{Defaults, State};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use way::{GammaChoice, ways};
 
 const EXAMPLES: &str = "\
@@ -175,6 +175,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "COLUMN", value_delimiter = ',', requires = "judge")]
     by: Vec<String>,
     /// Plot the contact anisotropy inferred by each model against that of the table, into this file (SVG)
+    #[cfg(feature = "studio")]
     #[arg(long, value_name = "FILE.svg", requires = "judge")]
     plot: Option<PathBuf>,
     /// Also sample the distribution of the estimates by this number of draws of the data: for large errors,
@@ -221,6 +222,16 @@ pub(crate) struct Args {
     format: Format,
 }
 
+#[cfg(feature = "studio")]
+fn plot_file(args: &Args) -> Option<&Path> {
+    args.plot.as_deref()
+}
+
+#[cfg(not(feature = "studio"))]
+fn plot_file(_: &Args) -> Option<&Path> {
+    None
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut ways = ways(&args.models(), &args.calibration, args.gamma)?;
@@ -238,7 +249,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         args.none_of_one_state()?;
         let rows = Rows::open(path, &args.by, defaults)?;
         if args.judge {
-            return judge::run(rows, &args.by, &ways, args.plot.as_deref(), args.format);
+            return judge::run(rows, &args.by, &ways, plot_file(args), args.format);
         }
         return table::run(rows, &printer, args.format);
     }

@@ -1,6 +1,5 @@
 //! `grainlab launch`: the main job.
 
-use grainlab_campaign::{RunState, run_state};
 use grainlab_console::{Failure, Format};
 use grainlab_launcher::agreement::names_of_run;
 use grainlab_launcher::{BUILT_IN, LaunchFile, NodePlan};
@@ -154,6 +153,7 @@ fn whole_path(word: &str, file: Option<&Path>) -> String {
 }
 
 /// Refuses a launch that could not begin, or whose directory has another run. `words` are the launch file and its arguments.
+#[cfg(feature = "studio")]
 pub(crate) fn check(
     words: Vec<String>,
     (scene, set, seed): (&str, Vec<String>, u64),
@@ -161,8 +161,8 @@ pub(crate) fn check(
 ) -> Result<(), Failure> {
     let args = Args { words, scene: Some(scene.to_owned()), set, seed: Some(seed), ..Args::default() };
     let (scene, order) = planned(&args)?;
-    match run_state(directory) {
-        RunState::Absent => Ok(()),
+    match grainlab_recordings::run_state(directory) {
+        grainlab_recordings::RunState::Absent => Ok(()),
         _ => directory::refuse_another(directory, &scene, &order),
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod analyze;
 pub(crate) mod bag;
 pub(crate) mod calibrate;
+#[cfg(feature = "studio")]
 pub(crate) mod campaign;
 pub(crate) mod completions;
 pub(crate) mod invert;
@@ -10,9 +11,13 @@ pub(crate) mod launch;
 pub(crate) mod man;
 pub(crate) mod packings;
 pub(crate) mod probe;
+#[cfg(feature = "studio")]
 pub(crate) mod report;
+#[cfg(feature = "studio")]
 pub(crate) mod reproduce;
 pub(crate) mod run;
 pub(crate) mod scene;
+#[cfg(feature = "studio")]
 pub(crate) mod verify;
+#[cfg(feature = "studio")]
 pub(crate) mod view;

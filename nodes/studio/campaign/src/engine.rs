@@ -12,9 +12,9 @@ use crate::campaign::Campaign;
 use crate::folder::{Folder, MemberState};
 use crate::member::Member;
 use crate::progress::Progress;
-use crate::run_state::reason;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::Exit;
+use grainlab_recordings::end_reason;
 
 /// Where the members of a campaign run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -72,7 +72,7 @@ fn report(campaign: &Campaign, folder: &Folder) -> Exit {
             MemberState::Finished => continue,
             MemberState::Failed(code) => {
                 let of = Exit::ALL.into_iter().find(|e| e.code() == code).unwrap_or(Exit::Failure);
-                let reason = reason(&folder.run(member)).map_or_else(String::new, |r| format!(": {r}"));
+                let reason = end_reason(&folder.run(member)).map_or_else(String::new, |r| format!(": {r}"));
                 (format!("failed with exit code {code}{reason}"), of)
             }
             MemberState::Waiting => ("did not begin".to_owned(), Exit::Failure),

@@ -1,12 +1,10 @@
 //! The folder of a campaign, and how far its members came.
 
 use crate::campaign::Campaign;
-use crate::lock::Lock;
 use crate::member::Member;
-use crate::run_state::{RunState, run_state};
 use grainlab_console::{Failure, json};
 use grainlab_msgs::Exit;
-use grainlab_recordings::input;
+use grainlab_recordings::{Lock, RunState, input, run_state};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -2,6 +2,7 @@
 //!
 //! - [`score`]: statistics of the errors of one quantity; [`plot`]: estimates against the truth, plotted
 
+#[cfg(feature = "studio")]
 mod plot;
 mod score;
 
@@ -11,7 +12,7 @@ use super::rows::Rows;
 use super::state::State;
 use super::table::Tally;
 use super::way::Way;
-use grainlab_console::{Failure, Format, Table, count, exact, fixed, json, print, say, write_whole};
+use grainlab_console::{Failure, Format, Table, count, exact, fixed, json, print, say};
 use grainlab_core::results::InferredQuantity;
 use grainlab_node_kit::Exit;
 use score::Score;
@@ -107,8 +108,9 @@ pub(super) fn run(
             rows.name()
         )));
     }
+    #[cfg(feature = "studio")]
     if let Some(path) = plot {
-        write_whole(path, plot::svg(ways, points))
+        grainlab_console::write_whole(path, plot::svg(ways, points))
             .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
     }
     if let Some((exit, complaint)) = unsolved.first() {

@@ -3,12 +3,11 @@
 use super::finish::finish;
 use super::order;
 use super::output::Output;
-use grainlab_campaign::Lock;
 use grainlab_console::Failure;
 use grainlab_launcher::{NodePlan, Outline, RecordedSpeeds, Run, Supervised, Supervisor};
 use grainlab_node_kit::{Exit, FreeDomain, Network, RunId};
-use grainlab_recordings::Recording;
 use grainlab_recordings::scenes::SceneText;
+use grainlab_recordings::{Lock, Recording};
 use grainlab_scene::Scene;
 use std::path::Path;
 

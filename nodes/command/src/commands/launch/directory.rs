@@ -1,10 +1,9 @@
 //! `grainlab launch --run DIR`: a directory that begins, continues or keeps its run.
 
 use super::order::Order;
-use grainlab_campaign::{Lock, RunState, run_state};
 use grainlab_console::Failure;
-use grainlab_recordings::Recording;
 use grainlab_recordings::scenes::SceneText;
+use grainlab_recordings::{Lock, Recording, RunState, run_state};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

@@ -125,6 +125,7 @@ pub(super) fn finish(
         // With a full disk the exit stays that of the data loss.
         exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
     }
+    #[cfg(feature = "studio")]
     if recording.is_ok() {
         report(output, directory);
     }
@@ -132,6 +133,7 @@ pub(super) fn finish(
 }
 
 /// Writes the page of the run. Without it the run is complete, too: a failure is a warning.
+#[cfg(feature = "studio")]
 fn report(output: Output, directory: &Path) {
     match grainlab_report::write_report(directory) {
         Ok(path) if output.format == Format::Table => {

@@ -7,12 +7,11 @@
 use super::conduct::{conduct, domain};
 use super::order::Order;
 use super::output::Output;
-use grainlab_campaign::{RunState, run_state};
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::last_packing;
 use grainlab_node_kit::Exit;
-use grainlab_recordings::{Recording, scenes};
+use grainlab_recordings::{Recording, RunState, run_state, scenes};
 use grainlab_results::brief::goes_on;
 use std::path::Path;
 

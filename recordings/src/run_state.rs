@@ -34,7 +34,7 @@ pub fn run_state(directory: &Path) -> RunState {
 }
 
 /// Why the run in this directory ended as it did, in one line; `None` if its summary has no reason.
-pub(crate) fn reason(directory: &Path) -> Option<String> {
+pub fn end_reason(directory: &Path) -> Option<String> {
     let summary = std::fs::read(directory.join("summary.json")).ok()?;
     serde_json::from_slice::<Summary>(&summary).ok()?.warnings.into_iter().next()
 }
@@ -56,8 +56,8 @@ mod tests {
         assert_eq!(run_state(folder.path()), RunState::Begun);
         write("summary.json", "{\"scene\": \"s1\", \"exit\": 3}");
         assert_eq!(run_state(folder.path()), RunState::Ended(3));
-        assert_eq!(reason(folder.path()), None);
+        assert_eq!(end_reason(folder.path()), None);
         write("summary.json", "{\"exit\": 4, \"warnings\": [\"phase 2 did not end\"]}");
-        assert_eq!(reason(folder.path()).as_deref(), Some("phase 2 did not end"));
+        assert_eq!(end_reason(folder.path()).as_deref(), Some("phase 2 did not end"));
     }
 }
