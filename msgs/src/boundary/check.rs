@@ -8,9 +8,6 @@ use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::StrainRatios;
 use grainlab_core::{SymTensor, Vec3};
 
-/// Names of the components in Voigt order.
-pub(super) const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
-
 /// Frame of every header.
 const FRAME: &str = "cell";
 
@@ -136,7 +133,9 @@ impl Check {
     pub(super) fn tensor(self, field: &str, t: &SymmetricTensor) -> Checked<SymTensor> {
         let values = [t.xx, t.yy, t.zz, t.yz, t.xz, t.xy];
         match (0..6).find(|i| !values[*i].is_finite()) {
-            Some(i) => self.finite(&format!("{field}.{}", VOIGT[i]), values[i]).map(|_| SymTensor::default()),
+            Some(i) => self
+                .finite(&format!("{field}.{}", SymTensor::COMPONENTS[i]), values[i])
+                .map(|_| SymTensor::default()),
             None => Ok(SymTensor::from_voigt(values)),
         }
     }
@@ -220,7 +219,7 @@ impl Check {
 
 /// `rate[2] (zz)`.
 pub(super) fn component(field: &str, index: usize) -> String {
-    format!("{field}[{index}] ({})", VOIGT[index])
+    format!("{field}[{index}] ({})", SymTensor::COMPONENTS[index])
 }
 
 pub(super) fn header(stamp: crate::builtin_interfaces::Time) -> Header {

@@ -131,6 +131,36 @@ fn counted() -> [usize; 4] {
     counts
 }
 
+/// What has one place in all crates: a text of it, and the file.
+const ONCE: [(&str, &str); 1] = [(r#"["xx", "yy", "zz""#, "nodes/kernels/core/src/tensor.rs")];
+
+/// Places of a text beside the one that it has.
+fn repeated(text: &str, place: &str, files: &[(String, String)]) -> Vec<String> {
+    assert!(
+        files.iter().any(|(file, source)| file == place && source.contains(text)),
+        "{text} is not in {place}"
+    );
+    let others = files.iter().filter(|(file, source)| file != place && source.contains(text));
+    others.map(|(file, _)| format!("{file} repeats {text} of {place}")).collect()
+}
+
+#[test]
+fn what_has_one_place_is_in_no_other() {
+    let top = top();
+    let modules = roots().into_iter().flat_map(|root| modules(&root).into_values());
+    let source = |file: PathBuf| {
+        let file = file.canonicalize().unwrap();
+        let text = std::fs::read_to_string(&file).unwrap();
+        (file.strip_prefix(&top).unwrap().to_string_lossy().into_owned(), without_tests(&text))
+    };
+    let mut files: Vec<_> = modules.map(|m| source(m.file)).collect();
+    for (text, place) in ONCE {
+        assert_eq!(repeated(text, place, &files), Vec::<String>::new());
+        files.push(("planted".to_owned(), text.to_owned()));
+        assert_eq!(repeated(text, place, &files).len(), 1);
+    }
+}
+
 /// A limit that is far above the count holds nothing: it is lowered with what is deleted.
 const SLACK: usize = 300;
 

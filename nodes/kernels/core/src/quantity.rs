@@ -6,9 +6,6 @@ use crate::tensor::{SymTensor, Vec3};
 /// Suffixes of the columns of a vector.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Suffixes of the columns of a symmetric tensor, Voigt order.
-const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
-
 /// One quantity of results of type `R`: a row of a table.
 #[derive(Debug)]
 pub struct Quantity<R: 'static> {
@@ -82,7 +79,7 @@ impl<R> Quantity<R> {
         match self.shape {
             Shape::Scalar => vec![self.key.to_owned()],
             Shape::Vector => with(&AXES),
-            Shape::Tensor => with(&VOIGT),
+            Shape::Tensor => with(&SymTensor::COMPONENTS),
             Shape::Stiffness(prefix) => {
                 (0..36).map(|n| format!("{prefix}c{}{}_pa", n / 6 + 1, n % 6 + 1)).collect()
             }

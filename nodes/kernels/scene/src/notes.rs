@@ -1,8 +1,7 @@
 //! What a reader of a scene should know, and no fault.
 
 use crate::model::{Phase, Scene};
-use crate::until::COMPONENTS;
-use grainlab_core::ComponentControl;
+use grainlab_core::{ComponentControl, SymTensor};
 
 impl Scene {
     /// Notes on the scene, one line each: components that stay uncontrolled beside controlled ones, and packings published at
@@ -41,7 +40,7 @@ impl Scene {
 fn uncontrolled(phase: &Phase) -> Option<String> {
     let controls = phase.controls();
     let of = |wanted: fn(&ComponentControl) -> bool| -> Vec<&str> {
-        (0..6).filter(|c| wanted(&controls[*c])).map(|c| COMPONENTS[c]).collect()
+        (0..6).filter(|c| wanted(&controls[*c])).map(|c| SymTensor::COMPONENTS[c]).collect()
     };
     let held = of(|c| matches!(c, ComponentControl::Held));
     let stressed = of(|c| matches!(c, ComponentControl::Stress(_)));

@@ -1,7 +1,6 @@
 //! The loading path as a state machine.
 
 use crate::model::{Condition, Measure, Phase, Scene};
-use crate::until::COMPONENTS;
 use grainlab_core::{ComponentControl, SymTensor};
 
 /// The state of the packing that the path evaluates at each exchange.
@@ -166,8 +165,8 @@ pub(crate) fn name(measure: Measure) -> String {
     match measure {
         Measure::SolidFraction => "solid_fraction".to_owned(),
         Measure::Elapsed => "elapsed".to_owned(),
-        Measure::Strain(c) => format!("strain {}", COMPONENTS[c]),
-        Measure::Stress(c) => format!("stress {}", COMPONENTS[c]),
+        Measure::Strain(c) => format!("strain {}", SymTensor::COMPONENTS[c]),
+        Measure::Stress(c) => format!("stress {}", SymTensor::COMPONENTS[c]),
         Measure::Pressure => "pressure".to_owned(),
         Measure::Deviator => "deviator".to_owned(),
         Measure::Unbalanced => "unbalanced".to_owned(),

@@ -4,14 +4,13 @@ use crate::canonical::{Entry, number, text};
 use crate::keys;
 use crate::model::PhaseKind;
 use crate::reader::{Reader, as_number};
-use crate::until::COMPONENTS;
-use grainlab_core::{ComponentControl, ServoLaw};
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use toml::{Table, Value};
 
 /// The keys of a servoed phase besides those of every phase.
 pub(crate) fn read(r: &mut Reader<'_>) -> PhaseKind {
     let controls: [ComponentControl; 6] =
-        r.sub(&keys::CONTROL, |r| COMPONENTS.map(|c| component(r, c))).unwrap_or_else(|| {
+        r.sub(&keys::CONTROL, |r| SymTensor::COMPONENTS.map(|c| component(r, c))).unwrap_or_else(|| {
             if !r.has(&keys::CONTROL) {
                 r.refuse(&keys::CONTROL, None);
             }

@@ -5,9 +5,7 @@ use crate::key::Key;
 use crate::keys;
 use crate::model::{Condition, Conditions, Measure};
 use crate::reader::{Reader, as_number};
-
-/// Components in Voigt order.
-pub(crate) const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+use grainlab_core::SymTensor;
 
 /// The conditions that end a phase; `servoed` phases may wait for their targets.
 pub(crate) fn read(r: &mut Reader<'_>, servoed: bool) -> Conditions {
@@ -67,7 +65,7 @@ fn by_component(
     make: impl Fn(usize, f64) -> Condition,
 ) {
     r.sub(key, |r| {
-        for (c, name) in COMPONENTS.into_iter().enumerate() {
+        for (c, name) in SymTensor::COMPONENTS.into_iter().enumerate() {
             let Some(value) = r.get_named(name) else { continue };
             let found = as_number(value).filter(|v| v.is_finite());
             if found.is_none() {

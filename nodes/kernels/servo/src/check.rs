@@ -3,9 +3,7 @@
 use crate::error::ServoError;
 use crate::input::ServoInput;
 use crate::stability::critical_gain;
-use grainlab_core::{ComponentControl, ServoLaw};
-
-const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 
 /// The first fault of an input.
 pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {
@@ -13,7 +11,7 @@ pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {
     finite("rate", &input.rate)?;
     finite("tangent", &input.tangent)?;
     finite("setpoint", &input.controls.map(setpoint))?;
-    for (component, &value) in COMPONENTS.iter().zip(&input.tangent) {
+    for (component, &value) in SymTensor::COMPONENTS.iter().zip(&input.tangent) {
         if value < 0.0 {
             return Err(ServoError::NegativeTangent { component, value });
         }
@@ -73,7 +71,7 @@ fn setpoint(control: ComponentControl) -> f64 {
 }
 
 fn finite(field: &'static str, values: &[f64; 6]) -> Result<(), ServoError> {
-    match COMPONENTS.iter().zip(values).find(|(_, v)| !v.is_finite()) {
+    match SymTensor::COMPONENTS.iter().zip(values).find(|(_, v)| !v.is_finite()) {
         Some((component, &value)) => Err(ServoError::ComponentNotFinite { field, component, value }),
         None => Ok(()),
     }

@@ -2,12 +2,12 @@
 
 use crate::laboratory::Laboratory;
 use grainlab_console::count;
-use grainlab_core::ComponentControl;
 use grainlab_core::results::InferredQuantity;
+use grainlab_core::{ComponentControl, SymTensor};
 use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::simulated_seconds;
 use grainlab_page::html::{Cell, escaped, paragraph, table};
-use grainlab_report::{COMPONENTS, card};
+use grainlab_report::card;
 use grainlab_results::{Inference, by_origin};
 use serde_json::json;
 
@@ -111,7 +111,7 @@ impl Laboratory {
                 ComponentControl::StrainRate(rate) => (format!("{rate} 1/s"), String::new()),
             };
             vec![
-                Cell::text(COMPONENTS[n]),
+                Cell::text(SymTensor::COMPONENTS[n]),
                 Cell::number(signed(stress[n] * KPA, 3).trim_start_matches('+')),
                 Cell::number(imposed),
                 Cell::number(off),

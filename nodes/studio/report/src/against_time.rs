@@ -2,8 +2,9 @@
 
 use crate::figure::{PageFigure, number};
 use crate::phased::Phased;
-use crate::timeline::{COMPONENTS, Structure, Timeline};
+use crate::timeline::{Structure, Timeline};
 use grainlab_console::count;
+use grainlab_core::SymTensor;
 use grainlab_page::html::{escaped, paragraph};
 use grainlab_page::plot::{Axis, Band, Entry, Figure, Line, Marker, Point, Scale, Series, Strip};
 use std::fmt::Write;
@@ -89,7 +90,9 @@ impl Timeline {
         let components =
             |series: &[Phased; 6], symbol: &str, unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
                 which
-                    .map(|n| Curve::line(&format!("{symbol} {}", COMPONENTS[n]), n, &series[n], unit))
+                    .map(|n| {
+                        Curve::line(&format!("{symbol} {}", SymTensor::COMPONENTS[n]), n, &series[n], unit)
+                    })
                     .collect()
             };
         let mut coordination = vec![Curve::line("k", 0, &t.coordination, 1.0)];

@@ -31,5 +31,5 @@ pub use many::overview;
 pub use outliers::Outliers;
 pub use page::{SCRIPT, STYLE, card};
 pub use run::Run;
-pub use timeline::{COMPONENTS, Timeline};
+pub use timeline::Timeline;
 pub use write::{FILE, ReportError, write_page, write_report};

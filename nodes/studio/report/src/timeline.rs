@@ -8,9 +8,6 @@ use grainlab_recordings::{ChannelInfo, Message, OneRun, ReadError, Recording, Ru
 use grainlab_viewer::{Film, View};
 use std::collections::BTreeMap;
 
-/// Names of the components, in the order of Voigt.
-pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
-
 /// Most measured structures that are kept; beyond, every second one is left out.
 const STRUCTURES: usize = 4096;
 

@@ -217,9 +217,8 @@ impl Engine {
 
     /// Imposes a strain rate (Voigt order, tensor components, 1/s, positive in extension).
     pub fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), DemError> {
-        const NAMES: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
         if let Some(c) = rate.iter().position(|r| !r.is_finite()) {
-            return Err(DemError::Rate { component: NAMES[c], value: rate[c] });
+            return Err(DemError::Rate { component: SymTensor::COMPONENTS[c], value: rate[c] });
         }
         self.state.rate = SymTensor::from_voigt(*rate).matrix();
         Ok(())

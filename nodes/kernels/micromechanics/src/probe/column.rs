@@ -3,12 +3,9 @@
 use super::relaxation::Relaxation;
 use super::settings::{DifferenceScheme, StrainProbe};
 use crate::error::ProbeError;
-use grainlab_core::Contact;
+use grainlab_core::{Contact, SymTensor};
 use grainlab_dem::{DemError, Engine, Observables};
 use std::cmp::Ordering;
-
-/// Strain components, Voigt order.
-const NAMES: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
 /// Steps between two evaluations of the stress.
 pub(crate) const STEPS_PER_EVALUATION: u32 = 20;
@@ -139,7 +136,7 @@ pub(crate) fn strained(
         }
         if column.steps >= settings.max_steps {
             return Err(ProbeError::NotConverged {
-                component: NAMES[component],
+                component: SymTensor::COMPONENTS[component],
                 residual: column.residual,
                 drift: column.drift,
                 tolerance: settings.tolerance,
