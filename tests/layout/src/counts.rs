@@ -8,12 +8,12 @@ use syn::{Item, UseTree, Visibility};
 
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
-const LABORATORY: usize = 56_000;
+const LABORATORY: usize = 56_200;
 const STUDIO_AND_COMMAND: usize = 28_500;
 const TESTS: usize = 44_700;
 
 /// Most comments that begin with a word that names nothing.
-const HEADLESS: usize = 1_112;
+const HEADLESS: usize = 1_085;
 
 /// First words that leave open what is described.
 const OPENINGS: [&str; 9] = ["What", "How", "Where", "Which", "Whether", "Its", "Their", "Of", "The same"];
@@ -131,8 +131,8 @@ fn counted() -> [usize; 4] {
     counts
 }
 
-/// What has one place in all crates: a text of it, and the file.
-const ONCE: [(&str, &str); 1] = [(r#"["xx", "yy", "zz""#, "nodes/kernels/core/src/tensor.rs")];
+/// Texts with one place in all crates, and its file.
+const ONCE: [(&str, &str); 1] = [("[\"xx\", \"yy\", \"zz\"", "nodes/kernels/core/src/tensor.rs")];
 
 /// Places of a text beside the one that it has.
 fn repeated(text: &str, place: &str, files: &[(String, String)]) -> Vec<String> {

@@ -271,7 +271,7 @@ fn without_estimate(found: &Microstructure) -> Option<String> {
     let without =
         found.estimates.iter().find(|e| Some(e.model.as_str()) == first).or(found.estimates.first());
     let why = without.and_then(|e| e.warnings.first()).map_or("no model was asked", String::as_str);
-    // Of models that this program does not have, any.
+    // Any of models that this program does not have.
     let nothing = match first {
         Some(_) => recommended(asked()).is_none(),
         None => asked().all(|(_, status)| status == Status::Unknown),

@@ -368,9 +368,7 @@ fn note_outside(outside: Outside, topic: &Topic, who: Stranger, binding: &Bindin
         return;
     }
     match outside {
-        Outside::Stranger => {
-            log::warn!("{}: {who} is not of this run: its messages are left out", topic.name)
-        }
+        Outside::Stranger => log::warn!("{}: {who} is not of this run and is left out", topic.name),
         Outside::Second => log::error!(
             "{}: {who} publishes about this run in addition to the first process: its messages are left out",
             topic.name

@@ -70,7 +70,7 @@ pub struct Args {
     format: Format,
 }
 
-/// What to vary on which scene.
+/// The setting that is varied, and the scene.
 pub(crate) struct Plan<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) knobs: &'a [Knob],

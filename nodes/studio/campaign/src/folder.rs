@@ -69,7 +69,7 @@ impl Folder {
         Ok((Self { root }, campaign))
     }
 
-    /// Its whole path.
+    /// Absolute path.
     pub fn root(&self) -> &Path {
         &self.root
     }

@@ -60,7 +60,7 @@ pub(crate) struct NodeEntry {
     pub(crate) endpoints: BTreeSet<Guid>,
 }
 
-/// What is in a domain.
+/// Participants, nodes and endpoints of a domain.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Graph {
     pub(crate) nodes: Vec<NodeEntry>,

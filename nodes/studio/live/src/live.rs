@@ -19,7 +19,7 @@ const CURVES: u64 = 4;
 /// Time between two looks for a domain with a run.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// What the page needs.
+/// Inputs of the page.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Port on 127.0.0.1; 0 for any free one, without one [`DEFAULT_PORT`](crate::DEFAULT_PORT) if it is free.
@@ -86,7 +86,7 @@ fn log_level(ros: &RosArgs) -> log::LevelFilter {
     if ros.log_level == RosArgs::default().log_level { log::LevelFilter::Warn } else { ros.log_level }
 }
 
-/// What was drawn last.
+/// State that was drawn last.
 #[derive(Default)]
 struct Drawn {
     /// When the run was first heard of.

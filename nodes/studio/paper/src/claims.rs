@@ -12,7 +12,7 @@ use grainlab_emt::Modulus;
 pub struct Claim {
     /// The statement.
     pub text: String,
-    /// What was found.
+    /// The result.
     pub found: String,
     /// Whether it holds; `None` if it could not be checked.
     pub holds: Option<bool>,

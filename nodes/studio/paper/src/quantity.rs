@@ -69,7 +69,7 @@ impl Quantity {
         Quantity::StressRatio,
     ];
 
-    /// Its key in files.
+    /// Key in files.
     pub const fn key(self) -> &'static str {
         match self {
             Self::K => "k",

@@ -15,7 +15,7 @@ pub const REFERENCE_SOLID_FRACTION: f64 = 0.607;
 /// One sample: a row of Table I, a row of Table II, four rows of Table III.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Its name.
+    /// Name of the table.
     pub name: &'static str,
     /// Friction coefficient of the cycles and of the compression, mu2.
     pub mu2: f64,

@@ -15,7 +15,7 @@ const NO_SUMMARY: &str = "No summary";
 /// A run.
 #[derive(Debug)]
 pub struct Run {
-    /// Its directory.
+    /// Directory of the run.
     pub(crate) directory: PathBuf,
     pub(crate) summary: SummaryFile,
     /// Packings at the ends of phases, with what was inferred.

@@ -15,7 +15,7 @@ pub const SEEDS: [u64; 3] = [1, 2, 3];
 /// A state, as published.
 #[derive(Clone, Copy, Debug)]
 pub struct State {
-    /// Its letter.
+    /// Letter of the preparation.
     pub name: &'static str,
     /// The scene that prepares it.
     pub scene: &'static str,
@@ -70,7 +70,7 @@ pub const STATES: [State; 4] = [
     },
 ];
 
-/// What is compared of one packing.
+/// Numbers of one packing that are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     /// φ.

@@ -19,7 +19,7 @@ pub enum VerificationError {
     Data {
         /// Name of the file.
         file: &'static str,
-        /// What is wrong.
+        /// The fault.
         why: String,
     },
     /// A packing could not be measured.

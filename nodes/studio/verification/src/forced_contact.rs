@@ -18,7 +18,7 @@ pub(crate) struct ForcedContact<S> {
     contact_radius: f64,
 }
 
-/// What a contact does in one step.
+/// Motion of a contact in one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Move {
     /// Full overlap, m.
@@ -56,7 +56,7 @@ impl<S: ContactSprings> ForcedContact<S> {
         Self { law, effective_radius, effective_mass, time_step, history, contact_radius: 0.0 }
     }
 
-    /// Its forces after one step.
+    /// Forces of the contact after one step.
     pub(crate) fn step(&mut self, m: &Move) -> Forces {
         let contact_radius = (self.effective_radius * m.overlap).sqrt();
         let kinematics = ContactKinematics {

@@ -49,7 +49,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// Its name in data.
+    /// Name in data.
     pub fn name(self) -> &'static str {
         match self {
             Self::Relative => "relative",
@@ -60,7 +60,7 @@ impl Measure {
     }
 }
 
-/// What follows from a row.
+/// The verdict on a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -78,7 +78,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Its name in data.
+    /// Name in data.
     pub fn name(self) -> &'static str {
         match self {
             Self::Passed => "passed",
@@ -106,7 +106,7 @@ impl Verdict {
 pub struct Row {
     /// The suite it belongs to, as in `--only`.
     pub suite: &'static str,
-    /// What is compared.
+    /// The quantity that is compared.
     pub name: String,
     /// Where their numbers are from.
     pub source: String,
@@ -171,7 +171,7 @@ impl Row {
         reproduced.then(|| self.against(|p| p.reproduced.unwrap_or(p.theirs), |p| p.theirs)).flatten()
     }
 
-    /// What follows.
+    /// The verdict.
     pub fn verdict(&self) -> Verdict {
         // A difference that is not a number is no pass.
         let within = |difference: f64| difference <= self.tolerance;

@@ -3,7 +3,7 @@
 use crate::view::View;
 pub(crate) use grainlab_pictures::{Colour, MOST_CONTACTS, RAMP, RATTLER, by_coordination, ramp};
 
-/// What the colours of the grains show.
+/// Quantity that the colours of the grains show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quantity {
     /// Contacts that are not with rattlers.

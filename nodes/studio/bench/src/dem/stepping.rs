@@ -81,7 +81,7 @@ pub(crate) struct Case {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Loop {
     pub(crate) wall_seconds: f64,
-    /// Of all threads.
+    /// Sum over all threads.
     pub(crate) cpu_seconds: f64,
     /// Mean of the values before and after.
     pub(crate) contacts: f64,

@@ -25,7 +25,7 @@ impl Kind {
     pub(super) const ALL: [Kind; 5] =
         [Kind::Recorder, Kind::Inversion, Kind::Analyzer, Kind::Servo, Kind::Simulator];
 
-    /// Its member number in the run.
+    /// Member number in the run.
     pub(super) fn member(self) -> u8 {
         1 + self as u8
     }

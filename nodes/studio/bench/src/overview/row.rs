@@ -31,7 +31,7 @@ impl Family {
         Self::Waves,
     ];
 
-    /// Its name in tables and legends.
+    /// Name in tables and legends.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::InversionEps => "inversion, eps",
@@ -43,7 +43,7 @@ impl Family {
         }
     }
 
-    /// What its time is that of.
+    /// The workload that is timed.
     pub(super) fn work(self) -> &'static str {
         match self {
             Self::InversionEps | Self::InversionZ => "one state, uncertainty included",
@@ -53,7 +53,7 @@ impl Family {
         }
     }
 
-    /// What its error is an error of.
+    /// The quantity whose error is given.
     pub(super) fn error_of(self) -> &'static str {
         match self {
             Self::InversionEps => "contact anisotropy, rms",

@@ -110,7 +110,7 @@ impl Method {
         }
     }
 
-    /// Its name in a legend.
+    /// Name in a legend.
     pub(super) fn explained(self) -> &'static str {
         match self {
             Self::Affine => "affine motion",

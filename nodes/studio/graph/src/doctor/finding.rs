@@ -23,7 +23,7 @@ pub(super) struct Finding {
     pub(super) kind: &'static str,
     /// What is wrong, and where.
     pub(super) what: String,
-    /// What to do.
+    /// The remedy.
     pub(super) advice: String,
 }
 

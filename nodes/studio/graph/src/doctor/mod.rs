@@ -70,7 +70,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if wrong { Exit::Failure } else { Exit::Done })
 }
 
-/// What the graph of the domain shows.
+/// Findings in the graph of the domain.
 fn of_domain(mut observer: Observer, args: &Args, view: &mut View) -> Result<Vec<Finding>, Failure> {
     let graph = observer.settled(args.common.patience().max(LEAST));
     let mut findings = endpoints::findings(&graph);

@@ -24,7 +24,7 @@ struct Row {
     node: String,
     /// `ok`, `warning`, `error`, or `silent`.
     level: &'static str,
-    /// What the node does or waits for.
+    /// Text of the node about its work, or what it waits for.
     state: String,
     pid: Option<u32>,
     values: BTreeMap<String, String>,

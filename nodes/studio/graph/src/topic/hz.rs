@@ -14,7 +14,7 @@ const ENCAPSULATION: usize = 4;
 /// Stamps before 2017, ns since 1970, are simulated times.
 const WALL_TIME: u64 = 1_500_000_000_000_000_000;
 
-/// What all three have.
+/// Arguments that all three have.
 #[derive(Debug, clap::Args)]
 struct Window {
     /// Name of the topic

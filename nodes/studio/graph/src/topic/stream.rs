@@ -13,7 +13,7 @@ struct Span {
     received: u64,
 }
 
-/// What arrived in one window of time.
+/// Messages that arrived in one window of time.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stream {
     writers: BTreeMap<Guid, Span>,

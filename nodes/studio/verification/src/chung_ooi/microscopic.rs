@@ -14,7 +14,7 @@ const FRICTION: f64 = 0.3;
 /// From this v_t/(μ v_n) on, a sphere of restitution 1 slides throughout.
 const SLIDING: f64 = 7.0;
 
-/// What is read off an impact.
+/// A quantity of an impact.
 type Quantity = fn(After) -> f64;
 
 fn upon_plane(case: &Microscopic, incidence: f64) -> TwoSpheres {

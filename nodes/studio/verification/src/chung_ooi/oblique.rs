@@ -18,7 +18,7 @@ const NOTE: &str = "At small angles the sphere sticks for part of the contact, a
                     Ours adds up increments of force, scaled down on unloading: LAMMPS with this law \
                     (mindlin_rescale/force) gives ours.";
 
-/// What is read off a rebound.
+/// A quantity of a rebound.
 #[derive(Clone, Copy)]
 enum Quantity {
     /// v_t after over v_t before.
@@ -30,7 +30,7 @@ enum Quantity {
 }
 
 impl Quantity {
-    /// Its name and unit.
+    /// Name and unit.
     fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Restitution => ("tangential restitution", ""),
