@@ -266,7 +266,8 @@ pub(crate) fn assemble(
     let model_covariance = model_covariance.map(|c| of_determined(c, &structure));
     // Finite inputs of extreme scale can still overflow.
     let values = structure.values();
-    for value in values.iter().flatten().chain(data_covariance.iter().flatten()) {
+    let covariance = data_covariance.into_iter().chain(model_covariance).reduce(|a, b| a + b);
+    for value in values.iter().flatten().chain(covariance.iter().flatten()) {
         if !value.is_finite() {
             return Err(EmtError::NotFinite { quantity: "the estimate", value: *value });
         }
