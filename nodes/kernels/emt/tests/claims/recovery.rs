@@ -122,3 +122,15 @@ proptest! {
         }
     }
 }
+
+/// Each part of the covariance is finite, and their sum is not.
+#[test]
+fn a_covariance_that_overflows_is_an_error() {
+    let g12 = 10f64.powf(152.8583937658127);
+    let (g13, theta, p) = (0.1730961258837982 * g12, 0.8 * g12, 10f64.powf(130.96664356943654));
+    let o = Observation::from_g12_g13_theta(g12, g13, theta, p, StrainRatio::given(0.0));
+    let mut o = o.with_relative_error(0.3145655737916851);
+    o.conditions.solid_fraction = Some(Measured { value: 0.63, stddev: 0.01 });
+    let found = grainlab_emt::model("hertz-mindlin").unwrap().infer(&o, &Calibration::PAPER);
+    assert!(matches!(found, Err(EmtError::NotFinite { .. })), "{found:?}");
+}
