@@ -203,7 +203,9 @@ pub mod dds {
   pub use rustdds;
 
   #[doc(inline)]
-  pub use crate::context::{Context, ContextOptions, DEFAULT_PUBLISHER_QOS, DEFAULT_SUBSCRIPTION_QOS};
+  pub use crate::context::{
+    Context, ContextOptions, DEFAULT_PUBLISHER_QOS, DEFAULT_SUBSCRIPTION_QOS,
+  };
   #[doc(inline)]
   pub use crate::node::{
     Node, NodeCreateError, NodeEvent, ParameterError, ReaderWait, Spinner, WriterWait,

@@ -17,7 +17,9 @@ use crate::{
   service::{CallServiceError, Client, request_id::RmwRequestId},
   unique_identifier_msgs,
 };
-use super::{FeedbackMessage, GetResultRequest, GetResultResponse, SendGoalRequest, SendGoalResponse};
+use super::{
+  FeedbackMessage, GetResultRequest, GetResultResponse, SendGoalRequest, SendGoalResponse,
+};
 
 /// A client for ROS 2 Actions. Supports both sync and async operation.
 pub struct ActionClient<G, R, F>

@@ -17,7 +17,9 @@ use crate::{
   pubsub::Publisher,
   service::{Server, request_id::RmwRequestId},
 };
-use super::{FeedbackMessage, GetResultRequest, GetResultResponse, SendGoalRequest, SendGoalResponse};
+use super::{
+  FeedbackMessage, GetResultRequest, GetResultResponse, SendGoalRequest, SendGoalResponse,
+};
 
 /// ROS 2 Action Server - Synchronous version. Please consider using
 /// `AsyncActionServer`instead.

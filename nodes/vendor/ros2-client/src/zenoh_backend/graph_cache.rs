@@ -126,7 +126,9 @@ fn join_fqn(namespace: &str, name: &str) -> String {
 #[cfg(test)]
 mod tests {
   use super::*;
-  use crate::zenoh_backend::keyexpr::{EntityIds, entity_liveliness_keyexpr, node_liveliness_keyexpr};
+  use crate::zenoh_backend::keyexpr::{
+    EntityIds, entity_liveliness_keyexpr, node_liveliness_keyexpr,
+  };
 
   fn ids(entity_id: u64) -> EntityIds<'static> {
     EntityIds {

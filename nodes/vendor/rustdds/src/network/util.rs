@@ -189,8 +189,7 @@ pub fn initial_spdp_peer_locators(
   peers
     .iter()
     .flat_map(|host| {
-      (0..max_participants)
-        .map(move |pid| Locator::from(SocketAddr::new((*host).into(), port(pid))))
+      (0..max_participants).map(move |pid| Locator::from(SocketAddr::new((*host).into(), port(pid))))
     })
     .collect()
 }
@@ -363,8 +362,8 @@ mod tests {
   use super::{
     allowed_interface_indices_inner, build_ifindex_map_inner, get_local_multicast_ip_addrs_inner,
     get_local_unicast_locators_inner, initial_spdp_peer_locators, is_any_flagged_multicast_inner,
-    localhost_spdp_peer_locators, path_mtu_payload_for_peer, unicast_bind_address, IfAddr,
-    InterfaceSelector,
+    localhost_spdp_peer_locators,
+    path_mtu_payload_for_peer, unicast_bind_address, IfAddr, InterfaceSelector,
   };
   use crate::{
     network::constant::spdp_well_known_unicast_port,
@@ -460,14 +459,8 @@ mod tests {
     assert!(get_local_multicast_ip_addrs_inner(&ifaces, None).is_empty());
 
     let flagged = iface(v4(127, 0, 0, 1), 1, true, true);
-    assert!(!is_any_flagged_multicast_inner(
-      &[lo],
-      &[Ipv4Addr::LOCALHOST]
-    ));
-    assert!(is_any_flagged_multicast_inner(
-      &[flagged],
-      &[Ipv4Addr::LOCALHOST]
-    ));
+    assert!(!is_any_flagged_multicast_inner(&[lo], &[Ipv4Addr::LOCALHOST]));
+    assert!(is_any_flagged_multicast_inner(&[flagged], &[Ipv4Addr::LOCALHOST]));
   }
 
   #[test]
@@ -664,12 +657,7 @@ mod tests {
       .into_iter()
       .map(|locator| SocketAddr::from(locator).to_string())
       .collect();
-    let expected = [
-      "192.0.2.1:7660",
-      "192.0.2.1:7662",
-      "192.0.2.9:7660",
-      "192.0.2.9:7662",
-    ];
+    let expected = ["192.0.2.1:7660", "192.0.2.1:7662", "192.0.2.9:7660", "192.0.2.9:7662"];
     assert_eq!(addresses, expected);
   }
 

@@ -1201,7 +1201,8 @@ impl DPEventLoop {
     // See `src/rtps/loopback_same_host_design.md`.
     new_writer.set_prefer_loopback_same_host(self.same_host_loopback);
     new_writer.set_reader_may_block(Arc::clone(&self.reader_may_block));
-    let is_spdp_writer = new_writer.guid().entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_WRITER;
+    let is_spdp_writer =
+      new_writer.guid().entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_WRITER;
     let mut peers = Vec::new();
     if is_spdp_writer {
       // See the participant builder's `initial_peers`.
