@@ -29,6 +29,5 @@ pub use moduli::{ModuliReading, moduli_message};
 pub use packing::{packing_header, packing_message};
 pub use run_state::{RunStateReading, RunStatus};
 pub use strain_rate::StrainRateAnswer;
-pub use stress::StressRequest;
 pub use wave_speeds::{WaveSpeedsReading, wave_speeds_message};
 pub use waveform::{TraceReading, WaveformReading, waveform_message};

@@ -1,9 +1,11 @@
 use super::refuses;
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
-use grainlab_msgs::boundary::{StrainRateAnswer, StressRequest};
+use grainlab_msgs::boundary::StrainRateAnswer;
 use grainlab_msgs::msg::{StrainRate, Stress};
-use grainlab_msgs::{from_cdr, stamp, to_cdr};
+use grainlab_msgs::{from_cdr, simulated_seconds, stamp, to_cdr};
+use grainlab_servo::{ServoInput, ServoRequest};
 use proptest::array::uniform6;
+use proptest::option;
 use proptest::prelude::*;
 
 const INF: f64 = f64::INFINITY;
@@ -32,15 +34,18 @@ fn law() -> impl Strategy<Value = ServoLaw> {
 prop_compose! {
     fn request()(
         (sequence, step, phase, time) in (any::<u64>(), any::<u64>(), any::<u32>(), 0.0..1e6f64),
-        (stress, strain, tangent, rate) in (uniform6(finite()), uniform6(finite()), uniform6(finite()), uniform6(finite())),
+        (stress, strain, tangent, rate) in (uniform6(finite()), uniform6(finite()), option::of(uniform6(finite())), uniform6(finite())),
         (controls, law) in (uniform6(control()), law()),
         (rate_limit, control_interval, solid_fraction) in (0.0..1e9f64, 1e-12..1.0f64, 0.01..1.0f64),
         (asymmetry, coordination, unbalanced) in (0.0..1e9f64, 0.0..12.0f64, 0.0..9.0f64),
-    ) -> StressRequest {
-        StressRequest {
-            sequence, step, phase, stamp: stamp(time), stress: SymTensor::from_voigt(stress), asymmetry, controls, rate,
-            rate_limit, law, tangent, control_interval, strain: SymTensor::from_voigt(strain), solid_fraction,
-            coordination, unbalanced,
+    ) -> ServoRequest {
+        ServoRequest {
+            // Times of a whole number of nanoseconds.
+            sequence, step, phase, time: simulated_seconds(&stamp(time)),
+            input: ServoInput {
+                stress: SymTensor::from_voigt(stress), controls, rate, rate_limit, law, tangent, control_interval,
+            },
+            asymmetry, strain: SymTensor::from_voigt(strain), solid_fraction, coordination, unbalanced,
         }
     }
 }
@@ -49,7 +54,7 @@ proptest! {
     #[test]
     fn a_request_crosses_the_wire_and_back_bit_for_bit(request in request()) {
         let bytes = to_cdr(&Stress::try_from(&request).unwrap());
-        let back = StressRequest::try_from(&from_cdr::<Stress>(&bytes).unwrap()).unwrap();
+        let back = ServoRequest::try_from(&from_cdr::<Stress>(&bytes).unwrap()).unwrap();
         prop_assert_eq!(&back, &request);
         prop_assert_eq!(to_cdr(&Stress::try_from(&back).unwrap()), bytes);
     }
@@ -65,19 +70,21 @@ proptest! {
 }
 
 fn stress() -> Stress {
-    let request = StressRequest {
+    let request = ServoRequest {
         sequence: 3,
         step: 30,
         phase: 1,
-        stamp: stamp(0.5),
-        stress: SymTensor::isotropic(5e4),
+        time: 0.5,
+        input: ServoInput {
+            stress: SymTensor::isotropic(5e4),
+            controls: [ComponentControl::Stress(5e4); 6],
+            rate: [0.0; 6],
+            rate_limit: 1.0,
+            law: ServoLaw::Scaled { response_time: 1e-3 },
+            tangent: Some([4e8; 6]),
+            control_interval: 1e-7,
+        },
         asymmetry: 0.0,
-        controls: [ComponentControl::Stress(5e4); 6],
-        rate: [0.0; 6],
-        rate_limit: 1.0,
-        law: ServoLaw::Scaled { response_time: 1e-3 },
-        tangent: [4e8; 6],
-        control_interval: 1e-7,
         strain: SymTensor::default(),
         solid_fraction: 0.63,
         coordination: 5.2,
@@ -109,14 +116,14 @@ fn each_fault_of_a_request_is_refused_by_name() {
             (|m| (m.law, m.leak) = (1, 1.5), "Stress.leak = 1.5 is refused: it must be between 0 and 1"),
             (|m| (m.law, m.gain) = (1, NAN), "Stress.gain = NaN is refused"),
             (|m| (m.law, m.gain) = (2, 0.0), "Stress.gain = 0.0 is refused"),
-            (|m| m.tangent.zz = INF, "Stress.tangent.zz = inf is refused"),
+            (|m| m.tangent[0].zz = INF, "Stress.tangent.zz = inf is refused"),
             (|m| m.control_interval = 0.0, "Stress.control_interval = 0.0 is refused"),
             (|m| m.strain.xy = NAN, "Stress.strain.xy = NaN is refused"),
             (|m| m.solid_fraction = 0.0, "Stress.solid_fraction = 0.0 is refused"),
             (|m| m.coordination = -1.0, "Stress.coordination = -1.0 is refused"),
             (|m| m.unbalanced_force_ratio = NAN, "Stress.unbalanced_force_ratio = NaN is refused"),
         ],
-        |m| StressRequest::try_from(m),
+        |m| ServoRequest::try_from(m),
     );
 }
 
@@ -136,8 +143,8 @@ fn a_rate_that_is_not_finite_is_refused_with_its_component() {
 /// Messages that readers refuse are not written.
 #[test]
 fn invalid_messages_are_not_published() {
-    let mut request = StressRequest::try_from(&stress()).unwrap();
-    request.stress.zz = NAN;
+    let mut request = ServoRequest::try_from(&stress()).unwrap();
+    request.input.stress.zz = NAN;
     assert!(Stress::try_from(&request).unwrap_err().to_string().starts_with("Stress.stress.zz = NaN"));
     let answer = StrainRateAnswer { stamp: stamp(0.0), sequence: 0, rate: [INF; 6], saturated: [false; 6] };
     assert!(

@@ -98,7 +98,7 @@ impl Simulation {
             && let Some(request) = self.run.request()
         {
             let simulation = |e: &dyn std::fmt::Display| Error::Simulation(e.to_string());
-            let output = grainlab_servo::control(&request.servo_input()).map_err(|e| simulation(&e))?;
+            let output = grainlab_servo::control(&request.input).map_err(|e| simulation(&e))?;
             if self.run.advance(&output.rate).map_err(|e| simulation(&e))?.packing_due {
                 return Ok(Some(self.run.packing()));
             }

@@ -48,21 +48,21 @@ fn a_frictional_packing_of_lammps_starts_at_rest_at_its_own_stress_and_goes_alon
     let found = start(&draft).unwrap();
     assert!(found.notes.is_empty(), "{:?}", found.notes);
     let mut run = begun(draft, &found).unwrap();
-    let first = run.request().unwrap().observables;
+    let first = run.request().unwrap();
     assert!(first.unbalanced < 1e-8, "{:e}", first.unbalanced);
     let known = std::fs::read_to_string(golden().join("stress.txt")).unwrap();
     let known: Vec<f64> = known.split_whitespace().map(|v| v.parse().unwrap()).collect();
     // LAMMPS's order is xx yy zz xy xz yz.
-    for (own, k) in first.stress.tensor.voigt().into_iter().zip([0, 1, 2, 5, 4, 3]) {
+    for (own, k) in first.input.stress.voigt().into_iter().zip([0, 1, 2, 5, 4, 3]) {
         assert!((own - known[k]).abs() < 1e-9 * known[0], "{own} {}", known[k]);
     }
     for _ in 0..50 {
         let request = run.request().unwrap();
-        let answer = grainlab_servo::control(&request.servo_input()).unwrap();
+        let answer = grainlab_servo::control(&request.input).unwrap();
         run.advance(&answer.rate).unwrap();
     }
-    let later = run.request().unwrap().observables;
-    let axial = |o: &grainlab_dem::Observables| o.stress.tensor.voigt()[2];
+    let later = run.request().unwrap();
+    let axial = |r: &grainlab_servo::ServoRequest| r.input.stress.voigt()[2];
     assert!(axial(&later) > axial(&first) && later.unbalanced < 0.05, "{later:?}");
 }
 
@@ -71,7 +71,7 @@ fn without_its_forces_the_same_packing_is_far_from_rest() {
     let draft = draft("", GLASS, 0.3);
     let found = start(&draft).unwrap();
     assert!(found.notes.iter().any(|n| n.contains("no tangential forces")), "{:?}", found.notes);
-    assert!(begun(draft, &found).unwrap().request().unwrap().observables.unbalanced > 0.01);
+    assert!(begun(draft, &found).unwrap().request().unwrap().unbalanced > 0.01);
 }
 
 #[test]

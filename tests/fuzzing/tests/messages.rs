@@ -5,7 +5,7 @@ use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::{
     EstimateReading, FabricReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer,
-    StressRequest, WaveSpeedsReading, WaveformReading, packing_message,
+    WaveSpeedsReading, WaveformReading, packing_message,
 };
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::{Message, from_cdr, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs, to_cdr};
@@ -64,7 +64,7 @@ fn decode<T: Message + Default>(name: &str, seed: T, mut beyond: impl FnMut(&T))
 #[test]
 fn every_message_gives_a_value_or_an_error() {
     decode("cdr-packing", packing_message(&packing(), "demo", vec![7; 9]), |m| drop(Packing::try_from(m)));
-    decode("cdr-stress", msg::Stress::default(), |m| drop(StressRequest::try_from(m)));
+    decode("cdr-stress", msg::Stress::default(), |m| drop(grainlab_servo::ServoRequest::try_from(m)));
     decode("cdr-strain-rate", msg::StrainRate::default(), |m| drop(StrainRateAnswer::try_from(m)));
     decode("cdr-run-state", msg::RunState::default(), |m| drop(RunStateReading::try_from(m)));
     decode("cdr-fabric", msg::Fabric::default(), |m| drop(FabricReading::try_from(m)));

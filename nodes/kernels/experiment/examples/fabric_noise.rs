@@ -61,7 +61,7 @@ fn seconds<T>(work: impl FnOnce() -> T) -> f64 {
 fn made(scene: grainlab_scene::Scene) -> Result<Packing, Box<dyn std::error::Error>> {
     let mut run = grainlab_experiment::Simulation::new(scene)?;
     while let Some(r) = run.request() {
-        run.advance(&grainlab_servo::control(&r.servo_input())?.rate)?;
+        run.advance(&grainlab_servo::control(&r.input)?.rate)?;
     }
     Ok(run.packing())
 }

@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut run = Simulation::new(scene)?;
     // The simulator sends a request, the servo returns a strain rate, and grains move for one control period.
     while let Some(request) = run.request() {
-        let outcome = run.advance(&grainlab_servo::control(&request.servo_input())?.rate)?;
+        let outcome = run.advance(&grainlab_servo::control(&request.input)?.rate)?;
         if outcome.packing_due {
             let report = analyze(&run.packing(), &Settings::default())?.report;
             let (k, eps) = (report.contacts.coordination, report.fabric.contact_anisotropy);

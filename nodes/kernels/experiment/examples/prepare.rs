@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut run = grainlab_experiment::Simulation::new(scene)?;
     let (begin, mut mark, mut steps) = (Instant::now(), Instant::now(), 0);
     while let Some(r) = run.request() {
-        let answer = grainlab_servo::control(&r.servo_input())?;
+        let answer = grainlab_servo::control(&r.input)?;
         let advanced = run.advance(&answer.rate)?;
         if let Some(name) = advanced.ended {
             let (e, done) = (run.engine(), run.engine().steps() - steps);
@@ -20,10 +20,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 "{name:12} steps {done:8} {spent:6.1} s {:5.2} M/s  dt {:.2e}  phi {:.4} k {:.3} stress {:?} off target {:.1e} unbalanced {:.1e}",
                 done as f64 * f64::from(run.scene().grains) / spent / 1e6,
                 e.time_step(),
-                seen.solid_fraction,
-                seen.coordination,
+                r.solid_fraction,
+                r.coordination,
                 seen.stress.tensor.voigt().map(|v| v.round()),
-                off_target(&seen.stress.tensor.voigt(), &r.controls),
+                off_target(&seen.stress.tensor.voigt(), &r.input.controls),
                 seen.unbalanced
             );
             (mark, steps) = (Instant::now(), run.engine().steps());

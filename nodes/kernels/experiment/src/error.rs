@@ -8,6 +8,14 @@ pub enum ExperimentError {
     /// The engine failed.
     #[error(transparent)]
     Engine(#[from] DemError),
+    /// Another engine failed.
+    #[error("{engine}: {reason}")]
+    OtherEngine {
+        /// Which engine.
+        engine: String,
+        /// Why, and what to do.
+        reason: String,
+    },
     /// The path failed.
     #[error(transparent)]
     Path(#[from] grainlab_scene::PathError),

@@ -1,17 +1,12 @@
 //! Parts of the model without effect in a phase, which are left out.
 
-use crate::phase_settings::phase_settings;
+use grainlab_core::contact::ContactLaw;
 use grainlab_dem::roofline::operations_per_contact;
 use grainlab_dem::{EngineSettings, Features};
-use grainlab_scene::{GasMethod, Phase, PhaseKind, Scene};
 
-/// Description of the parts left out in a phase, and of the remaining operations per contact. `equal_sized`:
+/// Description of the parts left out under these settings, and of the remaining operations per contact. `equal_sized`:
 /// all grains have one size.
-pub(crate) fn left_out(scene: &Scene, phase: &Phase, equal_sized: bool) -> String {
-    if matches!(phase.kind, PhaseKind::Gas { method: GasMethod::EventDriven, .. }) {
-        return "without the contact law and spins: hard spheres, from collision to collision".into();
-    }
-    let settings = phase_settings(scene, phase);
+pub(crate) fn left_out(law: ContactLaw, settings: &EngineSettings, equal_sized: bool) -> String {
     let mut parts = match settings.features() {
         Features::Frictionless => vec!["spins", "tangential springs"],
         Features::Sliding => vec![],
@@ -23,8 +18,8 @@ pub(crate) fn left_out(scene: &Scene, phase: &Phase, equal_sized: bool) -> Strin
     if parts.is_empty() {
         return "with the whole contact law".into();
     }
-    let whole = operations_per_contact(scene.law, &EngineSettings { friction: 0.5, ..settings });
-    let left = operations_per_contact(scene.law, &settings);
+    let whole = operations_per_contact(law, &EngineSettings { friction: 0.5, ..*settings });
+    let left = operations_per_contact(law, settings);
     // A contact below the friction limit takes fewer operations than a sliding one, though nothing is left
     // out.
     let saved = if left < whole && settings.features() != Features::Sliding {

@@ -1,20 +1,24 @@
 //! A scene run along its loading path, one request to the servo and one strain rate at a time.
 //!
 //! - [`Simulation`]: the run
-//! - [`ServoRequest`], [`StepOutcome`]: its requests, and the results of a strain rate
+//! - [`StepOutcome`]: the result of one strain rate
+//! - [`ParticleEngine`], [`EngineFactory`]: what a run asks of its engine; [`Dem`]: ours; [`conformance`]: tests of an engine
 //!
 //! A packing and the run state published with it are a checkpoint: a run resumed from them continues bit for
 //! bit.
 
+pub mod conformance;
+mod dem_engine;
+mod engine;
 mod error;
+mod gas;
 mod left_out;
 mod phase_settings;
-mod request;
-mod rollback;
 mod run_state;
 mod simulation;
 
+pub use dem_engine::Dem;
+pub use engine::{EngineFactory, Observables, ParticleEngine};
 pub use error::ExperimentError;
-pub use request::{ServoRequest, StepOutcome};
 pub use run_state::{PathPosition, StrainOrigin};
-pub use simulation::Simulation;
+pub use simulation::{Simulation, StepOutcome};

@@ -49,7 +49,7 @@ fn the_balance_of_a_scene_closes_in_every_phase() {
         let mut run = Simulation::new(scene).unwrap();
         let (mut ended, mut slid, mut rolled) = (0, 0.0f64, 0.0f64);
         while let Some(r) = run.request() {
-            let rate = grainlab_servo::control(&r.servo_input()).unwrap().rate;
+            let rate = grainlab_servo::control(&r.input).unwrap().rate;
             let outcome = run.advance(&rate).unwrap();
             let balance = outcome.energy.unwrap();
             let residual = balance.relative_residual().abs();

@@ -43,7 +43,7 @@ type Published = (Packing, Vec<u8>, bool);
 fn run(mut run: Simulation) -> (Simulation, Vec<Published>) {
     let mut published = Vec::new();
     while let Some(request) = run.request() {
-        let rate = grainlab_servo::control(&request.servo_input()).unwrap().rate;
+        let rate = grainlab_servo::control(&request.input).unwrap().rate;
         let outcome = run.advance(&rate).unwrap();
         if outcome.packing_due {
             published.push((run.packing(), run.run_state(), outcome.ended.is_some()));
@@ -151,7 +151,7 @@ fn a_run_reports_what_each_phase_leaves_out() {
         if said.len() <= run.path().phase {
             said.push(run.left_out());
         }
-        run.advance(&grainlab_servo::control(&request.servo_input()).unwrap().rate).unwrap();
+        run.advance(&grainlab_servo::control(&request.input).unwrap().rate).unwrap();
     }
     assert!(said[0].contains("hard spheres"), "{said:?}");
     assert!(said[1].starts_with("without spins, tangential springs, unequal sizes ("), "{said:?}");
@@ -193,8 +193,8 @@ fn a_run_from_a_packing_counts_its_own_strain() {
     let (packing, start) = pressed(|text| text.to_owned() + "publish = true\n");
     assert!(trace(&packing) < -0.01);
     assert_eq!(trace(&start.packing()), 0.0);
-    let mut straining = start.clone();
-    let rate = grainlab_servo::control(&straining.request().unwrap().servo_input()).unwrap().rate;
+    let mut straining = start.fork().unwrap();
+    let rate = grainlab_servo::control(&straining.request().unwrap().input).unwrap().rate;
     straining.advance(&rate).unwrap();
     let elapsed = straining.engine().time();
     let strain = straining.request().unwrap().strain;

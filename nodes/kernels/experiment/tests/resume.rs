@@ -2,7 +2,7 @@
 
 use grainlab_core::Packing;
 use grainlab_dem::{Compute, DemError};
-use grainlab_experiment::{ExperimentError, Simulation};
+use grainlab_experiment::{ExperimentError, PathPosition, Simulation, StrainOrigin};
 use grainlab_scene::{Condition, Measure, Scene};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -51,8 +51,12 @@ publish = true
 
 fn advance(run: &mut Simulation) -> bool {
     let Some(r) = run.request() else { return false };
-    run.advance(&grainlab_servo::control(&r.servo_input()).unwrap().rate).unwrap();
+    run.advance(&grainlab_servo::control(&r.input).unwrap().rate).unwrap();
     true
+}
+
+fn speed(run: &Simulation) -> f64 {
+    run.engine().observables().unwrap().speed
 }
 
 fn start() -> Simulation {
@@ -143,7 +147,7 @@ fn a_run_that_is_stopped_saves_a_state_that_goes_on_to_the_same_bytes() {
         let (end, state) = (run.packing(), run.run_state());
         let (mut run, mut advances, mut stop_at, mut stops) = (begin(&scene), 0u64, 3, [0; 5]);
         while let Some(request) = run.request() {
-            let rate = grainlab_servo::control(&request.servo_input()).unwrap().rate;
+            let rate = grainlab_servo::control(&request.input).unwrap().rate;
             let flag = Arc::new(AtomicBool::new(advances == stop_at));
             run.set_compute(Compute::default().stopping_on(flag));
             advances += 1;
@@ -151,9 +155,9 @@ fn a_run_that_is_stopped_saves_a_state_that_goes_on_to_the_same_bytes() {
             assert!(error.is_stopped(), "{error}");
             // The state returned to may be some requests back: more of them each time, so that the run comes to its end.
             stop_at = advances * 9 / 8 + 20;
-            stops[request.phase as usize] += 1;
+            stops[request.phase as usize - 1] += 1;
             let back = run.request().unwrap();
-            let at_once = request.phase == 0 && scene != SCENE;
+            let at_once = request.phase == 1 && scene != SCENE;
             assert!(if at_once { back == request } else { back.step <= request.step }, "{back:?}");
             let saved = (run.packing(), run.run_state());
             run = Simulation::resume(Scene::parse(&scene).unwrap(), &saved.0, &saved.1).unwrap();
@@ -175,16 +179,16 @@ fn an_event_driven_phase_keeps_its_clock_and_meets_its_conditions() {
         advance(&mut run);
         let (time, steps) = (run.engine().time(), run.engine().steps());
         assert_eq!(steps, asked.step + 3);
-        let expected = asked.time + asked.control_interval;
+        let expected = asked.time + asked.input.control_interval;
         assert!((time / expected - 1.0).abs() < 1e-14 && time > asked.time, "{time} {expected}");
-        assert!(run.engine().speed() <= 1.0 + 1e-12);
+        assert!(speed(&run) <= 1.0 + 1e-12);
         let packing = run.packing().validated().unwrap();
         let deepest = packing.contacts.iter().map(|c| c.overlap).fold(0.0, f64::max);
         assert!(deepest < 1e-12 * 2e-4, "{deepest:e}");
     }
     let reached = run.packing().solid_fraction();
     assert!((0.55..0.55 * (1.0 + 1e-8)).contains(&reached), "{reached}");
-    assert!(run.engine().speed() > 0.9, "still a gas: {}", run.engine().speed());
+    assert!(speed(&run) > 0.9, "still a gas: {}", speed(&run));
     // The contact law continues with its own time step.
     assert!(run.engine().time_step() < 1e-6, "{}", run.engine().time_step());
 }
@@ -206,7 +210,7 @@ fn an_event_driven_gas_accepts_isotropic_rates_only_and_reports_jamming() {
     dense.phases[0].until.all = vec![Condition::AtLeast(Measure::SolidFraction, 0.76)];
     let mut run = Simulation::new(dense).unwrap();
     let error = loop {
-        let rate = run.request().unwrap().controls.map(|c| match c {
+        let rate = run.request().unwrap().input.controls.map(|c| match c {
             grainlab_core::ComponentControl::StrainRate(rate) => rate,
             _ => 0.0,
         });
@@ -242,8 +246,29 @@ fn a_foreign_or_broken_run_state_is_refused() {
             .contains("another scene")
     );
     assert!(resume(SCENE, &[]).unwrap_err().to_string().contains("no run state"));
-    assert!(resume(SCENE, &state[..40]).unwrap_err().to_string().contains("bytes"));
-    let mut old = state.clone();
-    old[0] = 99;
-    assert!(resume(SCENE, &old).unwrap_err().to_string().contains("version 99"));
+    let refused = |state: &str| resume(SCENE, state.as_bytes()).unwrap_err().to_string();
+    let text = String::from_utf8(state.clone()).unwrap();
+    assert!(refused(&text[..40]).contains("damaged"));
+    assert!(refused(&text.replace("\"version\":4", "\"version\":99")).contains("version 99"));
+    assert!(refused(&text.replace("\"phase\":0,", "")).contains("missing field `phase`"));
+    assert!(refused(&text.replace("\"phase\":0,", "\"phase\":0,\"more\":1,")).contains("more"));
+    // Names, not places, say what a number is.
+    let mut fields: serde_json::Map<String, serde_json::Value> = serde_json::from_str(&text).unwrap();
+    let first = fields.remove("version");
+    fields.extend(first.map(|version| ("version".to_owned(), version)));
+    assert!(resume(SCENE, &serde_json::to_vec(&fields).unwrap()).is_ok());
+}
+
+/// Expected: analysis of an older recording states phase and strain as before, and its run is not resumed.
+#[test]
+fn a_run_state_of_version_3_has_a_position_and_is_not_resumed() {
+    let mut words = [0u64; 26];
+    (words[0], words[3], words[8]) = (3, 2, 1);
+    let state: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+    let position = PathPosition::of(&state).unwrap();
+    assert_eq!((position.phase, position.end_of_phase), (2, true));
+    assert_eq!(position.strain_origin, StrainOrigin::Reference);
+    let error = Simulation::resume(Scene::parse(SCENE).unwrap(), &start().packing(), &state).unwrap_err();
+    assert!(error.to_string().contains("version 3"), "{error}");
+    assert_eq!(PathPosition::of(&state[..200]), None);
 }

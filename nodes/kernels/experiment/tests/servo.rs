@@ -46,13 +46,16 @@ fn settled() -> &'static Vec<(Engine, f64)> {
         let mut run = Simulation::new(Scene::parse(&text).unwrap()).unwrap();
         let mut out = Vec::new();
         while let Some(r) = run.request() {
-            let advanced = run.advance(&grainlab_servo::control(&r.servo_input()).unwrap().rate).unwrap();
+            let advanced = run.advance(&grainlab_servo::control(&r.input).unwrap().rate).unwrap();
             if advanced.packing_due {
                 let target = PRESSURES[out.len()];
                 let stress = run.engine().observables().unwrap().stress.tensor.voigt();
                 let error = |i: usize| (stress[i] - if i < 3 { target } else { 0.0 }).abs() / target;
                 println!("{target:e} Pa at step {}: {stress:?}", run.engine().steps());
-                out.push((run.engine().clone(), (0..6).map(error).fold(0.0, f64::max)));
+                let settings = *run.engine().settings();
+                let mut engine = Engine::from_packing(&run.packing(), settings).unwrap();
+                engine.initialise().unwrap();
+                out.push((engine, (0..6).map(error).fold(0.0, f64::max)));
             }
         }
         out
@@ -127,8 +130,8 @@ impl Loop {
                 rate: self.engine.rate(),
                 rate_limit: rate_limit.min(f64::MAX),
                 law: ServoLaw::Integral { gain, leak },
-                // The stiffness is not given; otherwise the law would be refused beyond its limit.
-                tangent: [0.0; 6],
+                // Without it the law is not refused beyond its limit.
+                tangent: None,
                 control_interval: self.interval(),
             };
             self.engine.set_rate(&grainlab_servo::control(&request).unwrap().rate).unwrap();

@@ -27,6 +27,8 @@ pub struct Scene {
     pub numerics: Numerics,
     /// Phases in the order they run; cycles are already unrolled.
     pub phases: Vec<Phase>,
+    /// FNV-1a of the canonical text that the scene was read from: a run is resumed only in a scene with the same text.
+    pub fingerprint: u64,
 }
 
 /// Numerical settings of a scene.

@@ -30,7 +30,8 @@ pub(crate) fn read(table: &Table, packing: Option<&Packing>) -> Result<Resolved,
     let scene = read_scene(&mut r, packing);
     let (entries, faults) = r.finish();
     if faults.is_empty() {
-        Ok(Resolved { scene, toml: canonical::write(&entries) })
+        let toml = canonical::write(&entries);
+        Ok(Resolved { scene: Scene { fingerprint: fingerprint(&toml), ..scene }, toml })
     } else {
         Err(SceneError { faults })
     }
@@ -90,7 +91,15 @@ fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
             "is taken by no phase: each names its own; set phase.NAME.friction, or phase.*.friction";
         r.fault("friction", message);
     }
-    Scene { name, description, seed, start, grains, sizes, material, law, numerics, phases }
+    // The text is complete once everything is read.
+    let fingerprint = 0;
+    Scene { name, description, seed, start, grains, sizes, material, law, numerics, phases, fingerprint }
+}
+
+/// FNV-1a of a text.
+fn fingerprint(text: &str) -> u64 {
+    text.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
 fn read_material(r: &mut Reader<'_>, default: &Material) -> Material {

@@ -9,32 +9,34 @@ use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {
     finite("stress", &input.stress.voigt())?;
     finite("rate", &input.rate)?;
-    finite("tangent", &input.tangent)?;
     finite("setpoint", &input.controls.map(setpoint))?;
-    for (component, &value) in SymTensor::COMPONENTS.iter().zip(&input.tangent) {
-        if value < 0.0 {
-            return Err(ServoError::NegativeTangent { component, value });
+    if let Some(tangent) = &input.tangent {
+        finite("tangent", tangent)?;
+        for (component, &value) in SymTensor::COMPONENTS.iter().zip(tangent) {
+            if value < 0.0 {
+                return Err(ServoError::NegativeTangent { component, value });
+            }
         }
     }
     positive("rate_limit", input.rate_limit, "1/s")?;
     positive("control_interval", input.control_interval, "s")?;
-    check_stability(&input.law, &input.tangent, &input.controls, input.control_interval)
+    check_stability(input)
 }
 
-/// Whether `law` is stable with `tangent` (C_iiii and C_ijij, Pa) and `control_interval` (s): a part of the
-/// checks of [`crate::control`], for callers that need the result earlier.
+/// Whether the law of `input` is stable with its tangent stiffness and control interval: a part of the checks of
+/// [`crate::control`], for callers that need the result earlier.
 ///
-/// Without a stress target there is no control loop, and any law is accepted.
-pub fn check_stability(
-    law: &ServoLaw,
-    tangent: &[f64; 6],
-    controls: &[ComponentControl; 6],
-    control_interval: f64,
-) -> Result<(), ServoError> {
+/// Without a stress target there is no control loop, and any law is accepted. Without a tangent stiffness only the integral
+/// law is accepted, whose stability is then not known.
+pub fn check_stability(input: &ServoInput) -> Result<(), ServoError> {
+    let ServoInput { law, tangent, controls, control_interval, .. } = *input;
     if !controls.iter().any(|c| matches!(c, ComponentControl::Stress(_))) {
         return Ok(());
     }
-    match *law {
+    if tangent.is_none() && !matches!(law, ServoLaw::Integral { .. }) {
+        return Err(ServoError::NoTangent);
+    }
+    match law {
         ServoLaw::Scaled { response_time } => {
             positive("response_time", response_time, "s")?;
             if control_interval >= 2.0 * response_time {
@@ -50,8 +52,8 @@ pub fn check_stability(
         ServoLaw::Integral { gain, leak } => {
             positive("gain", gain, "1/(Pa s)")?;
             check_leak(leak)?;
-            let critical = critical_gain(tangent, controls, control_interval, leak);
-            if gain >= critical {
+            let critical = tangent.map(|t| critical_gain(&t, &controls, control_interval, leak));
+            if let Some(critical) = critical.filter(|critical| gain >= *critical) {
                 return Err(ServoError::Gain { gain, critical, control_interval });
             }
         }

@@ -34,7 +34,7 @@ use grainlab_core::ComponentControl;
 ///     rate: [0.0; 6],
 ///     rate_limit: 10.0,
 ///     law: ServoLaw::Scaled { response_time: 1.0e-4 },
-///     tangent: [200.0e6, 200.0e6, 200.0e6, 70.0e6, 70.0e6, 70.0e6],
+///     tangent: Some([200.0e6, 200.0e6, 200.0e6, 70.0e6, 70.0e6, 70.0e6]),
 ///     control_interval: 2.0e-8,
 /// };
 /// let output = grainlab_servo::control(&input).unwrap();
@@ -43,7 +43,9 @@ use grainlab_core::ComponentControl;
 /// ```
 pub fn control(input: &ServoInput) -> Result<ServoOutput, ServoError> {
     check(input)?;
-    let stiffness = closed_loop_stiffness(&input.tangent, &input.controls);
+    // The integral law uses no stiffness; the others are refused without.
+    let tangent = input.tangent.unwrap_or_default();
+    let stiffness = closed_loop_stiffness(&tangent, &input.controls);
     let mut output = ServoOutput { rate: [0.0; 6], saturated: [false; 6] };
     for (i, stress) in input.stress.voigt().into_iter().enumerate() {
         let wanted = match input.controls[i] {
@@ -54,7 +56,7 @@ pub fn control(input: &ServoInput) -> Result<ServoOutput, ServoError> {
                 &law::Component {
                     error: stress - target,
                     rate: input.rate[i],
-                    diagonal_stiffness: law::stiffness(&input.tangent, i),
+                    diagonal_stiffness: law::stiffness(&tangent, i),
                     closed_loop_stiffness: stiffness[i],
                     interval: input.control_interval,
                 },

@@ -61,6 +61,9 @@ pub enum ServoError {
         /// The value found, Pa.
         value: f64,
     },
+    /// A law that needs the tangent stiffness of the contacts, from an engine that does not measure it.
+    #[error("the engine does not measure the tangent stiffness: use law = \"integral\", which needs none")]
+    NoTangent,
     /// The stiffness-scaled law would overshoot by more than the error it corrects.
     #[error(
         "control_interval = {control_interval:e} s is not below twice response_time = {response_time:e} s, so the \

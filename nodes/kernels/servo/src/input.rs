@@ -16,8 +16,8 @@ pub struct ServoInput {
     /// Control law, from stress error to rate.
     pub law: ServoLaw,
     /// Tangent stiffness of the present contacts, Pa, not negative: C_iiii (xx, yy, zz) and C_ijij (yz, xz, xy). Zero
-    /// without contacts.
-    pub tangent: [f64; 6],
+    /// without contacts, `None` if the engine does not measure it.
+    pub tangent: Option<[f64; 6]>,
     /// Simulated time until the next input, s. Positive.
     pub control_interval: f64,
 }

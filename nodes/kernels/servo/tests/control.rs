@@ -4,6 +4,7 @@ use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_servo::{ServoError, ServoInput, control, critical_gain};
 use proptest::prelude::*;
 
+const TANGENT: [f64; 6] = [200.0e6, 200.0e6, 200.0e6, 70.0e6, 70.0e6, 70.0e6];
 const SCALED: ServoLaw = ServoLaw::Scaled { response_time: 1.0e-4 };
 const EQ_1: ServoLaw = ServoLaw::Integral { gain: 1.0e-6, leak: 0.0 };
 const NORMALISED: ServoLaw = ServoLaw::Normalised { share: 0.3, leak: 0.0 };
@@ -16,7 +17,7 @@ fn at_target(law: ServoLaw) -> ServoInput {
         rate: [0.0; 6],
         rate_limit: 2.0,
         law,
-        tangent: [200.0e6, 200.0e6, 200.0e6, 70.0e6, 70.0e6, 70.0e6],
+        tangent: Some(TANGENT),
         control_interval: 2.0e-8,
     }
 }
@@ -65,21 +66,35 @@ fn the_normalised_law_is_eq_1_with_its_share_of_the_critical_gain_of_each_compon
     let kick = |k: f64| 0.3 * 3.8 / (k * 2.0e-8) * 1.0e3;
     assert!((rate[2] - (0.45 + kick(320.0e6))).abs() < 1e-9 * rate[2]);
     assert!((rate[5] - kick(140.0e6)).abs() < 1e-9 * rate[5]);
-    let gain = critical_gain(&request.tangent, &request.controls, request.control_interval, 0.1);
+    let gain = critical_gain(&TANGENT, &request.controls, request.control_interval, 0.1);
     assert!((0.3 * gain * 1.0e3 - kick(320.0e6)).abs() < 1e-9 * kick(320.0e6));
+}
+
+#[test]
+fn without_a_tangent_only_the_integral_law_answers() {
+    for law in [SCALED, NORMALISED] {
+        let request = ServoInput { tangent: None, ..at_target(law) };
+        assert!(matches!(control(&request), Err(ServoError::NoTangent)));
+        let held = ServoInput { controls: [ComponentControl::Held; 6], ..request };
+        assert_eq!(control(&held).unwrap().rate, [0.0; 6]);
+    }
+    let mut request = at_target(EQ_1);
+    request.stress.zz = 51.0e3;
+    let known = control(&request).unwrap();
+    assert_eq!(control(&ServoInput { tangent: None, ..request }).unwrap(), known);
 }
 
 #[test]
 fn without_contacts_or_targets_no_gain_is_critical() {
     let request = at_target(EQ_1);
     assert_eq!(critical_gain(&[0.0; 6], &request.controls, 1.0e-6, 0.0), f64::INFINITY);
-    assert_eq!(critical_gain(&request.tangent, &[ComponentControl::Held; 6], 1.0e-6, 0.0), f64::INFINITY);
+    assert_eq!(critical_gain(&TANGENT, &[ComponentControl::Held; 6], 1.0e-6, 0.0), f64::INFINITY);
 }
 
 #[test]
 fn a_gain_of_eq_1_from_the_critical_one_on_is_refused_with_both_named() {
     let mut request = at_target(EQ_1);
-    let critical = critical_gain(&request.tangent, &request.controls, request.control_interval, 0.0);
+    let critical = critical_gain(&TANGENT, &request.controls, request.control_interval, 0.0);
     request.law = ServoLaw::Integral { gain: 0.999 * critical, leak: 0.0 };
     assert!(control(&request).is_ok());
     request.law = ServoLaw::Integral { gain: critical, leak: 0.0 };
@@ -115,7 +130,7 @@ fn without_contacts_laws_that_use_the_stiffness_drive_at_the_limit_towards_the_t
     for law in [SCALED, NORMALISED] {
         let mut request = at_target(law);
         request.stress = SymTensor::default();
-        request.tangent = [0.0; 6];
+        request.tangent = Some([0.0; 6]);
         let a = control(&request).unwrap();
         assert_eq!(a.rate, [-2.0, -2.0, -2.0, 0.0, 0.0, 0.0]);
         assert_eq!(a.saturated, [true, true, true, false, false, false]);
@@ -128,7 +143,7 @@ fn errors_and_stiffnesses_beyond_the_largest_number_do_not_make_nan() {
     let mut request = at_target(ServoLaw::Scaled { response_time: 1.0e10 });
     request.stress.zz = f64::MAX;
     request.controls[2] = ComponentControl::Stress(-f64::MAX);
-    request.tangent = [f64::MAX; 6];
+    request.tangent = Some([f64::MAX; 6]);
     assert_eq!(control(&request).unwrap().rate[2], 0.0);
 }
 
@@ -142,9 +157,12 @@ fn each_fault_has_its_own_error_and_names_the_value() {
     let shown = |change: &dyn Fn(&mut ServoInput)| fault(change).to_string();
     assert!(shown(&|r| r.stress.yz = f64::NAN).contains("stress[yz]"));
     assert!(shown(&|r| r.rate[5] = f64::INFINITY).contains("rate[xy]"));
-    assert!(shown(&|r| r.tangent[0] = f64::NAN).contains("tangent[xx]"));
+    assert!(shown(&|r| r.tangent = Some([f64::NAN; 6])).contains("tangent[xx]"));
     assert!(shown(&|r| r.controls[2] = ComponentControl::StrainRate(f64::NAN)).contains("setpoint[zz]"));
-    assert!(matches!(fault(&|r| r.tangent[1] = -1.0), ServoError::NegativeTangent { component: "yy", .. }));
+    assert!(matches!(
+        fault(&|r| r.tangent = Some([0.0, -1.0, 0.0, 0.0, 0.0, 0.0])),
+        ServoError::NegativeTangent { component: "yy", .. }
+    ));
     assert!(matches!(fault(&|r| r.rate_limit = 0.0), ServoError::NotPositive { field: "rate_limit", .. }));
     assert!(matches!(fault(&|r| r.rate_limit = f64::NAN), ServoError::NotPositive { .. }));
     assert!(matches!(fault(&|r| r.control_interval = -1.0), ServoError::NotPositive { .. }));
@@ -201,7 +219,7 @@ proptest! {
         let request = ServoInput {
             stress: SymTensor::from_voigt(stress), controls, rate, law,
             rate_limit: rate_limit.abs(),
-            tangent: tangent.map(f64::abs),
+            tangent: Some(tangent.map(f64::abs)),
             control_interval: control_interval.abs(),
         };
         let first = control(&request);

@@ -24,7 +24,7 @@ fn errors_with(law: ServoLaw, stiffness: f64, known: f64, dt: f64, periods: usiz
         rate: [0.0; 6],
         rate_limit: 1.0e6,
         law,
-        tangent: [0.0, 0.0, known, 0.0, 0.0, 0.0],
+        tangent: Some([0.0, 0.0, known, 0.0, 0.0, 0.0]),
         control_interval: dt,
     };
     let mut errors = Vec::with_capacity(periods);

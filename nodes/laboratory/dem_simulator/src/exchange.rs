@@ -8,11 +8,12 @@ use crate::partner::AnswerSource;
 use crate::question::Question;
 use crate::settings::Mode;
 use crate::speculative_step::SpeculativeStep;
-use grainlab_experiment::{ExperimentError, ServoRequest, StepOutcome};
+use grainlab_experiment::{ExperimentError, StepOutcome};
 use grainlab_msgs::boundary::StrainRateAnswer;
-use grainlab_msgs::msg::RunState;
+use grainlab_msgs::msg::{RunState, Stress};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, BusError, Exit, Next, NodeError};
+use grainlab_servo::ServoRequest;
 use std::time::Duration;
 
 impl DemSimulator {
@@ -87,15 +88,12 @@ impl DemSimulator {
             log::info!("the loading path is done at step {}", self.run.engine().steps());
             return self.rest(bus);
         };
-        let message = match messages::stress(&request) {
+        let message = match Stress::try_from(&request) {
             Ok(message) => message,
             Err(error) => return self.fail(bus, &error.to_string()),
         };
         // The servo would refuse the request and every repetition of it.
-        let (law, tangent) = (&request.law, &request.observables.tangent);
-        if let Err(error) =
-            grainlab_servo::check_stability(law, tangent, &request.controls, request.control_interval)
-        {
+        if let Err(error) = grainlab_servo::check_stability(&request.input) {
             return self.fail(bus, &format!("the servo cannot be stable: {error}"));
         }
         self.stage = Stage::Running;

@@ -2,8 +2,8 @@
 
 use grainlab_core::PackingError;
 use grainlab_dem::EnergyBalance;
-use grainlab_experiment::{ServoRequest, Simulation};
-use grainlab_msgs::boundary::{BoundaryError, StressRequest, packing_message};
+use grainlab_experiment::Simulation;
+use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::geometry_msgs::{Quaternion, Transform, TransformStamped};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::std_msgs::Header;
@@ -17,28 +17,6 @@ fn number(index: usize) -> u32 {
 
 /// Frame of everything measured in the cell.
 const FRAME: &str = "cell";
-
-pub(crate) fn stress(request: &ServoRequest) -> Result<msg::Stress, BoundaryError> {
-    let seen = &request.observables;
-    msg::Stress::try_from(&StressRequest {
-        sequence: request.sequence,
-        step: request.step,
-        phase: number(request.phase as usize),
-        stamp: stamp(request.time),
-        stress: seen.stress.tensor,
-        asymmetry: seen.stress.asymmetry,
-        controls: request.controls,
-        rate: request.rate,
-        rate_limit: request.rate_limit,
-        law: request.law,
-        tangent: seen.tangent,
-        control_interval: request.control_interval,
-        strain: request.strain,
-        solid_fraction: seen.solid_fraction,
-        coordination: seen.coordination,
-        unbalanced: seen.unbalanced,
-    })
-}
 
 pub(crate) fn packing(run: &Simulation) -> Result<msg::Packing, PackingError> {
     Ok(packing_message(&run.packing().validated()?, &run.scene().name, run.run_state()))

@@ -1,9 +1,9 @@
 //! A request, and the answers that it allows.
 
 use grainlab_core::{ComponentControl, SymTensor};
-use grainlab_experiment::ServoRequest;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::stamp;
+use grainlab_servo::ServoRequest;
 
 /// Relative rounding error that a servo in another language may add.
 const ROUNDING: f64 = 1e-9;
@@ -34,8 +34,8 @@ impl Question {
         Self {
             sequence: request.sequence,
             stamp: stamp(request.time),
-            controls: request.controls,
-            rate_limit: request.rate_limit,
+            controls: request.input.controls,
+            rate_limit: request.input.rate_limit,
         }
     }
 

@@ -1,8 +1,8 @@
 //! Some of the requests for viewers.
 
-use grainlab_experiment::ServoRequest;
 use grainlab_msgs::{msg, topics};
 use grainlab_node_kit::{Bus, BusError, Publisher};
+use grainlab_servo::ServoRequest;
 
 /// Most exchanges between two samples.
 const EXCHANGES: u64 = 64;

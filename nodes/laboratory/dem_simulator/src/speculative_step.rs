@@ -5,7 +5,8 @@
 //! the copy becomes the run; if not, the copy is dropped and the run is advanced with the answer. Nothing of
 //! the copy is published before that: all messages are the same as without it.
 
-use grainlab_experiment::{ExperimentError, ServoRequest, Simulation, StepOutcome};
+use grainlab_experiment::{ExperimentError, Simulation, StepOutcome};
+use grainlab_servo::ServoRequest;
 use std::time::Duration;
 
 /// Number of grains up to which a copy (about 25 ns per grain) costs less than the wait that it saves (0.1 ms or more).
@@ -25,12 +26,12 @@ pub(crate) struct SpeculativeStep {
 
 impl SpeculativeStep {
     /// Advances a copy of `run` with the predicted answer to `request`; `now` reads a clock. `None` if the
-    /// law has no answer.
+    /// law has no answer, or the engine cannot be copied.
     pub(crate) fn of(run: &Simulation, request: &ServoRequest, now: impl Fn() -> Duration) -> Option<Self> {
-        let answer = grainlab_servo::control(&request.servo_input());
+        let answer = grainlab_servo::control(&request.input);
         let rate = answer.ok()?.rate;
         let began = now();
-        let mut run = run.clone();
+        let mut run = run.fork()?;
         let result = run.advance(&rate);
         Some(Self { sequence: request.sequence, rate, run, result, took: now().saturating_sub(began) })
     }

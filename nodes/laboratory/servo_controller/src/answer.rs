@@ -1,7 +1,8 @@
 //! From one `Stress` to one `StrainRate`.
 
-use grainlab_msgs::boundary::{BoundaryError, StrainRateAnswer, StressRequest};
-use grainlab_msgs::msg;
+use grainlab_msgs::boundary::{BoundaryError, StrainRateAnswer};
+use grainlab_msgs::{msg, stamp};
+use grainlab_servo::ServoRequest;
 
 /// Why there is no answer to a stress.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -21,19 +22,11 @@ pub enum Refusal {
 
 /// The answer to one stress, with the same header and sequence number.
 pub fn answer(stress: &msg::Stress) -> Result<msg::StrainRate, Refusal> {
-    let request = StressRequest::try_from(stress)?;
-    let output = grainlab_servo::control(&grainlab_servo::ServoInput {
-        stress: request.stress,
-        controls: request.controls,
-        rate: request.rate,
-        rate_limit: request.rate_limit,
-        law: request.law,
-        tangent: request.tangent,
-        control_interval: request.control_interval,
-    })
-    .map_err(|reason| Refusal::Servo { sequence: request.sequence, reason })?;
+    let request = ServoRequest::try_from(stress)?;
+    let output = grainlab_servo::control(&request.input)
+        .map_err(|reason| Refusal::Servo { sequence: request.sequence, reason })?;
     let message = msg::StrainRate::try_from(&StrainRateAnswer {
-        stamp: request.stamp,
+        stamp: stamp(request.time),
         sequence: request.sequence,
         rate: output.rate,
         saturated: output.saturated,

@@ -1,12 +1,12 @@
 //! The servo node on the bus in memory.
 
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
-use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::msg::{StrainRate, Stress};
-use grainlab_msgs::{stamp, to_cdr, topics};
+use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{
     Actor, Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription, run_until,
 };
+use grainlab_servo::{ServoInput, ServoRequest};
 use grainlab_servo_controller::{Refusal, ServoController, Settings, answer};
 use std::time::Duration;
 
@@ -14,19 +14,21 @@ use std::time::Duration;
 fn question(sequence: u64) -> Stress {
     let mut controls = [ComponentControl::Held; 6];
     controls[2] = ComponentControl::Stress(50e3);
-    Stress::try_from(&StressRequest {
+    Stress::try_from(&ServoRequest {
         sequence,
         step: 20 * sequence,
         phase: 3,
-        stamp: stamp(1e-6 * sequence as f64),
-        stress: SymTensor::isotropic(40e3),
+        time: 1e-6 * sequence as f64,
+        input: ServoInput {
+            stress: SymTensor::isotropic(40e3),
+            controls,
+            rate: [0.0; 6],
+            rate_limit: 10.0,
+            law: ServoLaw::Scaled { response_time: 1e-4 },
+            tangent: Some([200e6; 6]),
+            control_interval: 1e-6,
+        },
         asymmetry: 0.0,
-        controls,
-        rate: [0.0; 6],
-        rate_limit: 10.0,
-        law: ServoLaw::Scaled { response_time: 1e-4 },
-        tangent: [200e6; 6],
-        control_interval: 1e-6,
         strain: SymTensor::default(),
         solid_fraction: 0.64,
         coordination: 5.0,

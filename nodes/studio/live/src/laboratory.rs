@@ -3,12 +3,13 @@
 use grainlab_console::Pace;
 use grainlab_core::Packing;
 use grainlab_msgs::boundary::{
-    FabricReading, MicrostructureReading, ModuliReading, RunStateReading, RunStatus, StressRequest,
+    FabricReading, MicrostructureReading, ModuliReading, RunStateReading, RunStatus,
 };
 use grainlab_msgs::{msg, simulated_seconds};
 use grainlab_node_kit::{Exit, Report, RunId};
 use grainlab_report::Timeline;
 use grainlab_results::{Inference, Measurement};
+use grainlab_servo::ServoRequest;
 use std::time::Duration;
 
 /// Phases of a run of which nothing is known yet: they share the bins of the curves.
@@ -51,7 +52,7 @@ pub struct Laboratory {
     pub(crate) run: Option<RunId>,
     pub(crate) scene: String,
     pub(crate) timeline: Timeline,
-    pub(crate) latest: Option<StressRequest>,
+    pub(crate) latest: Option<ServoRequest>,
     pub(crate) state: Option<RunStateReading>,
     /// Structure and stiffness of the last measured packing, with its step.
     pub(crate) fabric: Option<(u64, FabricReading)>,
@@ -104,7 +105,7 @@ impl Laboratory {
 
     /// Takes a request of the lockstep.
     pub fn request(&mut self, message: &msg::Stress, now: Duration) {
-        let Ok(request) = StressRequest::try_from(message) else { return self.refused += 1 };
+        let Ok(request) = ServoRequest::try_from(message) else { return self.refused += 1 };
         self.heard = now;
         if self.timeline.request(&request) {
             self.steps.push(now, request.step as f64);

@@ -4,11 +4,10 @@ use crate::laboratory::Laboratory;
 use grainlab_console::count;
 use grainlab_core::results::InferredQuantity;
 use grainlab_core::{ComponentControl, SymTensor};
-use grainlab_msgs::boundary::StressRequest;
-use grainlab_msgs::simulated_seconds;
 use grainlab_page::html::{Cell, escaped, paragraph, table};
 use grainlab_report::card;
 use grainlab_results::{Inference, by_origin};
+use grainlab_servo::ServoRequest;
 use serde_json::json;
 
 const KPA: f64 = 1e-3;
@@ -30,8 +29,8 @@ fn signed(value: f64, digits: usize) -> String {
 }
 
 /// The mean of the imposed stresses, Pa, where all normal components have one.
-fn target_pressure(request: &StressRequest) -> Option<f64> {
-    let normal = request.controls.iter().take(3).map(|c| match c {
+fn target_pressure(request: &ServoRequest) -> Option<f64> {
+    let normal = request.input.controls.iter().take(3).map(|c| match c {
         ComponentControl::Stress(target) => Some(*target),
         _ => None,
     });
@@ -43,11 +42,15 @@ impl Laboratory {
     pub(crate) fn cards(&self) -> String {
         let none = || "–".to_owned();
         let request = self.latest.as_ref();
-        let value = |f: &dyn Fn(&StressRequest) -> String| request.map_or_else(none, f);
-        let pressure = |r: &StressRequest| r.stress.mean();
-        let q = |r: &StressRequest| {
+        let value = |f: &dyn Fn(&ServoRequest) -> String| request.map_or_else(none, f);
+        let pressure = |r: &ServoRequest| r.input.stress.mean();
+        let q = |r: &ServoRequest| {
             let p = pressure(r);
-            if p > 0.0 { format!("q/p {:.2e}", r.stress.deviatoric_invariant() / p) } else { String::new() }
+            if p > 0.0 {
+                format!("q/p {:.2e}", r.input.stress.deviatoric_invariant() / p)
+            } else {
+                String::new()
+            }
         };
         let target = request.and_then(target_pressure).map_or_else(
             || request.map_or_else(String::new, q),
@@ -56,8 +59,7 @@ impl Laboratory {
         let steps = self.steps.per_second().filter(|_| self.end.is_none());
         let grain_steps = steps.zip(self.grains).map(|(s, n)| s * f64::from(n));
         let phase = self.phase();
-        let time = request
-            .map_or_else(String::new, |r| format!("{:.4} ms simulated", 1e3 * simulated_seconds(&r.stamp)));
+        let time = request.map_or_else(String::new, |r| format!("{:.4} ms simulated", 1e3 * r.time));
         let step = self.step().map_or_else(String::new, |s| format!("step {s}"));
         let z = self.fabric.as_ref().map_or_else(String::new, |(_, f)| {
             format!("z {:.3} without rattlers, last packing", f.contacts.mechanical_coordination)
@@ -101,9 +103,9 @@ impl Laboratory {
     /// Each component with what is imposed on it.
     pub(crate) fn targets(&self) -> String {
         let Some(r) = &self.latest else { return paragraph("No stress has been published yet.") };
-        let (stress, strain) = (r.stress.voigt(), r.strain.voigt());
+        let (stress, strain) = (r.input.stress.voigt(), r.strain.voigt());
         let row = |n: usize| {
-            let (imposed, off) = match r.controls[n] {
+            let (imposed, off) = match r.input.controls[n] {
                 ComponentControl::Held => ("held".to_owned(), String::new()),
                 ComponentControl::Stress(t) => {
                     (format!("{:.3} kPa", t * KPA), signed((stress[n] - t) * KPA, 3))
@@ -116,7 +118,7 @@ impl Laboratory {
                 Cell::number(imposed),
                 Cell::number(off),
                 Cell::number(signed(strain[n] * 100.0, 4)),
-                Cell::number(format!("{:+.3e}", r.rate[n])),
+                Cell::number(format!("{:+.3e}", r.input.rate[n])),
             ]
         };
         let header = ["", "stress, kPa", "imposed", "off target, kPa", "strain, %", "strain rate, 1/s"];
@@ -178,13 +180,13 @@ impl Laboratory {
     /// The latest request for programs: SI units, Voigt order xx, yy, zz, yz, xz, xy; null where no stress is imposed.
     pub(crate) fn sample(&self) -> String {
         let Some(r) = &self.latest else { return String::new() };
-        let targets = r.controls.map(|c| match c {
+        let targets = r.input.controls.map(|c| match c {
             ComponentControl::Stress(target) => Some(target),
             _ => None,
         });
         json!({
             "run": self.run.map(|run| run.to_string()), "sequence": r.sequence, "step": r.step, "phase": r.phase,
-            "time": simulated_seconds(&r.stamp), "stress": r.stress.voigt(), "target": targets, "strain": r.strain.voigt(),
+            "time": r.time, "stress": r.input.stress.voigt(), "target": targets, "strain": r.strain.voigt(),
             "solid_fraction": r.solid_fraction, "coordination": r.coordination, "unbalanced": r.unbalanced,
         })
         .to_string()

@@ -2,9 +2,10 @@
 
 use crate::phased::{MOST_PHASES, PhaseAxis, Phased};
 use grainlab_core::{ComponentControl, Packing};
-use grainlab_msgs::boundary::{EnergyReading, FabricReading, StressRequest};
+use grainlab_msgs::boundary::{EnergyReading, FabricReading};
 use grainlab_msgs::{Topic, msg, simulated_seconds, topics};
 use grainlab_recordings::{ChannelInfo, Message, OneRun, ReadError, Recording, RunSign, Selection};
+use grainlab_servo::ServoRequest;
 use grainlab_viewer::{Film, View};
 use std::collections::BTreeMap;
 
@@ -116,7 +117,7 @@ impl Timeline {
     /// Takes one message; `None` if it cannot be read.
     fn take(&mut self, topic: &str, recorded: &Message) -> Option<()> {
         if topic == topics::STRESS.name {
-            self.request(&StressRequest::try_from(&recorded.decoded::<msg::Stress>().ok()?).ok()?);
+            self.request(&ServoRequest::try_from(&recorded.decoded::<msg::Stress>().ok()?).ok()?);
         } else if topic == topics::FABRIC.name {
             let message: msg::Fabric = recorded.decoded().ok()?;
             let time = simulated_seconds(&message.header.stamp);
@@ -136,12 +137,12 @@ impl Timeline {
     }
 
     /// Takes a request of the lockstep. One that was published again is left out; returns whether it is new.
-    pub fn request(&mut self, request: &StressRequest) -> bool {
+    pub fn request(&mut self, request: &ServoRequest) -> bool {
         if request.sequence < self.next {
             return false;
         }
         self.next = request.sequence + 1;
-        let (time, phase) = (simulated_seconds(&request.stamp), request.phase);
+        let (time, phase) = (request.time, request.phase);
         self.from_zero |= phase == 0;
         if self.phases.len() < MOST_PHASES
             && self.phases.last().is_none_or(|(phase, _)| *phase != request.phase)
@@ -152,15 +153,15 @@ impl Timeline {
         let push = |series: &mut [Phased; 6], values: [f64; 6]| {
             series.iter_mut().zip(values).for_each(|(s, v)| s.push(phase, time, v));
         };
-        push(&mut self.stress, request.stress.voigt());
+        push(&mut self.stress, request.input.stress.voigt());
         push(&mut self.strain, request.strain.voigt());
-        for (series, control) in self.targets.iter_mut().zip(&request.controls) {
+        for (series, control) in self.targets.iter_mut().zip(&request.input.controls) {
             if let ComponentControl::Stress(target) = control {
                 series.push(phase, time, *target);
             }
         }
-        self.pressure.push(phase, time, request.stress.mean());
-        self.deviator.push(phase, time, request.stress.deviatoric_invariant());
+        self.pressure.push(phase, time, request.input.stress.mean());
+        self.deviator.push(phase, time, request.input.stress.deviatoric_invariant());
         self.solid_fraction.push(phase, time, request.solid_fraction);
         self.coordination.push(phase, time, request.coordination);
         self.unbalanced.push(phase, time, request.unbalanced);

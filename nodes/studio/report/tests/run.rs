@@ -1,10 +1,11 @@
 //! Reports of runs that are made here, message by message.
 
 use grainlab_core::{Cell, ComponentControl, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
-use grainlab_msgs::boundary::{StressRequest, packing_message};
+use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{Guid, msg, stamp, to_cdr, topics};
 use grainlab_recordings::{Incoming, RunWriter, TopicSpec, WriterOptions};
 use grainlab_report::{FILE, Run, overview, write_report};
+use grainlab_servo::{ServoInput, ServoRequest};
 use std::path::Path;
 
 /// Exchanges of each of the two phases.
@@ -16,19 +17,21 @@ const LARGEST: usize = 6_000_000;
 fn request(sequence: u64) -> msg::Stress {
     // One exchange has a stress far beyond the others.
     let stress = if sequence == 1234 { 987_654.0 } else { 10.0 * (sequence % 17) as f64 };
-    let request = StressRequest {
+    let request = ServoRequest {
         sequence,
         step: 10 * sequence,
         phase: (sequence / EXCHANGES) as u32,
-        stamp: stamp(1e-6 * sequence as f64),
-        stress: SymTensor::from_voigt([stress, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        time: 1e-6 * sequence as f64,
+        input: ServoInput {
+            stress: SymTensor::from_voigt([stress, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            controls: [ComponentControl::Held; 6],
+            rate: [0.0; 6],
+            rate_limit: 1.0,
+            law: ServoLaw::Scaled { response_time: 1e-5 },
+            tangent: Some([0.0; 6]),
+            control_interval: 1e-6,
+        },
         asymmetry: 0.0,
-        controls: [ComponentControl::Held; 6],
-        rate: [0.0; 6],
-        rate_limit: 1.0,
-        law: ServoLaw::Scaled { response_time: 1e-5 },
-        tangent: [0.0; 6],
-        control_interval: 1e-6,
         strain: SymTensor::from_voigt([0.0; 6]),
         solid_fraction: 0.6,
         coordination: 4.0,

@@ -86,7 +86,7 @@ pub fn prepared(state: &State, seed: u64) -> Result<Found, VerificationError> {
     let scene = Scene { seed, ..Scene::parse(state.scene).map_err(|e| failed(&e))? };
     let mut run = Simulation::new(scene).map_err(|e| failed(&e))?;
     while let Some(request) = run.request() {
-        let answer = grainlab_servo::control(&request.servo_input()).map_err(|e| failed(&e))?;
+        let answer = grainlab_servo::control(&request.input).map_err(|e| failed(&e))?;
         run.advance(&answer.rate).map_err(|e| failed(&e))?;
     }
     let report = analyze(&run.packing(), &Settings::default()).map_err(|e| failed(&e))?.report;

@@ -229,6 +229,16 @@ impl Engine {
         SymTensor::symmetric_part(&self.state.rate).voigt()
     }
 
+    /// The contact law of the grains.
+    pub fn law(&self) -> ContactLaw {
+        self.state.law
+    }
+
+    /// The cell, m.
+    pub fn cell(&self) -> &Cell {
+        &self.state.cell
+    }
+
     /// Whether all grains are of one size.
     pub fn equal_sized(&self) -> bool {
         self.state.is_monodisperse()

@@ -158,7 +158,7 @@ pub(crate) fn servo(
         rate: e.rate(),
         rate_limit,
         law,
-        tangent: seen.tangent,
+        tangent: Some(seen.tangent),
         control_interval: e.time_step() * f64::from(period),
     })
     .unwrap()

@@ -5,6 +5,7 @@ use grainlab_core::ServoLaw;
 use grainlab_dem::{Engine, TimeStep};
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
+use grainlab_servo::ServoInput;
 
 const DRAG: f64 = 4e5;
 
@@ -69,9 +70,9 @@ until = {{ on_target = 0.05, unbalanced = 1e-4, timeout = 0.2 }}
     let mut run = Simulation::new(Scene::parse(&text).unwrap()).unwrap();
     while let Some(r) = run.request() {
         let law = ServoLaw::Scaled { response_time: 3e-6 };
-        let limit = if r.phase == 0 { 100.0 } else { 1000.0 };
-        let answer = servo(run.engine(), r.controls, law, limit, 10);
-        run.advance(&answer.rate).unwrap();
+        let rate_limit = if r.phase == 1 { 100.0 } else { 1000.0 };
+        let input = ServoInput { law, rate_limit, ..r.input };
+        run.advance(&grainlab_servo::control(&input).unwrap().rate).unwrap();
     }
     let p = run.packing();
     let mut e = Engine::from_packing(&p, setting(0.1, p.time_step)).unwrap();

@@ -5,6 +5,7 @@ use grainlab_core::{Mat3, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings};
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
+use grainlab_servo::ServoInput;
 
 /// A zigzag column of two grains and their images, each with two contacts inclined by `lean` (rad) to either
 /// side: at rest under friction, its force along the line through the contact points.
@@ -127,10 +128,10 @@ until = {{ elapsed = 4e-3 }}
     };
     let run = |seed: u64| {
         let mut run = Simulation::new(Scene::parse(&text(seed)).unwrap()).unwrap();
-        while let Some(r) = run.request().filter(|r| r.phase < 2) {
-            let limit = if r.phase == 0 { 40.0 } else { 4.0 };
-            let answer = servo(run.engine(), r.controls, r.law, limit, 10);
-            run.advance(&answer.rate).unwrap();
+        while let Some(r) = run.request().filter(|r| r.phase < 3) {
+            let rate_limit = if r.phase == 1 { 40.0 } else { 4.0 };
+            let input = ServoInput { rate_limit, ..r.input };
+            run.advance(&grainlab_servo::control(&input).unwrap().rate).unwrap();
         }
         let p = run.packing();
         let contacts =

@@ -62,9 +62,9 @@ fn errors(scene: Scene) -> Vec<(String, f64)> {
     let mut run = Simulation::new(scene).unwrap();
     let mut errors = Vec::new();
     while let Some(r) = run.request() {
-        let advanced = run.advance(&grainlab_servo::control(&r.servo_input()).unwrap().rate);
+        let advanced = run.advance(&grainlab_servo::control(&r.input).unwrap().rate);
         let advanced = advanced.unwrap_or_else(|e| panic!("{label}{e}"));
-        let targets = r.controls.map(|c| match c {
+        let targets = r.input.controls.map(|c| match c {
             ComponentControl::Stress(target) => target,
             _ => f64::NAN,
         });

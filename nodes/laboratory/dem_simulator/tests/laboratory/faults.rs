@@ -3,7 +3,6 @@
 use crate::bench::{Bench, FOREVER, Record, exit_of};
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_dem_simulator::Settings;
-use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::msg::{self, Fabric, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{
@@ -35,7 +34,7 @@ impl Node for BadServo {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         while let Some((stress, _)) = self.stress.take_valid(bus)? {
             let mut answer = grainlab_servo_controller::answer(&stress).expect("an answer");
-            let chosen = StressRequest::try_from(&stress).unwrap().controls[2];
+            let chosen = grainlab_servo::ServoRequest::try_from(&stress).unwrap().input.controls[2];
             let may = self.anywhere || matches!(chosen, ComponentControl::Stress(_));
             if stress.sequence >= self.honest && self.lies > 0 && may {
                 self.lies -= 1;
@@ -94,7 +93,7 @@ fn computing_ahead_of_the_answers_changes_no_message_whether_they_are_foreseen_o
     let (_, plain, _) = run_ahead_with(300, 5, -0.7, false);
     let (_, ahead, foreseen) = run_ahead_with(300, 5, -0.7, true);
     let first = plain.messages::<Stress>(&topics::STRESS).into_iter().find(|stress| {
-        let chosen = StressRequest::try_from(stress).unwrap().controls[2];
+        let chosen = grainlab_servo::ServoRequest::try_from(stress).unwrap().input.controls[2];
         stress.sequence >= 300 && matches!(chosen, ComponentControl::Stress(_))
     });
     let exchanges = plain.without_repeats().bodies(&topics::STRAIN_RATE).len() as u64;

@@ -54,22 +54,22 @@ fn finished(scene: &Scene, limit: u64) -> Result<Finished, String> {
         if r.step > limit {
             return Err(format!(
                 "not done after {limit} steps, in phase {}",
-                run.scene().phases[r.phase as usize].name
+                run.scene().phases[r.phase as usize - 1].name
             ));
         }
-        if r.controls.iter().any(|c| matches!(c, ComponentControl::Stress(_))) {
-            if let ServoLaw::Scaled { response_time } = r.law
-                && r.control_interval >= 2.0 * response_time
+        if r.input.controls.iter().any(|c| matches!(c, ComponentControl::Stress(_))) {
+            if let ServoLaw::Scaled { response_time } = r.input.law
+                && r.input.control_interval >= 2.0 * response_time
             {
-                let interval = r.control_interval;
+                let interval = r.input.control_interval;
                 return Err(format!(
                     "a control interval of {interval:.1e} s is not below twice the response time"
                 ));
             }
-            let tangent = r.observables.tangent[..3].iter().copied().fold(0.0, f64::max);
-            servoed = Some(Servoed { tangent, interval: r.control_interval });
+            let tangent = r.input.tangent.unwrap_or_default()[..3].iter().copied().fold(0.0, f64::max);
+            servoed = Some(Servoed { tangent, interval: r.input.control_interval });
         }
-        let answer = grainlab_servo::control(&r.servo_input()).map_err(|e| e.to_string())?;
+        let answer = grainlab_servo::control(&r.input).map_err(|e| e.to_string())?;
         let outcome = run.advance(&answer.rate).map_err(|e| e.to_string())?;
         energy = outcome.energy.or(energy);
     }

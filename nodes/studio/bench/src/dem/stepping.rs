@@ -186,7 +186,7 @@ fn answered(
         rate,
         rate_limit,
         law: ServoLaw::Scaled { response_time: 2e-6 },
-        tangent,
+        tangent: Some(tangent),
         control_interval,
     };
     grainlab_servo::control(&request).map(|a| a.rate).map_err(Failure::failed)

@@ -1,22 +1,24 @@
 use super::*;
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
-use grainlab_msgs::stamp;
+use grainlab_servo::ServoInput;
 
 fn request(sequence: u64) -> msg::Stress {
     let value = 1.0 + (sequence as f64).sin();
-    let request = StressRequest {
+    let request = ServoRequest {
         sequence,
         step: 20 * sequence,
         phase: u32::try_from(sequence / 10_000).unwrap(),
-        stamp: stamp(1e-6 * sequence as f64),
-        stress: SymTensor { xx: value, yy: value, zz: value, ..SymTensor::default() },
+        time: 1e-6 * sequence as f64,
+        input: ServoInput {
+            stress: SymTensor { xx: value, yy: value, zz: value, ..SymTensor::default() },
+            controls: [ComponentControl::Stress(2.0); 6],
+            rate: [0.0; 6],
+            rate_limit: 1.0,
+            law: ServoLaw::Scaled { response_time: 1e-3 },
+            tangent: Some([1e6; 6]),
+            control_interval: 1e-6,
+        },
         asymmetry: 0.0,
-        controls: [ComponentControl::Stress(2.0); 6],
-        rate: [0.0; 6],
-        rate_limit: 1.0,
-        law: ServoLaw::Scaled { response_time: 1e-3 },
-        tangent: [1e6; 6],
-        control_interval: 1e-6,
         strain: SymTensor::default(),
         solid_fraction: 0.6,
         coordination: 4.0,
