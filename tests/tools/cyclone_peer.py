@@ -88,7 +88,7 @@ def rate(stress):
         if mode == 2:
             value = stress.setpoint[i]
         elif mode == 1:
-            tangent = getattr(stress.tangent, name)
+            tangent = getattr(stress.tangent[0], name) if stress.tangent else 0.0
             value = (getattr(stress.stress, name) - stress.setpoint[i]) / (tangent * stress.response_time) if tangent else 0.0
         limited = max(-stress.rate_limit, min(stress.rate_limit, value))
         rates.append(limited)

@@ -37,8 +37,8 @@ pub struct Stress {
     pub leak: f64,
     /// s, of the scaled law; 0 for the others
     pub response_time: f64,
-    /// Pa, affine tangent stiffness C_iiii (xx yy zz) and C_ijij (yz xz xy) of the present contacts
-    pub tangent: SymmetricTensor,
+    /// Pa, affine tangent stiffness C_iiii (xx yy zz) and C_ijij (yz xz xy) of the present contacts; one, or none
+    pub tangent: Vec<SymmetricTensor>,
     /// s, simulated time until the next request
     pub control_interval: f64,
     /// logarithmic, extension positive, since the reference state, else the first step of the run
@@ -75,7 +75,7 @@ impl Message for Stress {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Stress";
     const TYPE: &'static str = "grainlab_msgs/msg/Stress";
-    const HASH: &'static str = "RIHS01_9364b43d15d5b1c74c7c7656b340449e349a58d2acfc6bf5507970b8ecdf53eb";
+    const HASH: &'static str = "RIHS01_0b4e698df2e648397c76d1096623b0abbe4d84dd1854499c7a9ea9603f7f8df2";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
         "sequence" => (9, 0, ""),
@@ -91,7 +91,7 @@ impl Message for Stress {
         "gain" => (11, 0, ""),
         "leak" => (11, 0, ""),
         "response_time" => (11, 0, ""),
-        "tangent" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "tangent" => (145, 0, "grainlab_msgs/msg/SymmetricTensor"),
         "control_interval" => (11, 0, ""),
         "strain" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
         "solid_fraction" => (11, 0, ""),

@@ -2,7 +2,7 @@
 
 use grainlab_core::{Cell, ComponentControl, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_msgs::boundary::packing_message;
-use grainlab_msgs::{Guid, msg, stamp, to_cdr, topics};
+use grainlab_msgs::{Guid, msg, to_cdr, topics};
 use grainlab_recordings::{Incoming, RunWriter, TopicSpec, WriterOptions};
 use grainlab_report::{FILE, Run, overview, write_report};
 use grainlab_servo::{ServoInput, ServoRequest};

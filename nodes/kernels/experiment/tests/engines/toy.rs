@@ -7,7 +7,7 @@ use grainlab_dem::{Compute, EngineSettings};
 use grainlab_experiment::{EngineFactory, ExperimentError, Observables, ParticleEngine};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Fault {
+pub(crate) enum Fault {
     #[default]
     None,
     Slow,
@@ -18,7 +18,7 @@ pub enum Fault {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Toys(pub Fault);
+pub(crate) struct Toys(pub(crate) Fault);
 
 #[derive(Clone, Debug)]
 struct Toy {
