@@ -131,33 +131,43 @@ fn counted() -> [usize; 4] {
     counts
 }
 
-/// Texts with one place in all crates, and its file.
-const ONCE: [(&str, &str); 1] = [("[\"xx\", \"yy\", \"zz\"", "nodes/kernels/core/src/tensor.rs")];
+/// Texts with one place in all crates and their assets, and its file or folder.
+const ONCE: [(&str, &str); 3] = [
+    ("[\"xx\", \"yy\", \"zz\"", "nodes/kernels/core/src/tensor.rs"),
+    ("<!DOCTYPE", "nodes/studio/page"),
+    ("<html", "nodes/studio/page"),
+];
 
 /// Places of a text beside the one that it has.
-fn repeated(text: &str, place: &str, files: &[(String, String)]) -> Vec<String> {
-    assert!(
-        files.iter().any(|(file, source)| file == place && source.contains(text)),
-        "{text} is not in {place}"
-    );
-    let others = files.iter().filter(|(file, source)| file != place && source.contains(text));
-    others.map(|(file, _)| format!("{file} repeats {text} of {place}")).collect()
+fn repeated(text: &str, place: &str, files: &[(PathBuf, String)]) -> Vec<String> {
+    let (there, others): (Vec<_>, Vec<_>) = files
+        .iter()
+        .filter(|(_, source)| source.contains(text))
+        .partition(|(file, _)| file.starts_with(place));
+    assert!(!there.is_empty(), "{text} is not in {place}");
+    others.iter().map(|(file, _)| format!("{} repeats {text} of {place}", file.display())).collect()
 }
 
 #[test]
 fn what_has_one_place_is_in_no_other() {
     let top = top();
-    let modules = roots().into_iter().flat_map(|root| modules(&root).into_values());
+    let mut all = Vec::new();
+    files(&top.join("nodes"), &mut all);
+    all.retain(|file| file.extension().is_some_and(|e| e != "rs"));
+    all.extend(roots().iter().flat_map(|root| modules(root).into_values().map(|m| m.file)));
     let source = |file: PathBuf| {
         let file = file.canonicalize().unwrap();
-        let text = std::fs::read_to_string(&file).unwrap();
-        (file.strip_prefix(&top).unwrap().to_string_lossy().into_owned(), without_tests(&text))
+        let text = without_tests(&std::fs::read_to_string(&file).unwrap());
+        (file.strip_prefix(&top).unwrap().to_owned(), text)
     };
-    let mut files: Vec<_> = modules.map(|m| source(m.file)).collect();
+    let mut files: Vec<_> = all.into_iter().map(source).collect();
     for (text, place) in ONCE {
         assert_eq!(repeated(text, place, &files), Vec::<String>::new());
-        files.push(("planted".to_owned(), text.to_owned()));
-        assert_eq!(repeated(text, place, &files).len(), 1);
+        for planted in ["nodes/planted.rs", "nodes/studio/planted/assets/page.html"] {
+            files.push((planted.into(), text.to_owned()));
+            assert_eq!(repeated(text, place, &files).len(), 1);
+            files.pop();
+        }
     }
 }
 
