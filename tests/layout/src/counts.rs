@@ -9,7 +9,7 @@ use syn::{Item, UseTree, Visibility};
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
 const LABORATORY: usize = 56_200;
-const STUDIO_AND_COMMAND: usize = 28_500;
+const STUDIO_AND_COMMAND: usize = 28_200;
 const TESTS: usize = 44_750;
 
 /// Most comments that begin with a word that names nothing.
@@ -160,7 +160,9 @@ fn what_has_one_place_is_in_no_other() {
         let text = without_tests(&std::fs::read_to_string(&file).unwrap());
         (file.strip_prefix(&top).unwrap().to_owned(), text)
     };
-    let mut files: Vec<_> = all.into_iter().map(source).collect();
+    // The rules themselves name these texts.
+    let is_rule = |file: &Path| file.starts_with("tests/layout");
+    let mut files: Vec<_> = all.into_iter().map(source).filter(|(file, _)| !is_rule(file)).collect();
     for (text, place) in ONCE {
         assert_eq!(repeated(text, place, &files), Vec::<String>::new());
         for planted in ["nodes/planted.rs", "nodes/studio/planted/assets/page.html"] {

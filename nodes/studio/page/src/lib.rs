@@ -6,9 +6,11 @@
 //! - [`plot`]: plots as SVG and as text
 //! - [`Dataset`]: typed columns, as CSV and Parquet
 
+#[macro_use]
+mod markup;
+
 mod dataset;
 mod elements;
-mod markup;
 mod page;
 pub mod plot;
 

@@ -1,6 +1,5 @@
 //! The frame of a page: one file, without references to others.
 
-use crate::html;
 use crate::markup::Html;
 use crate::plot::page_style;
 use serde::Serialize;
@@ -73,11 +72,8 @@ mod tests {
         let section = Section { id: "a", title: "A & B", content: "1 < 2".into() };
         let page = Page { title: "<x>".into(), sections: vec![section], has_bar: true, ..Page::default() };
         let text = page.text();
-        for part in [
-            "<title>&lt;x&gt;</title>",
-            "<a href=\"#a\">A &amp; B</a>",
-            "<section id=\"a\">\n<h2>A &amp; B</h2>\n1 &lt; 2<",
-        ] {
+        let section = "<section id=\"a\">\n<h2>A &amp; B</h2>\n1 &lt; 2<";
+        for part in ["<title>&lt;x&gt;</title>", "<a href=\"#a\">A &amp; B</a>", section] {
             assert!(text.contains(part), "{part}: {text}");
         }
         let plain = Page { has_bar: false, ..page }.text();
