@@ -190,7 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_keep_six_digits_and_no_zeros_that_say_nothing() {
+    fn numbers_keep_six_digits_and_no_zeros_that_say_nothing_and_zero_has_no_sign() {
         let all = [
             (0.0, "0"),
             (50_000.0, "50000"),
@@ -199,10 +199,6 @@ mod tests {
             (1.25e-7, "1.25000e-7"),
         ];
         all.iter().for_each(|(value, text)| assert_eq!(six_digits(*value), *text));
-    }
-
-    #[test]
-    fn zero_has_no_sign() {
         let all = [(-1e-9, "0.000"), (1e-9, "0.000"), (-0.5, "-0.500"), (0.5, "+0.500"), (f64::NAN, "–")];
         all.iter().for_each(|(value, text)| assert_eq!(signed(*value, 3), *text));
     }

@@ -124,16 +124,16 @@ mod tests {
         let many = [inner.clone(), Html::default(), inner.clone()];
         let outer = html!("{% for m in many %}{{ m }}{% endfor %}{{ none }}", many, none => None::<Html>);
         assert_eq!(outer, inner.clone() + inner);
+        assert_eq!(
+            &*Html::data("</script><!-- \"&\""),
+            "<\\/script><\\!-- \"&\"",
+            "data cannot end a script"
+        );
     }
 
     #[test]
     #[should_panic(expected = "undefined value")]
     fn a_template_without_a_value_that_it_names_is_no_empty_text() {
         let _ = html!("<p>{{ name }}</p>", nome => "x");
-    }
-
-    #[test]
-    fn data_cannot_end_its_element() {
-        assert_eq!(&*Html::data("</script><!-- \"&\""), "<\\/script><\\!-- \"&\"");
     }
 }
