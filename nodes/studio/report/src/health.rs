@@ -83,7 +83,8 @@ impl Run {
         versions.extend((!self.summary.run.is_empty()).then(|| format!("run {}", self.summary.run)));
         versions.extend(self.summary.domain.map(|d| format!("DDS domain {d}")));
         versions.extend(self.seed().map(|s| format!("seed {s}")));
-        let scene = (!self.scene_text.is_empty()).then(|| lines(&self.scene_text)).unwrap_or_default();
+        let text = self.scene_text.as_str();
+        let scene = if text.is_empty() { Html::default() } else { lines(text) };
         let summary = html!("The scene, {{ file }}", file => code("scene.toml"));
         lines(&commands.join("\n")) + paragraph(format!("{}.", versions.join(", "))) + details(summary, scene)
     }
