@@ -58,10 +58,8 @@ mod tests {
             assert_eq!(markup.matches(&format!(" id=\"{id}\"")).count(), 1, "{id}");
         }
         for id in ["time", "packing", "measured", "processes"] {
-            assert!(
-                markup.contains(&format!("href=\"#{id}\""))
-                    && markup.contains(&format!("<section id=\"{id}\""))
-            );
+            let both = [format!("href=\"#{id}\""), format!("<section id=\"{id}\"")];
+            assert!(both.iter().all(|part| markup.contains(part)), "{id}");
         }
     }
 }

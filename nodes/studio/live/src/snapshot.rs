@@ -59,12 +59,11 @@ impl Snapshot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_page::html;
 
     #[test]
     fn a_browser_receives_all_at_first_and_then_what_has_changed() {
         let mut first = Snapshot::default();
-        first.set("cards", html!("<b>1</b>"));
+        first.set("cards", grainlab_page::html!("<b>1</b>"));
         first.set("nodes", "n".into());
         first.sample = "{}".into();
         let events = first.since(&Snapshot::default());
