@@ -93,49 +93,43 @@ impl Timeline {
         if !t.fabrics.is_empty() {
             coordination.push(Curve::points("z", 1, &t.fabrics, |s| s.z));
         }
+        let target =
+            |(n, series): (usize, &Phased)| Curve { faint: true, ..Curve::line("", n, series, 1e-3) };
+        let targets = t.targets.iter().enumerate().map(target);
+        let fabric = match t.fabrics.as_slice() {
+            [] | [_] => Vec::new(),
+            all => vec![
+                Curve::points("ε", 0, all, |s| s.eps),
+                Curve::points("ε by stiffness", 1, all, |s| s.eps_stiffness),
+            ],
+        };
+        let plot = |id, title, caption, curves| Plot { id, title, scale: Scale::Linear, caption, curves };
         vec![
-            Plot {
-                id: "stress",
-                title: "Stress, kPa",
-                scale: Scale::Linear,
-                caption: "Components, positive in compression; thin: their targets.",
-                curves: {
-                    let target = |(n, series): (usize, &Phased)| Curve {
-                        faint: true,
-                        ..Curve::line("", n, series, 1e-3)
-                    };
-                    let targets = t.targets.iter().enumerate().map(target);
-                    targets.chain(components(&t.stress, "σ", 1e-3, 0..6)).collect()
-                },
-            },
-            Plot {
-                id: "pressure",
-                title: "Pressure and deviator, kPa",
-                scale: Scale::Linear,
-                caption: "p is the mean stress, q = √(3/2 s : s) that of the deviator s.",
-                curves: vec![Curve::line("p", 0, &t.pressure, 1e-3), Curve::line("q", 1, &t.deviator, 1e-3)],
-            },
-            Plot {
-                id: "strain",
-                title: "Strain, %",
-                scale: Scale::Linear,
-                caption: "Logarithmic, positive in extension, since the reference state; before a phase sets one, since the first step.",
-                curves: components(&t.strain, "ε", 100.0, 0..6),
-            },
-            Plot {
-                id: "solid-fraction",
-                title: "Solid fraction φ",
-                scale: Scale::Linear,
-                caption: "",
-                curves: vec![Curve::line("φ", 0, &t.solid_fraction, 1.0)],
-            },
-            Plot {
-                id: "coordination",
-                title: "Coordination number",
-                scale: Scale::Linear,
-                caption: "k of all grains; z without rattlers, at the measured packings.",
-                curves: coordination,
-            },
+            plot(
+                "stress",
+                "Stress, kPa",
+                "Components, positive in compression; thin: their targets.",
+                targets.chain(components(&t.stress, "σ", 1e-3, 0..6)).collect(),
+            ),
+            plot(
+                "pressure",
+                "Pressure and deviator, kPa",
+                "p is the mean stress, q = √(3/2 s : s) that of the deviator s.",
+                vec![Curve::line("p", 0, &t.pressure, 1e-3), Curve::line("q", 1, &t.deviator, 1e-3)],
+            ),
+            plot(
+                "strain",
+                "Strain, %",
+                "Logarithmic, positive in extension, since the reference state; before a phase sets one, since the first step.",
+                components(&t.strain, "ε", 100.0, 0..6),
+            ),
+            plot("solid-fraction", "Solid fraction φ", "", vec![Curve::line("φ", 0, &t.solid_fraction, 1.0)]),
+            plot(
+                "coordination",
+                "Coordination number",
+                "k of all grains; z without rattlers, at the measured packings.",
+                coordination,
+            ),
             Plot {
                 id: "unbalanced-force",
                 title: "Unbalanced force",
@@ -143,19 +137,12 @@ impl Timeline {
                 caption: "Mean net force of a grain over the mean contact force.",
                 curves: vec![Curve::line("", 0, &t.unbalanced, 1.0)],
             },
-            Plot {
-                id: "fabric",
-                title: "Fabric: anisotropy",
-                scale: Scale::Linear,
-                caption: "ε of the contacts, and weighted by their stiffness, at the measured packings.",
-                curves: match t.fabrics.as_slice() {
-                    [] | [_] => Vec::new(),
-                    all => vec![
-                        Curve::points("ε", 0, all, |s| s.eps),
-                        Curve::points("ε by stiffness", 1, all, |s| s.eps_stiffness),
-                    ],
-                },
-            },
+            plot(
+                "fabric",
+                "Fabric: anisotropy",
+                "ε of the contacts, and weighted by their stiffness, at the measured packings.",
+                fabric,
+            ),
         ]
     }
 
