@@ -15,7 +15,7 @@ const LINK_DDS: usize = 16;
 const LINK_FAER: usize = 13;
 
 /// Packages that the binary links, with those of the workspace and procedural macros.
-const IN_BINARY: usize = 334;
+const IN_BINARY: usize = 336;
 
 /// Crates that read files and must link neither the engine nor a node.
 const READERS: [&str; 2] = ["grainlab_recordings", "grainlab_pictures"];

@@ -134,8 +134,8 @@ impl Show {
             // Nothing of the run before stays.
             self.drawn = Drawn { began: Some(known.began), version: self.drawn.version, ..Drawn::default() };
             self.snapshot = Snapshot::default();
-            self.snapshot.set("curves", String::new());
-            self.snapshot.set("phases", String::new());
+            self.snapshot.set("curves", "".into());
+            self.snapshot.set("phases", "".into());
         }
         let parts = &mut self.snapshot;
         parts.set("stage", "run".into());
@@ -143,7 +143,7 @@ impl Show {
         parts.set("cards", known.cards());
         parts.set("targets", known.targets());
         parts.set("structure", known.structure());
-        parts.set("no-packing", known.no_packing());
+        parts.set("no-packing", known.no_packing().into());
         if let Some(follower) = follower {
             parts.set("nodes", known.nodes(follower.peers().iter(), follower.bus_now()));
         }
@@ -153,7 +153,7 @@ impl Show {
         {
             self.drawn.values = values;
             parts.set("phases", known.timeline.phase_list());
-            parts.set("curves", known.timeline.drawings().into_iter().map(|(_, svg)| svg).collect());
+            parts.set("curves", known.timeline.drawings());
         }
         if self.drawn.pictured != known.pictured {
             self.drawn.pictured = known.pictured;

@@ -1,5 +1,6 @@
 //! What browsers receive: parts of the page, the latest values, and the packings.
 
+use grainlab_page::Html;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -25,9 +26,9 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// Sets a part.
-    pub fn set(&mut self, id: &'static str, markup: String) {
+    pub fn set(&mut self, id: &'static str, markup: Html) {
         if self.parts.get(id).is_none_or(|known| **known != *markup) {
-            self.parts.insert(id, markup.into());
+            self.parts.insert(id, String::from(markup).into());
         }
     }
 
@@ -62,7 +63,7 @@ mod tests {
     #[test]
     fn a_browser_receives_all_at_first_and_then_what_has_changed() {
         let mut first = Snapshot::default();
-        first.set("cards", "<b>1</b>".into());
+        first.set("cards", grainlab_page::html!("<b>1</b>"));
         first.set("nodes", "n".into());
         first.sample = "{}".into();
         let events = first.since(&Snapshot::default());

@@ -1,55 +1,37 @@
 //! Heading, progress and processes of a run as parts of the page.
 
 use crate::laboratory::{End, Laboratory};
-use grainlab_console::count;
+use grainlab_console::{count, duration};
 use grainlab_msgs::boundary::RunStatus;
 use grainlab_node_kit::{Level, Liveliness, Peer, run_of};
-use grainlab_page::html::{Cell, escaped, paragraph, table};
+use grainlab_page::{Cell, Html, heading, html, paragraph, table, verdict};
 use std::time::Duration;
 
 /// Silence of the simulator that is mentioned: it reports once a second.
 const QUIET: Duration = Duration::from_secs(3);
 
 /// The page while no run is on the bus.
-pub(crate) fn waiting(awaited: &str) -> String {
-    format!(
-        "<p class=\"eyebrow\">grainlab</p>\n<h1>Waiting for a run</h1>\n\
-         <p class=\"verdict\">No laboratory is on the bus {}. This page follows the next one.</p>\n\
-         <p>Start one in another terminal: <code>grainlab launch --scene demo</code></p>\n",
-        escaped(awaited)
-    )
-}
-
-/// A duration for readers.
-pub(crate) fn duration(seconds: f64) -> String {
-    let whole = seconds.round() as u64;
-    match whole {
-        0..100 => format!("{whole} s"),
-        100..6000 => format!("{} min", (whole + 30) / 60),
-        6000..180_000 => format!("{} h", (whole + 1800) / 3600),
-        _ => format!("{} days", whole / 86_400),
-    }
+pub(crate) fn waiting(awaited: &str) -> Html {
+    heading("grainlab", "Waiting for a run", "")
+        + verdict("", &format!("No laboratory is on the bus {awaited}. This page follows the next one."))
+        + html!("<p>Start one in another terminal: <code>grainlab launch --scene demo</code></p>\n")
 }
 
 impl Laboratory {
     /// What runs, and whether it does.
-    pub(crate) fn heading(&self, domain: u16, others: usize, now: Duration) -> String {
+    pub(crate) fn heading(&self, domain: u16, others: usize, now: Duration) -> Html {
         let run = self.run.map_or_else(|| "started by hand".to_owned(), |run| format!("run {run}"));
         let name = if self.scene.is_empty() { "A run" } else { &self.scene };
         let grains = self.grains.map_or_else(String::new, |n| format!(": {}", count(n, "grain")));
         let (class, words) = self.verdict(now);
         let others = match others {
-            0 => String::new(),
-            n => format!("<p>{} on the bus, not shown.</p>\n", count(n, "further run")),
+            0 => Html::default(),
+            n => paragraph(format!("{} on the bus, not shown.", count(n, "further run"))),
         };
-        format!(
-            "<p class=\"eyebrow\">grainlab · {} · domain {domain}</p>\n<h1>{}</h1>\n\
-             <p class=\"verdict {class}\">{}</p>\n{others}{}",
-            escaped(&run),
-            escaped(&format!("{name}{grains}")),
-            escaped(&words),
-            self.progress_bar(),
-        )
+        heading(&format!("grainlab · {run} · domain {domain}"), &format!("{name}{grains}"), "")
+            + verdict(class, &words)
+            + others
+            + self.progress_bar()
     }
 
     fn verdict(&self, now: Duration) -> (&'static str, String) {
@@ -89,24 +71,17 @@ impl Laboratory {
         }
     }
 
-    fn progress_bar(&self) -> String {
-        let Some(state) = &self.state else { return String::new() };
+    fn progress_bar(&self) -> Html {
+        let Some(state) = &self.state else { return Html::default() };
         let percent = 100.0 * state.progress;
-        let note = if state.status == RunStatus::Running && !state.message.is_empty() {
-            paragraph(&format!("This phase is computed {}.", state.message))
-        } else {
-            String::new()
-        };
-        let phase = self.phase().map_or_else(String::new, |n| {
+        let is_noted = state.status == RunStatus::Running && !state.message.is_empty();
+        let note = is_noted.then(|| paragraph(format!("This phase is computed {}.", state.message)));
+        let phase = self.phase().map(|n| {
             let name = self.timeline.phase_name(n);
             format!("phase {n}, {name}{}", self.rest_of_phase(&name))
         });
-        format!(
-            "<div class=\"progress\" role=\"progressbar\" aria-label=\"Progress\" aria-valuemin=\"0\" aria-valuemax=\"100\" \
-             aria-valuenow=\"{percent:.0}\"><i style=\"width:{percent:.1}%\"></i></div>\n\
-             <p class=\"below\"><span>{}</span><span>{percent:.0} % of the phases are over</span></p>\n{note}",
-            escaped(&phase)
-        )
+        let (whole, width) = (format!("{percent:.0}"), format!("{percent:.1}"));
+        html!(include_str!("../assets/progress.html"), whole, width, phase, note)
     }
 
     /// Why no packing is shown.
@@ -129,27 +104,27 @@ impl Laboratory {
     }
 
     /// Who is there; `now` is the time of the bus.
-    pub(crate) fn nodes<'a>(&self, peers: impl Iterator<Item = &'a Peer>, now: Duration) -> String {
+    pub(crate) fn nodes<'a>(&self, peers: impl Iterator<Item = &'a Peer>, now: Duration) -> Html {
         let mut peers: Vec<&Peer> = peers.filter(|p| run_of(&p.participant) == self.run).collect();
         // A restarted process follows the one that it replaces.
         peers.sort_by(|a, b| (&a.report.node, a.last_heard).cmp(&(&b.report.node, b.last_heard)));
-        let rows: Vec<Vec<Cell>> = peers.iter().map(|p| row(p, now)).collect();
         let refused = match self.refused {
-            0 => String::new(),
-            n => paragraph(&format!(
+            0 => Html::default(),
+            n => paragraph(format!(
                 "{} refused by this page: not as the contract of topics says.",
                 count(n, "message")
             )),
         };
-        if rows.is_empty() {
-            return paragraph("No process has reported yet: each one does once a second.") + &refused;
+        if peers.is_empty() {
+            return paragraph("No process has reported yet: each one does once a second.") + refused;
         }
         let caption = "Reports of the last second. Lost: not delivered to a reader that was too far behind, or missing in the recording.";
-        table(caption, &["node", "", "reports", "received", "refused", "lost", "process"], &rows) + &refused
+        let header = ["node", "", "reports", "received", "refused", "lost", "process"];
+        table(caption, header, peers.iter().map(|p| row(p, now))) + refused
     }
 }
 
-fn row(peer: &Peer, now: Duration) -> Vec<Cell> {
+fn row(peer: &Peer, now: Duration) -> [Cell; 7] {
     let report = &peer.report;
     let (class, presence) = match peer.liveliness(now) {
         Liveliness::Alive if report.health.level == Level::Ok => ("here", "present".to_owned()),
@@ -164,15 +139,15 @@ fn row(peer: &Peer, now: Duration) -> Vec<Cell> {
     let lost = report.published.iter().map(|p| p.full).sum::<u64>() + value("missing").unwrap_or(0);
     let (taken, refused) =
         report.received.iter().fold((0, 0), |(taken, refused), r| (taken + r.taken, refused + r.refused));
-    let number = |n: u64| if n > 0 { Cell::classed(n.to_string(), "n bad") } else { Cell::number("0") };
-    vec![
+    let number = |n: u64| Cell::classed(n.to_string(), if n > 0 { "n bad" } else { "n" });
+    [
         Cell::text(&report.node),
         Cell::classed(presence, class),
         Cell::text(&report.health.message),
-        Cell::number(taken.to_string()),
+        Cell::number(taken),
         number(refused),
         number(lost),
-        Cell::number(report.pid.to_string()),
+        Cell::number(report.pid),
     ]
 }
 
@@ -207,12 +182,12 @@ mod tests {
     fn a_phase_of_known_end_has_a_share_and_a_time_and_another_its_open_conditions() {
         let heading = |lab: &Laboratory| lab.heading(0, 0, Duration::from_secs(2));
         let known = heading(&reported("extension", &[(0, "0.20"), (2, "0.40")]));
-        assert!(known.contains("extension: 40 %, about 6 s left<"), "{known}");
-        assert!(known.contains(">Running<") && known.contains("computed without spins."), "{known}");
+        assert!(known.contains("extension: 40 %, about 6 s left<"), "{known:?}");
+        assert!(known.contains(">Running<") && known.contains("computed without spins."), "{known:?}");
         let open = heading(&reported("extension", &[(0, "")]));
-        assert!(open.contains("extension, not yet: unbalanced is 2e-3, above 1e-3<"), "{open}");
+        assert!(open.contains("extension, not yet: unbalanced is 2e-3, above 1e-3<"), "{open:?}");
         let late = heading(&reported("gas", &[(0, "0.9")]));
-        assert!(late.contains("phase 1, extension<"), "the report is of another phase: {late}");
+        assert!(late.contains("phase 1, extension<"), "the report is of another phase: {late:?}");
     }
 
     #[test]
@@ -222,18 +197,5 @@ mod tests {
         lab.too_large = Some(300_000);
         assert!(lab.no_packing().contains("300000 grains"));
         assert!(Laboratory::new(None, Duration::ZERO).no_packing().contains("No packing has been"));
-    }
-
-    #[test]
-    fn durations_are_in_a_unit_that_readers_grasp() {
-        let all = [
-            (0.2, "0 s"),
-            (99.4, "99 s"),
-            (100.0, "2 min"),
-            (3600.0, "60 min"),
-            (7200.0, "2 h"),
-            (1e6, "11 days"),
-        ];
-        all.iter().for_each(|(seconds, text)| assert_eq!(duration(*seconds), *text));
     }
 }

@@ -1,11 +1,27 @@
 //! What pages and files of results share: plots, elements of HTML, tables of typed columns.
 //!
+//! - [`Page`]: the frame of a page, with its [`Section`]s
+//! - [`Html`], [`html!`]: markup, from texts and templates; [`table`], [`figure`], [`card`] and others: elements of pages
+//! - [`fixed`], [`signed`], [`six_digits`]: numbers for readers
 //! - [`plot`]: plots as SVG and as text
-//! - [`html`]: elements of HTML pages
 //! - [`Dataset`]: typed columns, as CSV and Parquet
 
+#[macro_use]
+mod markup;
+
 mod dataset;
-pub mod html;
+mod elements;
+mod page;
 pub mod plot;
 
 pub use dataset::Dataset;
+pub use elements::{
+    Cell, card, code, csv, data, details, figure, fixed, grid, heading, lines, list, paragraph, plus_minus,
+    signed, six_digits, table, verdict, with_unit,
+};
+pub use markup::Html;
+#[doc(hidden)]
+pub use markup::rendered;
+#[doc(hidden)]
+pub use minijinja;
+pub use page::{Page, Section};

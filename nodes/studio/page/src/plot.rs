@@ -1,7 +1,7 @@
 //! Plots as SVG and as text: series of points over two axes, linear or logarithmic, with error bars, labels and a legend, in light or
 //! dark. Points can have tooltips.
 //!
-//! - [`Figure`]: the contents; [`Theme`]: the colours; [`page_style`]: those of all plots of a page
+//! - [`Figure`]: the contents; [`Theme`]: the colours of a file; `page_style`: those of all plots of a page
 //! - [`Strip`]: one of several plots over a common axis; [`Rose`]: a quantity by direction; [`Bars`]: values by name
 //! - `axis`: positions of values, and the tick marks of an axis
 //! - `labels`: texts beside points, if there is room
@@ -21,20 +21,30 @@ pub use bars::{Bar, Bars};
 pub use figure::{Axis, Entry, Figure, Line, Marker, Point, Scale, Series, Theme};
 pub use rose::Rose;
 pub use strip::{Band, Strip};
-pub use style::page_style;
+pub(crate) use style::page_style;
 
+use crate::markup::Html;
 use axis::Range;
 use draw::{Drawing, Key};
 
 impl Figure {
-    /// The plot as SVG.
+    /// The plot as a file.
     pub fn svg(&self, theme: Theme) -> String {
+        self.drawn(Some(theme)).end()
+    }
+
+    /// The plot as an element of a page.
+    pub fn element(&self) -> Html {
+        self.drawn(None).element()
+    }
+
+    fn drawn(&self, theme: Option<Theme>) -> Drawing {
         let mut drawing = Drawing::begin(theme, &self.title, &self.subtitle);
         let [x, y] = self.ranges(drawing.frame());
         drawing.axes((&x, &self.x.name), (&y, &self.y.name));
         self.draw(&mut drawing, [&x, &y]);
         drawing.legend(&self.legend);
-        drawing.end()
+        drawing
     }
 
     /// The axes within a frame.

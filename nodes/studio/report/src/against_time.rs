@@ -1,13 +1,11 @@
 //! The run against time: small plots over one axis, with the phases behind.
 
-use crate::figure::{PageFigure, number};
 use crate::phased::Phased;
 use crate::timeline::{Structure, Timeline};
 use grainlab_console::count;
 use grainlab_core::SymTensor;
-use grainlab_page::html::{escaped, paragraph};
 use grainlab_page::plot::{Axis, Band, Entry, Figure, Line, Marker, Point, Scale, Series, Strip};
-use std::fmt::Write;
+use grainlab_page::{Html, csv, figure, html, paragraph, six_digits};
 
 /// Seconds to milliseconds.
 const MS: f64 = 1e3;
@@ -47,34 +45,30 @@ struct Plot {
 
 impl Timeline {
     /// All plots against time.
-    pub(crate) fn against_time(&self) -> String {
+    pub(crate) fn against_time(&self) -> Html {
         if self.pressure.count() == 0 {
             return paragraph("The recording has no stress against time.");
         }
-        let plots: String = self.drawable().iter().map(|p| self.drawn(p, true)).collect();
-        let phases = self.phase_list();
-        format!(
-            "<p>The bands are the phases of the scene, drawn with equal widths, or in simulated time. Of {}, each line has the \
-             extremes in bins about a pixel wide.</p>\n\
-             <div class=\"choice\" role=\"group\" aria-label=\"Horizontal axis\">\
-             <button type=\"button\" data-show=\"phase\" aria-pressed=\"true\">Phases of equal width</button>\
-             <button type=\"button\" data-show=\"time\" aria-pressed=\"false\">Time</button></div>\n\
-             <ol class=\"phases\">{phases}</ol>\n<div class=\"grid\" data-phases=\"{}\">\n{plots}</div>\n",
-            count(self.pressure.count(), "exchange"),
-            self.axis().0.iter().map(|t| number(t * MS)).collect::<Vec<_>>().join(" ")
-        )
+        let plots = self.drawable().iter().map(|p| self.drawn(p, true)).collect();
+        let begins: Vec<String> = self.axis().0.iter().map(|t| six_digits(t * MS)).collect();
+        let about = format!(
+            "The bands are the phases of the scene, drawn with equal widths, or in simulated time. Of {}, each line has the \
+             extremes in bins about a pixel wide.",
+            count(self.pressure.count(), "exchange")
+        );
+        curves(&about, self.phase_list(), plots, &begins.join(" "))
     }
 
-    /// The plots without their data, each with its id, for a page that draws them again and again.
-    pub fn drawings(&self) -> Vec<(&'static str, String)> {
-        self.drawable().iter().map(|p| (p.id, self.drawn(p, false))).collect()
+    /// The plots without their data, for a page that draws them again and again.
+    pub fn drawings(&self) -> Html {
+        self.drawable().iter().map(|p| self.drawn(p, false)).collect()
     }
 
     /// The phases as items of a list.
-    pub fn phase_list(&self) -> String {
+    pub fn phase_list(&self) -> Html {
         let item = |b: &Band| {
             let name = b.tooltip.split_once(": ").map_or("", |t| t.1);
-            format!("<li><b>{}</b> {}</li>", escaped(&b.label), escaped(name))
+            html!("<li><b>{{ number }}</b> {{ name }}</li>", number => b.label, name)
         };
         self.bands().iter().map(item).collect()
     }
@@ -99,49 +93,43 @@ impl Timeline {
         if !t.fabrics.is_empty() {
             coordination.push(Curve::points("z", 1, &t.fabrics, |s| s.z));
         }
+        let target =
+            |(n, series): (usize, &Phased)| Curve { faint: true, ..Curve::line("", n, series, 1e-3) };
+        let targets = t.targets.iter().enumerate().map(target);
+        let fabric = match t.fabrics.as_slice() {
+            [] | [_] => Vec::new(),
+            all => vec![
+                Curve::points("ε", 0, all, |s| s.eps),
+                Curve::points("ε by stiffness", 1, all, |s| s.eps_stiffness),
+            ],
+        };
+        let plot = |id, title, caption, curves| Plot { id, title, scale: Scale::Linear, caption, curves };
         vec![
-            Plot {
-                id: "stress",
-                title: "Stress, kPa",
-                scale: Scale::Linear,
-                caption: "Components, positive in compression; thin: their targets.",
-                curves: {
-                    let target = |(n, series): (usize, &Phased)| Curve {
-                        faint: true,
-                        ..Curve::line("", n, series, 1e-3)
-                    };
-                    let targets = t.targets.iter().enumerate().map(target);
-                    targets.chain(components(&t.stress, "σ", 1e-3, 0..6)).collect()
-                },
-            },
-            Plot {
-                id: "pressure",
-                title: "Pressure and deviator, kPa",
-                scale: Scale::Linear,
-                caption: "p is the mean stress, q = √(3/2 s : s) that of the deviator s.",
-                curves: vec![Curve::line("p", 0, &t.pressure, 1e-3), Curve::line("q", 1, &t.deviator, 1e-3)],
-            },
-            Plot {
-                id: "strain",
-                title: "Strain, %",
-                scale: Scale::Linear,
-                caption: "Logarithmic, positive in extension, since the reference state; before a phase sets one, since the first step.",
-                curves: components(&t.strain, "ε", 100.0, 0..6),
-            },
-            Plot {
-                id: "solid-fraction",
-                title: "Solid fraction φ",
-                scale: Scale::Linear,
-                caption: "",
-                curves: vec![Curve::line("φ", 0, &t.solid_fraction, 1.0)],
-            },
-            Plot {
-                id: "coordination",
-                title: "Coordination number",
-                scale: Scale::Linear,
-                caption: "k of all grains; z without rattlers, at the measured packings.",
-                curves: coordination,
-            },
+            plot(
+                "stress",
+                "Stress, kPa",
+                "Components, positive in compression; thin: their targets.",
+                targets.chain(components(&t.stress, "σ", 1e-3, 0..6)).collect(),
+            ),
+            plot(
+                "pressure",
+                "Pressure and deviator, kPa",
+                "p is the mean stress, q = √(3/2 s : s) that of the deviator s.",
+                vec![Curve::line("p", 0, &t.pressure, 1e-3), Curve::line("q", 1, &t.deviator, 1e-3)],
+            ),
+            plot(
+                "strain",
+                "Strain, %",
+                "Logarithmic, positive in extension, since the reference state; before a phase sets one, since the first step.",
+                components(&t.strain, "ε", 100.0, 0..6),
+            ),
+            plot("solid-fraction", "Solid fraction φ", "", vec![Curve::line("φ", 0, &t.solid_fraction, 1.0)]),
+            plot(
+                "coordination",
+                "Coordination number",
+                "k of all grains; z without rattlers, at the measured packings.",
+                coordination,
+            ),
             Plot {
                 id: "unbalanced-force",
                 title: "Unbalanced force",
@@ -149,19 +137,12 @@ impl Timeline {
                 caption: "Mean net force of a grain over the mean contact force.",
                 curves: vec![Curve::line("", 0, &t.unbalanced, 1.0)],
             },
-            Plot {
-                id: "fabric",
-                title: "Fabric: anisotropy",
-                scale: Scale::Linear,
-                caption: "ε of the contacts, and weighted by their stiffness, at the measured packings.",
-                curves: match t.fabrics.as_slice() {
-                    [] | [_] => Vec::new(),
-                    all => vec![
-                        Curve::points("ε", 0, all, |s| s.eps),
-                        Curve::points("ε by stiffness", 1, all, |s| s.eps_stiffness),
-                    ],
-                },
-            },
+            plot(
+                "fabric",
+                "Fabric: anisotropy",
+                "ε of the contacts, and weighted by their stiffness, at the measured packings.",
+                fabric,
+            ),
         ]
     }
 
@@ -177,7 +158,7 @@ impl Timeline {
         phases.iter().zip(ends).map(band).collect()
     }
 
-    fn drawn(&self, plot: &Plot, with_data: bool) -> String {
+    fn drawn(&self, plot: &Plot, with_data: bool) -> Html {
         let axis = self.axis();
         let bands = self.bands();
         let numbered = |(n, band): (usize, &Band)| Band { range: [n as f64, n as f64 + 1.0], ..band.clone() };
@@ -187,22 +168,17 @@ impl Timeline {
             by_band: true,
         };
         let by_time = Strip { figure: self.figure(plot, "time, ms", |t| t * MS), bands, by_band: false };
-        let mut csv = String::new();
-        if with_data {
-            csv += "series,time_s,value\n";
-        }
-        for curve in plot.curves.iter().filter(|c| with_data && !c.faint) {
+        let rows = plot.curves.iter().filter(|c| !c.faint).flat_map(|curve| {
             let name = if curve.name.is_empty() { plot.id } else { &curve.name };
-            for (time, value) in &curve.points {
-                let _ = writeln!(csv, "{name},{},{}", number(*time), number(*value));
-            }
-        }
-        let svg = format!(
-            "<div data-axis=\"phase\">{}</div><div data-axis=\"time\">{}</div>",
-            by_phase.svg(),
-            by_time.svg()
+            curve.points.iter().map(|(t, v)| [name.to_owned(), six_digits(*t), six_digits(*v)])
+        });
+        let data = if with_data { csv(["series", "time_s", "value"], rows) } else { String::new() };
+        let both = html!(
+            "<div data-axis=\"phase\">{{ by_phase }}</div><div data-axis=\"time\">{{ by_time }}</div>",
+            by_phase => by_phase.svg(),
+            by_time => by_time.svg()
         );
-        PageFigure { id: plot.id, svg, caption: plot.caption, csv }.html()
+        figure(plot.id, both, plot.caption, &data)
     }
 
     /// A plot over a horizontal axis that follows from time.
@@ -237,9 +213,14 @@ impl Timeline {
     }
 }
 
+/// Plots over a common axis, which the reader chooses; `begins` are those of the phases and the end of the last one, ms.
+pub fn curves(about: &str, phases: Html, plots: Html, begins: &str) -> Html {
+    html!(include_str!("../assets/curves.html"), about, phases, plots, begins)
+}
+
 /// The last values, for readers who do not see the plot.
 fn said(curves: &[Curve]) -> String {
-    let last = |c: &Curve| Some(format!("{} {}", c.name, number(c.points.last()?.1)).trim().to_owned());
+    let last = |c: &Curve| Some(format!("{} {}", c.name, six_digits(c.points.last()?.1)).trim().to_owned());
     format!(
         "Last values: {}",
         curves.iter().filter(|c| !c.faint).filter_map(last).collect::<Vec<_>>().join(", ")

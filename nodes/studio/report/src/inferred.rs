@@ -1,15 +1,14 @@
 //! What was inferred from moduli and wave speeds, beside what was counted.
 
-use crate::figure::{PageFigure, number};
 use crate::run::{Run, recommended};
-use grainlab_console::fixed;
 use grainlab_core::results::InferredQuantity;
-use grainlab_page::html::{Cell, escaped, paragraph, table};
 use grainlab_page::plot::{Bar, Bars};
+use grainlab_page::{
+    Cell, Html, csv, details, figure, fixed, grid, list, paragraph, plus_minus, signed, six_digits, table,
+};
 use grainlab_results::Inference;
 use grainlab_results::brief::moduli;
 use grainlab_results::read_back::InvertedPacking;
-use std::fmt::Write;
 
 /// Most bars of a plot; its data have all.
 const MOST_BARS: usize = 60;
@@ -24,134 +23,103 @@ fn name(e: &Inference) -> String {
     format!("{}{}{}", e.model, data.unwrap_or_default(), by.unwrap_or_default())
 }
 
-fn figure(quantity: InferredQuantity, state: &InvertedPacking) -> Option<String> {
+fn plot(quantity: InferredQuantity, state: &InvertedPacking) -> Option<Html> {
     let counted = state.packing.report.counted(quantity)?;
     let digits = quantity.digits();
-    let mut csv = String::from("model,status,inferred,low,high,counted\n");
-    let mut bars = Vec::new();
     let best = recommended(state);
-    let is_best = |e: &&Inference| best.is_some_and(|b| std::ptr::eq(b, *e));
-    let others = state.results.iter().filter(|e| !is_best(e));
+    let others = state.results.iter().filter(|e| !best.is_some_and(|b| std::ptr::eq(b, *e)));
+    let (mut rows, mut bars) = (Vec::new(), Vec::new());
     for e in best.into_iter().chain(others) {
         let Some(value) = e.values[quantity] else { continue };
         let by_sigma = || e.sigma[quantity].map(|s| [value - 1.96 * s, value + 1.96 * s]);
         let interval = e.interval.bounds[quantity].or_else(by_sigma);
-        let [low, high] = interval.map_or([String::new(), String::new()], |i| i.map(number));
-        let _ = writeln!(
-            csv,
-            "{},{},{},{low},{high},{}",
-            name(e).replace(',', ""),
-            e.status,
-            number(value),
-            number(counted)
-        );
-        if bars.len() >= MOST_BARS {
-            continue;
-        }
-        let colour = if e.status == "ok" { 0 } else { 1 };
-        let error = format!("{value:.digits$} ({:+.digits$})", value - counted);
-        bars.push(Bar { name: name(e), colour, value, interval, text: error });
+        let [low, high] = interval.map_or([String::new(), String::new()], |i| i.map(six_digits));
+        let [inferred, counted_digits] = [value, counted].map(six_digits);
+        rows.push([name(e).replace(',', ""), e.status.to_string(), inferred, low, high, counted_digits]);
+        let colour = usize::from(e.status != "ok");
+        let text = format!("{} ({})", fixed(value, digits), signed(value - counted, digits));
+        bars.push(Bar { name: name(e), colour, value, interval, text });
     }
+    bars.truncate(MOST_BARS);
     let reference = Some((counted, format!("counted {counted:.digits$}")));
     let title = format!("{}: {}", quantity.symbol(), quantity.meaning());
     let id = format!("inferred-{}", quantity.text().replace('_', "-"));
-    (!bars.is_empty()).then(|| {
-        let svg = Bars { title, from_zero: false, bars, reference }.svg();
-        PageFigure { id: &id, svg, caption: "", csv }.html()
-    })
+    let data = csv(["model", "status", "inferred", "low", "high", "counted"], rows);
+    (!bars.is_empty())
+        .then(|| figure(&id, Bars { title, from_zero: false, bars, reference }.svg(), "", &data))
 }
 
-/// Cells of the inferred quantities; empty without an estimate.
-fn of_best(best: Option<&Inference>) -> impl Iterator<Item = Cell> {
-    InferredQuantity::countable().map(move |q| {
-        let sigma = best.and_then(|b| b.sigma[q]).map(|s| format!(" ± {s:.*}", q.digits()));
-        Cell::number(fixed(best.and_then(|b| b.values[q]), q.digits()) + &sigma.unwrap_or_default())
-    })
+/// Cells of the inferred quantities and of their model; empty without an estimate.
+fn of_best(best: Option<&Inference>, by: String) -> impl Iterator<Item = Cell> {
+    let cells = InferredQuantity::countable().map(move |q| {
+        let sigma = plus_minus(best.and_then(|b| b.sigma[q]), q.digits());
+        Cell::number(fixed(best.and_then(|b| b.values[q]), q.digits()) + &sigma)
+    });
+    cells.chain([Cell::text(by)])
+}
+
+/// A model with its status.
+fn model(e: &Inference) -> String {
+    format!("{} ({})", e.model, e.status)
+}
+
+fn symbols() -> impl Iterator<Item = &'static str> + Clone {
+    InferredQuantity::countable().map(InferredQuantity::symbol)
 }
 
 impl Run {
     /// Inferred against counted, of the last state, and all states as a table.
-    pub(crate) fn inferred(&self) -> String {
+    pub(crate) fn inferred(&self) -> Html {
         let Some(state) = self.last() else { return paragraph("No packing was measured.") };
-        let figures: String = InferredQuantity::countable().filter_map(|q| figure(q, state)).collect();
+        let figures: Html = InferredQuantity::countable().filter_map(|q| plot(q, state)).collect();
         let level = state.results.iter().find_map(|e| e.interval.level).unwrap_or(0.95);
         let about = if figures.is_empty() {
-            paragraph("Nothing was inferred.")
+            "Nothing was inferred.".to_owned()
         } else {
-            paragraph(&format!(
+            format!(
                 "Inferred from moduli, or from wave speeds if there are some, with the stress and the sizes and material of the grains; the contacts \
                  were not seen. Bars are intervals of {:.0} %, which assume the errors of the data that the inversion was given; the vertical line is the \
                  count. The model that is recommended comes first. Orange: its status is not ok; the notes have the reason.",
                 100.0 * level
-            ))
+            )
         };
-        let warnings: String = state
-            .results
-            .iter()
-            .flat_map(|e| {
-                e.warnings.iter().map(move |w| format!("<li>{}: {}</li>", escaped(&name(e)), escaped(w)))
-            })
-            .collect();
-        let warnings = if warnings.is_empty() {
-            warnings
-        } else {
-            format!("<details><summary>Notes of the models</summary><ul>{warnings}</ul></details>\n")
-        };
-        format!("{about}<div class=\"grid\">\n{figures}</div>\n{warnings}{}", self.of_instruments())
+        let notes = state.results.iter().flat_map(|e| e.warnings.iter().map(move |w| (e, w)));
+        let warnings = list(notes.map(|(e, w)| format!("{}: {w}", name(e))));
+        paragraph(about) + grid(figures) + details("Notes of the models", warnings) + self.of_instruments()
     }
 
     /// What was inferred from data that are not about a packing of the run; empty if nothing was.
-    fn of_instruments(&self) -> String {
-        let row = |e: &Inference| {
-            let mut cells = vec![
-                Cell::text(e.origin().data().unwrap_or_default()),
-                Cell::text(format!("{} ({})", e.model, e.status)),
-            ];
-            cells.extend(InferredQuantity::countable().map(|q| Cell::number(fixed(e.values[q], q.digits()))));
-            cells
-        };
-        let rows: Vec<Vec<Cell>> = self.of_instruments.iter().map(row).collect();
-        if rows.is_empty() {
-            return String::new();
-        }
-        let symbols = InferredQuantity::countable().map(InferredQuantity::symbol);
-        let header: Vec<&str> = ["data", "model"].into_iter().chain(symbols).collect();
-        table("Inferred from data of no packing of the run", &header, &rows)
+    fn of_instruments(&self) -> Html {
+        let rows = self.of_instruments.iter().map(|e| {
+            let cells = InferredQuantity::countable().map(|q| Cell::fixed(e.values[q], q.digits()));
+            [Cell::text(e.origin().data().unwrap_or_default()), Cell::text(model(e))].into_iter().chain(cells)
+        });
+        let header = ["data", "model"].into_iter().chain(symbols());
+        table("Inferred from data of no packing of the run", header, rows)
     }
 
     /// The measured states, one a row.
-    pub(crate) fn states_table(&self) -> String {
-        let symbols = || InferredQuantity::countable().map(InferredQuantity::symbol);
-        let counted = ["phase", "p, kPa", "φ"].into_iter().chain(symbols());
-        let measured = counted.chain(["G12, MPa", "G13, MPa", "Θ, MPa"]);
+    pub(crate) fn states_table(&self) -> Html {
+        let measured =
+            ["phase", "p, kPa", "φ"].into_iter().chain(symbols()).chain(["G12, MPa", "G13, MPa", "Θ, MPa"]);
         let before = measured.clone().count();
         let inferred = symbols().map(|symbol| format!("inferred {symbol}"));
-        let header: Vec<String> =
-            measured.map(str::to_owned).chain(inferred).chain(["by".to_owned()]).collect();
-        let header: Vec<&str> = header.iter().map(String::as_str).collect();
+        let header = measured.map(str::to_owned).chain(inferred).chain(["by".to_owned()]);
         let row = |s: &InvertedPacking| {
             let r = &s.packing.report;
             let phase = s.packing.position.filter(|p| p.phase > 0).map_or_else(String::new, |p| {
                 self.timeline.phase_name(p.phase as u32 - 1 + self.timeline.first_phase())
             });
             let best = recommended(s);
-            let mut cells = vec![
-                Cell::text(phase),
-                Cell::number(format!("{:.2}", r.pressure() / 1e3)),
-                Cell::number(format!("{:.4}", r.solid_fraction)),
-            ];
-            cells
-                .extend(InferredQuantity::countable().map(|q| Cell::number(fixed(r.counted(q), q.digits()))));
-            cells.extend(moduli(r).map(|m| Cell::number(fixed(m, 2))));
-            cells.extend(of_best(best));
             let unknown = if s.results.is_empty() { "" } else { "unknown" };
-            let which = best
-                .and_then(|b| b.measurement.as_ref())
-                .map_or_else(String::new, |m| format!(", {}", m.label));
-            cells.push(Cell::text(
-                best.map_or_else(|| unknown.to_owned(), |b| format!("{} ({}){which}", b.model, b.status)),
-            ));
-            cells
+            let which = best.and_then(|b| b.measurement.as_ref()).map(|m| format!(", {}", m.label));
+            let by = best.map_or_else(|| unknown.to_owned(), model) + &which.unwrap_or_default();
+            [Cell::text(phase), Cell::fixed(r.pressure() / 1e3, 2), Cell::fixed(r.solid_fraction, 4)]
+                .into_iter()
+                .chain(InferredQuantity::countable().map(|q| Cell::fixed(r.counted(q), q.digits())))
+                .chain(moduli(r).map(|m| Cell::fixed(m, 2)))
+                .chain(of_best(best, by))
+                .collect::<Vec<_>>()
         };
         // Each of several measurements of a packing has a row of its own.
         let further = |s: &InvertedPacking| -> Vec<Vec<Cell>> {
@@ -160,21 +128,18 @@ impl Run {
             let others = groups.iter().filter(|(o, _)| o.measurement.is_some() && Some(o) != first.as_ref());
             let row = |(origin, results): &(grainlab_results::Origin, Vec<&Inference>)| {
                 let best = Inference::recommended(results);
-                let by = best.map_or_else(|| "unknown".to_owned(), |b| format!("{} ({})", b.model, b.status));
-                let mut cells = vec![Cell::text(origin.data().unwrap_or_default())];
-                cells.extend((1..before).map(|_| Cell::text("")));
-                cells.extend(of_best(best));
-                cells.push(Cell::text(by));
-                cells
+                let empty = std::iter::repeat_n(Cell::text(""), before - 1);
+                let by = best.map_or_else(|| "unknown".to_owned(), model);
+                let data = Cell::text(origin.data().unwrap_or_default());
+                std::iter::once(data).chain(empty).chain(of_best(best, by)).collect()
             };
             others.map(row).collect()
         };
-        let rows: Vec<Vec<Cell>> =
-            self.states.iter().flat_map(|s| std::iter::once(row(s)).chain(further(s))).collect();
+        let rows = self.states.iter().flat_map(|s| std::iter::once(row(s)).chain(further(s)));
         table(
             "Packings at the ends of phases: counted, measured, and inferred with standard deviations.",
-            &header,
-            &rows,
+            header,
+            rows,
         )
     }
 }

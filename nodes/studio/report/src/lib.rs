@@ -2,16 +2,14 @@
 //!
 //! - [`Run`]: what a report is made of, from the files of a run; `timeline`, `phased`, [`Decimated`]: against time, in one pass
 //!   over the recording; `summary_file`: how the run ended
-//! - `page`: the page of a run; `against_time`, `structure`, `moduli`, `inferred`, `waves`, `health`: its sections; `figure`: a plot
-//!   that can be saved
+//! - `page`: the page of a run; `against_time`, `structure`, `moduli`, `inferred`, `waves`, `energy`, `health`: its sections
 //! - [`overview`]: the page of many runs; [`Outliers`]: values far from those of runs alike
-//! - [`Timeline`], [`STYLE`], [`SCRIPT`], [`card`]: what the page of a running laboratory has in common with a report
+//! - [`Timeline`], [`curves`], [`STYLE`], [`SCRIPT`]: what the page of a running laboratory has in common with a report
 //! - [`write_report`]: the file
 
 mod against_time;
 mod decimated;
 mod energy;
-mod figure;
 mod health;
 mod inferred;
 mod many;
@@ -26,10 +24,11 @@ mod timeline;
 mod waves;
 mod write;
 
+pub use against_time::curves;
 pub use decimated::Decimated;
 pub use many::overview;
 pub use outliers::Outliers;
-pub use page::{SCRIPT, STYLE, card};
+pub use page::{SCRIPT, STYLE};
 pub use run::Run;
 pub use timeline::Timeline;
 pub use write::{FILE, ReportError, write_page, write_report};

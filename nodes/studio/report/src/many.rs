@@ -1,12 +1,11 @@
 //! The page of many runs: one row per run, sortable, with outliers marked.
 
-use crate::figure::number;
 use crate::outliers::Outliers;
-use crate::page::whole;
+use crate::page::STYLE;
 use crate::run::{Run, recommended};
 use grainlab_console::{CsvText, count};
 use grainlab_core::results::InferredQuantity;
-use grainlab_page::html::{escaped, paragraph};
+use grainlab_page::{Cell, Page, Section, data, fixed, heading, html, paragraph, six_digits, table};
 use grainlab_results::brief::moduli;
 use std::collections::BTreeMap;
 
@@ -81,11 +80,12 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         .collect();
     let mut marked = 0;
     let mut csv = CsvText::new();
-    let header = ["run", "scene", "seed", "end"].into_iter().chain(columns.iter().map(|c| c.name.as_str()));
-    csv.row(header.clone());
-    let mut rows = String::new();
+    let names = columns.iter().map(|c| c.name.as_str());
+    let header: Vec<&str> = ["run", "scene", "seed", "end"].into_iter().chain(names).collect();
+    csv.row(&header);
+    let mut rows = Vec::new();
     for (run, link) in runs {
-        let scene = run.scene_name();
+        let (name, scene) = (run.name(), run.scene_name());
         let end = match run.summary.exit {
             None => "not known".to_owned(),
             Some(0) if run.is_incomplete() => "damaged".to_owned(),
@@ -94,60 +94,57 @@ pub fn overview(runs: &[(Run, String)]) -> String {
             Some(code) => format!("exit code {code}"),
         };
         let seed = run.seed().map(|s| s.to_string()).unwrap_or_default();
-        let class = if run.summary.exit == Some(0) && !run.is_incomplete() { "" } else { " class=\"bad\"" };
-        rows += &format!(
-            "<tr><th scope=\"row\"><a href=\"{}\">{}</a></th><td>{}</td><td class=\"n\">{seed}</td><td{class}>{end}</td>",
-            escaped(link),
-            escaped(&run.name()),
-            escaped(&scene)
-        );
-        let mut cells = vec![run.name(), scene.clone(), seed, end];
-        for (n, column) in columns.iter().enumerate() {
+        let class = if run.summary.exit == Some(0) && !run.is_incomplete() { "" } else { "bad" };
+        let linked = html!("<a href=\"{{ link }}\">{{ name }}</a>", link, name);
+        let mut row =
+            vec![Cell::text(linked), Cell::text(&scene), Cell::number(&seed), Cell::classed(&end, class)];
+        let mut line = vec![name, scene.clone(), seed, end];
+        for (column, outliers) in columns.iter().zip(&distributions[scene.as_str()]) {
             let value = (column.value)(run);
-            let score = value.and_then(|v| {
-                let o = distributions.get(scene.as_str())?[n]?;
-                o.has(v).then(|| o.score(v))
-            });
-            let text = value.map_or_else(String::new, |v| match column.name.as_str() {
-                "unbalanced" => format!("{v:.1e}"),
-                _ => format!("{v:.*}", column.digits),
-            });
-            let sorted = value.map_or_else(String::new, |v| format!(" data-value=\"{v}\""));
-            rows += &match score {
-                None => format!("<td class=\"n\"{sorted}>{text}</td>"),
-                Some(score) => {
-                    marked += 1;
-                    let said = if score.is_finite() {
-                        format!("outlier: robust z-score {score:.1}")
-                    } else {
-                        "outlier: all others are alike".to_owned()
+            line.push(value.map(six_digits).unwrap_or_default());
+            row.push(value.map_or_else(
+                || Cell::number(""),
+                |v| {
+                    let cell = match column.name.as_str() {
+                        "unbalanced" => Cell::number(format!("{v:.1e}")),
+                        _ => Cell::fixed(v, column.digits),
                     };
-                    format!(
-                        "<td class=\"n outlier\"{sorted} title=\"{said}\">{text}<span class=\"hidden\"> ({said})</span></td>"
+                    let cell = cell.sorted_by(v);
+                    let Some(score) = outliers.filter(|o| o.has(v)).map(|o| o.score(v)) else { return cell };
+                    marked += 1;
+                    cell.noted(
+                        "n outlier",
+                        match score.is_finite() {
+                            true => format!("outlier: robust z-score {}", fixed(score, 1)),
+                            false => "outlier: all others are alike".to_owned(),
+                        },
                     )
-                }
-            };
-            cells.push(value.map(number).unwrap_or_default());
+                },
+            ));
         }
-        rows += "</tr>\n";
-        csv.row(cells);
+        rows.push(row);
+        csv.row(line);
     }
-    let head: String = header
-        .map(|h| format!("<th scope=\"col\"><button type=\"button\" data-sort>{}</button></th>", escaped(h)))
-        .collect();
-    let about = paragraph(&format!(
+    let about = format!(
         "The last packing of each run; errors are inferred less counted. Marked: {}, more than 3.5 robust standard deviations from the \
          median of the runs of a scene, of which there must be five. Click a header to sort.",
         count(marked, "value")
-    ));
-    let table = format!(
-        "<div class=\"drawing\" id=\"runs-table\"><div class=\"scroll\"><table class=\"runs\"><caption class=\"hidden\">Runs</caption>\n\
-         <thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n\
-         <p class=\"save\"><button type=\"button\" data-save=\"csv\">Save CSV</button></p>\
-         <script type=\"text/csv\">{}</script></div>\n",
-        grainlab_page::html::script_text(&csv.finish())
+    );
+    let content = html!(
+        "{{ about }}<div class=\"drawing sortable\" id=\"runs-table\">{{ table }}\
+         <p class=\"save\"><button type=\"button\" data-save=\"csv\">Save CSV</button></p>{{ data }}</div>\n",
+        about => paragraph(about),
+        table => table("Runs", header, rows),
+        data => data("text/csv", "runs-data", &csv.finish())
     );
     let title = format!("{} of {}", count(runs.len(), "run"), count(by_scene.len(), "scene"));
-    let heading = format!("<p class=\"eyebrow\">grainlab</p>\n<h1>{title}</h1>\n");
-    whole(&title, &heading, &[("runs", "Runs", about + &table)], &[])
+    let page = Page {
+        heading: heading("grainlab", &title, ""),
+        title,
+        sections: vec![Section { id: "runs", title: "Runs", content }],
+        styles: vec![STYLE],
+        has_bar: true,
+        ..Page::default()
+    };
+    page.text()
 }

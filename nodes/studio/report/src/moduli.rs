@@ -1,11 +1,9 @@
 //! Moduli of the last packing: relaxed, and by closed forms of its contact network.
 
-use crate::figure::{PageFigure, number};
 use crate::run::Run;
 use grainlab_core::Stiffness;
-use grainlab_page::html::{Cell, paragraph, table};
 use grainlab_page::plot::{Bar, Bars};
-use std::fmt::Write;
+use grainlab_page::{Cell, Html, csv, figure, grid, paragraph, six_digits, table};
 
 /// Pa to MPa.
 const MPA: f64 = 1e-6;
@@ -17,13 +15,13 @@ const NAMES: [&str; 6] = ["G12", "G13", "Θ", "C11", "C33", "C13"];
 
 impl Run {
     /// Relaxed and affine moduli.
-    pub(crate) fn moduli(&self) -> String {
+    pub(crate) fn moduli(&self) -> Html {
         let Some(report) = self.last().map(|s| &s.packing.report) else {
             return paragraph("No packing was measured.");
         };
         let Some(stiffness) = report.stiffness() else {
             let why = report.elasticity.not_jammed().map(ToString::to_string).unwrap_or_default();
-            return paragraph(&format!("No stiffness: {why}."));
+            return paragraph(format!("No stiffness: {why}."));
         };
         let axis = &report.fabric.reference_axis;
         let all = |c: &Stiffness| {
@@ -45,20 +43,19 @@ impl Run {
                 text: format!("{:.1} {kind}", values[n]),
             })
         });
-        let svg =
-            Bars { title: "Moduli, MPa".into(), from_zero: true, bars: bars.collect(), reference: None }
-                .svg();
-        let mut csv = String::from("modulus,relaxed_mpa,mean_rotation_mpa,affine_mpa\n");
-        let row = |n: usize| {
-            let [relaxed, rotation, affine] = kinds.map(|k| k.2[n]);
-            let _ = writeln!(csv, "{},{},{},{}", NAMES[n], number(relaxed), number(rotation), number(affine));
-            let share = format!("{:.3}", relaxed / affine);
-            let mut cells = vec![Cell::text(NAMES[n])];
-            cells.extend([relaxed, rotation, affine].map(|v| Cell::number(format!("{v:.2}"))));
-            cells.push(Cell::number(share));
-            cells
-        };
-        let rows: Vec<Vec<Cell>> = (0..NAMES.len()).map(row).collect();
+        let plot =
+            Bars { title: "Moduli, MPa".into(), from_zero: true, bars: bars.collect(), reference: None };
+        let of = |n: usize| (NAMES[n], kinds.map(|k| k.2[n]));
+        let data = csv(
+            ["modulus", "relaxed_mpa", "mean_rotation_mpa", "affine_mpa"],
+            (0..NAMES.len()).map(of).map(|(name, [relaxed, rotation, affine])| {
+                [name.to_owned(), six_digits(relaxed), six_digits(rotation), six_digits(affine)]
+            }),
+        );
+        let rows = (0..NAMES.len()).map(of).map(|(name, [relaxed, rotation, affine])| {
+            let [r, m, a] = [relaxed, rotation, affine].map(|v| Cell::fixed(v, 2));
+            [Cell::text(name), r, m, a, Cell::fixed(relaxed / affine, 3)]
+        });
         let caption = format!(
             "MPa, about the axis ({:.2}, {:.2}, {:.2}), by the {}",
             axis.x,
@@ -66,10 +63,8 @@ impl Run {
             axis.z,
             stiffness.method.name().replace('_', " ")
         );
-        let caption = grainlab_page::html::escaped(&caption);
         let header = ["modulus", "relaxed", "mean rotation", "affine", "relaxed / affine"];
         let about = "G12 is the shear modulus across the axis, G13 along it, Θ the bulk modulus under isotropic strain.";
-        let figure = PageFigure { id: "moduli", svg, caption: about, csv }.html();
-        format!("<div class=\"grid\">\n{figure}{}</div>\n", table(&caption, &header, &rows))
+        grid(figure("moduli", plot.svg(), about, &data) + table(caption, header, rows))
     }
 }

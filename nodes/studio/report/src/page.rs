@@ -1,43 +1,18 @@
 //! The page of one run: one file, without references to others.
 
 use crate::run::{Run, recommended};
-use grainlab_console::fixed;
 use grainlab_core::results::InferredQuantity;
-use grainlab_page::html::{escaped, section};
-use grainlab_page::plot::page_style;
+use grainlab_page::{
+    Html, Page, Section, card, fixed, heading, html, list, paragraph, plus_minus, signed, verdict, with_unit,
+};
 use grainlab_results::brief::{ended, lost_words, moduli};
 use grainlab_results::read_back::InvertedPacking;
 use grainlab_viewer::PictureError;
 
-/// Style of a page, beside [`page_style`].
+/// Style of plots against time and of tables of runs, beside that of all pages.
 pub const STYLE: &str = include_str!("../assets/report.css");
-/// Script of a page: theme, saved plots, values under the pointer.
-pub const SCRIPT: &str = include_str!("../assets/report.js");
-
-/// A page with a heading, a navigation and sections (id, title, content). `scripts` are added to that of the page.
-pub(crate) fn whole(
-    title: &str,
-    heading: &str,
-    sections: &[(&str, &str, String)],
-    scripts: &[&str],
-) -> String {
-    let links: String =
-        sections.iter().map(|(id, title, _)| format!("<a href=\"#{id}\">{}</a>", escaped(title))).collect();
-    let content: String = sections.iter().map(|(id, title, content)| section(id, title, content)).collect();
-    let scripts: String =
-        scripts.iter().chain(&[SCRIPT]).map(|s| format!("<script>{s}</script>\n")).collect();
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n\
-         <style id=\"style\">\n{}{STYLE}{}</style>\n</head>\n<body>\n\
-         <header class=\"top\"><nav aria-label=\"Sections\">{links}</nav>\
-         <button type=\"button\" id=\"theme\" aria-label=\"Light or dark\">Light / dark</button></header>\n\
-         <main>\n{heading}{content}</main>\n{scripts}</body>\n</html>\n",
-        escaped(title),
-        page_style(),
-        grainlab_viewer::HEAD,
-    )
-}
+/// Script of plots against time.
+pub const SCRIPT: &str = include_str!("../assets/time.js");
 
 impl Run {
     /// The page.
@@ -45,51 +20,54 @@ impl Run {
     /// # Errors
     /// If the picture of the packing cannot be written.
     pub fn html(&self) -> Result<String, PictureError> {
-        let views = self.timeline.film.states();
-        let mut sections: Vec<(&str, &str, String)> = Vec::new();
-        if !views.is_empty() {
-            let left_out = self.timeline.film.count() - views.len();
-            let note = match left_out {
-                0 => String::new(),
-                n => format!(
-                    "<p>{n} of {} recorded states are left out, for the size of the page.</p>\n",
-                    self.timeline.film.count()
-                ),
-            };
-            sections.push(("packing", "The packing", grainlab_viewer::figure(&self.name(), &views)? + &note));
-        }
-        sections.push(("time", "Against time", self.timeline.against_time()));
-        sections.push(("structure", "Contacts and forces", self.structure()));
-        sections.push(("moduli", "Moduli", self.moduli()));
-        sections.push(("inference", "Inferred and counted", self.inferred()));
-        sections.extend(self.waves().map(|waves| ("waves", "Waves", waves)));
-        sections.extend(self.energy().map(|energy| ("energy", "Energy", energy)));
-        sections.push(("health", "Health of the run", self.health()));
-        sections.push(("repeat", "Repeat it", self.repeat()));
-        let title = format!("{}: run {}", self.scene_name(), self.name());
-        let scripts: &[&str] = if views.is_empty() { &[] } else { &grainlab_viewer::SCRIPTS };
-        Ok(whole(&title, &self.heading(), &sections, scripts))
+        let (film, views) = (&self.timeline.film, self.timeline.film.states());
+        let packing = match film.count() - views.len() {
+            0 => Html::default(),
+            n => paragraph(format!(
+                "{n} of {} recorded states are left out, for the size of the page.",
+                film.count()
+            )),
+        };
+        let packing = grainlab_viewer::figure(&self.name(), &views)? + packing;
+        let sections = [
+            ("packing", "The packing", (!views.is_empty()).then_some(packing)),
+            ("time", "Against time", Some(self.timeline.against_time())),
+            ("structure", "Contacts and forces", Some(self.structure())),
+            ("moduli", "Moduli", Some(self.moduli())),
+            ("inference", "Inferred and counted", Some(self.inferred())),
+            ("waves", "Waves", self.waves()),
+            ("energy", "Energy", self.energy()),
+            ("health", "Health of the run", Some(self.health())),
+            ("repeat", "Repeat it", Some(self.repeat())),
+        ];
+        let section =
+            |(id, title, content): (_, _, Option<Html>)| Some(Section { id, title, content: content? });
+        let scripts = if views.is_empty() { &[][..] } else { &grainlab_viewer::SCRIPTS };
+        let page = Page {
+            title: format!("{}: run {}", self.scene_name(), self.name()),
+            heading: self.heading(),
+            sections: sections.into_iter().filter_map(section).collect(),
+            styles: vec![STYLE, grainlab_viewer::STYLE],
+            scripts: [scripts, &[SCRIPT]].concat(),
+            has_bar: true,
+            ..Page::default()
+        };
+        Ok(page.text())
     }
 
     /// What was run, how it ended, and the key results.
-    fn heading(&self) -> String {
-        let mut text = format!(
-            "<p class=\"eyebrow\">grainlab · {}</p>\n<h1>{}</h1>\n",
-            escaped(&self.name()),
-            escaped(&self.headline())
+    fn heading(&self) -> Html {
+        let about = self.scene.as_ref().map_or("", |s| s.description.as_str());
+        let missing = list(&self.missing);
+        let missing = html!(
+            "{% if missing %}<div class=\"missing\"><b>Missing or not readable</b>{{ missing }}</div>\n{% endif %}",
+            missing
         );
-        let description = self.scene.as_ref().map(|s| s.description.as_str()).filter(|d| !d.is_empty());
-        text += &description.map_or_else(String::new, |d| format!("<p class=\"lead\">{}</p>\n", escaped(d)));
-        text += &self.verdict();
-        if !self.missing.is_empty() {
-            let items: String = self.missing.iter().map(|m| format!("<li>{}</li>", escaped(m))).collect();
-            text += &format!("<div class=\"missing\"><b>Missing or not readable</b><ul>{items}</ul></div>\n");
-        }
-        if let Some(state) = self.last() {
-            text += &cards(state);
-            text += &self.states_table();
-        }
-        text
+        let results = self.last().map_or_else(Html::default, |state| cards(state) + self.states_table());
+        heading(&format!("grainlab · {}", self.name()), &self.headline(), about)
+            + self.verdict()
+            + missing
+            + results
     }
 
     fn headline(&self) -> String {
@@ -105,7 +83,7 @@ impl Run {
     }
 
     /// How the run ended, in one line, which begins with the damage if there is any.
-    fn verdict(&self) -> String {
+    fn verdict(&self) -> Html {
         let s = &self.summary;
         let (class, mut words) = match s.exit {
             Some(0) if self.is_incomplete() => ("bad", "Damaged: the run was complete once".to_owned()),
@@ -129,54 +107,37 @@ impl Run {
             let (recorded, lost) = (s.total(|t| t.recorded), s.total(|t| t.lost));
             words += &format!(" · {recorded} messages recorded, {}", lost_words(lost, self.uncounted_files));
         }
-        format!("<p class=\"verdict {class}\">{}</p>\n", escaped(&words))
+        verdict(class, &words)
     }
 }
 
 /// The key results of a state.
-fn cards(state: &InvertedPacking) -> String {
+fn cards(state: &InvertedPacking) -> Html {
     let r = &state.packing.report;
     let best = recommended(state);
-    let mut text = String::from("<div class=\"cards\">\n");
-    for q in InferredQuantity::countable() {
+    let inferred = |q: InferredQuantity| {
         let (counted, digits) = (r.counted(q), q.digits());
-        let inferred = best.and_then(|b| b.values[q]).map_or_else(
-            || "not inferred".to_owned(),
-            |v| {
-                let sigma =
-                    best.and_then(|b| b.sigma[q]).map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
-                let error = counted.map_or_else(String::new, |c| {
-                    format!(" <span class=\"error\">{:+.digits$}</span>", v - c)
-                });
-                let status = best.map_or("ok", |b| b.status);
-                let status = if status == "ok" { String::new() } else { format!(" ({status})") };
-                format!("inferred {v:.digits$}{sigma}{error}{status}")
-            },
-        );
-        text += &card(q.symbol(), &fixed(counted, digits), q.meaning(), &inferred);
-    }
+        let Some((best, value)) = best.and_then(|b| Some((b, b.values[q]?))) else {
+            return "not inferred".into();
+        };
+        html!(
+            "inferred {{ value }}{% if error %} <span class=\"error\">{{ error }}</span>{% endif %}{% if status != \"ok\" %} ({{ status }}){% endif %}",
+            value => fixed(value, digits) + &plus_minus(best.sigma[q], digits),
+            error => counted.map(|c| signed(value - c, digits)),
+            status => best.status,
+        )
+    };
+    let counted = InferredQuantity::countable()
+        .map(|q| card(q.symbol(), fixed(r.counted(q), q.digits()), q.meaning(), inferred(q)));
     let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 2));
-    let shear = format!("{g12}, {g13} <small>MPa</small>");
-    text += &card("G12, G13", &shear, "shear across and along the axis", "");
-    text += &card("Θ", &format!("{theta} <small>MPa</small>"), "bulk modulus", "");
-    let unbalanced = r.unbalanced_force_ratio.map_or_else(|| "–".to_owned(), |u| format!("{u:.1e}"));
     let ratio = r.stress_ratio().map_or_else(String::new, |q| format!("q/p {q:.1e}"));
-    text += &card("p", &format!("{:.2} <small>kPa</small>", r.pressure() / 1e3), "pressure", &ratio);
-    text += &card(
-        "φ",
-        &format!("{:.4}", r.solid_fraction),
-        "solid fraction",
-        &format!("unbalanced force {unbalanced}"),
-    );
-    text + "</div>\n"
-}
-
-/// A quantity; `value` and `below` are markup.
-pub fn card(symbol: &str, value: &str, meaning: &str, below: &str) -> String {
-    let below = if below.is_empty() { String::new() } else { format!("<div class=\"below\">{below}</div>") };
-    format!(
-        "<div class=\"card\"><div class=\"symbol\">{} <span>{}</span></div><div class=\"value\">{value}</div>{below}</div>\n",
-        escaped(symbol),
-        escaped(meaning)
-    )
+    let unbalanced =
+        r.unbalanced_force_ratio.map_or_else(String::new, |u| format!("unbalanced force {u:.1e}"));
+    let measured = [
+        card("G12, G13", with_unit(format!("{g12}, {g13}"), "MPa"), "shear across and along the axis", ""),
+        card("Θ", with_unit(theta, "MPa"), "bulk modulus", ""),
+        card("p", with_unit(fixed(r.pressure() / 1e3, 2), "kPa"), "pressure", ratio),
+        card("φ", fixed(r.solid_fraction, 4), "solid fraction", unbalanced),
+    ];
+    html!("<div class=\"cards\">\n{{ cards }}</div>\n", cards => counted.chain(measured).collect::<Html>())
 }

@@ -1,12 +1,10 @@
 //! How contacts and forces of the last packing are oriented, and how large its forces are.
 
-use crate::figure::{PageFigure, number};
 use crate::run::Run;
 use grainlab_core::results::{FORCE_BIN_WIDTH, ORIENTATION_BINS, PackingReport};
 use grainlab_core::{Packing, Vec3};
-use grainlab_page::html::paragraph;
 use grainlab_page::plot::{Axis, Entry, Figure, Line, Point, Rose, Series, Strip};
-use std::fmt::Write;
+use grainlab_page::{Html, csv, figure, grid, html, paragraph, six_digits};
 
 /// Values in the bins of orientation over their mean, and a of 1 + a (3 x² − 1).
 struct Oriented {
@@ -15,11 +13,7 @@ struct Oriented {
 }
 
 /// Mean of a force of the contacts in each bin of x = |n·h|, and its fit to single contacts by least squares.
-fn oriented(
-    packing: &Packing,
-    axis: &Vec3,
-    force: impl Fn(&grainlab_core::Contact) -> f64,
-) -> Option<Oriented> {
+fn oriented(packing: &Packing, axis: &Vec3, force: fn(&grainlab_core::Contact) -> f64) -> Option<Oriented> {
     let (mut sums, mut counts) = ([0.0; ORIENTATION_BINS], [0.0; ORIENTATION_BINS]);
     // Sums of the basis 1, y = 3 x² − 1: the normal equations.
     let [mut n, mut y, mut yy, mut f, mut fy] = [0.0; 5];
@@ -55,76 +49,55 @@ fn contacts(report: &PackingReport) -> Option<Oriented> {
     (total > 0).then(|| Oriented { bins, a: histogram.contact_fit.as_ref().map(|fit| fit.eps) })
 }
 
-fn rose(
-    id: &'static str,
-    title: &str,
-    caption: &str,
-    colour: usize,
-    found: &Oriented,
-    axis: &Vec3,
-) -> String {
+fn rose(id: &str, title: &str, caption: &str, colour: usize, found: &Oriented, axis: &Vec3) -> Html {
     let [x, y, z] = [axis.x, axis.y, axis.z];
     let name = if *axis == Vec3::z() { "z".to_owned() } else { format!("({x:.2}, {y:.2}, {z:.2})") };
     let fitted = found.a.map_or_else(String::new, |a| format!(" Curve: 1 + a (3 cos² θ − 1), a = {a:+.4}."));
-    let mut csv = String::from("x_from,x_to,relative\n");
-    for (n, value) in found.bins.iter().enumerate() {
-        let end = |n: usize| n as f64 / ORIENTATION_BINS as f64;
-        let _ = writeln!(csv, "{},{},{}", end(n), end(n + 1), number(*value));
-    }
-    let svg =
-        Rose { title: title.to_owned(), bins: found.bins.clone(), curve: found.a, colour, axis: name }.svg();
-    PageFigure { id, svg, caption: &format!("{caption}{fitted}"), csv }.html()
+    let end = |n: usize| (n as f64 / ORIENTATION_BINS as f64).to_string();
+    let rows = found.bins.iter().enumerate().map(|(n, value)| [end(n), end(n + 1), six_digits(*value)]);
+    let plot = Rose { title: title.to_owned(), bins: found.bins.clone(), curve: found.a, colour, axis: name };
+    figure(id, plot.svg(), format!("{caption}{fitted}"), &csv(["x_from", "x_to", "relative"], rows))
 }
 
 impl Run {
     /// Roses and the distribution of forces.
-    pub(crate) fn structure(&self) -> String {
+    pub(crate) fn structure(&self) -> Html {
         let Some(state) = self.last() else { return paragraph("No packing was measured.") };
         let report = &state.packing.report;
         let axis = report.fabric.reference_axis;
         // Forces are only in the packing itself.
         let packing = self.timeline.last.as_ref().filter(|p| p.step == state.packing.step);
-        let mut text = String::from("<div class=\"grid roses\">\n");
-        if let Some(found) = contacts(report) {
-            text += &rose(
-                "contacts-by-direction",
-                "Contacts",
-                "Contacts per solid angle, 1 if isotropic.",
-                0,
-                &found,
-                &axis,
-            );
-        }
-        if let Some(found) = packing.and_then(|p| oriented(p, &axis, |c| c.normal_force)) {
-            text += &rose(
-                "normal-force-by-direction",
+        let by_direction = |force| packing.and_then(|p| oriented(p, &axis, force));
+        let found = [
+            ("contacts", "Contacts", "Contacts per solid angle, 1 if isotropic.", 0, contacts(report)),
+            (
+                "normal-force",
                 "Normal force",
                 "Mean over contacts of a direction, over that of all.",
                 2,
-                &found,
-                &axis,
-            );
-        }
-        if let Some(found) = packing.and_then(|p| oriented(p, &axis, |c| c.tangential_force.norm())) {
-            text += &rose(
-                "tangential-force-by-direction",
+                by_direction(|c| c.normal_force),
+            ),
+            (
+                "tangential-force",
                 "Tangential force",
                 "Mean magnitude, over that of all contacts.",
                 3,
-                &found,
-                &axis,
-            );
-        }
-        text += "</div>\n";
-        if let Some(forces) = forces(report) {
-            text += &forces;
-        }
-        text
+                by_direction(|c| c.tangential_force.norm()),
+            ),
+        ];
+        let roses = found.iter().filter_map(|(id, title, caption, colour, found)| {
+            Some(rose(&format!("{id}-by-direction"), title, caption, *colour, found.as_ref()?, &axis))
+        });
+        html!(
+            "<div class=\"grid roses\">\n{{ roses }}</div>\n{{ forces }}",
+            roses => roses.collect::<Html>(),
+            forces => forces(report)
+        )
     }
 }
 
 /// The distribution of normal forces.
-fn forces(report: &PackingReport) -> Option<String> {
+fn forces(report: &PackingReport) -> Option<Html> {
     let forces = report.contacts.forces.as_ref()?;
     let total: u32 = forces.histogram.iter().sum();
     let density = |n: u32| f64::from(n) / f64::from(total) / FORCE_BIN_WIDTH;
@@ -141,7 +114,7 @@ fn forces(report: &PackingReport) -> Option<String> {
     let left = |(f, d): &(f64, f64)| {
         [Point::at(f - 0.5 * FORCE_BIN_WIDTH, *d), Point::at(f + 0.5 * FORCE_BIN_WIDTH, *d)]
     };
-    let figure = Figure {
+    let plot = Figure {
         title: "Normal forces".into(),
         subtitle: format!(
             "Participation ratio {:.3}, largest force {:.2} times the mean",
@@ -156,17 +129,13 @@ fn forces(report: &PackingReport) -> Option<String> {
         ],
         legend: vec![Entry::Colour(0, "density of f".into())],
     };
-    let mut csv = String::from("force_over_mean,density\n");
-    bins.iter().for_each(|(f, d)| _ = writeln!(csv, "{},{}", number(*f), number(*d)));
+    let data = csv(["force_over_mean", "density"], bins.iter().map(|(f, d)| [f, d].map(|v| six_digits(*v))));
     let caption = format!(
         "Probability density of F over its mean, {:.3e} N; grey: exponential. Participation ratio {:.3}, largest {:.2}. The last bin has no upper end.",
         forces.mean_normal,
         forces.participation_ratio(),
         forces.largest
     );
-    let svg = Strip { figure, ..Strip::default() }.svg();
-    Some(format!(
-        "<div class=\"grid\">{}</div>\n",
-        PageFigure { id: "force-distribution", svg, caption: &caption, csv }.html()
-    ))
+    let plot = Strip { figure: plot, ..Strip::default() }.svg();
+    Some(grid(figure("force-distribution", plot, caption, &data)))
 }

@@ -1,15 +1,13 @@
 //! Wave speeds of the last packing, where the run has some.
 
-use crate::figure::{PageFigure, number};
 use crate::run::Run;
-use grainlab_console::{count, fixed};
-use grainlab_core::{MeasuredWave, Vec3};
+use grainlab_console::count;
+use grainlab_core::{MeasuredWave, Stiffness, Vec3};
 use grainlab_emt::Modulus;
-use grainlab_page::html::{Cell, escaped, paragraph, table};
 use grainlab_page::plot::{Axis, Entry, Figure, Marker, Point, Series, Strip};
+use grainlab_page::{Cell, Html, csv, figure, grid, paragraph, six_digits, table};
 use grainlab_results::AcousticReport;
 use std::collections::BTreeSet;
-use std::fmt::Write;
 
 /// Most measurements of one packing that are drawn.
 const MOST_DRAWN: usize = 8;
@@ -34,49 +32,32 @@ fn angle(wave: &MeasuredWave, axis: &Vec3) -> f64 {
 
 impl Run {
     /// The section; `None` without wave speeds.
-    pub(crate) fn waves(&self) -> Option<String> {
+    pub(crate) fn waves(&self) -> Option<Html> {
         let state = self.states.iter().rev().find(|s| s.acoustic.is_some())?;
         let stiffness = state.packing.report.stiffness().map(|s| &s.tensor);
-        let drawn: String = state
-            .acoustics()
-            .take(MOST_DRAWN)
-            .enumerate()
-            .map(|(n, a)| of_measurement(n, a, stiffness))
-            .collect();
-        let left_out = state.acoustics().skip(MOST_DRAWN).count();
-        let note = match left_out {
-            0 => String::new(),
+        let drawn =
+            state.acoustics().take(MOST_DRAWN).enumerate().map(|(n, a)| of_measurement(n, a, stiffness));
+        let note = match state.acoustics().skip(MOST_DRAWN).count() {
+            0 => Html::default(),
             n => {
-                paragraph(&format!("{} of this packing more: summary.json has all.", count(n, "measurement")))
+                paragraph(format!("{} of this packing more: summary.json has all.", count(n, "measurement")))
             }
         };
-        Some(drawn + &note)
+        Some(drawn.collect::<Html>() + note)
     }
 }
 
 /// The speeds of one measurement, drawn, and their medium.
-fn of_measurement(
-    n: usize,
-    acoustic: &AcousticReport,
-    stiffness: Option<&grainlab_core::Stiffness>,
-) -> String {
+fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffness>) -> Html {
     let which = acoustic.measurement.as_ref().map_or_else(String::new, |m| format!(", {}", m.label));
-    let id = |name: &str| if n == 0 { name.to_owned() } else { format!("{name}-{}", n + 1) };
     let axis = acoustic.medium.axis;
     let speeds = &acoustic.reading.speeds;
-    let mut csv = String::from("mode,angle_deg,frequency_hz,speed_m_s,stddev_m_s\n");
-    for s in speeds {
-        let optional = |v: Option<f64>| v.map(number).unwrap_or_default();
-        let _ = writeln!(
-            csv,
-            "{},{},{},{},{}",
-            MODES[mode(s, &axis)],
-            number(angle(s, &axis)),
-            optional(s.frequency),
-            number(s.wave.speed),
-            optional(s.wave.stddev)
-        );
-    }
+    let rows = speeds.iter().map(|s| {
+        let optional = |v: Option<f64>| v.map(six_digits).unwrap_or_default();
+        let [angle, speed] = [angle(s, &axis), s.wave.speed].map(six_digits);
+        [MODES[mode(s, &axis)].to_owned(), angle, optional(s.frequency), speed, optional(s.wave.stddev)]
+    });
+    let data = csv(["mode", "angle_deg", "frequency_hz", "speed_m_s", "stddev_m_s"], rows);
     let plot = |id: &str, title: &str, x: &str, caption: &str, at: &dyn Fn(&MeasuredWave) -> Option<f64>| {
         let series = |m: usize| Series {
             colour: Some(m),
@@ -86,37 +67,33 @@ fn of_measurement(
                 .collect(),
             ..Series::default()
         };
-        let figure = Figure {
-            title: title.to_owned(),
+        let plot = Figure {
+            title: format!("{title}, m/s{which}"),
             subtitle: String::new(),
             x: Axis::linear(x),
             y: Axis::linear(""),
             series: (0..MODES.len()).map(series).collect(),
             legend: MODES.iter().enumerate().map(|(m, name)| Entry::Colour(m, (*name).to_owned())).collect(),
         };
-        PageFigure { id, svg: Strip { figure, ..Strip::default() }.svg(), caption, csv: csv.clone() }.html()
+        let id = if n == 0 { id.to_owned() } else { format!("{id}-{}", n + 1) };
+        figure(&id, Strip { figure: plot, ..Strip::default() }.svg(), caption, &data)
     };
     let by_angle = "By the angle between ray and axis; the bars are standard deviations.";
     let mut figures =
-        plot(&id("wave-speeds"), &format!("Wave speeds, m/s{which}"), "angle, degrees", by_angle, &|s| {
-            Some(angle(s, &axis))
-        });
+        plot("wave-speeds", "Wave speeds", "angle, degrees", by_angle, &|s| Some(angle(s, &axis)));
     // Equal frequencies show no dispersion.
     let frequencies: BTreeSet<u64> = speeds.iter().filter_map(|s| s.frequency).map(f64::to_bits).collect();
     if frequencies.len() > 1 {
-        figures += &plot(
-            &id("dispersion"),
-            &format!("Dispersion: speeds, m/s{which}"),
-            "frequency, kHz",
-            "By the dominant frequency.",
-            &|s| s.frequency.map(|f| f / 1e3),
-        );
+        let by_frequency = "By the dominant frequency.";
+        figures += plot("dispersion", "Dispersion: speeds", "frequency, kHz", by_frequency, &|s| {
+            s.frequency.map(|f| f / 1e3)
+        });
     }
-    format!("<div class=\"grid\">\n{figures}{}</div>\n", medium(acoustic, stiffness))
+    grid(figures + medium(acoustic, stiffness))
 }
 
 /// Moduli from speeds beside those of the contact network.
-fn medium(acoustic: &AcousticReport, stiffness: Option<&grainlab_core::Stiffness>) -> String {
+fn medium(acoustic: &AcousticReport, stiffness: Option<&Stiffness>) -> Html {
     let t = stiffness.map(|c| c.transverse_isotropy_about(&acoustic.medium.axis));
     let all = [
         ("C33", Modulus::C33, t.map(|t| t.c33)),
@@ -124,25 +101,17 @@ fn medium(acoustic: &AcousticReport, stiffness: Option<&grainlab_core::Stiffness
         ("C44 = G13", Modulus::G13, t.map(|t| t.g13)),
         ("C66 = G12", Modulus::G12, t.map(|t| t.g12)),
         ("C13", Modulus::C13, t.map(|t| t.c13)),
-        ("Θ", Modulus::Theta, stiffness.map(grainlab_core::Stiffness::bulk_voigt)),
+        ("Θ", Modulus::Theta, stiffness.map(Stiffness::bulk_voigt)),
     ];
-    let row = |(name, modulus, network): &(&str, Modulus, Option<f64>)| {
-        let (value, sigma) = (acoustic.medium.modulus(*modulus), acoustic.medium.stddev(*modulus));
-        let mega = |v: Option<f64>| Cell::number(fixed(v.map(|v| v / 1e6), 2));
-        let off = value.zip(*network).map(|(v, n)| 100.0 * (v / n - 1.0));
-        vec![
-            Cell::text(name),
-            mega(*network),
-            mega(value),
-            mega(sigma),
-            Cell::number(off.map_or_else(|| "-".into(), |o| format!("{o:+.2} %"))),
-        ]
-    };
-    let rows: Vec<Vec<Cell>> = all.iter().map(row).collect();
-    let of = acoustic
-        .measurement
-        .as_ref()
-        .map_or_else(|| "these speeds".to_owned(), |m| format!("the speeds of {}", m.label));
-    let caption = escaped(&format!("Moduli, MPa: of the contact network, and of the medium with {of}."));
-    table(&caption, &["modulus", "network", "waves", "std. dev.", "difference"], &rows)
+    let rows = all.into_iter().map(|(name, modulus, network)| {
+        let (value, sigma) = (acoustic.medium.modulus(modulus), acoustic.medium.stddev(modulus));
+        let mega = |v: Option<f64>| Cell::fixed(v.map(|v| v / 1e6), 2);
+        let off = value.zip(network).map(|(v, n)| format!("{:+.2} %", 100.0 * (v / n - 1.0)));
+        let off = Cell::number(off.as_deref().unwrap_or("–"));
+        [Cell::text(name), mega(network), mega(value), mega(sigma), off]
+    });
+    let of = acoustic.measurement.as_ref().map(|m| format!("the speeds of {}", m.label));
+    let of = of.as_deref().unwrap_or("these speeds");
+    let caption = format!("Moduli, MPa: of the contact network, and of the medium with {of}.");
+    table(caption, ["modulus", "network", "waves", "std. dev.", "difference"], rows)
 }

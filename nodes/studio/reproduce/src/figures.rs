@@ -2,9 +2,9 @@
 
 use crate::Reproduction;
 use grainlab_emt::Modulus;
-use grainlab_page::html::figure;
-use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
-use grainlab_paper::inversion::{Judged, Row};
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
+use grainlab_page::{Html, figure};
+use grainlab_paper::inversion::Row;
 use grainlab_paper::{Mean, PAPER, PRESSURE, PRESSURES, Quantity, SAMPLES};
 
 /// A pressure in kPa.
@@ -13,6 +13,7 @@ fn kpa(pressure: usize) -> f64 {
 }
 
 /// One curve of a sample.
+#[derive(Clone)]
 struct Curve {
     marker: Marker,
     hollow: bool,
@@ -43,6 +44,18 @@ fn ours(mean: &Mean, scale: f64) -> (f64, Option<f64>) {
     (mean.value / scale, mean.error.map(|e| e / scale))
 }
 
+/// The curves of all samples, with these values at each pressure.
+fn curves(
+    marker: Marker,
+    hollow: bool,
+    line: Line,
+    name: &'static str,
+    value: impl Fn(usize, usize) -> Option<(f64, Option<f64>)>,
+) -> [Curve; SAMPLES] {
+    let values = |sample| std::array::from_fn(|pressure| value(sample, pressure));
+    std::array::from_fn(|sample| Curve { marker, hollow, line, values: values(sample), name })
+}
+
 impl Reproduction {
     fn simulated(
         &self,
@@ -51,133 +64,83 @@ impl Reproduction {
         marker: Marker,
         name: &'static str,
     ) -> [Curve; SAMPLES] {
-        std::array::from_fn(|sample| Curve {
-            marker,
-            hollow: false,
-            line: Line::Straight,
-            values: std::array::from_fn(|p| self.get(quantity, sample, p).map(|c| ours(&c.ours, scale))),
-            name,
-        })
-    }
-
-    fn in_paper(
-        &self,
-        quantity: Quantity,
-        scale: f64,
-        marker: Marker,
-        name: &'static str,
-    ) -> [Curve; SAMPLES] {
-        std::array::from_fn(|sample| Curve {
-            marker,
-            hollow: true,
-            line: Line::Faint,
-            values: std::array::from_fn(|p| quantity.in_paper(sample, p).map(|v| (v.value / scale, None))),
-            name,
-        })
-    }
-
-    fn way(&self, model: &str, gamma: Option<&str>) -> Option<&Judged> {
-        let calibration = if model == "relaxed" { "grainlab" } else { "paper" };
-        self.judged.iter().find(|j| {
-            j.way.model.name() == model
-                && j.way.calibration.name() == calibration
-                && j.way.gamma.map(|g| g.name()) == gamma
+        curves(marker, false, Line::Straight, name, |s, p| {
+            self.get(quantity, s, p).map(|c| ours(&c.ours, scale))
         })
     }
 
     fn inferred(
         &self,
-        (model, gamma): (&str, Option<&str>),
+        (model, gamma, calibration): (&str, Option<&str>, &str),
         value: fn(&Row) -> Option<Mean>,
         marker: Marker,
         name: &'static str,
     ) -> [Curve; SAMPLES] {
-        let found = self.way(model, gamma);
-        let at = |sample: usize, pressure: usize| {
+        let found = self.judged(model, gamma, calibration);
+        curves(marker, false, Line::Faint, name, |sample, pressure| {
             let row = found?.rows.iter().find(|r| r.sample == sample && r.pressure == pressure)?;
             value(row).map(|m| ours(&m, 1.0))
-        };
-        std::array::from_fn(|sample| Curve {
-            marker,
-            hollow: false,
-            line: Line::Faint,
-            values: std::array::from_fn(|p| at(sample, p)),
-            name,
         })
     }
 
+    /// Counted here, inferred by the models, and counted in the paper.
+    fn counted_and_inferred(
+        &self,
+        quantity: Quantity,
+        value: fn(&Row) -> Option<Mean>,
+    ) -> [[Curve; SAMPLES]; 4] {
+        let (ratio, relaxed) = (("ratio", Some("total"), "paper"), ("relaxed", None, "grainlab"));
+        [
+            self.simulated(quantity, 1.0, Marker::Circle, "counted"),
+            self.inferred(ratio, value, Marker::Triangle, "by the paper's ratios"),
+            self.inferred(relaxed, value, Marker::Diamond, "by relaxed"),
+            in_paper(quantity, 1.0, Marker::Circle, "counted in the paper"),
+        ]
+    }
+
     /// All four, with their captions.
-    pub(crate) fn figures(&self) -> String {
+    pub(crate) fn figures(&self) -> Html {
+        let fabric = [
+            self.simulated(Quantity::DeviatoricFabric, 1.0, Marker::Circle, "ours"),
+            in_paper(Quantity::DeviatoricFabric, 1.0, Marker::Circle, "paper"),
+        ];
         let moduli = [(Modulus::G12, Marker::Circle, "G12"), (Modulus::G13, Marker::Triangle, "G13")];
+        let simulated =
+            moduli.map(|(m, marker, name)| self.simulated(Quantity::Modulus(m), 1e6, marker, name));
+        let implied =
+            moduli.map(|(m, marker, _)| in_paper(Quantity::Modulus(m), 1e6, marker, "implied by Table III"));
         let figures = [
             (
-                plot(
-                    "Fig. 1: deviatoric fabric",
-                    "L33 − (L11 + L22)/2",
-                    [
-                        self.simulated(Quantity::DeviatoricFabric, 1.0, Marker::Circle, "ours"),
-                        self.in_paper(Quantity::DeviatoricFabric, 1.0, Marker::Circle, "paper"),
-                    ],
-                ),
+                "deviatoric-fabric",
+                plot("Fig. 1: deviatoric fabric", "L33 − (L11 + L22)/2", &fabric),
                 "The paper finds it almost constant with pressure. Its values are 2/5 of its ε (Eq. 20).",
             ),
             (
-                plot(
-                    "Fig. 2: shear moduli",
-                    "MPa",
-                    moduli
-                        .map(|(m, marker, name)| self.simulated(Quantity::Modulus(m), 1e6, marker, name))
-                        .into_iter()
-                        .chain(moduli.map(|(m, marker, _)| {
-                            self.in_paper(Quantity::Modulus(m), 1e6, marker, "implied by Table III")
-                        })),
-                ),
+                "shear-moduli",
+                plot("Fig. 2: shear moduli", "MPa", &[simulated, implied].concat()),
                 "The paper draws its moduli without a table; the outlines are those that its Table III implies.",
             ),
             (
-                plot(
-                    "Fig. 3: coordination number",
-                    "k",
-                    [
-                        self.simulated(Quantity::K, 1.0, Marker::Circle, "counted"),
-                        self.inferred(
-                            ("ratio", Some("total")),
-                            |r| r.k,
-                            Marker::Triangle,
-                            "by the paper's ratios",
-                        ),
-                        self.inferred(("relaxed", None), |r| r.k, Marker::Diamond, "by relaxed"),
-                        self.in_paper(Quantity::K, 1.0, Marker::Circle, "counted in the paper"),
-                    ],
-                ),
+                "coordination",
+                plot("Fig. 3: coordination number", "k", &self.counted_and_inferred(Quantity::K, |r| r.k)),
                 "Counted, and inferred from the moduli of the same packings. k by the absolute moduli is in the table of moduli.",
             ),
             (
-                plot(
-                    "Fig. 4: anisotropy",
-                    "ε",
-                    [
-                        self.simulated(Quantity::Eps, 1.0, Marker::Circle, "counted"),
-                        self.inferred(
-                            ("ratio", Some("total")),
-                            |r| r.eps,
-                            Marker::Triangle,
-                            "by the paper's ratios",
-                        ),
-                        self.inferred(("relaxed", None), |r| r.eps, Marker::Diamond, "by relaxed"),
-                        self.in_paper(Quantity::Eps, 1.0, Marker::Circle, "counted in the paper"),
-                    ],
-                ),
+                "anisotropy",
+                plot("Fig. 4: anisotropy", "ε", &self.counted_and_inferred(Quantity::Eps, |r| r.eps)),
                 "Counted, and inferred from the moduli of the same packings; the paper's model takes γ/Δ of the total strain.",
             ),
         ];
-        figures.iter().map(|(svg, caption)| figure(svg, caption)).collect()
+        figures.into_iter().map(|(id, plot, caption)| figure(id, plot, caption, "")).collect()
     }
 }
 
+fn in_paper(quantity: Quantity, scale: f64, marker: Marker, name: &'static str) -> [Curve; SAMPLES] {
+    curves(marker, true, Line::Faint, name, |s, p| quantity.in_paper(s, p).map(|v| (v.value / scale, None)))
+}
+
 /// A plot against pressure, a colour for each sample.
-fn plot(title: &str, unit: &str, curves: impl IntoIterator<Item = [Curve; SAMPLES]>) -> String {
-    let curves: Vec<[Curve; SAMPLES]> = curves.into_iter().collect();
+fn plot(title: &str, unit: &str, curves: &[[Curve; SAMPLES]]) -> Html {
     let mut legend: Vec<Entry> = PAPER
         .iter()
         .enumerate()
@@ -185,7 +148,7 @@ fn plot(title: &str, unit: &str, curves: impl IntoIterator<Item = [Curve; SAMPLE
         .collect();
     legend.push(Entry::Gap);
     let mut known = Vec::new();
-    for [first, ..] in &curves {
+    for [first, ..] in curves {
         if !known.contains(&(first.name, first.hollow)) {
             known.push((first.name, first.hollow));
             legend.push(Entry::Shape(first.marker, None, first.hollow, first.name.to_owned()));
@@ -201,5 +164,5 @@ fn plot(title: &str, unit: &str, curves: impl IntoIterator<Item = [Curve; SAMPLE
         series: series.collect(),
         legend,
     };
-    figure.svg(Theme::System)
+    figure.element()
 }

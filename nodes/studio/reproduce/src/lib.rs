@@ -52,6 +52,15 @@ impl Reproduction {
         Self { provenance, states, compared, judged, claims }
     }
 
+    /// The errors of a model with a γ/Δ and constants.
+    fn judged(&self, model: &str, gamma: Option<&str>, calibration: &str) -> Option<&Judged> {
+        self.judged.iter().find(|Judged { way, .. }| {
+            way.model.name() == model
+                && way.calibration.name() == calibration
+                && way.gamma.map(|g| g.name()) == gamma
+        })
+    }
+
     /// The comparison of one quantity of one state.
     fn get(&self, quantity: grainlab_paper::Quantity, sample: usize, pressure: usize) -> Option<&Comparison> {
         self.compared.iter().find(|c| c.quantity == quantity && c.sample == sample && c.pressure == pressure)

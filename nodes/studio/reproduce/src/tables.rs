@@ -2,46 +2,44 @@
 
 use crate::Reproduction;
 use grainlab_emt::Modulus;
-use grainlab_page::html::{Cell, code, escaped, table};
+use grainlab_page::{Cell, Html, code, fixed, html, plus_minus, signed, table};
 use grainlab_paper::{Comparison, Mean, PAPER, PRESSURE, PRESSURES, Quantity, SAMPLES};
 
 /// A mean with its error, in `scale`.
-pub(crate) fn mean(m: &Mean, scale: f64, digits: usize) -> String {
-    let error = m.error.map_or_else(String::new, |e| format!(" ± {:.digits$}", e / scale));
-    format!("{:.digits$}{error}", m.value / scale)
+pub(crate) fn mean(m: Option<&Mean>, scale: f64, digits: usize) -> Cell {
+    let error = plus_minus(m.and_then(|m| m.error).map(|e| e / scale), digits);
+    Cell::number(fixed(m.map(|m| m.value / scale), digits) + &error)
 }
 
-/// A difference in units of its error.
-pub(crate) fn in_errors(c: &Comparison) -> String {
-    c.in_errors().map_or_else(|| "–".to_owned(), |e| format!("{e:+.1}"))
+/// A number of the paper.
+pub(crate) fn of_paper(text: String) -> Cell {
+    Cell::classed(text, "n p")
 }
 
 /// Ours, the paper's, the difference, and the difference in units of its error.
 fn cells(c: Option<&Comparison>, scale: f64, digits: usize, relative: bool) -> [Cell; 4] {
-    let Some(c) = c else { return ["–", "–", "–", "–"].map(Cell::number) };
-    let paper = c.paper.map_or_else(|| "–".to_owned(), |p| format!("{:.digits$}", p.value / scale));
-    let difference = if relative {
-        c.relative().map(|d| format!("{:+.1} %", 100.0 * d))
-    } else {
-        c.difference().map(|d| format!("{:+.digits$}", d / scale))
+    let paper = c.and_then(|c| c.paper).map(|p| p.value / scale);
+    let percent = || {
+        c.and_then(Comparison::relative).map_or_else(|| "–".to_owned(), |d| format!("{:+.1} %", 100.0 * d))
     };
+    let difference = || signed(c.and_then(Comparison::difference).map(|d| d / scale), digits);
     [
-        Cell::number(mean(&c.ours, scale, digits)),
-        Cell::paper(paper),
-        Cell::number(difference.unwrap_or_else(|| "–".to_owned())),
-        Cell::number(in_errors(c)),
+        mean(c.map(|c| &c.ours), scale, digits),
+        of_paper(fixed(paper, digits)),
+        Cell::number(if relative { percent() } else { difference() }),
+        Cell::signed(c.and_then(Comparison::in_errors), 1),
     ]
 }
 
 impl Reproduction {
     /// A caption: what it is, and the command and the columns that regenerate it.
-    fn caption(&self, what: &str, columns: &str) -> String {
-        let command = format!("grainlab campaign gather {}", self.provenance.folder);
-        format!("{}. Columns {} of {}", escaped(what), code(columns), code(&command))
+    fn caption(&self, what: &str, columns: &str) -> Html {
+        let command = code(&format!("grainlab campaign gather {}", self.provenance.folder));
+        html!("{{ what }}. Columns {{ columns }} of {{ command }}", what, columns => code(columns), command)
     }
 
     /// Table I: the states at 50 kPa.
-    pub(crate) fn table_one(&self) -> String {
+    pub(crate) fn table_one(&self) -> Html {
         let quantities = [
             (Quantity::K, 3),
             (Quantity::Z, 3),
@@ -56,49 +54,36 @@ impl Reproduction {
             for ((quantity, digits), name) in quantities.iter().zip(names) {
                 let relative = matches!(quantity, Quantity::K | Quantity::Z);
                 let row = [Cell::text(format!("{} (μ2 = {})", paper.name, paper.mu2)), Cell::text(name)];
-                rows.push(
-                    row.into_iter()
-                        .chain(cells(self.get(*quantity, sample, 0), 1.0, *digits, relative))
-                        .collect(),
-                );
+                rows.push(row.into_iter().chain(cells(
+                    self.get(*quantity, sample, 0),
+                    1.0,
+                    *digits,
+                    relative,
+                )));
             }
         }
         let caption = self.caption("Table I: the four samples at 50 kPa", "k, z, fabric_*, phi");
-        table(&caption, &["sample", "", "ours", "paper", "difference", "in errors"], &rows)
+        table(caption, ["sample", "", "ours", "paper", "difference", "in errors"], rows)
     }
 
     /// Table II: γ/Δ.
-    pub(crate) fn table_two(&self) -> String {
-        let mut rows = Vec::new();
-        for (sample, pressure) in places() {
-            let total = self.get(Quantity::StrainTotal, sample, pressure);
-            let own = [Quantity::StrainElastic, Quantity::StrainContact].map(|q| {
-                let found = self.get(q, sample, pressure);
-                Cell::number(found.map_or_else(|| "–".to_owned(), |c| mean(&c.ours, 1.0, 4)))
-            });
-            rows.push(
-                head(sample, pressure).into_iter().chain(cells(total, 1.0, 4, false)).chain(own).collect(),
-            );
-        }
+    pub(crate) fn table_two(&self) -> Html {
+        let rows = places().map(|(sample, pressure)| {
+            let total = cells(self.get(Quantity::StrainTotal, sample, pressure), 1.0, 4, false);
+            let own = [Quantity::StrainElastic, Quantity::StrainContact]
+                .map(|q| mean(self.get(q, sample, pressure).map(|c| &c.ours), 1.0, 4));
+            head(sample, pressure).into_iter().chain(total).chain(own)
+        });
         let caption =
             self.caption("Table II: deviatoric over volumetric strain γ/Δ", "g_total, g_elastic, g_contact");
-        let header = [
-            "sample",
-            "p/kPa",
-            "total, ours",
-            "paper",
-            "difference",
-            "in errors",
-            "elastic",
-            "contact overlaps",
-        ];
-        table(&caption, &header, &rows)
+        let header =
+            "sample | p/kPa | total, ours | paper | difference | in errors | elastic | contact overlaps";
+        table(caption, header.split(" | "), rows)
     }
 
     /// The simulated columns of Table III.
-    pub(crate) fn table_three(&self) -> String {
-        let mut rows = Vec::new();
-        for (sample, pressure) in places() {
+    pub(crate) fn table_three(&self) -> Html {
+        let rows = places().map(|(sample, pressure)| {
             let [k, z, eps] =
                 [Quantity::K, Quantity::Z, Quantity::Eps].map(|q| self.get(q, sample, pressure));
             let all = |c, digits| {
@@ -107,28 +92,17 @@ impl Reproduction {
             };
             let [ours_z, _, errors_z] = all(z, 3);
             let row = head(sample, pressure).into_iter().chain(all(k, 3)).chain([ours_z, errors_z]);
-            rows.push(row.chain(all(eps, 4)).collect());
-        }
+            row.chain(all(eps, 4))
+        });
         let caption = self.caption("Table III, simulation: coordination number and anisotropy", "k, z, eps");
-        let header = [
-            "sample",
-            "p/kPa",
-            "k",
-            "paper k",
-            "in errors",
-            "z",
-            "z − paper k, in errors",
-            "ε",
-            "paper ε",
-            "in errors",
-        ];
-        table(&caption, &header, &rows)
+        let header =
+            "sample | p/kPa | k | paper k | in errors | z | z − paper k, in errors | ε | paper ε | in errors";
+        table(caption, header.split(" | "), rows)
     }
 
     /// The moduli, beside those that Table III implies.
-    pub(crate) fn moduli(&self) -> String {
-        let mut rows = Vec::new();
-        for (sample, pressure) in places() {
+    pub(crate) fn moduli(&self) -> Html {
+        let rows = places().map(|(sample, pressure)| {
             let mut row: Vec<Cell> = head(sample, pressure).into();
             for modulus in [Modulus::G12, Modulus::G13, Modulus::Theta] {
                 let [ours, paper, difference, _] =
@@ -137,35 +111,22 @@ impl Reproduction {
             }
             let [ours, paper, ..] = cells(self.get(Quantity::KEmt, sample, pressure), 1.0, 2, false);
             row.extend([ours, paper]);
-            rows.push(row);
-        }
+            row
+        });
         let caption = self.caption(
             "Moduli in MPa, beside those that the paper's k, k̂ and ε of Table III imply by its Eqs. 16–18, 21 and 22; \
              and k by the effective medium theory from G12 with the strain Δ since the reference state (Table III, k_EMT)",
             "g12_pa, g13_pa, theta_pa",
         );
-        let header = [
-            "sample",
-            "p/kPa",
-            "G12",
-            "implied",
-            "difference",
-            "G13",
-            "implied",
-            "difference",
-            "Θ",
-            "implied",
-            "difference",
-            "k_EMT",
-            "paper k_EMT",
-        ];
-        table(&caption, &header, &rows)
+        let header = "sample | p/kPa | G12 | implied | difference | G13 | implied | difference | Θ | implied | \
+                      difference | k_EMT | paper k_EMT";
+        table(caption, header.split(" | "), rows)
     }
 }
 
 /// Sample and pressure.
-fn head(sample: usize, pressure: usize) -> [Cell; 2] {
-    [Cell::text(PAPER[sample].name), Cell::number(format!("{}", PRESSURE[pressure] / 1e3))]
+pub(crate) fn head(sample: usize, pressure: usize) -> [Cell; 2] {
+    [Cell::text(PAPER[sample].name), Cell::number(PRESSURE[pressure] / 1e3)]
 }
 
 /// Every state, sample by sample.

@@ -70,7 +70,7 @@
     let numbers = new Uint32Array(about.grains);
     const build = () => {
       drawn.forEach((mesh) => { scene.remove(mesh); mesh.geometry.dispose(); mesh.material.dispose(); });
-      const state = stateOf(now.state), dark = isDark();
+      const state = stateOf(now.state), dark = grainlabPage.isDark();
       uniforms.uBack.value.set(dark ? 0x141417 : 0xfbfbfc);
       renderer.setClearColor(dark ? 0x141417 : 0xfbfbfc, 1);
       drawn = [grainlabScene.outline(state.cell, dark ? 0x7a7a86 : 0x8a8a96)];
@@ -220,10 +220,6 @@
       draw();
     };
 
-    const isDark = () => {
-      const chosen = document.documentElement.dataset.theme;
-      return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-    };
     const step = (to) => {
       now.state = Math.min(Math.max(to, 0), last);
       part("state").value = now.state;
@@ -254,13 +250,7 @@
     const save = () => {
       resize(still());
       render();
-      canvas.toBlob((blob) => {
-        const link = document.createElement("a");
-        link.href = URL.createObjectURL(blob);
-        link.download = `${about.name}.png`;
-        link.click();
-        setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-      });
+      canvas.toBlob((blob) => grainlabPage.save(`${about.name}.png`, "image/png", blob));
     };
 
     controls.addEventListener("change", draw);

@@ -2,7 +2,7 @@
 //!
 //! - [`View`]: one packing as it is drawn; [`Quantity`]: what the colours show; `palette`: the colours
 //! - [`Film`]: the states of a run, few enough for a page
-//! - [`figure`], [`page`], [`HEAD`], [`SCRIPTS`]: the parts of a page; [`empty_figure`], [`states`]: those of a page that
+//! - [`figure`], [`page`], [`STYLE`], [`SCRIPTS`]: the parts of a page; [`empty_figure`], [`states`]: those of a page that
 //!   receives packings later; `encode`: the states as bytes
 //! - [`Picture`]: one view as pixels and as PNG; `raster`: depth buffer; `lettering`: its few texts
 
@@ -16,7 +16,7 @@ mod raster;
 mod view;
 
 pub use film::Film;
-pub use page::{HEAD, SCRIPTS, empty_figure, figure, page, states};
+pub use page::{SCRIPTS, STYLE, empty_figure, figure, page, states};
 pub use palette::Quantity;
 pub use picture::{Picture, PictureError, Size};
 pub use view::{MOST_GRAINS, View};

@@ -6,11 +6,10 @@ use crate::picture::{Picture, PictureError, Size};
 use crate::view::View;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use grainlab_page::html::{escaped, script_text};
-use grainlab_page::plot::page_style;
+use grainlab_page::{Html, Page, data, heading, html};
 
-/// Style of the figure. It uses the colours of [`page_style`].
-pub const HEAD: &str = include_str!("../assets/viewer.css");
+/// Style of the figure.
+pub const STYLE: &str = include_str!("../assets/viewer.css");
 
 /// Scripts of the figure, in order: three.js and ours.
 pub const SCRIPTS: [&str; 5] = [
@@ -21,9 +20,6 @@ pub const SCRIPTS: [&str; 5] = [
     include_str!("../assets/viewer.js"),
 ];
 
-const FIGURE: &str = include_str!("../assets/viewer.html");
-const PAGE_STYLE: &str = include_str!("../assets/page.css");
-
 /// Size of the picture that is shown before the scripts have begun, and where there is no WebGL.
 const POSTER: Size = Size { width: 720, height: 540 };
 
@@ -31,8 +27,8 @@ const POSTER: Size = Size { width: 720, height: 540 };
 ///
 /// # Errors
 /// If the picture cannot be written.
-pub fn figure(name: &str, views: &[&View]) -> Result<String, PictureError> {
-    let Some(last) = views.last() else { return Ok(String::new()) };
+pub fn figure(name: &str, views: &[&View]) -> Result<Html, PictureError> {
+    let Some(last) = views.last() else { return Ok(Html::default()) };
     let poster = STANDARD.encode(Picture::plain(last, Quantity::Coordination, POSTER)?.png()?);
     let alt = format!(
         "{} grains in their periodic cell, coloured by the number of their contacts: {}",
@@ -40,23 +36,21 @@ pub fn figure(name: &str, views: &[&View]) -> Result<String, PictureError> {
         last.label
     );
     let about = serde_json::to_string(&encode::about(name, views)).unwrap_or_default();
-    let mut text = FIGURE
-        .replace("{alt}", &escaped(&alt))
-        .replace("{poster}", &format!("data:image/png;base64,{poster}"));
-    text +=
-        &format!("<script type=\"application/json\" id=\"viewer-about\">{}</script>\n", script_text(&about));
-    for (n, view) in views.iter().enumerate() {
-        text += &format!(
-            "<script type=\"text/plain\" id=\"viewer-state-{n}\">{}</script>\n",
-            encode::state(view, views)
-        );
-    }
-    Ok(text)
+    let states = views
+        .iter()
+        .enumerate()
+        .map(|(n, view)| data("text/plain", &format!("viewer-state-{n}"), &encode::state(view, views)));
+    Ok(stage(&alt, Some(poster)) + data("application/json", "viewer-about", &about) + states.collect())
+}
+
+/// The elements, with the picture as base64.
+fn stage(alt: &str, poster: Option<String>) -> Html {
+    html!(include_str!("../assets/viewer.html"), alt, poster)
 }
 
 /// The figure without states, for a page that receives them later: its script shows what [`states`] returns.
-pub fn empty_figure() -> String {
-    FIGURE.replace("{alt}", "Grains in their periodic cell").replace("src=\"{poster}\"", "hidden")
+pub fn empty_figure() -> Html {
+    stage("Grains in their periodic cell", None)
 }
 
 /// States of packings as JSON: `about` and `states`, the texts that [`figure`] has as elements.
@@ -70,14 +64,12 @@ pub fn states(name: &str, views: &[&View]) -> String {
 /// # Errors
 /// As [`figure`].
 pub fn page(title: &str, about: &str, name: &str, views: &[&View]) -> Result<String, PictureError> {
-    let scripts: String = SCRIPTS.iter().map(|s| format!("<script>{s}</script>\n")).collect();
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n\
-         <style>\n{1}{PAGE_STYLE}{HEAD}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n<p>{2}</p>\n{3}</main>\n{scripts}</body>\n</html>\n",
-        escaped(title),
-        page_style(),
-        escaped(about),
-        figure(name, views)?
-    ))
+    let page = Page {
+        title: title.to_owned(),
+        heading: heading("grainlab", title, about) + figure(name, views)?,
+        styles: vec![STYLE, include_str!("../assets/viewer_page.css")],
+        scripts: SCRIPTS.to_vec(),
+        ..Page::default()
+    };
+    Ok(page.text())
 }

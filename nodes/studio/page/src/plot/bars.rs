@@ -3,7 +3,7 @@
 use super::axis::Range;
 use super::draw::{Drawing, Key, class};
 use super::figure::{Marker, Scale};
-use crate::html::escaped;
+use crate::markup::Html;
 
 /// Width of the plot.
 const WIDTH: f64 = 560.0;
@@ -52,8 +52,8 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// The plot as SVG. Its colours are those of [`page_style`](super::page_style).
-    pub fn svg(&self) -> String {
+    /// The plot as an element of a page.
+    pub fn svg(&self) -> Html {
         let longest = self.bars.iter().map(|b| b.name.chars().count()).max().unwrap_or(0);
         let left = 24.0 + LETTER * longest as f64;
         let mut heights = Vec::with_capacity(self.bars.len());
@@ -67,13 +67,9 @@ impl Bars {
         }
         let bottom = y + 4.0;
         let said: Vec<String> = self.bars.iter().map(|b| format!("{} {}", b.name, b.text)).collect();
-        let attributes = format!(
-            " class=\"plot\" role=\"img\" aria-label=\"{}: {}\"",
-            escaped(&self.title),
-            escaped(&said.join("; "))
-        );
+        let about = format!("{}: {}", self.title, said.join("; "));
         let frame = [left, TOP, RIGHT, bottom];
-        let mut drawing = Drawing::blank([WIDTH, bottom + 26.0], frame, &attributes, "");
+        let mut drawing = Drawing::small([WIDTH, bottom + 26.0], frame, &self.title, &about, "");
         let ends =
             self.bars.iter().flat_map(|b| b.interval.unwrap_or([b.value; 2]).into_iter().chain([b.value]));
         let zero = self.from_zero.then_some(0.0);
@@ -86,7 +82,6 @@ impl Bars {
             drawing.segment([at, TOP, at, bottom], "grid");
             drawing.text([at, bottom + 15.0], "middle", "class=\"ink\" font-size=\"11\"", &text);
         }
-        drawing.text([8.0, 20.0], "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", &self.title);
         if let Some((value, name)) = &self.reference {
             let at = range.at(*value);
             drawing.segment([at, TOP - 3.0, at, bottom], "axis");
@@ -132,7 +127,7 @@ impl Bars {
                 &bar.text,
             );
         }
-        drawing.end()
+        drawing.element()
     }
 }
 

@@ -4,7 +4,7 @@ use super::axis::Range;
 use super::figure::{Entry, Line, Marker, Series, Theme};
 use super::labels::Area;
 use super::style::style;
-use crate::html::escaped;
+use crate::markup::{Html, escaped};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
@@ -35,17 +35,25 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// With a title and a subtitle.
-    pub(super) fn begin(theme: Theme, title: &str, subtitle: &str) -> Self {
-        let sheet = format!("<style>{}</style>\n", style(theme));
-        let mut drawing = Self::blank(PICTURE, FRAME, "", &sheet);
+    /// With a title and a subtitle: a file with the colours of a theme, or a part of a page.
+    pub(super) fn begin(theme: Option<Theme>, title: &str, subtitle: &str) -> Self {
+        let sheet = theme.map_or_else(String::new, |theme| format!("<style>{}</style>\n", style(theme)));
+        let attributes = theme.map_or_else(|| of_page(title), |_| String::new());
+        let mut drawing = Self::blank(PICTURE, FRAME, &attributes, &sheet);
         drawing.text([FRAME[0], 28.0], "start", "class=\"ink\" font-size=\"15\"", title);
         drawing.text([FRAME[0], 46.0], "start", "class=\"faint\"", subtitle);
         drawing
     }
 
+    /// A small plot of a page, with axes at `frame`. The text `about` is for readers who do not see it.
+    pub(super) fn small(size: [f64; 2], frame: Area, title: &str, about: &str, attributes: &str) -> Self {
+        let mut drawing = Self::blank(size, frame, &(of_page(about) + attributes), "");
+        drawing.text([8.0, 20.0], "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", title);
+        drawing
+    }
+
     /// Without titles, with axes at `frame`; `attributes` and the text `first` are those of the SVG.
-    pub(super) fn blank([width, height]: [f64; 2], frame: Area, attributes: &str, first: &str) -> Self {
+    fn blank([width, height]: [f64; 2], frame: Area, attributes: &str, first: &str) -> Self {
         let text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
              font-size=\"12\"{attributes}>\n{first}<rect width=\"{width}\" height=\"{height}\" class=\"paper\"/>\n"
@@ -57,6 +65,11 @@ impl Drawing {
     pub(super) fn end(mut self) -> String {
         self.text += "</svg>\n";
         self.text
+    }
+
+    /// The complete SVG, as an element of a page.
+    pub(super) fn element(self) -> Html {
+        Html::drawn(self.end())
     }
 
     /// Left, top, right and bottom of the axes.
@@ -200,6 +213,11 @@ impl Drawing {
             "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" {more}>{content}</text>"
         );
     }
+}
+
+/// Attributes of a plot whose colours are those of its page.
+fn of_page(about: &str) -> String {
+    format!(" class=\"plot\" role=\"img\" aria-label=\"{}\"", escaped(about))
 }
 
 /// Corners of a marker from its centre; `None` for a circle.

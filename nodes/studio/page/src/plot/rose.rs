@@ -1,7 +1,7 @@
 //! A quantity by direction: a polar histogram about a vertical axis, which is one of rotation and a mirror too.
 
 use super::draw::{Drawing, class};
-use crate::html::escaped;
+use crate::markup::Html;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
@@ -33,8 +33,8 @@ pub struct Rose {
 }
 
 impl Rose {
-    /// The plot as SVG. Its colours are those of [`page_style`](super::page_style).
-    pub fn svg(&self) -> String {
+    /// The plot as an element of a page.
+    pub fn svg(&self) -> Html {
         let fitted = |x: f64| 1.0 + self.curve.unwrap_or(0.0) * (3.0 * x * x - 1.0);
         let finite = self.bins.iter().copied().chain([fitted(0.0), fitted(1.0)]).filter(|v| v.is_finite());
         let largest = finite.fold(1.0, f64::max);
@@ -44,14 +44,7 @@ impl Rose {
             .map_or_else(String::new, |a| format!("; fitted: 1 + a (3 cos² θ − 1) with a = {a:.4}"));
         let values: Vec<String> = self.bins.iter().map(|v| format!("{v:.2}")).collect();
         let about = format!("{}, by |cos θ| from 0 to 1: {}{said}", self.title, values.join(", "));
-        let attributes = format!(" class=\"plot\" role=\"img\" aria-label=\"{}\"", escaped(&about));
-        let mut drawing = Drawing::blank(PICTURE, [0.0; 4], &attributes, "");
-        drawing.text(
-            [12.0, 20.0],
-            "start",
-            "class=\"ink\" font-size=\"13\" font-weight=\"600\"",
-            &self.title,
-        );
+        let mut drawing = Drawing::small(PICTURE, [0.0; 4], &self.title, &about, "");
         let [x, y] = CENTRE;
         for ring in (1..).map(|n| 0.5 * f64::from(n)).take_while(|r| r * scale <= RADIUS + 0.5) {
             let (radius, dash) = (ring * scale, if ring == 1.0 { "" } else { " stroke-dasharray=\"2 3\"" });
@@ -96,7 +89,7 @@ impl Rose {
                 class(Some(1))
             ));
         }
-        drawing.end()
+        drawing.element()
     }
 }
 
@@ -109,7 +102,7 @@ mod tests {
         let rose = Rose { bins: vec![1.2, f64::NAN, 0.7], curve: Some(0.1), ..Rose::default() };
         let svg = rose.svg();
         assert_eq!(svg.matches("fill-opacity").count(), 8);
-        assert!(svg.contains("a = 0.1000") && !svg.contains("=\"NaN"), "{svg}");
+        assert!(svg.contains("a = 0.1000") && !svg.contains("=\"NaN"), "{svg:?}");
         assert!(!Rose { curve: None, ..rose }.svg().contains("stroke-width=\"2\""));
     }
 }

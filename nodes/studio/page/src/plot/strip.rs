@@ -3,7 +3,7 @@
 use super::draw::{Drawing, class};
 use super::figure::{Entry, Figure, Scale};
 use super::labels::Area;
-use crate::html::escaped;
+use crate::markup::{Html, escaped};
 
 /// Width and height.
 const PICTURE: [f64; 2] = [500.0, 226.0];
@@ -25,7 +25,7 @@ pub struct Band {
     pub tooltip: String,
 }
 
-/// A plot among others of a page. Its colours are those of [`page_style`](super::page_style).
+/// A plot among others of a page.
 #[derive(Clone, Debug, Default)]
 pub struct Strip {
     /// Title, axes, series and legend; the subtitle is for readers who do not see the plot.
@@ -37,9 +37,9 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// The plot as SVG. The attributes `data-frame` (left, top, right, bottom) `data-x` (values at left and right) and
+    /// The plot as an element of a page. The attributes `data-frame` (left, top, right, bottom) `data-x` (values at left and right) and
     /// `data-y` (values at bottom and top, and the spacing) are for scripts that read positions.
-    pub fn svg(&self) -> String {
+    pub fn svg(&self) -> Html {
         let Figure { title, subtitle, x, y, legend, .. } = &self.figure;
         let [left, top, right, bottom] = FRAME;
         let [across, up] = self.figure.ranges(FRAME);
@@ -47,11 +47,10 @@ impl Strip {
         let [lowest, highest] = up.ends();
         let spacing = if y.scale == Scale::Log { "log" } else { "linear" };
         let attributes = format!(
-            " class=\"plot\" role=\"img\" aria-label=\"{}\" data-frame=\"{left} {top} {right} {bottom}\" data-x=\"{low} {high}\" \
-             data-y=\"{lowest} {highest} {spacing}\"",
-            escaped(&[title.as_str(), subtitle].join(". "))
+            " data-frame=\"{left} {top} {right} {bottom}\" data-x=\"{low} {high}\" data-y=\"{lowest} {highest} {spacing}\""
         );
-        let mut drawing = Drawing::blank(PICTURE, FRAME, &attributes, "");
+        let about = format!("{title}. {subtitle}");
+        let mut drawing = Drawing::small(PICTURE, FRAME, title, &about, &attributes);
         for (n, band) in self.bands.iter().enumerate() {
             let [from, to] = band.range.map(|v| across.at(v.clamp(low, high)));
             let fill = if n % 2 == 0 { "band" } else { "paper" };
@@ -73,10 +72,9 @@ impl Strip {
             drawing.axes((&across, ""), (&up, &y.name));
         }
         drawing.text([right, bottom + 34.0], "end", "class=\"faint\" font-size=\"11\"", &x.name);
-        drawing.text([8.0, 20.0], "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", title);
         self.figure.draw(&mut drawing, [&across, &up]);
         row(&mut drawing, legend);
-        drawing.end()
+        drawing.element()
     }
 }
 
@@ -119,8 +117,8 @@ mod tests {
             by_band: false,
         }
         .svg();
-        assert!(svg.contains("aria-label=\"a &amp; b. \"") && svg.contains(">first<"), "{svg}");
-        assert!(!svg.contains(">second<") && !svg.contains("NaN"), "{svg}");
+        assert!(svg.contains("aria-label=\"a &amp; b. \"") && svg.contains(">first<"), "{svg:?}");
+        assert!(!svg.contains(">second<") && !svg.contains("NaN"), "{svg:?}");
         let left = svg.split("<rect x=\"").nth(1).unwrap();
         assert!(left.starts_with("54.0\""), "the band begins at the frame: {left}");
     }

@@ -33,26 +33,26 @@ pub(super) fn style(theme: Theme) -> String {
     }
 }
 
-/// The style sheet of all plots of a page, which have the class `plot`: that of the reader's system, or the one that the
+/// Colours of a page and of all plots in it, which have the class `plot`: those of the reader's system, or those that the
 /// attribute `data-theme` of the root element names (`light`, `dark`).
-pub fn page_style() -> String {
-    let variables = |paper: &str, ink: &str, faint: &str, grid: &str, band: &str, colours: &[&str]| {
-        let mut css = format!("--paper:{paper};--ink:{ink};--faint:{faint};--grid:{grid};--band:{band}");
-        for (n, colour) in colours.iter().enumerate() {
-            let _ = write!(css, ";--c{n}:{colour}");
-        }
-        css
+pub(crate) fn page_style() -> String {
+    let variables = |own: &str, colours: &[&str]| {
+        let numbered = colours.iter().enumerate().map(|(n, colour)| format!(";--c{n}:{colour}"));
+        own.to_owned() + &numbered.collect::<String>()
     };
-    let light = variables("#ffffff", "#1d1d22", "#5c5c66", "#e7e7ec", "#f4f4f7", &ON_WHITE);
-    let dark = variables("#1b1b1f", "#e8e8ec", "#a9a9b4", "#34343c", "#232329", &ON_DARK);
-    let mut css = format!(
-        ":root{{{light}}}\n@media (prefers-color-scheme:dark){{:root:not([data-theme=light]){{{dark}}}}}\n:root[data-theme=dark]{{{dark}}}\n\
-         .plot .paper{{fill:none}}.plot .ink{{fill:var(--ink)}}.plot .faint{{fill:var(--faint)}}.plot .axis{{stroke:var(--faint)}}\
-         .plot .grid{{stroke:var(--grid)}}.plot .band{{fill:var(--band)}}.plot .full{{fill:currentColor;stroke:currentColor;stroke-width:1.4}}\
-         .plot .hollow{{fill:var(--paper);stroke:currentColor;stroke-width:1.4}}.plot .grey{{color:var(--faint)}}"
+    let light = variables(
+        "--paper:#ffffff;--ink:#1d1d22;--faint:#5c5c66;--grid:#e7e7ec;--band:#f4f4f7;--stage:#fbfbfc;--good:#0a6b3d;--warn:#8a5a00;\
+         --bad:#a32014",
+        &ON_WHITE,
     );
-    for n in 0..Series::COLOURS {
-        let _ = write!(css, ".plot .c{n}{{color:var(--c{n})}}");
-    }
-    css + "\n"
+    let dark = variables(
+        "--paper:#1b1b1f;--ink:#e8e8ec;--faint:#a9a9b4;--grid:#34343c;--band:#232329;--stage:#141417;--good:#5fd39a;--warn:#e5b45c;\
+         --bad:#ff8f80",
+        &ON_DARK,
+    );
+    let classes: String = (0..Series::COLOURS).map(|n| format!(".plot .c{n}{{color:var(--c{n})}}")).collect();
+    format!(
+        ":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root:not([data-theme=light]){{{dark}}}}}\n\
+         :root[data-theme=dark]{{{dark}}}\n{classes}\n"
+    )
 }

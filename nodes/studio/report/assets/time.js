@@ -1,47 +1,6 @@
-// Theme, saved plots and data, values under the pointer, sorted tables.
+// Plots against time: their values under the pointer, and their axis.
 "use strict";
 (() => {
-  const root = document.documentElement;
-  const isDark = () => (root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches);
-  document.getElementById("theme").addEventListener("click", () => {
-    root.dataset.theme = isDark() ? "light" : "dark";
-    document.dispatchEvent(new Event("themechange"));
-  });
-
-  const save = (name, type, text) => {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([text], { type }));
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-  };
-  // A saved plot is that on paper: the light colours are resolved, because the style of the page does not go with it.
-  const standalone = (svg) => {
-    const before = root.dataset.theme;
-    root.dataset.theme = "light";
-    const copy = svg.cloneNode(true), from = [svg, ...svg.querySelectorAll("*")], to = [copy, ...copy.querySelectorAll("*")];
-    from.forEach((element, n) => {
-      const style = getComputedStyle(element);
-      for (const key of ["fill", "stroke", "stroke-width", "stroke-dasharray", "fill-opacity", "stroke-opacity"]) {
-        if (element !== svg) to[n].setAttribute(key, style.getPropertyValue(key));
-      }
-      to[n].removeAttribute("class");
-    });
-    copy.querySelectorAll("[data-cursor]").forEach((e) => e.remove());
-    if (before) root.dataset.theme = before; else delete root.dataset.theme;
-    const box = svg.viewBox.baseVal;
-    copy.setAttribute("width", box.width);
-    copy.setAttribute("height", box.height);
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + new XMLSerializer().serializeToString(copy);
-  };
-  document.addEventListener("click", (e) => {
-    const kind = e.target.dataset && e.target.dataset.save;
-    if (!kind) return;
-    const drawing = e.target.closest(".drawing"), name = `${drawing.id.replace(/^plot-/, "")}.${kind}`;
-    if (kind === "csv") save(name, "text/csv", drawing.querySelector("script").textContent);
-    else save(name, "image/svg+xml", standalone([...drawing.querySelectorAll("svg")].find((svg) => svg.getClientRects().length > 0)));
-  });
-
   // Values of every plot against time at the time under the pointer.
   const NS = "http://www.w3.org/2000/svg";
   const grid = document.querySelector("[data-phases]"), begins = grid ? grid.dataset.phases.split(" ").map(Number) : [];
@@ -119,24 +78,4 @@
     document.querySelectorAll("[data-show]").forEach((b) => b.setAttribute("aria-pressed", b === button));
     grid.classList.toggle("by-time", button.dataset.show === "time");
   }));
-
-  document.addEventListener("click", (e) => {
-    if (!e.target.dataset || e.target.dataset.sort === undefined) return;
-    const header = e.target.closest("th"), table = header.closest("table"), column = header.cellIndex;
-    const down = header.getAttribute("aria-sort") === "ascending";
-    table.querySelectorAll("thead th").forEach((th) => th.removeAttribute("aria-sort"));
-    header.setAttribute("aria-sort", down ? "descending" : "ascending");
-    const key = (row) => {
-      const cell = row.cells[column], text = cell.dataset.value !== undefined ? cell.dataset.value : cell.textContent;
-      return text.trim() === "" ? null : isNaN(text) ? text : Number(text);
-    };
-    const order = (a, b) => {
-      const [x, y] = [key(a), key(b)];
-      if (x === null || y === null) return (x === null) - (y === null);
-      const less = typeof x === "number" && typeof y === "number" ? x - y : String(x).localeCompare(String(y), "en", { numeric: true });
-      return down ? -less : less;
-    };
-    const body = table.tBodies[0];
-    [...body.rows].sort(order).forEach((row) => body.append(row));
-  });
 })();

@@ -1,0 +1,82 @@
+//! The frame of a page: one file, without references to others.
+
+use crate::markup::Html;
+use crate::plot::page_style;
+use serde::Serialize;
+
+/// Style of all pages, beside [`page_style`].
+const STYLE: &str = include_str!("../assets/page.css");
+/// Script of all pages: theme, saved plots and data, sorted tables.
+const SCRIPT: &str = include_str!("../assets/page.js");
+
+/// A part of a page, to which its navigation leads.
+#[derive(Clone, Debug, Serialize)]
+pub struct Section {
+    /// Id of the element.
+    pub id: &'static str,
+    /// The heading.
+    pub title: &'static str,
+    /// Elements below the heading.
+    pub content: Html,
+}
+
+/// A page.
+#[derive(Clone, Debug, Default)]
+pub struct Page {
+    /// Name of the window.
+    pub title: String,
+    /// Elements before the sections.
+    pub heading: Html,
+    /// The parts.
+    pub sections: Vec<Section>,
+    /// Styles that this page adds to those of all pages.
+    pub styles: Vec<&'static str>,
+    /// Scripts that this page adds to that of all pages.
+    pub scripts: Vec<&'static str>,
+    /// Whether there is a bar with a navigation and a switch between light and dark.
+    pub has_bar: bool,
+    /// Whether a server sends the page, of which the browser would request an icon, too.
+    pub is_served: bool,
+}
+
+impl Page {
+    /// The file.
+    pub fn text(&self) -> String {
+        let fixed = |text: &&'static str| Html::drawn((*text).to_owned());
+        let styles: Html = [Html::drawn(page_style()), fixed(&STYLE)]
+            .into_iter()
+            .chain(self.styles.iter().map(fixed))
+            .collect();
+        let scripts: Vec<Html> = [SCRIPT].iter().chain(&self.scripts).map(fixed).collect();
+        let Self { title, heading, sections, has_bar, is_served, .. } = self;
+        html!(
+            include_str!("../assets/frame.html"),
+            title,
+            heading,
+            sections,
+            styles,
+            scripts,
+            has_bar,
+            is_served
+        )
+        .into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bar_leads_to_every_section_and_a_page_without_one_has_no_navigation() {
+        let section = Section { id: "a", title: "A & B", content: "1 < 2".into() };
+        let page = Page { title: "<x>".into(), sections: vec![section], has_bar: true, ..Page::default() };
+        let text = page.text();
+        let section = "<section id=\"a\">\n<h2>A &amp; B</h2>\n1 &lt; 2<";
+        for part in ["<title>&lt;x&gt;</title>", "<a href=\"#a\">A &amp; B</a>", section] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        let plain = Page { has_bar: false, ..page }.text();
+        assert!(!plain.contains("<nav") && !plain.contains("id=\"theme\""));
+    }
+}
