@@ -153,6 +153,7 @@ fn a_planted_dependency_is_a_fault() {
         ("grainlab_msgs", "grainlab_recorder", "grainlab_recordings links grainlab_recorder"),
         ("grainlab_page", "grainlab_node_kit", "grainlab_report links grainlab_node_kit"),
         ("grainlab_results", "grainlab_report", "grainlab_results links grainlab_report"),
+        ("grainlab_launcher", "grainlab_foxglove_bridge", "grainlab_launcher links grainlab_foxglove_bridge"),
     ] {
         let mut graph = Graph::of_workspace();
         graph.links.get_mut(from).unwrap().insert(to.to_owned());
