@@ -8,9 +8,9 @@ use syn::{Item, UseTree, Visibility};
 
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
-const LABORATORY: usize = 56_200;
-const STUDIO_AND_COMMAND: usize = 28_500;
-const TESTS: usize = 44_750;
+const LABORATORY: usize = 55_600;
+const STUDIO_AND_COMMAND: usize = 29_140;
+const TESTS: usize = 45_070;
 
 /// Most comments that begin with a word that names nothing.
 const HEADLESS: usize = 1_085;
@@ -132,7 +132,10 @@ fn counted() -> [usize; 4] {
 }
 
 /// Texts with one place in all crates, and its file.
-const ONCE: [(&str, &str); 1] = [("[\"xx\", \"yy\", \"zz\"", "nodes/kernels/core/src/tensor.rs")];
+const ONCE: [(&str, &str); 2] = [
+    ("[\"xx\", \"yy\", \"zz\"", "nodes/kernels/core/src/tensor.rs"),
+    ("\"foxglove.sdk.v1\"", "nodes/studio/foxglove_bridge/src/protocol.rs"),
+];
 
 /// Places of a text beside the one that it has.
 fn repeated(text: &str, place: &str, files: &[(String, String)]) -> Vec<String> {
@@ -154,6 +157,8 @@ fn what_has_one_place_is_in_no_other() {
         (file.strip_prefix(&top).unwrap().to_string_lossy().into_owned(), without_tests(&text))
     };
     let mut files: Vec<_> = modules.map(|m| source(m.file)).collect();
+    // The table is no second place.
+    files.retain(|(file, _)| file != "tests/layout/src/counts.rs");
     for (text, place) in ONCE {
         assert_eq!(repeated(text, place, &files), Vec::<String>::new());
         files.push(("planted".to_owned(), text.to_owned()));
