@@ -4,11 +4,13 @@
 //! - [`commands`]: one module per command, with the checks of its arguments
 //! - [`memory`]: settings of the allocator
 //! - [`tape`]: a recording of the messages that a node would publish
+//! - [`viewers`]: the nodes of the studio
 
 mod cli;
 mod commands;
 mod memory;
 mod tape;
+mod viewers;
 
 fn main() -> std::process::ExitCode {
     memory::bound();

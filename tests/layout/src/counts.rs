@@ -8,9 +8,9 @@ use syn::{Item, UseTree, Visibility};
 
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
-const LABORATORY: usize = 56_200;
-const STUDIO_AND_COMMAND: usize = 28_200;
-const TESTS: usize = 44_750;
+const LABORATORY: usize = 56_000;
+const STUDIO_AND_COMMAND: usize = 28_900;
+const TESTS: usize = 45_100;
 
 /// Most comments that begin with a word that names nothing.
 const HEADLESS: usize = 1_085;
@@ -132,10 +132,15 @@ fn counted() -> [usize; 4] {
 }
 
 /// Texts with one place in all crates and their assets, and its file or folder.
-const ONCE: [(&str, &str); 3] = [
+const ONCE: [(&str, &str); 7] = [
     ("[\"xx\", \"yy\", \"zz\"", "nodes/kernels/core/src/tensor.rs"),
     ("<!DOCTYPE", "nodes/studio/page"),
     ("<html", "nodes/studio/page"),
+    // Counting sort; half width of 95 %; spread of Wilson and Hilferty; subprotocols.
+    ("first[bin + 1] += first[bin]", "nodes/kernels/core/src/bins.rs"),
+    ("1.959_96", "nodes/kernels/emt/src/normal.rs"),
+    ("2.0 / (9.0 *", "nodes/kernels/emt/src/normal.rs"),
+    ("\"foxglove.sdk.v1\"", "nodes/studio/foxglove_bridge/src/protocol.rs"),
 ];
 
 /// Places of a text beside the one that it has.

@@ -1,5 +1,6 @@
 //! `grainlab run`: one node as this process.
 
+use crate::viewers::VIEWERS;
 use grainlab_console::{Failure, print};
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::pipe;
@@ -10,7 +11,7 @@ use grainlab_recorder::{ResultSlot, tallies};
 #[derive(Debug, clap::Args)]
 #[command(after_help = help(), override_usage = "grainlab run NODE [--ros-args -p NAME:=VALUE -r FROM:=TO ...]")]
 pub(crate) struct Args {
-    #[arg(value_name = "NODE", help = one_of(&NodeKind::names()))]
+    #[arg(value_name = "NODE", help = one_of(&NodeKind::names(VIEWERS)))]
     node: String,
     /// ROS 2 arguments: --ros-args -p, -r, --params-file, --log-level
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENTS")]
@@ -24,7 +25,7 @@ fn one_of(names: &str) -> String {
 
 fn help() -> String {
     let mut text = String::from("Nodes and their parameters (set with -p NAME:=VALUE):\n");
-    for node in NodeKind::all() {
+    for node in NodeKind::all(VIEWERS) {
         text += &format!("\n  {node}: {}\n", node.summary());
         node.parameters().iter().for_each(|p| text += &format!("    {p}\n"));
     }
@@ -35,7 +36,7 @@ fn help() -> String {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     pipe::watch();
-    let node: NodeKind = args.node.parse().map_err(Failure::usage)?;
+    let node = NodeKind::named(&args.node, VIEWERS).map_err(Failure::usage)?;
     let (ros, plain) = RosArgs::parse(&args.rest).map_err(Failure::usage)?;
     if let Some(stranger) = plain.first() {
         let message = format!("unexpected argument {stranger:?}; ROS arguments come after --ros-args");

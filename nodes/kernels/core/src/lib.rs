@@ -5,7 +5,7 @@
 //! `e3 = z` is the axis of a scene.
 //!
 //! - `tensor`: small vectors and tensors
-//! - `cell`: the periodic cell
+//! - `cell`: the periodic cell; [`sorted_into_bins`]: grains by their place in it
 //! - `material`: the grain's material
 //! - [`contact`]: the contact laws; [`lanes`]: the arithmetic they are written in
 //! - `packing`: grains, cell and contact network at one instant
@@ -19,6 +19,7 @@
 //! - [`results`]: what is measured on a packing
 //! - [`quantity`]: tables of what is measured: key, symbol, unit, meaning, value
 
+mod bins;
 mod cell;
 mod consistency;
 pub mod contact;
@@ -35,6 +36,7 @@ mod symmetry;
 mod tensor;
 mod waves;
 
+pub use bins::sorted_into_bins;
 pub use cell::Cell;
 pub use control::{ComponentControl, ServoLaw};
 pub use material::{Material, effective_radius};

@@ -6,6 +6,7 @@ use crate::conditions::StrainRatio;
 use crate::domain::{Domain, outside_fitted};
 use crate::error::EmtError;
 use crate::moduli::MODULI;
+use crate::normal;
 use crate::observation::{INPUT_NAMES, INPUTS, InputCovariance, Observation};
 use crate::point_estimate::{Jacobian, Misfit, PointEstimate};
 use crate::prior::Prior;
@@ -17,9 +18,6 @@ use nalgebra::{SMatrix, SVector};
 
 /// Level of the intervals of an [`Estimate`].
 pub const CREDIBLE_LEVEL: f64 = 0.95;
-
-/// Half width, in standard deviations, of the central interval of a normal distribution at [`CREDIBLE_LEVEL`].
-pub(crate) const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 
 /// Share of the variance of a quantity from which the input that causes it is named.
 const WIDENS: f64 = 0.5;
@@ -184,7 +182,7 @@ impl Estimate {
     /// Central interval of a quantity at [`CREDIBLE_LEVEL`], low and high, for normal errors, within the limits of its prior.
     pub fn interval(&self, quantity: InferredQuantity) -> Option<[f64; 2]> {
         let middle = self.structure.get(quantity)?;
-        let half = HALF_WIDTH * self.stddev(quantity)?;
+        let half = normal::HALF_WIDTH * self.stddev(quantity)?;
         let [low, high] = self.limits[quantity as usize];
         Some([(middle - half).max(low), (middle + half).min(high)])
     }

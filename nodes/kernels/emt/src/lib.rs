@@ -64,6 +64,7 @@ mod posterior;
 mod prior;
 mod prior_conflict;
 mod propagation;
+mod random;
 mod registry;
 mod root;
 mod sampling;

@@ -1,12 +1,12 @@
-//! The standard normal distribution, χ², and random numbers.
+//! The standard normal distribution, and the tails of χ², of the ratio F of mean squares, and of Student's distribution.
 
-use nalgebra::SVector;
-use rand_pcg::Pcg64Mcg;
-use rand_pcg::rand_core::{Rng, SeedableRng};
-use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// ln(2π)/2.
 pub(crate) const LN_SQRT_TAU: f64 = 0.918_938_533_204_672_7;
+
+/// Half width, in standard deviations, of the central 95 % of a normal distribution.
+pub(crate) const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 
 /// ln of the normal density of this mean and standard deviation.
 pub(crate) fn ln_density(x: f64, mean: f64, stddev: f64) -> f64 {
@@ -88,44 +88,36 @@ pub(crate) fn chi_square_above(chi_square: f64, degrees_of_freedom: usize) -> f6
     probability.min(1.0)
 }
 
-/// Random numbers that a seed repeats.
-pub(crate) struct Random(Pcg64Mcg);
+/// The 0.999 quantile of the standard normal distribution.
+const CERTAIN: f64 = 3.09;
 
-impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(Pcg64Mcg::seed_from_u64(seed))
-    }
+/// Whether χ² with so many degrees of freedom (at least 1) exceeds this value by chance less than once in a thousand
+/// times.
+pub(crate) fn is_beyond_chance(chi_square: f64, degrees_of_freedom: usize) -> bool {
+    score(chi_square / degrees_of_freedom.max(1) as f64, degrees_of_freedom, None) >= CERTAIN
+}
 
-    /// Independent numbers of mean 0 and variance 1.
-    pub(crate) fn normal<const N: usize>(&mut self) -> SVector<f64, N> {
-        let mut v = SVector::zeros();
-        for pair in 0..N.div_ceil(2) {
-            let (first, second) = self.pair();
-            v[2 * pair] = first;
-            if 2 * pair + 1 < N {
-                v[2 * pair + 1] = second;
-            }
-        }
-        v
-    }
+/// The quantile of the standard normal distribution with the same tail probability as this ratio of mean squares.
+///
+/// The ratio is that of a χ² with `above` degrees of freedom, per degree of freedom, to another with `below`, or to its
+/// expectation if `None`: Wilson and Hilferty (1931), and Paulson (1942) for the ratio. With `below` less than three it
+/// never exceeds 2.7.
+pub(crate) fn score(ratio: f64, above: usize, below: Option<usize>) -> f64 {
+    let spread = |freedom: usize| 2.0 / (9.0 * freedom.max(1) as f64);
+    let (above, below) = (spread(above), below.map_or(0.0, spread));
+    let root = ratio.max(0.0).cbrt();
+    ((1.0 - below) * root - (1.0 - above)) / (above + below * root * root).sqrt()
+}
 
-    /// Two of them, by Box and Muller's method.
-    fn pair(&mut self) -> (f64, f64) {
-        // In (0, 1], where the logarithm is finite.
-        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-        let (sin, cos) = (TAU * self.uniform()).sin_cos();
-        (radius * cos, radius * sin)
-    }
-
-    /// For a generator of its own.
-    pub(crate) fn next_seed(&mut self) -> u64 {
-        self.0.next_u64()
-    }
-
-    /// In [0, 1), 53 bits.
-    pub(crate) fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
-    }
+/// Half width of the central 95 % of Student's distribution over that of a normal one (Abramowitz & Stegun 26.7.5, to 2e-3
+/// from five degrees of freedom on).
+pub(crate) fn student(degrees_of_freedom: usize) -> f64 {
+    let n = degrees_of_freedom.max(1) as f64;
+    let (z2, z4, z6) = (HALF_WIDTH.powi(2), HALF_WIDTH.powi(4), HALF_WIDTH.powi(6));
+    let first = (z2 + 1.0) / (4.0 * n);
+    let second = (5.0 * z4 + 16.0 * z2 + 3.0) / (96.0 * n.powi(2));
+    let third = (3.0 * z6 + 19.0 * z4 + 17.0 * z2 - 15.0) / (384.0 * n.powi(3));
+    1.0 + first + second + third
 }
 
 #[cfg(test)]
@@ -153,5 +145,32 @@ mod tests {
             assert!((chi_square_above(chi_square, freedom) / p - 1.0).abs() < 1e-8, "{freedom}");
         }
         assert_eq!([1, 2, 7].map(|n| chi_square_above(0.0, n)), [1.0; 3]);
+    }
+
+    /// Tables of the one-in-a-thousand quantiles.
+    #[test]
+    fn quantiles_are_those_of_tables_and_a_ratio_to_few_is_rather_less_certain() {
+        for (chi_square, freedom) in [(10.828, 1), (13.816, 2), (20.515, 5), (29.588, 10), (62.487, 32)] {
+            let score = score(chi_square / freedom as f64, freedom, None);
+            assert!((score - CERTAIN).abs() < 0.06, "{chi_square} {freedom} {score}");
+        }
+        for (ratio, above, below) in [(29.752, 5, 5), (10.481, 5, 10), (5.534, 5, 30), (7.768, 2, 40)] {
+            let score = score(ratio, above, Some(below));
+            assert!(score < CERTAIN + 0.06 && score > CERTAIN - 0.2, "{ratio} {above} {below} {score}");
+        }
+    }
+
+    #[test]
+    fn a_ratio_to_two_degrees_of_freedom_is_never_certain() {
+        assert!(score(1e12, 5, Some(2)) < CERTAIN && score(1e12, 5, Some(1)) < 2.0);
+        assert!(score(0.0, 5, Some(20)) < 0.0);
+    }
+
+    #[test]
+    fn student_s_distribution_is_wider_than_a_normal_one() {
+        for (degrees, quantile) in [(5, 2.5706), (10, 2.2281), (15, 2.1314), (30, 2.0423)] {
+            let found = 1.959_964 * student(degrees);
+            assert!((found / quantile - 1.0).abs() < 2e-3, "{degrees}: {found}");
+        }
     }
 }

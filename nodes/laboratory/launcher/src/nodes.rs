@@ -1,6 +1,7 @@
 //! Every node: one variant each, and all differences between them outside their own crates.
 //!
-//! To add a node: its crate, a variant here with all matches on it, and the launch files that start it.
+//! To add a node: its crate, a variant here with all matches on it, and the launch files that start it. Nodes for viewers are no
+//! part of the laboratory: the program that has them hands them over as [`Viewer`]s.
 
 use crate::last_packing;
 use clap::ValueEnum;
@@ -9,19 +10,16 @@ use grainlab_console::Failure;
 use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
-use grainlab_foxglove_bridge::FoxgloveBridge;
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{
     Bus, Exit, Names, Node, NodeError, NodeSpec, ParameterSpec, Parameters, RosArgs, Scope,
 };
-use grainlab_packing_pictures::PackingPictures;
 use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
 use grainlab_recordings::{input, scenes};
 use grainlab_servo_controller::ServoController;
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::Path;
-use std::str::FromStr;
 
 /// A node of the laboratory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -38,21 +36,55 @@ pub enum NodeKind {
     EmtInversion,
     /// Records every message.
     Recorder,
-    /// Publishes pictures of packings while somebody subscribes to them.
-    PackingPictures,
-    /// Offers the topics to viewers over a WebSocket.
-    FoxgloveBridge,
+    /// Shows a run, and is no part of it.
+    #[value(skip)]
+    Viewer(&'static Viewer),
 }
+
+/// A node for viewers.
+#[derive(Debug)]
+pub struct Viewer {
+    /// Its name, which no other node has.
+    pub name: &'static str,
+    /// Its description in one line.
+    pub summary: &'static str,
+    /// Its parameters.
+    pub parameters: fn() -> Vec<ParameterSpec>,
+    /// The recorded topics that it reads; `None` if it finds topics of any name by itself.
+    pub topics: Option<&'static [Topic]>,
+    /// Creates it on its bus.
+    pub build: fn(&mut dyn Bus, &Parameters) -> Result<Box<dyn Node>, NodeError>,
+}
+
+impl PartialEq for Viewer {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Viewer {}
 
 /// An unknown name of a node.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no node {0:?}; there are: {known}", known = NodeKind::names())]
-pub struct UnknownNode(pub String);
+#[error("no node {name:?}; there are: {known}")]
+pub struct UnknownNode {
+    name: String,
+    known: String,
+}
 
 impl NodeKind {
     /// Every node, in the order of the help.
-    pub fn all() -> impl Iterator<Item = Self> {
-        Self::value_variants().iter().copied()
+    pub fn all(viewers: &'static [Viewer]) -> impl Iterator<Item = Self> {
+        Self::value_variants().iter().copied().chain(viewers.iter().map(Self::Viewer))
+    }
+
+    /// The node with this name.
+    ///
+    /// # Errors
+    /// If there is none; the text lists all.
+    pub fn named(name: &str, viewers: &'static [Viewer]) -> Result<Self, UnknownNode> {
+        let unknown = || UnknownNode { name: name.to_owned(), known: Self::names(viewers) };
+        Self::all(viewers).find(|kind| kind.name() == name).ok_or_else(unknown)
     }
 
     /// Its name, unless `__node` sets another one.
@@ -64,14 +96,13 @@ impl NodeKind {
             Self::AcousticProbe => "acoustic_probe",
             Self::EmtInversion => "emt_inversion",
             Self::Recorder => "recorder",
-            Self::PackingPictures => "packing_pictures",
-            Self::FoxgloveBridge => "foxglove_bridge",
+            Self::Viewer(viewer) => viewer.name,
         }
     }
 
     /// The names of all, comma separated.
-    pub fn names() -> String {
-        Self::all().map(Self::name).collect::<Vec<_>>().join(", ")
+    pub fn names(viewers: &'static [Viewer]) -> String {
+        Self::all(viewers).map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
     /// Its description in one line.
@@ -83,10 +114,7 @@ impl NodeKind {
             Self::AcousticProbe => "measures wave speeds of packings",
             Self::EmtInversion => "infers the microstructure from moduli and wave speeds",
             Self::Recorder => "records every topic to MCAP",
-            Self::PackingPictures => {
-                "publishes packings as points and markers for viewers, while somebody subscribes"
-            }
-            Self::FoxgloveBridge => "offers every topic to Foxglove and Lichtblick over a WebSocket",
+            Self::Viewer(viewer) => viewer.summary,
         }
     }
 
@@ -99,8 +127,7 @@ impl NodeKind {
             Self::AcousticProbe => grainlab_acoustic_probe::parameters(),
             Self::EmtInversion => grainlab_emt_inversion::parameters(),
             Self::Recorder => recorder::parameters(),
-            Self::PackingPictures => Vec::new(),
-            Self::FoxgloveBridge => grainlab_foxglove_bridge::parameters(),
+            Self::Viewer(viewer) => (viewer.parameters)(),
         }
     }
 
@@ -109,11 +136,9 @@ impl NodeKind {
     fn scope(self) -> Scope {
         match self {
             Self::DemSimulator | Self::ServoController | Self::Recorder => Scope::OwnRun,
-            Self::FabricAnalyzer
-            | Self::AcousticProbe
-            | Self::EmtInversion
-            | Self::PackingPictures
-            | Self::FoxgloveBridge => Scope::Everyone,
+            Self::FabricAnalyzer | Self::AcousticProbe | Self::EmtInversion | Self::Viewer(_) => {
+                Scope::Everyone
+            }
         }
     }
 
@@ -142,8 +167,7 @@ impl NodeKind {
 
     /// Refuses a remap of a topic that does not exist, which would have no effect.
     pub fn check_remaps(self, names: &Names) -> Result<(), String> {
-        // It passes on topics of any name.
-        if self == Self::FoxgloveBridge {
+        if matches!(self, Self::Viewer(Viewer { topics: None, .. })) {
             return Ok(());
         }
         let known = || topics::TOPICS.iter().chain(topics::PICTURES).map(|topic| topic.name);
@@ -171,9 +195,7 @@ impl NodeKind {
             Self::AcousticProbe => &[topics::PACKING, topics::WAVE_SPEEDS, topics::WAVEFORM],
             Self::EmtInversion => &[topics::MODULI, topics::WAVE_SPEEDS, topics::MICROSTRUCTURE],
             Self::Recorder => topics::TOPICS,
-            Self::PackingPictures => &[topics::PACKING],
-            // It finds its topics by itself.
-            Self::FoxgloveBridge => &[],
+            Self::Viewer(viewer) => viewer.topics.unwrap_or_default(),
         };
         let of_every_node = [topics::DIAGNOSTICS, topics::ROSOUT].into_iter().filter(|t| !own.contains(t));
         own.iter().copied().filter(Topic::is_recorded).chain(of_every_node).collect()
@@ -184,11 +206,9 @@ impl NodeKind {
     pub fn per_run(self) -> (RangeInclusive<usize>, &'static str) {
         match self {
             Self::Recorder | Self::DemSimulator => (1..=1, "one"),
-            Self::ServoController
-            | Self::FabricAnalyzer
-            | Self::AcousticProbe
-            | Self::PackingPictures
-            | Self::FoxgloveBridge => (0..=1, "at most one"),
+            Self::ServoController | Self::FabricAnalyzer | Self::AcousticProbe | Self::Viewer(_) => {
+                (0..=1, "at most one")
+            }
             Self::EmtInversion => (0..=usize::MAX, "any number"),
         }
     }
@@ -202,8 +222,7 @@ impl NodeKind {
             | Self::ServoController
             | Self::EmtInversion
             | Self::Recorder
-            | Self::PackingPictures
-            | Self::FoxgloveBridge => None,
+            | Self::Viewer(_) => None,
         }
     }
 
@@ -236,11 +255,7 @@ impl NodeKind {
                 let settings = recorder::Settings::of(parameters).map_err(|e| node_error(&e))?;
                 Box::new(Recorder::new(bus, &settings, recorded.clone())?)
             }
-            Self::PackingPictures => Box::new(PackingPictures::new(bus)?),
-            Self::FoxgloveBridge => {
-                let settings = grainlab_foxglove_bridge::Settings::of(parameters).map_err(|e| usage(&e))?;
-                Box::new(FoxgloveBridge::new(bus, settings)?)
-            }
+            Self::Viewer(viewer) => (viewer.build)(bus, parameters)?,
         })
     }
 }
@@ -248,14 +263,6 @@ impl NodeKind {
 impl fmt::Display for NodeKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
-    }
-}
-
-impl FromStr for NodeKind {
-    type Err = UnknownNode;
-
-    fn from_str(name: &str) -> Result<Self, UnknownNode> {
-        Self::all().find(|kind| kind.name() == name).ok_or_else(|| UnknownNode(name.to_owned()))
     }
 }
 
@@ -298,19 +305,17 @@ mod tests {
 
     #[test]
     fn a_name_means_its_node_and_an_unknown_one_lists_all() {
-        for kind in NodeKind::all() {
-            assert_eq!(kind.to_string().parse(), Ok(kind));
+        for kind in NodeKind::all(&[]) {
+            assert_eq!(NodeKind::named(kind.name(), &[]), Ok(kind));
         }
-        let error = "dem_simulater".parse::<NodeKind>().unwrap_err().to_string();
+        let error = NodeKind::named("dem_simulater", &[]).unwrap_err().to_string();
         assert!(error.starts_with("no node \"dem_simulater\"; there are: dem_simulator, servo"), "{error}");
     }
 
     #[test]
     fn a_node_uses_no_topic_beside_those_whose_names_are_compared_before_the_start() {
         let folder = tempfile::tempdir().unwrap();
-        // Viewers belong to no run.
-        let viewers = [NodeKind::FoxgloveBridge, NodeKind::PackingPictures];
-        for kind in NodeKind::all().filter(|kind| !viewers.contains(kind)) {
+        for kind in NodeKind::all(&[]) {
             let output = format!("output:={}", folder.path().join("run").display());
             let given = ["--ros-args", "-p", &output].map(str::to_owned);
             let given = if kind == NodeKind::Recorder { given.as_slice() } else { &[] };
@@ -327,7 +332,7 @@ mod tests {
 
     #[test]
     fn who_measures_is_who_writes_the_topic() {
-        for (kind, topic) in NodeKind::all().filter_map(|kind| Some((kind, kind.measures()?))) {
+        for (kind, topic) in NodeKind::all(&[]).filter_map(|kind| Some((kind, kind.measures()?))) {
             assert_eq!(kind.name(), topic.writer);
         }
     }

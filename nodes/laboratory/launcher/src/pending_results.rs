@@ -108,7 +108,7 @@ impl PendingResults {
     pub(crate) fn of(plans: &[NodePlan]) -> Self {
         let has = |node: NodeKind| plans.iter().any(|p| p.is(node));
         let kind = |node: NodeKind| Some(Kind::new(node.measures()?.name, Source::Node(node)));
-        let mut kinds: Vec<Kind> = NodeKind::all().filter(|node| has(*node)).filter_map(kind).collect();
+        let mut kinds: Vec<Kind> = NodeKind::all(&[]).filter(|node| has(*node)).filter_map(kind).collect();
         if kinds.is_empty() {
             kinds.extend(kind(NodeKind::FabricAnalyzer));
         }

@@ -1,7 +1,7 @@
 //! Launch files: the part of the YAML form of ROS 2 launch that starts processes: grainlab nodes and other
 //! programs.
 
-use crate::nodes::{NodeKind, UnknownNode};
+use crate::nodes::{NodeKind, UnknownNode, Viewer};
 use grainlab_node_kit::{Names, Parameters};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -204,7 +204,14 @@ impl LaunchFile {
     }
 
     /// The nodes to start, in order, with these values for arguments.
-    pub fn nodes(&self, values: &BTreeMap<&str, String>) -> Result<Vec<NodePlan>, PlanError> {
+    ///
+    /// # Errors
+    /// If the file starts a node that is neither of the laboratory nor among `viewers`, or is no file of a run.
+    pub fn nodes(
+        &self,
+        values: &BTreeMap<&str, String>,
+        viewers: &'static [Viewer],
+    ) -> Result<Vec<NodePlan>, PlanError> {
         let known = || self.arguments.iter().map(|(n, _)| n.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = values.keys().find(|k| self.arguments.iter().all(|(n, _)| n != *k)) {
             if let Some((name, default, parameter)) = OF_LAUNCHER.into_iter().find(|(n, ..)| n == name) {
@@ -218,7 +225,7 @@ impl LaunchFile {
             variables.insert(name.as_str(), value.ok_or_else(|| PlanError::NoValue(name.clone()))?);
         }
         let nodes: Vec<NodePlan> =
-            self.executables.iter().map(|e| e.plan(&variables)).collect::<Result<_, _>>()?;
+            self.executables.iter().map(|e| e.plan(&variables, viewers)).collect::<Result<_, _>>()?;
         let mut names = BTreeSet::new();
         if let Some(plan) = nodes.iter().find(|n| !names.insert(n.name.as_str())) {
             return Err(PlanError::Twice(plan.name.clone()));
@@ -226,7 +233,7 @@ impl LaunchFile {
         if nodes.len() > PLACES {
             return Err(PlanError::Many { count: nodes.len(), most: PLACES });
         }
-        for node in NodeKind::all() {
+        for node in NodeKind::all(viewers) {
             let (counts, allowed) = node.per_run();
             let count = nodes.iter().filter(|n| n.is(node)).count();
             if !counts.contains(&count) {
@@ -238,7 +245,11 @@ impl LaunchFile {
 }
 
 impl Executable {
-    fn plan(&self, variables: &BTreeMap<&str, String>) -> Result<NodePlan, PlanError> {
+    fn plan(
+        &self,
+        variables: &BTreeMap<&str, String>,
+        viewers: &'static [Viewer],
+    ) -> Result<NodePlan, PlanError> {
         let command = || PlanError::Command { cmd: self.cmd.clone() };
         let words = words(&self.cmd).ok_or_else(command)?;
         let named = match words.as_slice() {
@@ -282,7 +293,7 @@ impl Executable {
             Some("false" | "False") => false,
             Some(other) => return Err(refuse("respawn", other, "true or false")),
         };
-        let node = named.map(str::parse).transpose();
+        let node = named.map(|name| NodeKind::named(name, viewers)).transpose();
         let node = node.map_err(|unknown| PlanError::Node { name: name.clone(), unknown })?;
         // The end of one of these nodes ends the run in any case: the key is for the launch of ROS 2.
         let ends_run = matches!(node, Some(NodeKind::DemSimulator | NodeKind::Recorder));

@@ -1,6 +1,6 @@
 //! Grains sorted into boxes, so that only those nearby are compared.
 
-use grainlab_core::{Cell, Vec3};
+use grainlab_core::{Cell, Vec3, sorted_into_bins};
 
 use super::error::SearchError;
 
@@ -48,8 +48,8 @@ pub(super) struct Grid {
     /// Box of each grain.
     homes: Vec<[i64; 3]>,
     /// Grains by box, and the start of each box.
-    sorted: Vec<usize>,
-    starts: Vec<usize>,
+    sorted: Vec<u32>,
+    starts: Vec<u32>,
 }
 
 impl Grid {
@@ -83,31 +83,17 @@ impl Grid {
             cells.push(copy.map(|c| c as i64));
         }
         let mut grid = Self { boxes, reach, cells, homes, sorted: Vec::new(), starts: Vec::new() };
-        // Counting sort: grains of a box stay in order of index.
-        let mut starts = vec![0; (boxes[0] * boxes[1] * boxes[2]) as usize + 1];
-        for home in &grid.homes {
-            starts[grid.number(home) + 1] += 1;
-        }
-        for b in 1..starts.len() {
-            starts[b] += starts[b - 1];
-        }
-        grid.starts = starts;
+        let boxes = (boxes[0] * boxes[1] * boxes[2]) as usize;
+        (grid.starts, grid.sorted) = sorted_into_bins(boxes, grid.homes.iter().map(|home| grid.number(home)));
         grid.require_end()?;
-        let mut next = grid.starts.clone();
-        grid.sorted = vec![0; positions.len()];
-        for i in 0..positions.len() {
-            let b = grid.number(&grid.homes[i]);
-            grid.sorted[next[b]] = i;
-            next[b] += 1;
-        }
         Ok(grid)
     }
 
     /// Refuses a search that would take too long: the estimate above assumes a uniform distribution.
     fn require_end(&self) -> Result<(), SearchError> {
-        let together = self.starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
+        let together = self.starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0) as usize;
         let neighbours: f64 = self.reach.iter().map(|r| (2 * r + 1) as f64).product();
-        let squares: f64 = self.starts.windows(2).map(|w| ((w[1] - w[0]) as f64).powi(2)).sum();
+        let squares: f64 = self.starts.windows(2).map(|w| f64::from(w[1] - w[0]).powi(2)).sum();
         let pairs = squares * neighbours;
         // Uniform distributions were checked above; here many boxes are empty.
         if pairs > MOST_PAIRS && together > CLUSTER {
@@ -134,8 +120,9 @@ impl Grid {
                     let at = [home[0] + a, home[1] + b, home[2] + c];
                     let lattice = std::array::from_fn(|k| at[k].div_euclid(self.boxes[k]));
                     let number = self.number(&std::array::from_fn(|k| at[k].rem_euclid(self.boxes[k])));
-                    for &j in &self.sorted[self.starts[number]..self.starts[number + 1]] {
-                        each(j, lattice)?;
+                    let range = self.starts[number] as usize..self.starts[number + 1] as usize;
+                    for &j in &self.sorted[range] {
+                        each(j as usize, lattice)?;
                     }
                 }
             }

@@ -1,5 +1,6 @@
 //! The launch file and its arguments, kept beside the recording so that the run can be resumed.
 
+use crate::viewers::VIEWERS;
 use grainlab_console::{Failure, json};
 use grainlab_launcher::{LaunchFile, NodePlan};
 use grainlab_recordings::input;
@@ -63,7 +64,7 @@ impl Order {
         values.insert("seed", self.seed.to_string());
         values.insert("out", path(directory));
         let file = LaunchFile::parse(&self.launch).map_err(Failure::usage)?;
-        let plans = file.nodes(&values).map_err(Failure::usage)?;
+        let plans = file.nodes(&values, VIEWERS).map_err(Failure::usage)?;
         let scene = directory.join("scene.toml");
         let agrees = |plan: &NodePlan| plan.check_handed_on(&scene, self.seed, directory);
         plans.iter().try_for_each(agrees).map_err(Failure::usage)?;

@@ -3,6 +3,7 @@
 use crate::domain::state::{State, vector};
 use crate::error::DemError;
 use crate::simd::simd_f64::F64x4;
+use grainlab_core::sorted_into_bins;
 
 /// Largest image number that a contact may carry.
 const MAX_IMAGE: i32 = 100;
@@ -57,24 +58,15 @@ impl Grid {
 
     /// Sorts the grains into their bins.
     fn sort(&mut self, state: &State) {
-        let mut first = vec![0u32; self.bins.iter().product::<i32>() as usize + 1];
-        for (bin, _) in &self.bin_of {
-            first[self.index(*bin) + 1] += 1;
-        }
-        for b in 1..first.len() {
-            first[b] += first[b - 1];
-        }
-        let mut end = first.clone();
-        self.members = vec![0; self.bin_of.len()];
-        self.spheres = vec![[0.0; 4]; self.bin_of.len()];
-        for (i, (bin, cells)) in self.bin_of.iter().enumerate() {
-            let next = &mut end[self.index(*bin)];
-            let x = vector(&state.position[i]) - state.cell.shift(cells.map(|c| c as i8));
-            self.members[*next as usize] = i as u32;
-            self.spheres[*next as usize] = [x.x, x.y, x.z, state.radius[i]];
-            *next += 1;
-        }
-        (self.first, self.end) = (first, end);
+        let bins = self.bins.iter().product::<i32>() as usize;
+        let (first, members) = sorted_into_bins(bins, self.bin_of.iter().map(|(bin, _)| self.index(*bin)));
+        let sphere = |&i: &u32| {
+            let i = i as usize;
+            let x = vector(&state.position[i]) - state.cell.shift(self.bin_of[i].1.map(|c| c as i8));
+            [x.x, x.y, x.z, state.radius[i]]
+        };
+        self.spheres = members.iter().map(sphere).collect();
+        (self.end, self.first, self.members) = (first[1..].to_vec(), first, members);
     }
 
     fn index(&self, bin: [i32; 3]) -> usize {

@@ -1,6 +1,6 @@
 //! Agreement of the speeds with one medium.
 
-use super::chance::is_beyond_chance;
+use crate::normal::is_beyond_chance;
 
 /// Root mean square of the relative scatter of ρ v² up to which it is attributed to the sample. Over the azimuths of
 /// packings of 2,000 grains it is 1 to 4 %, and it is inversely proportional to the root of their number.

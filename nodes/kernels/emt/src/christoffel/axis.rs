@@ -6,13 +6,13 @@
 
 use super::agreement::{Agreement, agreement};
 use super::axis_error::AxisError;
-use super::chance::score;
 use super::error::ChristoffelError;
 use super::hemisphere::{angle, hemisphere, upward, widest_gap};
 use super::profile::{Speeds, Stand};
 use super::ray::{Ray, paired};
 use super::search::seen;
 use super::weights::{errors, weights};
+use crate::normal::score;
 use grainlab_core::{Mat3, Vec3, WaveSpeed};
 use nalgebra::{Matrix2, SymmetricEigen, Vector2};
 

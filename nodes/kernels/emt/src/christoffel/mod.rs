@@ -24,8 +24,6 @@
 mod agreement;
 mod axis;
 mod axis_error;
-mod chance;
-pub(crate) use chance::score;
 mod departure;
 mod determined;
 mod error;

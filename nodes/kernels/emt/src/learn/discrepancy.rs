@@ -1,11 +1,11 @@
 //! The errors of the models on the packings.
 
-use super::relaxation::student;
 use super::sample::CalibrationSample;
 use crate::calibration::{Calibration, ModelDiscrepancy};
 use crate::conditions::{StrainRatio, StrainRatioSource};
 use crate::error::EmtError;
 use crate::model::Model;
+use crate::normal::student;
 use crate::registry::models;
 use grainlab_core::results::InferredQuantity;
 use std::collections::BTreeMap;

@@ -7,6 +7,7 @@ use crate::calibration::{
     SCATTERED, ScalingLaw, Scatter,
 };
 use crate::invariants::Invariants;
+use crate::normal::student;
 use std::collections::BTreeSet;
 
 /// Number of recipes needed: the laws are tested on each with those learned from the others.
@@ -176,27 +177,4 @@ fn scatter(
         }
     }
     Ok((covariance, by_state))
-}
-
-/// Half width of the central 95 % of Student's distribution over that of a normal one (Abramowitz & Stegun 26.7.5, to 2e-3
-/// from five degrees of freedom on).
-pub(super) fn student(degrees_of_freedom: usize) -> f64 {
-    const Z: f64 = crate::estimate::HALF_WIDTH;
-    let n = degrees_of_freedom.max(1) as f64;
-    let (z2, z4, z6) = (Z.powi(2), Z.powi(4), Z.powi(6));
-    let first = (z2 + 1.0) / (4.0 * n);
-    let second = (5.0 * z4 + 16.0 * z2 + 3.0) / (96.0 * n.powi(2));
-    let third = (3.0 * z6 + 19.0 * z4 + 17.0 * z2 - 15.0) / (384.0 * n.powi(3));
-    1.0 + first + second + third
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn student_s_distribution_is_wider_than_a_normal_one() {
-        for (degrees, quantile) in [(5, 2.5706), (10, 2.2281), (15, 2.1314), (30, 2.0423)] {
-            let found = 1.959_964 * super::student(degrees);
-            assert!((found / quantile - 1.0).abs() < 2e-3, "{degrees}: {found}");
-        }
-    }
 }

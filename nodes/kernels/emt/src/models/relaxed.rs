@@ -16,7 +16,6 @@ mod state;
 
 use crate::calibration::{Calibration, Outside, Reach, RelaxationCalibration};
 use crate::checks::FALSE_ALARM;
-use crate::christoffel::score;
 use crate::conditions::Conditions;
 use crate::domain::{Domain, Fitted, outside_fitted};
 use crate::error::EmtError;
@@ -175,7 +174,7 @@ fn point_estimate(
     if let Some(Misfit { chi_square, degrees_of_freedom }) = misfit {
         let worst = fit.worst(data);
         let below = fit.freedom_of_variances(network);
-        let of_all = score(chi_square / degrees_of_freedom as f64, degrees_of_freedom, Some(below));
+        let of_all = normal::score(chi_square / degrees_of_freedom as f64, degrees_of_freedom, Some(below));
         // The largest of several differences.
         let of_worst = 2.0 * normal::below(-worst.1) * data.used as f64;
         if normal::below(-of_all).min(of_worst) < FALSE_ALARM {

@@ -3,7 +3,7 @@
 use super::points::{Posterior, point};
 use crate::error::EmtError;
 use crate::moduli::Modulus;
-use crate::normal::Random;
+use crate::random::Random;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// Margin of the logarithm of the envelope above the largest weight found by the integration.

@@ -8,9 +8,10 @@ use crate::error::EmtError;
 use crate::likelihood::FOLLOWING;
 use crate::model::Model;
 use crate::moduli::Modulus;
-use crate::normal::{self, Random};
+use crate::normal;
 use crate::observation::Observation;
 use crate::prior::Prior;
+use crate::random::Random;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use nalgebra::Vector2;
 

@@ -8,9 +8,9 @@ use crate::conditions::Conditions;
 use crate::error::EmtError;
 use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
-use crate::normal::Random;
 use crate::observation::Observation;
 use crate::prior::Prior;
+use crate::random::Random;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use nalgebra::Vector2;
 

@@ -1,21 +1,30 @@
 use super::*;
 use crate::agreement::names_of_run;
 use NodeKind::{AcousticProbe, DemSimulator, EmtInversion, FabricAnalyzer, Recorder, ServoController};
+use grainlab_msgs::topics;
+use grainlab_node_kit::{Exit, NodeError, ParameterSpec};
 use std::path::Path;
 
 const DEFAULT: &str = BUILT_IN[0].1;
 const ACOUSTIC: &str = BUILT_IN[1].1;
+const VIEWERS: &[Viewer] = &[Viewer {
+    name: "window",
+    summary: "shows packings",
+    parameters: || vec![ParameterSpec::new("port", 1_i64, "port")],
+    topics: Some(&[topics::PACKING]),
+    build: |_, _| Err(NodeError::new(Exit::Failure, "no window".to_owned())),
+}];
 
 fn nodes(text: &str, values: &[(&'static str, &str)]) -> Result<Vec<NodePlan>, PlanError> {
     let values = values.iter().map(|(k, v)| (*k, (*v).to_owned())).collect();
-    LaunchFile::parse(text)?.nodes(&values)
+    LaunchFile::parse(text)?.nodes(&values, VIEWERS)
 }
 
 #[test]
 fn the_default_file_starts_one_of_each_node_on_the_demo() {
     let file = LaunchFile::parse(DEFAULT).unwrap();
     assert_eq!(file.default_of("scene"), Some("demo"));
-    let plans = file.nodes(&BTreeMap::new()).unwrap();
+    let plans = file.nodes(&BTreeMap::new(), VIEWERS).unwrap();
     let started: Vec<NodeKind> = plans.iter().map(|p| p.node.unwrap()).collect();
     assert_eq!(started, [Recorder, EmtInversion, FabricAnalyzer, ServoController, DemSimulator]);
     assert!(plans.iter().all(|p| p.respawn != [Recorder, DemSimulator].contains(&p.node.unwrap())));
@@ -24,7 +33,7 @@ fn the_default_file_starts_one_of_each_node_on_the_demo() {
 #[test]
 fn the_acoustic_file_is_the_default_one_with_a_probe_that_the_run_waits_for() {
     let file = LaunchFile::parse(ACOUSTIC).unwrap();
-    let (default, acoustic) = (nodes(DEFAULT, &[]).unwrap(), file.nodes(&BTreeMap::new()).unwrap());
+    let (default, acoustic) = (nodes(DEFAULT, &[]).unwrap(), file.nodes(&BTreeMap::new(), VIEWERS).unwrap());
     let (probe, others): (Vec<_>, Vec<_>) = acoustic.iter().partition(|p| p.is(AcousticProbe));
     let [probe] = probe.as_slice() else { panic!("{} probes", probe.len()) };
     assert!(probe.respawn && probe.arguments.contains(&"speed_noise:=0.003".to_owned()), "{probe:?}");
@@ -168,6 +177,29 @@ fn a_run_may_have_several_inversions_and_one_of_everything_else() {
         let error = nodes(&again(node), &[]).unwrap_err();
         assert!(matches!(error, PlanError::Count { count: 2, .. }), "{error}");
     }
+}
+
+#[test]
+fn a_viewer_is_started_and_checked_like_a_node_of_the_laboratory_if_the_program_has_it() {
+    let with = |arguments: &str| {
+        format!("{DEFAULT}- executable: {{cmd: 'grainlab run window --ros-args {arguments}'}}\n")
+    };
+    let plans = nodes(&with("-p port:=2"), &[]).unwrap();
+    let (window, kind) = (plans.last().unwrap(), NodeKind::Viewer(&VIEWERS[0]));
+    assert!(window.is(kind) && window.name == "window", "{window:?}");
+    assert_eq!(window.check_parameters(), Ok(()));
+    let misspelt = nodes(&with("-p prot:=2"), &[]).unwrap();
+    assert!(misspelt.last().unwrap().check_parameters().unwrap_err().to_string().contains("prot"));
+    let apart = names_of_run(&nodes(&with("-r packing:=grains"), &[]).unwrap()).unwrap_err().to_string();
+    assert!(apart.contains("executable window: the topic packing is /grains there"), "{apart}");
+    let twice = format!("{}- executable: {{cmd: grainlab run window, name: second}}\n", with(""));
+    let twice = nodes(&twice, &[]).unwrap_err();
+    assert_eq!(twice, PlanError::Count { node: kind, count: 2, allowed: "at most one" });
+    let without = LaunchFile::parse(&with("")).unwrap().nodes(&BTreeMap::new(), &[]).unwrap_err().to_string();
+    assert!(
+        without.starts_with("executable window: there is no node \"window\"; there are: dem_"),
+        "{without}"
+    );
 }
 
 #[test]

@@ -3,13 +3,16 @@
 //! - [`parameters`], [`Settings`]: port, address, folders with message files
 //! - [`FoxgloveBridge`]: the node
 //! - `topics`: the topics of the bus as channels; `source`: how samples of one are received
-//! - `pictures`: pictures of packings, made here; `server`: the WebSocket server and what its clients ask for
+//! - `pictures`: pictures of packings, made here
+//! - `server`: the WebSocket server and what its clients ask for; `client`: one of them; `protocol`: the messages
 //!
 //! A topic is received only while a client subscribes to it. Samples pass as they are, in CDR with `ros2msg` schemas. Each
 //! client has a queue of bounded length: one that does not read loses messages, and holds up nothing.
 
+mod client;
 mod node;
 mod pictures;
+mod protocol;
 mod server;
 mod settings;
 mod source;

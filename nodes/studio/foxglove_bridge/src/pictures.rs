@@ -1,13 +1,10 @@
 //! Pictures of the packings of a topic, made while a client wants them.
 
-use crate::server::Server;
-use foxglove::{ChannelId, PartialMetadata, RawChannel, SinkId};
+use crate::server::{Channel, Request, Server};
 use grainlab_pictures::{Drawn, Picture, packing};
-use std::sync::Arc;
 
 /// The channels beside a topic with packings.
-#[derive(Debug)]
-pub(crate) struct Pictures(Vec<(Picture, Arc<RawChannel>)>);
+pub(crate) struct Pictures(Vec<(Picture, Channel)>);
 
 impl Pictures {
     /// Advertises those that no process on the bus publishes.
@@ -15,27 +12,26 @@ impl Pictures {
         let missing = Picture::ALL.into_iter().filter(|p| !published(&p.beside(packings)));
         let channel = |picture: Picture| {
             let info = &picture.topic().info;
-            let channel = server.channel(&picture.beside(packings), info.type_name, info.definition)?;
-            Some((picture, channel))
+            (picture, server.channel(&picture.beside(packings), info.type_name, info.definition))
         };
-        Self(missing.filter_map(channel).collect())
+        Self(missing.map(channel).collect())
     }
 
     /// Whether a client wants one.
     pub(crate) fn wanted(&self) -> bool {
-        self.0.iter().any(|(_, channel)| channel.has_sinks())
+        self.0.iter().any(|(_, channel)| channel.is_wanted())
     }
 
     /// Whether one of them has this channel.
-    pub(crate) fn has(&self, id: ChannelId) -> bool {
+    pub(crate) fn has(&self, id: u64) -> bool {
         self.0.iter().any(|(_, channel)| channel.id() == id)
     }
 
     /// Sends the pictures of a packing to the clients that want them, or one of them to one client.
-    pub(crate) fn send(&self, body: &[u8], time: PartialMetadata, only: Option<(ChannelId, SinkId)>) {
-        let due = |channel: &RawChannel| match only {
-            Some((id, _)) => channel.id() == id,
-            None => channel.has_sinks(),
+    pub(crate) fn send(&self, body: &[u8], time: u64, only: Option<Request>) {
+        let due = |channel: &Channel| match only {
+            Some(request) => channel.id() == request.channel,
+            None => channel.is_wanted(),
         };
         let due: Vec<_> = self.0.iter().filter(|(_, channel)| due(channel)).collect();
         if due.is_empty() {
@@ -45,19 +41,10 @@ impl Pictures {
             Ok(packing) => {
                 let drawn = Drawn::new(&packing);
                 for (picture, channel) in due {
-                    channel.log_with_meta_to_sink(
-                        &picture.encoded(&drawn),
-                        time,
-                        only.map(|(_, client)| client),
-                    );
+                    channel.send(&picture.encoded(&drawn), time, only.map(|request| request.client));
                 }
             }
             Err(error) => log::error!("no picture of a packing: {error}"),
         }
-    }
-
-    /// Takes them back.
-    pub(crate) fn close(&self) {
-        self.0.iter().for_each(|(_, channel)| channel.close());
     }
 }

@@ -1,14 +1,12 @@
 //! The topics of the bus as channels of the server.
 
 use crate::pictures::Pictures;
-use crate::server::{Request, Server};
+use crate::server::{Channel, Request, Server};
 use crate::source::Source;
-use foxglove::{PartialMetadata, RawChannel};
 use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::{Bus, BusError, Offer, Sample};
 use grainlab_recordings::{Definitions, adapted};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::sync::Arc;
 use std::time::Duration;
 
 /// Most latched samples kept of a topic for a client that subscribes after another one.
@@ -17,7 +15,7 @@ const KEPT: usize = 128;
 /// A topic of the bus.
 struct Bridged {
     topic: Topic,
-    channel: Arc<RawChannel>,
+    channel: Channel,
     /// Of a topic with packings.
     pictures: Option<Pictures>,
     /// While a client subscribes.
@@ -36,8 +34,8 @@ pub(crate) struct Topics {
     pub(crate) samples: u64,
 }
 
-fn time(sample: &Sample) -> PartialMetadata {
-    PartialMetadata { log_time: Some(sample.info.source_time.unwrap_or(sample.info.received)) }
+fn time(sample: &Sample) -> u64 {
+    sample.info.source_time.unwrap_or(sample.info.received)
 }
 
 impl Topics {
@@ -109,7 +107,7 @@ impl Topics {
         let row = Topic::by_name(name).filter(|row| row.info.type_name == first.type_name);
         let qos = Qos { depth: row.map_or(qos.depth, |row| row.qos.depth), ..qos };
         let topic = Topic::outside_contract(name, &first.type_name, qos)?;
-        let channel = server.channel(name, &first.type_name, &definition)?;
+        let channel = server.channel(name, &first.type_name, &definition);
         let is_packing = topic.info == topics::PACKING.info;
         let pictures = is_packing.then(|| Pictures::advertise(server, name, is_published));
         self.refused.remove(name);
@@ -119,10 +117,6 @@ impl Topics {
     fn remove(&mut self, bus: &mut dyn Bus, name: &str) {
         let Some(mut gone) = self.all.remove(name) else { return };
         gone.unsubscribe(bus);
-        gone.channel.close();
-        if let Some(pictures) = &gone.pictures {
-            pictures.close();
-        }
     }
 
     /// Sends the latched samples of a topic that is already received to a client that subscribed.
@@ -133,9 +127,9 @@ impl Topics {
         let Some(bridged) = self.all.values().find(wanted) else { return };
         for sample in &bridged.latched {
             if bridged.channel.id() == request.channel {
-                bridged.channel.log_with_meta_to_sink(&sample.body, time(sample), Some(request.client));
+                bridged.channel.send(&sample.body, time(sample), Some(request.client));
             } else if let Some(pictures) = &bridged.pictures {
-                pictures.send(&sample.body, time(sample), Some((request.channel, request.client)));
+                pictures.send(&sample.body, time(sample), Some(request));
             }
         }
     }
@@ -151,7 +145,7 @@ impl Topics {
             let Some(source) = &mut bridged.source else { continue };
             while let Some(sample) = source.take(bus)? {
                 self.samples += 1;
-                bridged.channel.log_with_meta(&sample.body, time(&sample));
+                bridged.channel.send(&sample.body, time(&sample), None);
                 if let Some(pictures) = &bridged.pictures {
                     pictures.send(&sample.body, time(&sample), None);
                 }
@@ -174,7 +168,7 @@ impl Topics {
 
 impl Bridged {
     fn wanted(&self) -> bool {
-        self.channel.has_sinks() || self.pictures.as_ref().is_some_and(Pictures::wanted)
+        self.channel.is_wanted() || self.pictures.as_ref().is_some_and(Pictures::wanted)
     }
 
     fn unsubscribe(&mut self, bus: &mut dyn Bus) {
