@@ -1,18 +1,18 @@
 //! Values of a run as parts of the page, with the names and units of a report.
 
 use crate::laboratory::Laboratory;
-use grainlab_console::count;
+use grainlab_console::{count, fixed};
 use grainlab_core::results::InferredQuantity;
 use grainlab_core::{ComponentControl, SymTensor};
 use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::simulated_seconds;
 use grainlab_page::html::{Cell, escaped, paragraph, table};
 use grainlab_report::card;
+use grainlab_results::brief::moduli;
 use grainlab_results::{Inference, by_origin};
 use serde_json::json;
 
 const KPA: f64 = 1e-3;
-const MPA: f64 = 1e-6;
 
 /// A large number in thousands or millions.
 fn large(value: f64) -> String {
@@ -59,7 +59,7 @@ impl Laboratory {
         let time = request
             .map_or_else(String::new, |r| format!("{:.4} ms simulated", 1e3 * simulated_seconds(&r.stamp)));
         let step = self.step().map_or_else(String::new, |s| format!("step {s}"));
-        let z = self.fabric.as_ref().map_or_else(String::new, |(_, f)| {
+        let z = self.report.as_ref().map_or_else(String::new, |f| {
             format!("z {:.3} without rattlers, last packing", f.contacts.mechanical_coordination)
         });
         [
@@ -125,18 +125,18 @@ impl Laboratory {
 
     /// Moduli and microstructure of the last measured packing.
     pub(crate) fn structure(&self) -> String {
-        let Some((step, fabric)) = &self.fabric else {
+        let Some(report) = &self.report else {
             return paragraph("No packing has been measured yet: at the states set in the scene.");
         };
-        let (inferred_step, results) = &self.inferred;
+        let (step, (inferred_step, results)) = (report.step, &self.inferred);
         let groups = by_origin(results);
         let best = groups
             .iter()
             .find_map(|(_, results)| Inference::recommended(results))
-            .filter(|_| inferred_step == step);
+            .filter(|_| *inferred_step == step);
         let rows: Vec<Vec<Cell>> = InferredQuantity::countable()
             .map(|q| {
-                let (counted, digits) = (q.counted(&fabric.contacts, &fabric.fabric), q.digits());
+                let (counted, digits) = (report.counted(q), q.digits());
                 let value = best.and_then(|b| b.values[q]);
                 let sigma =
                     best.and_then(|b| b.sigma[q]).map_or_else(String::new, |s| format!("± {s:.digits$}"));
@@ -163,14 +163,13 @@ impl Laboratory {
             &["", "", "counted", "inferred", "", "error"],
             &rows,
         );
-        if let Some((_, m)) = self.moduli.as_ref().filter(|(of, _)| of == step) {
+        if report.stiffness().is_some() {
             let names =
                 [("G12", "shear across the axis"), ("G13", "shear along the axis"), ("Θ", "bulk modulus")];
-            let moduli = names.into_iter().zip([m.g12, m.g13, m.theta]).map(|((name, meaning), value)| {
-                let value = value.map_or_else(|| "–".to_owned(), |v| format!("{:.2}", v * MPA));
-                vec![Cell::text(name), Cell::text(meaning), Cell::number(value)]
+            let rows = names.into_iter().zip(moduli(report)).map(|((name, meaning), value)| {
+                vec![Cell::text(name), Cell::text(meaning), Cell::number(fixed(value, 2))]
             });
-            text += &table("Moduli", &["", "", "MPa"], &moduli.collect::<Vec<_>>());
+            text += &table("Moduli", &["", "", "MPa"], &rows.collect::<Vec<_>>());
         }
         format!("<div class=\"grid\">{text}</div>")
     }
