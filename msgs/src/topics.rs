@@ -106,24 +106,24 @@ pub const PACKING_CREDIT: Topic = Topic {
     summary: "the parts that a reader has, and whether it takes more; never recorded",
 };
 
-/// Structure of a packing.
-pub const FABRIC: Topic = Topic {
-    name: "fabric",
-    info: TypeInfo::of::<msg::Fabric>(),
+/// Everything that is measured on a packing.
+pub const PACKING_REPORT: Topic = Topic {
+    name: "packing_report",
+    info: TypeInfo::of::<msg::PackingReport>(),
     qos: Qos::LATCHED,
     writer: "fabric_analyzer",
     reproducible: true,
-    summary: "coordination, rattlers, fabric tensors",
+    summary: "structure, stress and stiffness of a packing",
 };
 
-/// Stiffness of a packing.
+/// Moduli of a sample.
 pub const MODULI: Topic = Topic {
     name: "moduli",
     info: TypeInfo::of::<msg::Moduli>(),
     qos: Qos::LATCHED,
-    writer: "fabric_analyzer",
+    writer: "an instrument",
     reproducible: true,
-    summary: "stiffness and the other inputs of an inversion",
+    summary: "moduli of a sample and the other inputs of an inversion; written only by instruments and other programs",
 };
 
 /// Wave speeds, real or virtual.
@@ -247,7 +247,7 @@ pub const TOPICS: &[Topic] = &[
     PACKING,
     PACKING_CHUNK,
     PACKING_CREDIT,
-    FABRIC,
+    PACKING_REPORT,
     MODULI,
     WAVE_SPEEDS,
     WAVEFORM,

@@ -4,8 +4,8 @@ use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
 /// The reproducible topics of a run without an acoustic probe: they must not depend on timing.
-pub const REPRODUCIBLE: [&str; 6] =
-    ["/stress", "/strain_rate", "/packing", "/fabric", "/moduli", "/microstructure"];
+pub const REPRODUCIBLE: [&str; 5] =
+    ["/stress", "/strain_rate", "/packing", "/packing_report", "/microstructure"];
 
 /// Distinct message bodies of one topic, in the order of their first appearance. A request repeated because
 /// its answer was late, or a result published again by a restarted node, has the same bytes; one of them

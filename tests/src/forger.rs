@@ -1,7 +1,7 @@
 //! A process outside the run that publishes forged messages on its topics: a second servo, an analyzer with
 //! other results, an old latched result.
 
-use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
+use grainlab_msgs::msg::{Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, topics};
 use grainlab_node_kit::{Bus, DdsBus, Demand, Names, Network, Publisher, Sample, SubscriptionId};
 use std::sync::Arc;
@@ -18,8 +18,8 @@ pub enum Forgery {
     Stress,
     /// Every packing is published again with other forces.
     Packing,
-    /// Moduli are doubled.
-    Moduli,
+    /// Stiffnesses are doubled.
+    Report,
     /// Coordination numbers of nine.
     Microstructure,
     /// A run state: finished.
@@ -40,7 +40,7 @@ pub const FORGERIES: [Forgery; 8] = [
     Forgery::SecondServo,
     Forgery::Stress,
     Forgery::Packing,
-    Forgery::Moduli,
+    Forgery::Report,
     Forgery::Microstructure,
     Forgery::Finished,
     Forgery::Failed,
@@ -93,7 +93,7 @@ fn forge(bus: &mut DdsBus, forgery: Forgery, stop: &AtomicBool, sent: &AtomicU64
         Forgery::SecondServo => (topics::STRESS, topics::STRAIN_RATE),
         Forgery::Stress => (topics::STRESS, topics::STRESS),
         Forgery::Packing => (topics::PACKING, topics::PACKING),
-        Forgery::Moduli => (topics::MODULI, topics::MODULI),
+        Forgery::Report => (topics::PACKING_REPORT, topics::PACKING_REPORT),
         Forgery::Microstructure => (topics::MICROSTRUCTURE, topics::MICROSTRUCTURE),
         Forgery::Finished | Forgery::Failed => (topics::STRESS, topics::RUN_STATE),
         Forgery::EarlyAnswer => (topics::STRESS, topics::STRAIN_RATE),
@@ -105,7 +105,11 @@ fn forge(bus: &mut DdsBus, forgery: Forgery, stop: &AtomicBool, sent: &AtomicU64
         Publisher::advertise(bus, &topics::STRAIN_RATE).unwrap_or_else(|e| panic!("{e}"));
     let count = || sent.fetch_add(1, Ordering::Relaxed);
     if let Forgery::OldMicrostructure { step } = forgery {
-        let old = Microstructure { source_step: step, source: "moduli".into(), ..Microstructure::default() };
+        let old = Microstructure {
+            source_step: step,
+            source: "packing_report".into(),
+            ..Microstructure::default()
+        };
         bus.publish(output, &grainlab_msgs::to_cdr(&old)).unwrap_or_else(|e| panic!("{e}"));
         count();
     }
@@ -153,12 +157,10 @@ fn forged(forgery: Forgery, sample: &Sample) -> Option<(Vec<u8>, Option<grainlab
             packing.contact_normal_force.iter_mut().for_each(|f| *f *= 1.5);
             grainlab_msgs::to_cdr(&packing)
         }
-        Forgery::Moduli => {
-            let mut moduli: Moduli = decoded(sample);
-            for modulus in [&mut moduli.g12, &mut moduli.g13, &mut moduli.theta] {
-                modulus.iter_mut().for_each(|value| *value *= 2.0);
-            }
-            grainlab_msgs::to_cdr(&moduli)
+        Forgery::Report => {
+            let mut report: PackingReport = decoded(sample);
+            report.stiffness.iter_mut().flat_map(|s| &mut s.stiffness).for_each(|value| *value *= 2.0);
+            grainlab_msgs::to_cdr(&report)
         }
         Forgery::Microstructure => {
             let mut found: Microstructure = decoded(sample);

@@ -34,7 +34,7 @@ fn number(value: &Value) -> f64 {
 fn both_kinds_of_data_are_recorded_inverted_and_agree() {
     let (_, run) = &*RUN;
     let summary = summary(run);
-    for name in ["/wave_speeds", "/moduli", "/microstructure"] {
+    for name in ["/wave_speeds", "/packing_report", "/microstructure"] {
         let topics = summary["topics"].as_array().unwrap();
         let topic =
             topics.iter().find(|t| t["name"] == name).unwrap_or_else(|| panic!("{name} in {topics:?}"));
@@ -49,7 +49,7 @@ fn both_kinds_of_data_are_recorded_inverted_and_agree() {
             let found = found.unwrap_or_else(|| panic!("nothing inferred from {source}: {results:?}"));
             (number(&found["z"]), number(&found["sigma"]["z"]))
         };
-        let ((z, sigma), (z_heard, sigma_heard)) = (relaxed("moduli"), relaxed("wave_speeds"));
+        let ((z, sigma), (z_heard, sigma_heard)) = (relaxed("packing_report"), relaxed("wave_speeds"));
         let within = sigma.hypot(sigma_heard);
         assert!((z - z_heard).abs() < within, "z {z} +- {sigma} and {z_heard} +- {sigma_heard}");
 
@@ -124,7 +124,7 @@ fn killing_the_probe_changes_no_byte() {
     let nodes = summary(&run)["nodes"].clone();
     let probe = nodes.as_array().unwrap().iter().find(|n| n["name"] == "acoustic_probe").cloned();
     assert_eq!(probe.unwrap()["restarts"], 1, "{nodes}");
-    for topic in ["/packing", "/moduli", "/wave_speeds", "/microstructure"] {
+    for topic in ["/packing", "/packing_report", "/wave_speeds", "/microstructure"] {
         assert_eq!(bodies(quiet, topic), bodies(&run, topic), "{topic}");
     }
 }

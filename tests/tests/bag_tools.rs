@@ -86,7 +86,7 @@ fn copies_pass_the_acceptance_check_and_python_reads_the_same_values() {
     for (arguments, out) in [
         (&["cut", ours, "--start-offset", "0.1", "--duration", "0.2"][..], "cut"),
         (&["cut", bag, "--start", "1700000000.5", "--end", "2023-11-14T22:13:21Z"], "cut_foreign.mcap"),
-        (&["filter", ours, "--regex", "/(stress|mod.*)", "--compression", "lz4"], "filtered"),
+        (&["filter", ours, "--regex", "/(stress|packing_r.*)", "--compression", "lz4"], "filtered"),
         (&["filter", bag, "--types", "sensor_msgs/msg/Imu", "--compression", "none"], "imu"),
         (&["merge", ours, bag, "--exclude", "rosout"], "merged"),
         (&["compress", bag, "--preset", "zstd_small"], "small.mcap"),
@@ -125,7 +125,7 @@ fn steps_are_played_one_by_one_and_a_recorder_takes_the_topics_it_is_told_to() {
         "bag",
         "record",
         "--regex",
-        "/(stress|packing|moduli)",
+        "/(stress|packing|packing_report)",
         "--exclude-topics",
         "packing",
         "--compression",
@@ -150,7 +150,7 @@ fn steps_are_played_one_by_one_and_a_recorder_takes_the_topics_it_is_told_to() {
     let recording = Recording::open(&lab.folder().join("again")).unwrap();
     let info = recording.info();
     let names: Vec<&str> = info.topics.iter().map(|t| t.name.as_str()).collect();
-    assert_eq!((names, info.compression), (vec!["/moduli", "/stress"], vec!["lz4".to_owned()]));
+    assert_eq!((names, info.compression), (vec!["/packing_report", "/stress"], vec!["lz4".to_owned()]));
     assert!((1..=5).contains(&info.messages), "{}", info.messages);
 }
 
@@ -159,8 +159,9 @@ fn a_snapshot_is_written_when_its_trigger_comes() {
     let lab = Lab::new();
     let source = lab.launch(&golden("scenes/tiny.toml"), &[]);
     let source = source.to_str().unwrap();
-    let recorder = lab.start(&["bag", "record", "--snapshot", "60", "--trigger", "moduli", "-o", "last"]);
-    run(&lab, &["bag", "play", source, "--topics", "stress", "moduli", "--rate", "10"]);
+    let recorder =
+        lab.start(&["bag", "record", "--snapshot", "60", "--trigger", "packing_report", "-o", "last"]);
+    run(&lab, &["bag", "play", source, "--topics", "stress", "packing_report", "--rate", "10"]);
     recorder.signal(libc::SIGINT);
     let ended = recorder.ended(LIMIT);
     assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
@@ -168,7 +169,7 @@ fn a_snapshot_is_written_when_its_trigger_comes() {
         Recording::open(path).unwrap().messages(&Selection::topics([topic])).unwrap().count()
     };
     let last = lab.folder().join("last");
-    assert_eq!(of(&last, "/moduli"), of(Path::new(source), "/moduli"));
+    assert_eq!(of(&last, "/packing_report"), of(Path::new(source), "/packing_report"));
     assert!(of(&last, "/stress") > 0);
 }
 

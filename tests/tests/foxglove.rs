@@ -17,7 +17,7 @@ const WANTED: [&str; 7] = [
     "/packing/points",
     "/packing/markers",
     "/stress",
-    "/moduli",
+    "/packing_report",
     "/microstructure",
     "/tf_static",
 ];

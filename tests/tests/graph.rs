@@ -132,8 +132,10 @@ fn the_doctor_finds_every_fault_planted_in_a_domain() {
     let info = TypeInfo::of::<StrainRate>();
     reader.subscribe(&Topic { info, ..other(stress, "/both", volatile) }, Demand::reliable(10)).unwrap();
     // A namespace that one side has.
-    writer.advertise(&other(topics::FABRIC, "/lab/fabric", latched)).unwrap();
-    reader.subscribe(&other(topics::FABRIC, "/fabric", latched), Demand::reliable(10)).unwrap();
+    writer.advertise(&other(topics::PACKING_REPORT, "/lab/packing_report", latched)).unwrap();
+    reader
+        .subscribe(&other(topics::PACKING_REPORT, "/packing_report", latched), Demand::reliable(10))
+        .unwrap();
     // Two simulators by hand, and two nodes of one name.
     let mut twins = [bus(&lab, "twin"), bus(&lab, "twin")];
     for twin in &mut twins {

@@ -47,7 +47,7 @@ fn goes_on_to_the_same_bytes(lab: &Lab, run: &Path, expected: &Path) {
     }
     let (all, known) = (distinct(run, "/packing"), distinct(expected, "/packing"));
     assert!(known.iter().all(|body| all.contains(body)) && all.len() == known.len() + 1);
-    for topic in ["/moduli", "/microstructure"] {
+    for topic in ["/packing_report", "/microstructure"] {
         assert_eq!(distinct(expected, topic).last(), distinct(run, topic).last(), "{topic}");
     }
     // The counts are those of the whole run.

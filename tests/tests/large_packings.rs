@@ -1,6 +1,6 @@
 //! Packings that are too large for one sample, between real processes: played, analysed and recorded again.
 
-use grainlab_msgs::msg::Fabric;
+use grainlab_msgs::msg::PackingReport;
 use grainlab_msgs::{Guid, from_cdr, to_cdr, topics};
 use grainlab_recordings::{Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
 use std::path::Path;
@@ -52,7 +52,7 @@ fn thirty_of_thirty_packings_of_sixteen_thousand_grains_are_analysed_and_recorde
     assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
     assert!(played.stderr.contains("30 messages sent"), "{}", played.stderr);
     let begin = Instant::now();
-    while recorded(&out, "/moduli").len() < PACKINGS as usize {
+    while recorded(&out, "/packing_report").len() < PACKINGS as usize {
         assert!(begin.elapsed() < LIMIT, "the last packing was not analysed");
         std::thread::sleep(Duration::from_millis(200));
     }
@@ -63,9 +63,9 @@ fn thirty_of_thirty_packings_of_sixteen_thousand_grains_are_analysed_and_recorde
         assert!(!ended.stdout.contains("packing_chunk") && !ended.stdout.contains("packing_credit"));
     }
     assert!(recorded(&out, "/packing") == bodies, "the same bytes, each once, in order");
-    let fabrics: Vec<Fabric> =
-        recorded(&out, "/fabric").iter().map(|body| from_cdr(body).expect("a fabric")).collect();
-    let steps: Vec<u64> = fabrics.iter().map(|fabric| fabric.source_step).collect();
+    let report = |body: &Vec<u8>| from_cdr::<PackingReport>(body).expect("a report");
+    let steps: Vec<u64> =
+        recorded(&out, "/packing_report").iter().map(|body| report(body).source_step).collect();
     assert_eq!(steps, (1..=PACKINGS).collect::<Vec<_>>());
     let info = Recording::open(&out).unwrap().info();
     let packing = info.topics.iter().find(|topic| topic.name == "/packing").unwrap();
@@ -83,7 +83,7 @@ fn a_restarted_analyzer_gets_the_latest_large_packing_and_makes_the_same_bytes()
     let player = lab.start(&["bag", "play", &source.to_string_lossy(), "--min-subscribers", "2"]);
     let until = |count: usize| {
         let begin = Instant::now();
-        while recorded(&out, "/moduli").len() < count {
+        while recorded(&out, "/packing_report").len() < count {
             assert!(begin.elapsed() < LIMIT, "{count} packings analysed");
             std::thread::sleep(Duration::from_millis(20));
         }
@@ -93,10 +93,10 @@ fn a_restarted_analyzer_gets_the_latest_large_packing_and_makes_the_same_bytes()
     let analyzer = lab.start(&["run", "fabric_analyzer"]);
     let played = player.ended(LIMIT);
     assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
-    let last =
-        || recorded(&out, "/moduli").last().map(|body| from_cdr::<grainlab_msgs::msg::Moduli>(body).unwrap());
+    let report = |body: &Vec<u8>| from_cdr::<PackingReport>(body).unwrap();
+    let last = || recorded(&out, "/packing_report").last().map(report);
     let begin = Instant::now();
-    while last().is_none_or(|moduli| moduli.source_step < PACKINGS) {
+    while last().is_none_or(|report| report.source_step < PACKINGS) {
         assert!(begin.elapsed() < LIMIT, "the last packing was not analysed");
         std::thread::sleep(Duration::from_millis(200));
     }
@@ -106,9 +106,9 @@ fn a_restarted_analyzer_gets_the_latest_large_packing_and_makes_the_same_bytes()
         assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
     }
     // Every packing is the same lattice: the results differ only in the step.
-    let fabrics = recorded(&out, "/fabric").into_iter().map(|body| from_cdr::<Fabric>(&body).unwrap());
+    let reports = recorded(&out, "/packing_report");
     let distinct: std::collections::BTreeSet<Vec<u8>> =
-        fabrics.map(|fabric| to_cdr(&Fabric { source_step: 0, ..fabric })).collect();
+        reports.iter().map(|body| to_cdr(&PackingReport { source_step: 0, ..report(body) })).collect();
     assert_eq!(distinct.len(), 1);
     assert_eq!(recorded(&out, "/packing").len(), PACKINGS as usize);
 }

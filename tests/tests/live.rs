@@ -120,11 +120,11 @@ fn the_page_shows_values_of_the_recording_and_the_recording_is_that_of_a_run_wit
     let packings: Value = serde_json::from_str(body).unwrap();
     assert_eq!(packings["about"]["grains"], 80);
     assert_eq!(packings["states"].as_array().unwrap().len(), distinct(&run, "/packing").len());
-    let fabric: msg::Fabric = from_cdr(distinct(&run, "/fabric").last().unwrap()).unwrap();
+    let report: msg::PackingReport = from_cdr(distinct(&run, "/packing_report").last().unwrap()).unwrap();
     let mut late = until_heading(&page.events(), "Complete");
     let parts = late.pop().unwrap().1;
     let text = |id: &str| parts[id].as_str().unwrap_or_else(|| panic!("{id}: {parts}")).to_owned();
-    assert!(text("structure").contains(&format!("{:.3}", fabric.contacts.mechanical_coordination)));
+    assert!(text("structure").contains(&format!("{:.3}", report.contacts.mechanical_coordination)));
     assert!(text("nodes").contains("/servo_controller") && text("curves").contains("plot-stress"));
 
     page.process.signal(libc::SIGTERM);

@@ -13,12 +13,11 @@ use system_tests::terminal::{Shown, Terminal};
 
 const NODES: [&str; 5] =
     ["dem_simulator", "servo_controller", "fabric_analyzer", "emt_inversion", "recorder"];
-const TOPICS: [&str; 10] = [
+const TOPICS: [&str; 9] = [
     "/stress",
     "/strain_rate",
     "/packing",
-    "/fabric",
-    "/moduli",
+    "/packing_report",
     "/microstructure",
     "/run_state",
     "/clock",
@@ -93,7 +92,11 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
             && results.iter().any(|r| r["model"] == "ratio-as-printed")
     );
     let ratio = results.iter().find(|r| r["model"] == "ratio").unwrap();
-    assert_eq!((&ratio["source"], &ratio["calibration"]), (&"moduli".into(), &"paper".into()), "{ratio}");
+    assert_eq!(
+        (&ratio["source"], &ratio["calibration"]),
+        (&"packing_report".into(), &"paper".into()),
+        "{ratio}"
+    );
     assert!(ratio["k"].is_f64() && ratio["z"].is_null() && ratio["sigma"]["k"].is_f64(), "{ratio}");
     assert!(ratio["degrees_of_freedom"] == 0 && ratio["condition_number"].is_f64(), "{ratio}");
     assert!(ended.stdout.contains("errors against the values counted"), "{}", ended.stdout);

@@ -6,7 +6,7 @@ use crate::msg::{self, SymmetricTensor};
 use crate::std_msgs::Header;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::StrainRatios;
-use grainlab_core::{SymTensor, Vec3};
+use grainlab_core::{Mat3, Material, SymTensor, Vec3};
 
 /// Frame of every header.
 const FRAME: &str = "cell";
@@ -66,6 +66,16 @@ impl Check {
     /// A positive number that may be missing.
     pub(super) fn optional_positive(self, field: &str, entries: &[f64]) -> Checked<Option<f64>> {
         self.optional(field, entries, |field, v| self.positive(field, *v))
+    }
+
+    /// The material of the grains.
+    pub(super) fn material(self, shear_modulus: f64, poisson_ratio: f64, density: f64) -> Checked<Material> {
+        let (known, requirement) = ((0.0..=0.5).contains(&poisson_ratio), "between 0 and 0.5");
+        Ok(Material {
+            shear_modulus: self.positive("grain_shear_modulus", shear_modulus)?,
+            poisson_ratio: self.that(known, "grain_poisson_ratio", poisson_ratio, requirement)?,
+            density: self.positive("grain_density", density)?,
+        })
     }
 
     /// The contact law of this name with these parameters.
@@ -224,6 +234,10 @@ pub(super) fn component(field: &str, index: usize) -> String {
 
 pub(super) fn header(stamp: crate::builtin_interfaces::Time) -> Header {
     Header { stamp, frame_id: FRAME.to_owned() }
+}
+
+pub(super) fn row_major(m: &Mat3) -> [f64; 9] {
+    std::array::from_fn(|k| m[(k / 3, k % 3)])
 }
 
 pub(super) fn tensor_message(t: &SymTensor) -> SymmetricTensor {

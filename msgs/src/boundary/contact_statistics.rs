@@ -5,6 +5,8 @@ use super::error::BoundaryError;
 use crate::msg;
 use grainlab_core::results::{ContactStatistics, ForceStatistics, MobilisedFriction};
 
+const CHECK: Check = Check("PackingReport.contacts");
+
 pub(super) fn contact_statistics_message(c: &ContactStatistics) -> msg::ContactStatistics {
     let forces = c.forces.map(|f| msg::ForceStatistics {
         mean_normal: f.mean_normal,
@@ -26,52 +28,37 @@ pub(super) fn contact_statistics_message(c: &ContactStatistics) -> msg::ContactS
     }
 }
 
-/// The content of the field `contacts` of a message.
-pub(super) fn contact_statistics(
-    check: Check,
-    m: &msg::ContactStatistics,
-) -> Result<ContactStatistics, BoundaryError> {
+pub(super) fn contact_statistics(m: &msg::ContactStatistics) -> Result<ContactStatistics, BoundaryError> {
     let few = "at most the number of grains";
-    check.that(m.rattlers <= m.grains, "contacts.rattlers", f64::from(m.rattlers), few)?;
+    CHECK.that(m.rattlers <= m.grains, "rattlers", f64::from(m.rattlers), few)?;
     Ok(ContactStatistics {
         grains: m.grains,
         contacts: m.contacts,
         rattlers: m.rattlers,
-        coordination: check.not_negative("contacts.coordination", m.coordination)?,
-        mechanical_coordination: check
-            .not_negative("contacts.mechanical_coordination", m.mechanical_coordination)?,
-        sliding_fraction: check.share("contacts.sliding_fraction", m.sliding_fraction)?,
-        forces: check
-            .optional("contacts.forces", &m.forces, |_, f| force_statistics(check, f, m.contacts))?,
-        friction: check
-            .optional("contacts.friction", &m.friction, |_, f| mobilised_friction(check, f, m.contacts))?,
+        coordination: CHECK.not_negative("coordination", m.coordination)?,
+        mechanical_coordination: CHECK.not_negative("mechanical_coordination", m.mechanical_coordination)?,
+        sliding_fraction: CHECK.share("sliding_fraction", m.sliding_fraction)?,
+        forces: CHECK.optional("forces", &m.forces, |_, f| force_statistics(f, m.contacts))?,
+        friction: CHECK.optional("friction", &m.friction, |_, f| mobilised_friction(f, m.contacts))?,
     })
 }
 
-fn force_statistics(
-    check: Check,
-    m: &msg::ForceStatistics,
-    contacts: u32,
-) -> Result<ForceStatistics, BoundaryError> {
-    every_contact(check, "contacts.forces.histogram", &m.histogram, contacts)?;
-    check.all_finite("contacts.forces.moments", &m.moments)?;
-    check.positive("contacts.forces.moments[0]", m.moments[0])?;
+fn force_statistics(m: &msg::ForceStatistics, contacts: u32) -> Result<ForceStatistics, BoundaryError> {
+    every_contact(CHECK, "forces.histogram", &m.histogram, contacts)?;
+    CHECK.all_finite("forces.moments", &m.moments)?;
+    CHECK.positive("forces.moments[0]", m.moments[0])?;
     Ok(ForceStatistics {
-        mean_normal: check.positive("contacts.forces.mean_normal", m.mean_normal)?,
-        mean_tangential: check.not_negative("contacts.forces.mean_tangential", m.mean_tangential)?,
+        mean_normal: CHECK.positive("forces.mean_normal", m.mean_normal)?,
+        mean_tangential: CHECK.not_negative("forces.mean_tangential", m.mean_tangential)?,
         moments: m.moments,
-        largest: check.positive("contacts.forces.largest", m.largest)?,
+        largest: CHECK.positive("forces.largest", m.largest)?,
         histogram: m.histogram,
     })
 }
 
-fn mobilised_friction(
-    check: Check,
-    m: &msg::MobilisedFriction,
-    contacts: u32,
-) -> Result<MobilisedFriction, BoundaryError> {
-    every_contact(check, "contacts.friction.histogram", &m.histogram, contacts)?;
-    Ok(MobilisedFriction { mean: check.share("contacts.friction.mean", m.mean)?, histogram: m.histogram })
+fn mobilised_friction(m: &msg::MobilisedFriction, contacts: u32) -> Result<MobilisedFriction, BoundaryError> {
+    every_contact(CHECK, "friction.histogram", &m.histogram, contacts)?;
+    Ok(MobilisedFriction { mean: CHECK.share("friction.mean", m.mean)?, histogram: m.histogram })
 }
 
 /// A histogram contains every contact once.

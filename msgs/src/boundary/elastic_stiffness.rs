@@ -6,6 +6,8 @@ use crate::msg;
 use grainlab_core::Stiffness;
 use grainlab_core::results::{ElasticStiffness, StiffnessBounds, StiffnessMethod};
 
+const CHECK: Check = Check("PackingReport.stiffness");
+
 const fn code(method: StiffnessMethod) -> u8 {
     match method {
         StiffnessMethod::FrozenNetwork => msg::ElasticStiffness::METHOD_FROZEN_NETWORK,
@@ -17,6 +19,7 @@ const fn code(method: StiffnessMethod) -> u8 {
 pub(super) fn elastic_stiffness_message(s: &ElasticStiffness) -> msg::ElasticStiffness {
     msg::ElasticStiffness {
         method: code(s.method),
+        smooth: s.smooth,
         stiffness: s.tensor.row_major(),
         stddev: s.stddev.row_major(),
         residual: s.residual,
@@ -27,35 +30,29 @@ pub(super) fn elastic_stiffness_message(s: &ElasticStiffness) -> msg::ElasticSti
     }
 }
 
-/// The content of the field `stiffness` of a message, which says whether it is `smooth`.
-pub(super) fn elastic_stiffness(
-    check: Check,
-    m: &msg::ElasticStiffness,
-    smooth: bool,
-) -> Result<ElasticStiffness, BoundaryError> {
-    let name = |field: &str| format!("stiffness.{field}");
+pub(super) fn elastic_stiffness(m: &msg::ElasticStiffness) -> Result<ElasticStiffness, BoundaryError> {
     let matrix = |field: &str, values: &[f64; 36]| {
-        check.all_finite(&name(field), values)?;
+        CHECK.all_finite(field, values)?;
         Ok::<_, BoundaryError>(Stiffness::from_row_major(values))
     };
     for (i, stddev) in m.stddev.iter().enumerate() {
-        check.not_negative(&name(&format!("stddev[{i}]")), *stddev)?;
+        CHECK.not_negative(&format!("stddev[{i}]"), *stddev)?;
     }
     let method = StiffnessMethod::ALL.into_iter().find(|method| code(*method) == m.method);
     Ok(ElasticStiffness {
-        smooth,
+        smooth: m.smooth,
         method: method.ok_or_else(|| {
             let known = "0 (frozen network), 2 (probe), 4 (prestressed network)";
-            check.code(&name("method"), m.method, known)
+            CHECK.code("method", m.method, known)
         })?,
         tensor: matrix("stiffness", &m.stiffness)?,
         stddev: matrix("stddev", &m.stddev)?,
-        residual: check.not_negative(&name("residual"), m.residual)?,
+        residual: CHECK.not_negative("residual", m.residual)?,
         iterations: m.iterations,
         bounds: StiffnessBounds {
             affine: matrix("affine", &m.affine)?,
             uniform_rotation: matrix("uniform_rotation", &m.uniform_rotation)?,
-            bulk_reuss: check.optional_not_negative(&name("bulk_reuss_bound"), &m.bulk_reuss_bound)?,
+            bulk_reuss: CHECK.optional_not_negative("bulk_reuss_bound", &m.bulk_reuss_bound)?,
         },
     })
 }

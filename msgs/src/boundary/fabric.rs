@@ -1,38 +1,17 @@
-//! `Fabric`: structure of a packing.
+//! `Fabric`: orientation of the contacts of a packing.
 
-use super::check::{Check, one_or_none, strain_ratios_message, tensor_message, vector_message};
-use super::contact_statistics::{contact_statistics, contact_statistics_message, every_contact};
+use super::check::{Check, one_or_none, tensor_message, vector_message};
+use super::contact_statistics::every_contact;
 use super::error::BoundaryError;
-use super::stress_decomposition::{stress_decomposition, stress_decomposition_message};
 use crate::msg;
-use crate::std_msgs::Header;
 use grainlab_core::results::{
-    ContactStatistics, Fabric, FourthOrderFabric, OrientationFit, OrientationHistogram, OverlapAnisotropyFit,
-    PackingReport, PrincipalAxis, StrainRatios, StressDecomposition,
+    Fabric, FourthOrderFabric, OrientationFit, OrientationHistogram, OverlapAnisotropyFit, PrincipalAxis,
 };
 
-const CHECK: Check = Check("Fabric");
+const CHECK: Check = Check("PackingReport.fabric");
 
-/// The checked content of a `Fabric` message.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FabricReading {
-    /// Contacts and the forces they carry.
-    pub contacts: ContactStatistics,
-    /// Orientation of the contacts.
-    pub fabric: Fabric,
-    /// Parts of the stress by force and by network.
-    pub stress_decomposition: StressDecomposition,
-    /// The three ratios γ/Δ.
-    pub strain_ratios: StrainRatios,
-}
-
-/// The message with the structure of a packing; `header` is that of the measured packing.
-pub fn fabric_message(header: Header, report: &PackingReport) -> Result<msg::Fabric, BoundaryError> {
-    let f = &report.fabric;
-    let message = msg::Fabric {
-        header,
-        source_step: report.step,
-        contacts: contact_statistics_message(&report.contacts),
+pub(super) fn fabric_message(f: &Fabric) -> msg::Fabric {
+    msg::Fabric {
         reference_axis: vector_message(&f.reference_axis),
         contact_fabric: tensor_message(&f.contact_fabric),
         normal_force_fabric: tensor_message(&f.normal_force_fabric),
@@ -44,41 +23,27 @@ pub fn fabric_message(header: Header, report: &PackingReport) -> Result<msg::Fab
         fourth_order_magnitude: f.fourth_order.magnitude,
         principal_axis: principal_axis_message(&f.principal_axis),
         orientation: orientation_message(&f.orientation),
-        stress: stress_decomposition_message(&report.stress_decomposition),
-        strain_ratios: strain_ratios_message(&report.strain_ratios),
-    };
-    FabricReading::try_from(&message)?;
-    Ok(message)
+    }
 }
 
-impl TryFrom<&msg::Fabric> for FabricReading {
-    type Error = BoundaryError;
-
-    fn try_from(m: &msg::Fabric) -> Result<Self, BoundaryError> {
-        CHECK.header(&m.header)?;
-        CHECK.all_finite("fourth_order_fabric", &m.fourth_order_fabric)?;
-        Ok(Self {
-            contacts: contact_statistics(CHECK, &m.contacts)?,
-            fabric: Fabric {
-                reference_axis: CHECK.unit("reference_axis", &m.reference_axis)?,
-                contact_fabric: CHECK.tensor("contact_fabric", &m.contact_fabric)?,
-                normal_force_fabric: CHECK.tensor("normal_force_fabric", &m.normal_force_fabric)?,
-                tangential_force_fabric: CHECK
-                    .tensor("tangential_force_fabric", &m.tangential_force_fabric)?,
-                stiffness_fabric: CHECK.tensor("stiffness_fabric", &m.stiffness_fabric)?,
-                contact_anisotropy: CHECK.finite("contact_anisotropy", m.contact_anisotropy)?,
-                p4_coefficient: CHECK.finite("p4_coefficient", m.p4_coefficient)?,
-                fourth_order: FourthOrderFabric {
-                    components: m.fourth_order_fabric,
-                    magnitude: CHECK.not_negative("fourth_order_magnitude", m.fourth_order_magnitude)?,
-                },
-                principal_axis: principal_axis(&m.principal_axis)?,
-                orientation: orientation(&m.orientation, m.contacts.contacts)?,
-            },
-            stress_decomposition: stress_decomposition(CHECK, &m.stress, m.contacts.contacts)?,
-            strain_ratios: CHECK.strain_ratios(&m.strain_ratios)?,
-        })
-    }
+/// The fabric of a packing with this number of contacts.
+pub(super) fn fabric(m: &msg::Fabric, contacts: u32) -> Result<Fabric, BoundaryError> {
+    CHECK.all_finite("fourth_order_fabric", &m.fourth_order_fabric)?;
+    Ok(Fabric {
+        reference_axis: CHECK.unit("reference_axis", &m.reference_axis)?,
+        contact_fabric: CHECK.tensor("contact_fabric", &m.contact_fabric)?,
+        normal_force_fabric: CHECK.tensor("normal_force_fabric", &m.normal_force_fabric)?,
+        tangential_force_fabric: CHECK.tensor("tangential_force_fabric", &m.tangential_force_fabric)?,
+        stiffness_fabric: CHECK.tensor("stiffness_fabric", &m.stiffness_fabric)?,
+        contact_anisotropy: CHECK.finite("contact_anisotropy", m.contact_anisotropy)?,
+        p4_coefficient: CHECK.finite("p4_coefficient", m.p4_coefficient)?,
+        fourth_order: FourthOrderFabric {
+            components: m.fourth_order_fabric,
+            magnitude: CHECK.not_negative("fourth_order_magnitude", m.fourth_order_magnitude)?,
+        },
+        principal_axis: principal_axis(&m.principal_axis)?,
+        orientation: orientation(&m.orientation, contacts)?,
+    })
 }
 
 fn principal_axis_message(axis: &PrincipalAxis) -> msg::PrincipalAxis {

@@ -1,6 +1,6 @@
 //! `Packing`: the complete mechanical state.
 
-use super::check::{Check, header};
+use super::check::{Check, header, row_major};
 use super::error::BoundaryError;
 use crate::std_msgs::Header;
 use crate::{msg, stamp};
@@ -134,8 +134,4 @@ fn triples(
 
 fn interleaved<'a>(vectors: impl Iterator<Item = &'a Vec3>) -> Vec<f64> {
     vectors.flat_map(|v| [v.x, v.y, v.z]).collect()
-}
-
-fn row_major(m: &Mat3) -> [f64; 9] {
-    std::array::from_fn(|k| m[(k / 3, k % 3)])
 }

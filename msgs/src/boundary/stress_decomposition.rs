@@ -5,6 +5,8 @@ use super::error::BoundaryError;
 use crate::msg;
 use grainlab_core::results::{StressDecomposition, StressForceFabric, SubNetwork};
 
+const CHECK: Check = Check("PackingReport.stress_decomposition");
+
 pub(super) fn stress_decomposition_message(d: &StressDecomposition) -> msg::StressDecomposition {
     let anisotropies = d.stress_force_fabric.map(|a| msg::StressForceFabric {
         contacts: tensor_message(&a.contacts),
@@ -30,44 +32,37 @@ fn network_message(n: &SubNetwork) -> msg::SubNetwork {
     }
 }
 
-/// The content of the field `stress` of a message about a packing with this number of contacts.
+/// The decomposition of a packing with this number of contacts.
 pub(super) fn stress_decomposition(
-    check: Check,
     m: &msg::StressDecomposition,
     contacts: u32,
 ) -> Result<StressDecomposition, BoundaryError> {
     let both = u64::from(m.strong.contacts) + u64::from(m.weak.contacts);
-    let sum = "sum of stress.strong.contacts and stress.weak.contacts";
-    check.that(both == u64::from(contacts), sum, both as f64, "the number of contacts")?;
+    let sum = "sum of strong.contacts and weak.contacts";
+    CHECK.that(both == u64::from(contacts), sum, both as f64, "the number of contacts")?;
     Ok(StressDecomposition {
-        normal: check.tensor("stress.normal", &m.normal)?,
-        tangential: check.tensor("stress.tangential", &m.tangential)?,
-        strong: network(check, "strong", &m.strong)?,
-        weak: network(check, "weak", &m.weak)?,
-        stress_force_fabric: check.optional(
-            "stress.stress_force_fabric",
-            &m.stress_force_fabric,
-            |field, a| stress_force_fabric(check, field, a),
-        )?,
+        normal: CHECK.tensor("normal", &m.normal)?,
+        tangential: CHECK.tensor("tangential", &m.tangential)?,
+        strong: network("strong", &m.strong)?,
+        weak: network("weak", &m.weak)?,
+        stress_force_fabric: CHECK.optional("stress_force_fabric", &m.stress_force_fabric, |field, a| {
+            stress_force_fabric(field, a)
+        })?,
     })
 }
 
-fn network(check: Check, name: &str, m: &msg::SubNetwork) -> Result<SubNetwork, BoundaryError> {
-    let field = |field: &str| format!("stress.{name}.{field}");
+fn network(name: &str, m: &msg::SubNetwork) -> Result<SubNetwork, BoundaryError> {
+    let field = |field: &str| format!("{name}.{field}");
     Ok(SubNetwork {
         contacts: m.contacts,
-        fabric: check.tensor(&field("fabric"), &m.fabric)?,
-        contact_anisotropy: check.finite(&field("contact_anisotropy"), m.contact_anisotropy)?,
-        stress: check.tensor(&field("stress"), &m.stress)?,
+        fabric: CHECK.tensor(&field("fabric"), &m.fabric)?,
+        contact_anisotropy: CHECK.finite(&field("contact_anisotropy"), m.contact_anisotropy)?,
+        stress: CHECK.tensor(&field("stress"), &m.stress)?,
     })
 }
 
-fn stress_force_fabric(
-    check: Check,
-    name: &str,
-    m: &msg::StressForceFabric,
-) -> Result<StressForceFabric, BoundaryError> {
-    let tensor = |field: &str, tensor| check.tensor(&format!("{name}.{field}"), tensor);
+fn stress_force_fabric(name: &str, m: &msg::StressForceFabric) -> Result<StressForceFabric, BoundaryError> {
+    let tensor = |field: &str, tensor| CHECK.tensor(&format!("{name}.{field}"), tensor);
     Ok(StressForceFabric {
         contacts: tensor("contacts", &m.contacts)?,
         normal_forces: tensor("normal_forces", &m.normal_forces)?,

@@ -2,13 +2,13 @@ use super::refuses;
 use super::structure::{contacts, fabric, stress_decomposition};
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::{
-    ElasticStiffness, Elasticity, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
+    ElasticStiffness, Elasticity, NotJammed, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
 };
 use grainlab_core::stress::Stress;
-use grainlab_core::{Material, Stiffness, SymTensor, TransverseIsotropy, Vec3};
-use grainlab_msgs::boundary::{
-    FabricReading, ModuliReading, RunStateReading, RunStatus, fabric_message, moduli_message,
+use grainlab_core::{
+    Mat3, Material, Stiffness, SymTensor, Symmetry, TransverseIsotropy, Vec3, min_contacts, symmetry,
 };
+use grainlab_msgs::boundary::{ModuliReading, RunStateReading, RunStatus, packing_report_message};
 use grainlab_msgs::msg;
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{from_cdr, stamp, to_cdr};
@@ -40,16 +40,6 @@ pub(crate) fn report() -> PackingReport {
     }
 }
 
-/// The part of a report in a `Fabric` message.
-pub(crate) fn fabric_of(report: &PackingReport) -> FabricReading {
-    FabricReading {
-        contacts: report.contacts,
-        fabric: report.fabric,
-        stress_decomposition: report.stress_decomposition,
-        strain_ratios: report.strain_ratios,
-    }
-}
-
 fn stiffness() -> ElasticStiffness {
     let relaxed = TransverseIsotropy {
         c11: 360e6,
@@ -77,63 +67,44 @@ fn stiffness() -> ElasticStiffness {
     }
 }
 
-fn moduli_sent() -> msg::Moduli {
-    moduli_message(header(), &report(), &stiffness()).unwrap()
+pub(crate) fn sent() -> msg::PackingReport {
+    packing_report_message(header(), &report()).unwrap()
+}
+
+pub(crate) fn crossed(report: &PackingReport) -> PackingReport {
+    let sent = packing_report_message(header(), report).unwrap();
+    PackingReport::try_from(&from_cdr::<msg::PackingReport>(&to_cdr(&sent)).unwrap()).unwrap()
 }
 
 #[test]
-fn a_fabric_crosses_the_wire_and_back() {
-    let sent = fabric_message(header(), &report()).unwrap();
-    let received: msg::Fabric = from_cdr(&to_cdr(&sent)).unwrap();
-    assert_eq!(FabricReading::try_from(&received).unwrap(), fabric_of(&report()));
-    assert_eq!((received.source_step, received.header), (7, header()));
-}
-
-#[test]
-fn moduli_cross_the_wire_and_back() {
+fn a_report_crosses_the_wire_bit_for_bit() {
+    let cubic_axes = Mat3::from_fn(|i, j| (3 * i + j) as f64);
+    let symmetry = Symmetry { cubic_axes, ..symmetry(&stiffness().tensor, 1e-6).unwrap() };
+    let strain = Some(SymTensor::from_voigt([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]));
     for method in StiffnessMethod::ALL {
-        let stiffness = ElasticStiffness { method, ..stiffness() };
-        let sent = moduli_message(header(), &report(), &stiffness).unwrap();
-        let received: msg::Moduli = from_cdr(&to_cdr(&sent)).unwrap();
-        assert_eq!(ModuliReading::try_from(&received).unwrap().stiffness, Some(stiffness));
+        for friction in [0.3, INF] {
+            let stiffness = ElasticStiffness { method, smooth: friction == INF, ..stiffness() };
+            let elasticity = Elasticity::Jammed(Box::new(stiffness));
+            let (symmetry, unbalanced_force_ratio) = (Some(symmetry), Some(1e-7));
+            let whole =
+                PackingReport { friction, strain, symmetry, unbalanced_force_ratio, elasticity, ..report() };
+            assert_eq!(crossed(&whole), whole);
+        }
     }
-}
-
-/// Without an axis in the message all quantities are about e3.
-#[test]
-fn moduli_are_about_the_reference_axis_of_the_fabric_which_the_message_carries() {
-    let sent = moduli_sent();
-    let about = report().fabric.reference_axis;
-    assert_eq!(about, Vec3::x());
-    let r = ModuliReading::try_from(&sent).unwrap();
-    let t = stiffness().tensor.transverse_isotropy_about(&about);
-    assert_eq!((r.reference_axis, r.g12, r.g13), (about, Some(t.g12), Some(t.g13)));
-    assert!((t.c33 / stiffness().tensor.0[(0, 0)] - 1.0).abs() < 1e-14, "C11 is along x");
-    let nameless = msg::Moduli { reference_axis: Default::default(), ..sent };
-    assert_eq!(ModuliReading::try_from(&nameless).unwrap().reference_axis, Vec3::z());
+    assert_eq!((sent().source_step, sent().header), (7, header()));
 }
 
 #[test]
-fn an_inversion_reads_what_the_analysis_measured() {
-    let mut upright = report();
-    upright.fabric.reference_axis = Vec3::z();
-    let sent = moduli_message(header(), &upright, &stiffness()).unwrap();
-    let r = ModuliReading::try_from(&sent).unwrap();
-    assert_eq!(r.reference_axis, Vec3::z());
-    // The projection of a transversely isotropic stiffness is exact up to rounding.
-    for (read, measured) in [
-        (r.g12.unwrap(), 140e6),
-        (r.g13.unwrap(), 150e6),
-        (r.theta.unwrap(), (2.0 * 360e6 + 400e6 + 2.0 * 80e6 + 4.0 * 70e6) / 9.0),
+fn a_packing_without_a_stiffness_keeps_the_reason() {
+    let needed = min_contacts(report().friction);
+    for why in [
+        NotJammed::NoContacts { grains: 500 },
+        NotJammed::OnlyRattlers { grains: 500, needed },
+        NotJammed::Floppy { contacts: 12 },
     ] {
-        assert!((read / measured - 1.0f64).abs() < 1e-14, "{read} {measured}");
+        let gas = PackingReport { elasticity: Elasticity::NotJammed(why), ..report() };
+        assert_eq!(crossed(&gas), gas);
     }
-    assert_eq!(r.strain_ratios, report().strain_ratios);
-    assert_eq!((r.stress_ratio, r.size_spread), (Some(0.0), Some(0.1)));
-    assert_eq!((r.pressure, r.solid_fraction, r.material), (5e4, Some(0.64), Material::GLASS));
-    assert_eq!(r.contact_law, Some(ContactLaw::default()));
-    assert_eq!((r.grains, r.axis, r.covariance), (Some(500), Some(Vec3::z()), None));
-    assert_eq!((sent.source_step, &sent.header), (7, &header()));
 }
 
 /// An instrument measures two or three moduli, pressure and the material; all other fields are unknown.
@@ -160,10 +131,11 @@ fn fields_unknown_to_an_instrument_are_none() {
         ..msg::Moduli::default()
     };
     let r = ModuliReading::try_from(&message).unwrap();
+    assert_eq!((r.pressure, r.material, r.size_spread), (5e4, Material::GLASS, Some(0.1)));
     assert_eq!((r.pressure_stddev, r.stress_ratio_stddev), (500.0, 0.05));
     assert_eq!((r.shear_modulus_stddev, r.poisson_ratio_stddev, r.smooth), (1e9, 0.02, true));
     assert_eq!(r.contact_law, None);
-    assert_eq!((r.grains, r.stiffness, r.axis, r.strain_ratios), (None, None, None, StrainRatios::default()));
+    assert_eq!((r.grains, r.reference_axis, r.strain_ratios), (None, Vec3::z(), StrainRatios::default()));
     assert_eq!(r.covariance.unwrap().to_vec(), message.covariance);
     let shear_alone = msg::Moduli { theta: vec![], solid_fraction: vec![], ..message };
     let r = ModuliReading::try_from(&shear_alone).unwrap();
@@ -172,33 +144,28 @@ fn fields_unknown_to_an_instrument_are_none() {
 
 #[test]
 fn each_fault_of_the_moduli_is_refused_by_name() {
-    let mut good = moduli_sent();
-    good.covariance = vec![4e12, 1e12, 0.0, 1e12, 4e12, 0.0, 0.0, 0.0, 9e12];
-    (good.contact_law, good.contact_law_parameters) = ("linear".to_owned(), vec![1e5, 0.5]);
+    let good = msg::Moduli {
+        header: header(),
+        covariance: vec![4e12, 1e12, 0.0, 1e12, 4e12, 0.0, 0.0, 0.0, 9e12],
+        g12: vec![140e6],
+        g13: vec![150e6],
+        theta: vec![170e6],
+        pressure: 5e4,
+        solid_fraction: vec![0.64],
+        stress_ratio: vec![0.0],
+        size_spread: vec![0.1],
+        strain_ratios: msg::StrainRatios { total: vec![-0.3], ..Default::default() },
+        grain_shear_modulus: 29e9,
+        grain_poisson_ratio: 0.2,
+        grain_density: 2500.0,
+        contact_law: "linear".to_owned(),
+        contact_law_parameters: vec![1e5, 0.5],
+        ..msg::Moduli::default()
+    };
     refuses(
         &good,
         &[
             (|m| m.header.stamp.nanosec = u32::MAX, "Moduli.header.stamp.nanosec"),
-            (
-                |m| m.stiffness[0].method = 1,
-                "Moduli.stiffness.method = 1 is refused: it must be one of 0 (frozen network)",
-            ),
-            (|m| m.stiffness[0].stiffness[35] = NAN, "Moduli.stiffness.stiffness[35] = NaN is refused"),
-            (|m| m.stiffness[0].stddev[3] = -1.0, "Moduli.stiffness.stddev[3] = -1.0 is refused"),
-            (|m| m.stiffness[0].affine[0] = INF, "Moduli.stiffness.affine[0] = inf is refused"),
-            (
-                |m| m.stiffness[0].uniform_rotation[7] = NAN,
-                "Moduli.stiffness.uniform_rotation[7] = NaN is refused",
-            ),
-            (
-                |m| m.stiffness[0].bulk_reuss_bound[0] = -1.0,
-                "Moduli.stiffness.bulk_reuss_bound = -1.0 is refused",
-            ),
-            (|m| m.stiffness[0].residual = NAN, "Moduli.stiffness.residual = NaN is refused"),
-            (
-                |m| m.stiffness.push(Default::default()),
-                "Moduli.stiffness has 2 entries and is refused: it must have 1 (or none, if it is not known)",
-            ),
             (|m| m.g12[0] = NAN, "Moduli.g12 = NaN is refused"),
             (|m| m.g13[0] = INF, "Moduli.g13 = inf is refused"),
             (|m| m.theta.push(1.0), "Moduli.theta has 2 entries and is refused: it must have 1"),
@@ -223,8 +190,7 @@ fn each_fault_of_the_moduli_is_refused_by_name() {
             ),
             (|m| m.contact_law.clear(), "Moduli.contact_law is refused: unknown contact law \"\""),
             (|m| m.size_spread[0] = -0.1, "Moduli.size_spread = -0.1 is refused"),
-            (|m| m.axis.z = 0.5, "Moduli.|axis| = 0.5 is refused: it must be 1"),
-            (|m| m.axis.x = NAN, "Moduli.|axis| = NaN is refused"),
+            (|m| m.reference_axis.z = 0.5, "Moduli.|reference_axis| = 0.5 is refused: it must be 1"),
             (|m| m.strain_ratios.total[0] = NAN, "Moduli.strain_ratios.total = NaN is refused"),
             (|m| m.strain_ratios.contact.push(INF), "Moduli.strain_ratios.contact = inf is refused"),
             (|m| m.grain_shear_modulus = 0.0, "Moduli.grain_shear_modulus = 0.0 is refused"),
@@ -236,39 +202,100 @@ fn each_fault_of_the_moduli_is_refused_by_name() {
 }
 
 #[test]
-fn each_fault_of_a_fabric_is_refused_by_name() {
+fn each_fault_of_a_report_is_refused_by_name() {
+    let symmetry = symmetry(&stiffness().tensor, 1e-6);
+    let whole = PackingReport { symmetry, ..report() };
     refuses(
-        &fabric_message(header(), &report()).unwrap(),
+        &packing_report_message(header(), &whole).unwrap(),
         &[
+            (|m| m.header.stamp.nanosec = u32::MAX, "PackingReport.header.stamp.nanosec"),
+            (|m| m.grain_density = 0.0, "PackingReport.grain_density = 0.0 is refused"),
+            (|m| m.contact_law = "hooke".into(), "PackingReport.contact_law is refused"),
+            (|m| m.friction = NAN, "PackingReport.friction = NaN is refused: it must be 0 or more"),
+            (|m| m.solid_fraction = 0.0, "PackingReport.solid_fraction = 0.0 is refused"),
+            (|m| m.size_spread = -0.1, "PackingReport.size_spread = -0.1 is refused"),
+            (
+                |m| m.strain.push(msg::SymmetricTensor { yz: NAN, ..Default::default() }),
+                "PackingReport.strain.yz = NaN is refused",
+            ),
+            (|m| m.stress.xy = INF, "PackingReport.stress.xy = inf is refused"),
+            (|m| m.stress_asymmetry = -1.0, "PackingReport.stress_asymmetry = -1.0 is refused"),
+            (|m| m.unbalanced_force_ratio.push(NAN), "PackingReport.unbalanced_force_ratio = NaN is refused"),
+            (|m| m.jamming = 3, "PackingReport.jamming = 3 is refused: it must be one of 0 (jammed) with"),
+            (
+                |m| m.stiffness.clear(),
+                "PackingReport.jamming = 0 is refused: it must be one of 0 (jammed) with",
+            ),
+            (
+                |m| m.symmetry[0].symmetry_class = 9,
+                "PackingReport.symmetry.symmetry_class = 9 is refused: it must be one of 0 (isotropic)",
+            ),
+            (|m| m.symmetry[0].tolerance = NAN, "PackingReport.symmetry.tolerance = NaN is refused"),
+            (|m| m.symmetry[0].cubic = -0.1, "PackingReport.symmetry.cubic = -0.1 is refused"),
+            (|m| m.symmetry[0].axis.z = 2.0, "PackingReport.symmetry.|axis|"),
+            (|m| m.symmetry[0].moduli.g12 = INF, "PackingReport.symmetry.moduli[5] = inf is refused"),
+            (|m| m.symmetry[0].cubic_axes[8] = NAN, "PackingReport.symmetry.cubic_axes[8] = NaN is refused"),
+            (
+                |m| m.stiffness[0].method = 1,
+                "PackingReport.stiffness.method = 1 is refused: it must be one of 0 (frozen network)",
+            ),
+            (
+                |m| m.stiffness[0].stiffness[35] = NAN,
+                "PackingReport.stiffness.stiffness[35] = NaN is refused",
+            ),
+            (|m| m.stiffness[0].stddev[3] = -1.0, "PackingReport.stiffness.stddev[3] = -1.0 is refused"),
+            (|m| m.stiffness[0].affine[0] = INF, "PackingReport.stiffness.affine[0] = inf is refused"),
+            (
+                |m| m.stiffness[0].uniform_rotation[7] = NAN,
+                "PackingReport.stiffness.uniform_rotation[7] = NaN is refused",
+            ),
+            (
+                |m| m.stiffness[0].bulk_reuss_bound[0] = -1.0,
+                "PackingReport.stiffness.bulk_reuss_bound = -1.0 is refused",
+            ),
+            (|m| m.stiffness[0].residual = NAN, "PackingReport.stiffness.residual = NaN is refused"),
+            (
+                |m| m.stiffness.push(Default::default()),
+                "PackingReport.stiffness has 2 entries and is refused: it must have 1 (or none, if it is not known)",
+            ),
             (
                 |m| m.contacts.rattlers = 501,
-                "Fabric.contacts.rattlers = 501.0 is refused: it must be at most the number of grains",
+                "PackingReport.contacts.rattlers = 501.0 is refused: it must be at most the number of grains",
             ),
-            (|m| m.contacts.coordination = NAN, "Fabric.contacts.coordination = NaN is refused"),
+            (|m| m.contacts.coordination = NAN, "PackingReport.contacts.coordination = NaN is refused"),
             (
                 |m| m.contacts.mechanical_coordination = -1.0,
-                "Fabric.contacts.mechanical_coordination = -1.0 is refused",
+                "PackingReport.contacts.mechanical_coordination = -1.0 is refused",
             ),
-            (|m| m.contact_fabric.yy = NAN, "Fabric.contact_fabric.yy = NaN is refused"),
-            (|m| m.normal_force_fabric.xy = INF, "Fabric.normal_force_fabric.xy = inf is refused"),
-            (|m| m.stiffness_fabric.yz = NAN, "Fabric.stiffness_fabric.yz = NaN is refused"),
-            (|m| m.contact_anisotropy = INF, "Fabric.contact_anisotropy = inf is refused"),
+            (|m| m.fabric.contact_fabric.yy = NAN, "PackingReport.fabric.contact_fabric.yy = NaN is refused"),
             (
-                |m| m.principal_axis.direction.x = 1.0,
-                "Fabric.|principal_axis.direction| = 1.4142135623730951 is refused",
+                |m| m.fabric.normal_force_fabric.xy = INF,
+                "PackingReport.fabric.normal_force_fabric.xy = inf is refused",
             ),
-            (|m| m.p4_coefficient = NAN, "Fabric.p4_coefficient = NaN is refused"),
-            (|m| m.strain_ratios.total[0] = NAN, "Fabric.strain_ratios.total = NaN is refused"),
+            (
+                |m| m.fabric.stiffness_fabric.yz = NAN,
+                "PackingReport.fabric.stiffness_fabric.yz = NaN is refused",
+            ),
+            (
+                |m| m.fabric.contact_anisotropy = INF,
+                "PackingReport.fabric.contact_anisotropy = inf is refused",
+            ),
+            (
+                |m| m.fabric.principal_axis.direction.x = 1.0,
+                "PackingReport.fabric.|principal_axis.direction| = 1.4142135623730951 is refused",
+            ),
+            (|m| m.fabric.p4_coefficient = NAN, "PackingReport.fabric.p4_coefficient = NaN is refused"),
+            (|m| m.strain_ratios.total[0] = NAN, "PackingReport.strain_ratios.total = NaN is refused"),
             (
                 |m| m.contacts.sliding_fraction = 1.5,
-                "Fabric.contacts.sliding_fraction = 1.5 is refused: it must be between 0 and 1",
+                "PackingReport.contacts.sliding_fraction = 1.5 is refused: it must be between 0 and 1",
             ),
         ],
-        |m| FabricReading::try_from(m),
+        |m| PackingReport::try_from(m),
     );
     let mut broken = report();
     broken.fabric.contact_anisotropy = NAN;
-    assert!(fabric_message(header(), &broken).is_err(), "nor is it written");
+    assert!(packing_report_message(header(), &broken).is_err(), "nor is it written");
 }
 
 #[test]

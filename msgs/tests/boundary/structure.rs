@@ -1,15 +1,14 @@
-//! The structure of a packing in a `Fabric` message.
+//! The structure of a packing in a `PackingReport` message.
 
 use super::refuses;
-use super::results::{fabric_of, header, report};
+use super::results::{crossed, report, sent};
 use grainlab_core::results::{
     ContactStatistics, Fabric, ForceStatistics, FourthOrderFabric, MobilisedFriction, OrientationFit,
     OrientationHistogram, OverlapAnisotropyFit, PackingReport, PrincipalAxis, StressDecomposition,
     StressForceFabric, SubNetwork,
 };
 use grainlab_core::{SymTensor, Vec3};
-use grainlab_msgs::boundary::{FabricReading, fabric_message};
-use grainlab_msgs::{from_cdr, msg, to_cdr};
+use grainlab_msgs::msg;
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
@@ -103,124 +102,174 @@ fn a_structure_without_forces_or_fits_crosses_the_wire_and_back() {
     r.fabric.orientation.contact_fit = None;
     r.stress_decomposition.stress_force_fabric = None;
     (r.contacts.forces, r.contacts.friction) = (None, None);
-    let cross = |r: &PackingReport| {
-        let sent = fabric_message(header(), r).unwrap();
-        FabricReading::try_from(&from_cdr::<msg::Fabric>(&to_cdr(&sent)).unwrap()).unwrap()
-    };
-    assert_eq!(cross(&r), fabric_of(&r));
+    assert_eq!(crossed(&r), r);
     // The ratio fitted to the contacts is that of the fit.
     r.strain_ratios.contact = Some(0.02);
     for g_stddev in [Some(0.009), None] {
         r.fabric.orientation.overlap_fit = Some(OverlapAnisotropyFit { g: 0.02, g_stddev });
-        assert_eq!(cross(&r), fabric_of(&r));
+        assert_eq!(crossed(&r), r);
     }
 }
 
 #[test]
 fn each_fault_of_a_structure_is_refused_by_name() {
     refuses(
-        &fabric_message(header(), &report()).unwrap(),
+        &sent(),
         &[
-            (|m| m.reference_axis.x = 0.0, "Fabric.|reference_axis| = 0.0 is refused: it must be 1"),
-            (|m| m.reference_axis.y = 1.0, "Fabric.|reference_axis| = 1.4142135623730951 is refused"),
             (
-                |m| m.principal_axis.contact_anisotropy = NAN,
-                "Fabric.principal_axis.contact_anisotropy = NaN is refused",
+                |m| m.fabric.reference_axis.x = 0.0,
+                "PackingReport.fabric.|reference_axis| = 0.0 is refused: it must be 1",
             ),
             (
-                |m| m.principal_axis.contact_anisotropy_stddev[0] = -0.1,
-                "Fabric.principal_axis.contact_anisotropy_stddev = -0.1 is refused",
+                |m| m.fabric.reference_axis.y = 1.0,
+                "PackingReport.fabric.|reference_axis| = 1.4142135623730951 is refused",
             ),
             (
-                |m| m.principal_axis.angle_stddev[0] = INF,
-                "Fabric.principal_axis.angle_stddev = inf is refused",
-            ),
-            (|m| m.tangential_force_fabric.xy = NAN, "Fabric.tangential_force_fabric.xy = NaN is refused"),
-            (|m| m.fourth_order_fabric[14] = NAN, "Fabric.fourth_order_fabric[14] = NaN is refused"),
-            (|m| m.fourth_order_magnitude = -1.0, "Fabric.fourth_order_magnitude = -1.0 is refused"),
-            (|m| m.stress.normal.xx = INF, "Fabric.stress.normal.xx = inf is refused"),
-            (|m| m.stress.tangential.zz = NAN, "Fabric.stress.tangential.zz = NaN is refused"),
-            (
-                |m| m.stress.stress_force_fabric[0].contacts.xx = NAN,
-                "Fabric.stress.stress_force_fabric.contacts.xx = NaN is refused",
+                |m| m.fabric.principal_axis.contact_anisotropy = NAN,
+                "PackingReport.fabric.principal_axis.contact_anisotropy = NaN is refused",
             ),
             (
-                |m| m.stress.stress_force_fabric[0].normal_forces.xx = NAN,
-                "Fabric.stress.stress_force_fabric.normal_forces.xx = NaN is refused",
+                |m| m.fabric.principal_axis.contact_anisotropy_stddev[0] = -0.1,
+                "PackingReport.fabric.principal_axis.contact_anisotropy_stddev = -0.1 is refused",
             ),
             (
-                |m| m.stress.stress_force_fabric[0].branches.yz = INF,
-                "Fabric.stress.stress_force_fabric.branches.yz = inf is refused",
+                |m| m.fabric.principal_axis.angle_stddev[0] = INF,
+                "PackingReport.fabric.principal_axis.angle_stddev = inf is refused",
             ),
             (
-                |m| m.stress.stress_force_fabric[0].tangential_forces.xx = NAN,
-                "Fabric.stress.stress_force_fabric.tangential_forces.xx = NaN is refused",
+                |m| m.fabric.tangential_force_fabric.xy = NAN,
+                "PackingReport.fabric.tangential_force_fabric.xy = NaN is refused",
             ),
             (
-                |m| m.orientation.contacts[4] += 1,
-                "Fabric.sum of orientation.contacts = 1301.0 is refused: it must be the number of contacts",
-            ),
-            (|m| m.orientation.overlap[9] = -1e-9, "Fabric.orientation.overlap[9] = -1e-9 is refused"),
-            (|m| m.orientation.sqrt_overlap[0] = NAN, "Fabric.orientation.sqrt_overlap[0] = NaN is refused"),
-            (
-                |m| m.orientation.contact_fit[0].eps = 1.1,
-                "Fabric.orientation.contact_fit.eps = 1.1 is refused: it must be between -1/2 and 1",
+                |m| m.fabric.fourth_order_fabric[14] = NAN,
+                "PackingReport.fabric.fourth_order_fabric[14] = NaN is refused",
             ),
             (
-                |m| m.orientation.contact_fit[0].eps_stddev = NAN,
-                "Fabric.orientation.contact_fit.eps_stddev = NaN is refused",
+                |m| m.fabric.fourth_order_magnitude = -1.0,
+                "PackingReport.fabric.fourth_order_magnitude = -1.0 is refused",
             ),
             (
-                |m| m.orientation.contact_fit[0].chi2_per_dof = -1.0,
-                "Fabric.orientation.contact_fit.chi2_per_dof = -1.0 is refused",
+                |m| m.stress_decomposition.normal.xx = INF,
+                "PackingReport.stress_decomposition.normal.xx = inf is refused",
+            ),
+            (
+                |m| m.stress_decomposition.tangential.zz = NAN,
+                "PackingReport.stress_decomposition.tangential.zz = NaN is refused",
+            ),
+            (
+                |m| m.stress_decomposition.stress_force_fabric[0].contacts.xx = NAN,
+                "PackingReport.stress_decomposition.stress_force_fabric.contacts.xx = NaN is refused",
+            ),
+            (
+                |m| m.stress_decomposition.stress_force_fabric[0].normal_forces.xx = NAN,
+                "PackingReport.stress_decomposition.stress_force_fabric.normal_forces.xx = NaN is refused",
+            ),
+            (
+                |m| m.stress_decomposition.stress_force_fabric[0].branches.yz = INF,
+                "PackingReport.stress_decomposition.stress_force_fabric.branches.yz = inf is refused",
+            ),
+            (
+                |m| m.stress_decomposition.stress_force_fabric[0].tangential_forces.xx = NAN,
+                "PackingReport.stress_decomposition.stress_force_fabric.tangential_forces.xx = NaN is refused",
+            ),
+            (
+                |m| m.fabric.orientation.contacts[4] += 1,
+                "PackingReport.fabric.sum of orientation.contacts = 1301.0 is refused: it must be the number of contacts",
+            ),
+            (
+                |m| m.fabric.orientation.overlap[9] = -1e-9,
+                "PackingReport.fabric.orientation.overlap[9] = -1e-9 is refused",
+            ),
+            (
+                |m| m.fabric.orientation.sqrt_overlap[0] = NAN,
+                "PackingReport.fabric.orientation.sqrt_overlap[0] = NaN is refused",
+            ),
+            (
+                |m| m.fabric.orientation.contact_fit[0].eps = 1.1,
+                "PackingReport.fabric.orientation.contact_fit.eps = 1.1 is refused: it must be between -1/2 and 1",
+            ),
+            (
+                |m| m.fabric.orientation.contact_fit[0].eps_stddev = NAN,
+                "PackingReport.fabric.orientation.contact_fit.eps_stddev = NaN is refused",
+            ),
+            (
+                |m| m.fabric.orientation.contact_fit[0].chi2_per_dof = -1.0,
+                "PackingReport.fabric.orientation.contact_fit.chi2_per_dof = -1.0 is refused",
             ),
             (
                 |m| {
-                    m.orientation.overlap_fit.push(msg::OverlapAnisotropyFit { g: 0.0, g_stddev: vec![-1.0] })
+                    m.fabric
+                        .orientation
+                        .overlap_fit
+                        .push(msg::OverlapAnisotropyFit { g: 0.0, g_stddev: vec![-1.0] })
                 },
-                "Fabric.orientation.overlap_fit.g_stddev = -1.0 is refused",
+                "PackingReport.fabric.orientation.overlap_fit.g_stddev = -1.0 is refused",
             ),
             (
                 |m| m.contacts.forces.push(msg::ForceStatistics::default()),
-                "Fabric.contacts.forces has 2 entries and is refused: it must have 1",
+                "PackingReport.contacts.forces has 2 entries and is refused: it must have 1",
             ),
             (
-                |m| m.stress.strong.contacts = 521,
-                "Fabric.sum of stress.strong.contacts and stress.weak.contacts = 1301.0 is refused",
-            ),
-            (|m| m.stress.strong.fabric.xx = NAN, "Fabric.stress.strong.fabric.xx = NaN is refused"),
-            (|m| m.stress.weak.fabric.yy = NAN, "Fabric.stress.weak.fabric.yy = NaN is refused"),
-            (
-                |m| m.stress.strong.contact_anisotropy = NAN,
-                "Fabric.stress.strong.contact_anisotropy = NaN is refused",
+                |m| m.stress_decomposition.strong.contacts = 521,
+                "PackingReport.stress_decomposition.sum of strong.contacts and weak.contacts = 1301.0 is refused",
             ),
             (
-                |m| m.stress.weak.contact_anisotropy = INF,
-                "Fabric.stress.weak.contact_anisotropy = inf is refused",
+                |m| m.stress_decomposition.strong.fabric.xx = NAN,
+                "PackingReport.stress_decomposition.strong.fabric.xx = NaN is refused",
             ),
-            (|m| m.stress.strong.stress.xy = NAN, "Fabric.stress.strong.stress.xy = NaN is refused"),
-            (|m| m.stress.weak.stress.xy = NAN, "Fabric.stress.weak.stress.xy = NaN is refused"),
+            (
+                |m| m.stress_decomposition.weak.fabric.yy = NAN,
+                "PackingReport.stress_decomposition.weak.fabric.yy = NaN is refused",
+            ),
+            (
+                |m| m.stress_decomposition.strong.contact_anisotropy = NAN,
+                "PackingReport.stress_decomposition.strong.contact_anisotropy = NaN is refused",
+            ),
+            (
+                |m| m.stress_decomposition.weak.contact_anisotropy = INF,
+                "PackingReport.stress_decomposition.weak.contact_anisotropy = inf is refused",
+            ),
+            (
+                |m| m.stress_decomposition.strong.stress.xy = NAN,
+                "PackingReport.stress_decomposition.strong.stress.xy = NaN is refused",
+            ),
+            (
+                |m| m.stress_decomposition.weak.stress.xy = NAN,
+                "PackingReport.stress_decomposition.weak.stress.xy = NaN is refused",
+            ),
             (
                 |m| m.contacts.forces[0].mean_normal = 0.0,
-                "Fabric.contacts.forces.mean_normal = 0.0 is refused",
+                "PackingReport.contacts.forces.mean_normal = 0.0 is refused",
             ),
             (
                 |m| m.contacts.forces[0].mean_tangential = -1.0,
-                "Fabric.contacts.forces.mean_tangential = -1.0 is refused",
+                "PackingReport.contacts.forces.mean_tangential = -1.0 is refused",
             ),
-            (|m| m.contacts.forces[0].moments[0] = 0.0, "Fabric.contacts.forces.moments[0] = 0.0 is refused"),
-            (|m| m.contacts.forces[0].moments[2] = NAN, "Fabric.contacts.forces.moments[2] = NaN is refused"),
-            (|m| m.contacts.forces[0].largest = NAN, "Fabric.contacts.forces.largest = NaN is refused"),
+            (
+                |m| m.contacts.forces[0].moments[0] = 0.0,
+                "PackingReport.contacts.forces.moments[0] = 0.0 is refused",
+            ),
+            (
+                |m| m.contacts.forces[0].moments[2] = NAN,
+                "PackingReport.contacts.forces.moments[2] = NaN is refused",
+            ),
+            (
+                |m| m.contacts.forces[0].largest = NAN,
+                "PackingReport.contacts.forces.largest = NaN is refused",
+            ),
             (
                 |m| m.contacts.forces[0].histogram[0] = u32::MAX,
-                "Fabric.sum of contacts.forces.histogram = 4294968595.0 is refused",
+                "PackingReport.contacts.sum of forces.histogram = 4294968595.0 is refused",
             ),
-            (|m| m.contacts.friction[0].mean = 1.01, "Fabric.contacts.friction.mean = 1.01 is refused"),
+            (
+                |m| m.contacts.friction[0].mean = 1.01,
+                "PackingReport.contacts.friction.mean = 1.01 is refused",
+            ),
             (
                 |m| m.contacts.friction[0].histogram[9] = 0,
-                "Fabric.sum of contacts.friction.histogram = 0.0 is refused",
+                "PackingReport.contacts.sum of friction.histogram = 0.0 is refused",
             ),
         ],
-        |m| FabricReading::try_from(m),
+        |m| PackingReport::try_from(m),
     );
 }

@@ -29,6 +29,7 @@ macro_rules! for_every_type {
         $check!(grainlab_msgs::msg::Packing);
         $check!(grainlab_msgs::msg::PackingChunk);
         $check!(grainlab_msgs::msg::PackingCredit);
+        $check!(grainlab_msgs::msg::PackingReport);
         $check!(grainlab_msgs::msg::PrincipalAxis);
         $check!(grainlab_msgs::msg::RunState);
         $check!(grainlab_msgs::msg::StrainRate);
@@ -38,6 +39,8 @@ macro_rules! for_every_type {
         $check!(grainlab_msgs::msg::StressForceFabric);
         $check!(grainlab_msgs::msg::SubNetwork);
         $check!(grainlab_msgs::msg::SymmetricTensor);
+        $check!(grainlab_msgs::msg::Symmetry);
+        $check!(grainlab_msgs::msg::TransverseIsotropy);
         $check!(grainlab_msgs::msg::WaveSpeed);
         $check!(grainlab_msgs::msg::WaveSpeeds);
         $check!(grainlab_msgs::msg::Waveform);

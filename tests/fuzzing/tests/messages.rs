@@ -2,9 +2,10 @@
 
 use fuzzing::{Counting, Target};
 use grainlab_core::contact::ContactLaw;
+use grainlab_core::results::PackingReport;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::{
-    EstimateReading, FabricReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer,
+    EstimateReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer,
     WaveSpeedsReading, WaveformReading, packing_message,
 };
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
@@ -67,11 +68,11 @@ fn every_message_gives_a_value_or_an_error() {
     decode("cdr-stress", msg::Stress::default(), |m| drop(grainlab_servo::ServoRequest::try_from(m)));
     decode("cdr-strain-rate", msg::StrainRate::default(), |m| drop(StrainRateAnswer::try_from(m)));
     decode("cdr-run-state", msg::RunState::default(), |m| drop(RunStateReading::try_from(m)));
-    decode("cdr-fabric", msg::Fabric::default(), |m| drop(FabricReading::try_from(m)));
     let stiffness = vec![msg::ElasticStiffness::default()];
-    decode("cdr-moduli", msg::Moduli { stiffness, ..Default::default() }, |m| {
-        drop(ModuliReading::try_from(m))
+    decode("cdr-packing-report", msg::PackingReport { stiffness, ..Default::default() }, |m| {
+        drop(PackingReport::try_from(m))
     });
+    decode("cdr-moduli", msg::Moduli::default(), |m| drop(ModuliReading::try_from(m)));
     decode(
         "cdr-wave-speeds",
         msg::WaveSpeeds { speeds: vec![msg::WaveSpeed::default(); 3], ..Default::default() },

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct ElasticStiffness {
     /// one of METHOD_\*
     pub method: u8,
+    /// without tangential springs
+    pub smooth: bool,
     /// Pa
     #[serde(with = "crate::fixed_array")]
     pub stiffness: [f64; 36],
@@ -43,6 +45,7 @@ impl Default for ElasticStiffness {
     fn default() -> Self {
         Self {
             method: Default::default(),
+            smooth: Default::default(),
             stiffness: [f64::default(); 36],
             stddev: [f64::default(); 36],
             residual: Default::default(),
@@ -58,9 +61,10 @@ impl Message for ElasticStiffness {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "ElasticStiffness";
     const TYPE: &'static str = "grainlab_msgs/msg/ElasticStiffness";
-    const HASH: &'static str = "RIHS01_9204beee23cc53ecfe3778b2da10e7b45377c314e6b93fd34f828142fbcf21dc";
+    const HASH: &'static str = "RIHS01_cdbf7dca69735629ef96ab13693d444ad9cb1036df42dfd2abb671383cb77874";
     const FIELDS: &'static [FieldInfo] = fields!(
         "method" => (3, 0, ""),
+        "smooth" => (15, 0, ""),
         "stiffness" => (59, 36, ""),
         "stddev" => (59, 36, ""),
         "residual" => (11, 0, ""),

@@ -5,14 +5,14 @@ use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
-/// What the moduli, or the wave speeds, say about the packing.
+/// What the stiffness of a packing, moduli or wave speeds say about the packing.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Microstructure {
-    /// copied from the Moduli or WaveSpeeds used, also where these are refused
+    /// copied from the data, also where these are refused
     pub header: Header,
-    /// copied from the Moduli or WaveSpeeds used
+    /// copied from the Moduli or WaveSpeeds, empty for a PackingReport
     pub name: String,
-    /// copied from the Moduli or WaveSpeeds used
+    /// copied from the data
     pub source_step: u64,
     /// topic the data came from
     pub source: String,

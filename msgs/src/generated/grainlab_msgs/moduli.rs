@@ -1,14 +1,13 @@
 // Generated from msg/Moduli.msg by examples/generate; not edited by hand.
 
 use crate::generated::geometry_msgs::Vector3;
-use crate::generated::grainlab_msgs::ElasticStiffness;
 use crate::generated::grainlab_msgs::StrainRatios;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
-/// Elastic moduli of a sample, and what an inversion needs beside them. The structure of a packing is in its Fabric, which has the
-/// same source_step. What may be missing is an array of one entry, or of none; a direction that is not known is zero.
+/// Elastic moduli that an instrument or another program measured on a sample, and what an inversion needs beside them. What may be
+/// missing is an array of one entry, or of none; a direction that is not known is zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Moduli {
     /// copied from the source
@@ -41,8 +40,6 @@ pub struct Moduli {
     pub stress_ratio_stddev: f64,
     /// standard deviation of the radii over their mean, one or none
     pub size_spread: Vec<f64>,
-    /// unit axis of symmetry found
-    pub axis: Vector3,
     /// as measured on the sample
     pub strain_ratios: StrainRatios,
     /// Pa
@@ -61,15 +58,13 @@ pub struct Moduli {
     pub contact_law_parameters: Vec<f64>,
     /// measured without tangential springs
     pub smooth: bool,
-    /// one, or none where only the moduli are known
-    pub stiffness: Vec<ElasticStiffness>,
 }
 
 impl Message for Moduli {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Moduli";
     const TYPE: &'static str = "grainlab_msgs/msg/Moduli";
-    const HASH: &'static str = "RIHS01_3703faec30db594e1322ecd39a234f079f1ff4645a09fced32d7356abbcffc84";
+    const HASH: &'static str = "RIHS01_8e4c4f01cd57e89dae67442a1490678a24757eac850a35dfb788b436c40fc2b9";
     const FIELDS: &'static [FieldInfo] = fields!(
         "header" => (1, 0, "std_msgs/msg/Header"),
         "name" => (17, 0, ""),
@@ -86,7 +81,6 @@ impl Message for Moduli {
         "stress_ratio" => (155, 0, ""),
         "stress_ratio_stddev" => (11, 0, ""),
         "size_spread" => (155, 0, ""),
-        "axis" => (1, 0, "geometry_msgs/msg/Vector3"),
         "strain_ratios" => (1, 0, "grainlab_msgs/msg/StrainRatios"),
         "grain_shear_modulus" => (11, 0, ""),
         "grain_shear_modulus_stddev" => (11, 0, ""),
@@ -96,12 +90,10 @@ impl Message for Moduli {
         "contact_law" => (17, 0, ""),
         "contact_law_parameters" => (155, 0, ""),
         "smooth" => (15, 0, ""),
-        "stiffness" => (145, 0, "grainlab_msgs/msg/ElasticStiffness"),
     );
     const DEFINITION: &'static str = definition!(
         "msg/Moduli.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",
-        "grainlab_msgs/ElasticStiffness" => "msg/ElasticStiffness.msg",
         "grainlab_msgs/StrainRatios" => "msg/StrainRatios.msg",
         "std_msgs/Header" => "std/std_msgs/msg/Header.msg",
         "builtin_interfaces/Time" => "std/builtin_interfaces/msg/Time.msg",

@@ -58,7 +58,7 @@ pub(crate) struct Args {
     /// Number of packings after which --live ends; with it, an earlier Ctrl-C ends with 130
     #[arg(long, value_name = "N", requires = "live", value_parser = clap::value_parser!(u64).range(1..))]
     count: Option<u64>,
-    /// Also record the Fabric and Moduli messages that the node fabric_analyzer would publish, into this new directory
+    /// Also record the PackingReport messages that the node fabric_analyzer would publish, into this new directory
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
     /// Print a script for YADE that exports a packing with its contacts and forces
@@ -140,7 +140,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let measure = Analysis { settings: settings(args)?, scan: scan(args)? };
     args.without_effect()?;
     let printer = Printer::new(args.format, args.columns.clone())?;
-    let recorded = [topics::FABRIC, topics::MODULI];
+    let recorded = [topics::PACKING_REPORT];
     let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "analyze")).transpose()?;
     let outlet = Outlet::new(printer, tape);
     if args.live {

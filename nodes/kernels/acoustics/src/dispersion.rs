@@ -28,9 +28,9 @@ mod subspace;
 mod waves;
 
 pub(crate) use alignment::Alignment;
-pub use attenuation::{Attenuation, AttenuationPoint, AttenuationSettings, ContactLoss, attenuation};
+pub use attenuation::{AttenuationSettings, attenuation};
+pub use grainlab_core::results::{Attenuation, AttenuationPoint, ContactLoss, RESOLVED, Scattering};
 pub(crate) use mean_diameter::mean_diameter;
-pub use scattering::{RESOLVED, Scattering};
 pub use settings::Settings;
 
 use crate::backbone::Backbone;

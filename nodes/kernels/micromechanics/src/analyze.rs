@@ -8,8 +8,7 @@ use crate::sampling_tolerance::sampling_tolerance;
 use crate::structure::{contact_statistics, fabric, strain_ratio, stress_decomposition, total_strain_ratio};
 use crate::view::PackingView;
 use grainlab_core::results::{
-    ContactStatistics, ElasticStiffness, Elasticity, Fabric, NotJammed, PackingReport, StiffnessBounds,
-    StiffnessMethod, StrainRatios, StressDecomposition,
+    ElasticStiffness, Elasticity, NotJammed, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
 };
 use grainlab_core::{Packing, Vec3, min_contacts, symmetry};
 
@@ -25,7 +24,7 @@ pub struct Settings {
     /// Maximum number of iterations of the solve.
     pub max_iterations: u32,
     /// Axis of ε, the P4 coefficient, the ratios γ/Δ, and the moduli taken from the stiffness
-    /// ([`Fabric::reference_axis`] keeps it). Of any length above zero. The stiffnesses stay in the frame of
+    /// ([`grainlab_core::results::Fabric::reference_axis`] keeps it). Of any length above zero. The stiffnesses stay in the frame of
     /// the cell.
     pub axis: Vec3,
     /// Which springs the frozen network has; a probe has its own friction.
@@ -69,43 +68,14 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
     let view = PackingView::new(packing)?;
     let (elasticity, probe) = elasticity(&view, settings)?;
     let fabric = fabric(&view, &axis);
-    let parts = ReportParts {
-        contacts: contact_statistics(&view),
-        stress_decomposition: stress_decomposition(&view, &fabric),
-        strain_ratios: StrainRatios {
-            total: total_strain_ratio(packing, &axis),
-            elastic: elasticity
-                .stiffness()
-                .and_then(|s| strain_ratio(&s.tensor.isotropic_compression()?, &axis)),
-            contact: fabric.orientation.overlap_fit.map(|fit| fit.g),
-        },
-        fabric,
-        elasticity,
+    let contacts = contact_statistics(&view);
+    let strain_ratios = StrainRatios {
+        total: total_strain_ratio(packing, &axis),
+        elastic: elasticity.stiffness().and_then(|s| strain_ratio(&s.tensor.isotropic_compression()?, &axis)),
+        contact: fabric.orientation.overlap_fit.map(|fit| fit.g),
     };
-    Ok(Analysis { report: report(&view, parts), probe })
-}
-
-/// The parts of a report besides the state of the packing.
-#[derive(Clone, Debug)]
-pub struct ReportParts {
-    /// Contacts and the forces they carry.
-    pub contacts: ContactStatistics,
-    /// Orientation of the contacts.
-    pub fabric: Fabric,
-    /// Parts of the stress by force and by network.
-    pub stress_decomposition: StressDecomposition,
-    /// The three ratios γ/Δ.
-    pub strain_ratios: StrainRatios,
-    /// The stiffness, or the reason why it is not defined.
-    pub elasticity: Elasticity,
-}
-
-/// The report of a packing from measured parts, computed here or read from a recording.
-pub fn report(view: &PackingView<'_>, parts: ReportParts) -> PackingReport {
-    let packing = view.packing;
-    let ReportParts { contacts, fabric, stress_decomposition, strain_ratios, elasticity } = parts;
     let tolerance = sampling_tolerance(contacts.grains);
-    PackingReport {
+    let report = PackingReport {
         step: packing.step,
         material: packing.material,
         law: packing.law,
@@ -117,11 +87,12 @@ pub fn report(view: &PackingView<'_>, parts: ReportParts) -> PackingReport {
         unbalanced_force_ratio: unbalanced_force_ratio(packing, &view.non_rattlers),
         symmetry: elasticity.stiffness().and_then(|s| symmetry(&s.tensor, tolerance)),
         contacts,
-        fabric,
-        stress_decomposition,
+        stress_decomposition: stress_decomposition(&view, &fabric),
         strain_ratios,
+        fabric,
         elasticity,
-    }
+    };
+    Ok(Analysis { report, probe })
 }
 
 /// The stiffness by the method of the settings, and the result of the probe.

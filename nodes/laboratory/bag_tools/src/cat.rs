@@ -15,7 +15,7 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  grainlab bag cat recordings/runs/demo-1-1 --topics moduli
+  grainlab bag cat recordings/runs/demo-1-1 --topics packing_report
   grainlab bag cat run.mcap --regex '/(stress|strain_rate)' --count 10 --format text --max-array 6
 
 Every message is decoded by the schema in the recording. json: one line per message, with topic, type, log_time and

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  grainlab bag filter recordings/runs/demo-1-1 --topics packing moduli -o results
+  grainlab bag filter recordings/runs/demo-1-1 --topics packing packing_report -o results
   grainlab bag filter run.mcap --regex '/camera/.*' --exclude /camera/raw -o camera.mcap
 
 Stored files and metadata are kept. An existing output is not overwritten. Exit 3 if a part could not be read.";

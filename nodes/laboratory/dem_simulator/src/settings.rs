@@ -81,9 +81,9 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "until_inverted",
             Vec::<String>::new(),
-            "with exit_when_finished: stay until the last packing is inverted from the data of these topics, as in [moduli]",
+            "with exit_when_finished: stay until the last packing is inverted from the data of these topics, as in [packing_report]",
         )
-        .within(Range::Choice(&["moduli", "wave_speeds"])),
+        .within(Range::Choice(&["packing_report", "moduli", "wave_speeds"])),
         ParameterSpec::new(
             "inverted_within",
             d.inverted_within.as_secs_f64(),
@@ -186,7 +186,10 @@ impl From<&Parameters> for Settings {
             min_readers: count("min_readers") as usize,
             min_packing_readers: Some(count("min_packing_readers") as usize).filter(|n| *n > 0),
             exit_when_finished: parameters.get("exit_when_finished"),
-            until_inverted: topics_of("until_inverted", &[topics::MODULI, topics::WAVE_SPEEDS]),
+            until_inverted: topics_of(
+                "until_inverted",
+                &[topics::PACKING_REPORT, topics::MODULI, topics::WAVE_SPEEDS],
+            ),
             inverted_within: seconds("inverted_within"),
             ahead: parameters.get("ahead"),
             threads: NonZeroUsize::new(count("threads") as usize),

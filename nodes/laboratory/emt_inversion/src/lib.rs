@@ -1,8 +1,8 @@
-//! The inversion node: infers the microstructure from moduli and wave speeds.
+//! The inversion node: infers the microstructure from reports of packings, moduli and wave speeds.
 //!
 //! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
-//! - [`microstructure_message`], [`microstructure_of_speeds`]: the work of the node, pure functions of one
-//!   message
+//! - [`microstructure_of_report`], [`microstructure_of_moduli`], [`microstructure_of_speeds`]: the work of the node, pure functions
+//!   of one message
 //! - [`EmtInversion`]: the node
 
 mod calibration;
@@ -17,7 +17,7 @@ mod settings_error;
 mod speeds;
 
 pub use calibration::CalibrationChoice;
-pub use message::{Answer, microstructure_message, microstructure_of_speeds};
+pub use message::{Answer, microstructure_of_moduli, microstructure_of_report, microstructure_of_speeds};
 pub use models::Models;
 pub use node::EmtInversion;
 pub use settings::{Axis, Settings, parameters};

@@ -1,10 +1,11 @@
 //! From one message of data to one `Microstructure`.
 
 use crate::estimate::{estimate_message, failure, unobserved};
-use crate::moduli::of_moduli;
+use crate::moduli::{of_moduli, of_report};
 use crate::observed::{Observed, Unobservable};
 use crate::settings::Settings;
 use crate::speeds::of_speeds;
+use grainlab_core::results::PackingReport;
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Topic, msg, topics};
@@ -18,8 +19,20 @@ pub struct Answer {
     pub refused: Option<BoundaryError>,
 }
 
-/// The microstructure inferred from one set of moduli. The result depends only on the two arguments.
-pub fn microstructure_message(moduli: &msg::Moduli, settings: &Settings) -> Answer {
+/// The microstructure inferred from the report of a packing; `None` without a stiffness, from which nothing is inferred. The result
+/// depends only on the two arguments.
+pub fn microstructure_of_report(report: &msg::PackingReport, settings: &Settings) -> Option<Answer> {
+    let about = About { header: &report.header, name: "", source_step: report.source_step };
+    let observed = match PackingReport::try_from(report) {
+        Ok(report) => Ok(of_report(&report, settings)?),
+        Err(_) if report.stiffness.is_empty() => return None,
+        Err(refused) => Err(refused),
+    };
+    Some(answer(about, &topics::PACKING_REPORT, observed, settings))
+}
+
+/// The microstructure inferred from one set of moduli.
+pub fn microstructure_of_moduli(moduli: &msg::Moduli, settings: &Settings) -> Answer {
     let about = About { header: &moduli.header, name: &moduli.name, source_step: moduli.source_step };
     let reading = ModuliReading::try_from(moduli);
     answer(about, &topics::MODULI, reading.map(|reading| of_moduli(&reading, settings)), settings)

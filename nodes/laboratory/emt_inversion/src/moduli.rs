@@ -1,43 +1,66 @@
-//! From `Moduli` to an observation.
+//! From `PackingReport` or `Moduli` to an observation.
 
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
-use grainlab_core::{Mat3, Stiffness, Vec3};
-use grainlab_emt::{Conditions, Measured, Moduli, Modulus, Observation, StrainRatio};
+use grainlab_core::results::PackingReport;
+use grainlab_core::{Mat3, Vec3};
+use grainlab_emt::{Conditions, Measured, Moduli, Observation, StrainRatio};
 use grainlab_msgs::boundary::ModuliReading;
 
 /// Sine of the angle below which two axes are equal up to rounding.
 const ALONG: f64 = 1e-9;
 
-/// The moduli about the axis set, with their errors and state; all of them if the full stiffness is known.
-///
-/// If the data have no errors, each measured modulus gets the error of the settings. A full stiffness has
-/// five measured moduli, and Θ follows from them.
-pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<Observed, Unobservable> {
-    let stated = reading.reference_axis;
-    let axis = match settings.axis {
+/// The axis that is used, and whether it is the one stated.
+fn chosen(axis: Axis, stated: Vec3, found: Vec3) -> Result<(Vec3, bool), Unobservable> {
+    let axis = match axis {
         Axis::Stated => stated,
         Axis::E3 => Vec3::z(),
         Axis::Given(axis) => axis,
-        Axis::Found => reading.axis.ok_or(Unobservable::NoAxis)?,
+        Axis::Found => found,
     };
-    let along_e3 = axis.xy().norm() < ALONG;
     let as_stated = axis.cross(&stated).norm() < ALONG;
     // The strain of the scene is symmetric about e3. γ/Δ about another axis follows only from that about e3.
     if !as_stated && stated.xy().norm() >= ALONG {
         return Err(Unobservable::OtherAxis { stated: stated.into(), asked: axis.into() });
     }
+    Ok((axis, as_stated))
+}
+
+/// All moduli of a packing about the axis set, and its state. Five are measured, each with the error of the settings, and Θ
+/// follows from them. `None` without a stiffness.
+pub(crate) fn of_report(
+    report: &PackingReport,
+    settings: &Settings,
+) -> Option<Result<Observed, Unobservable>> {
+    let (tensor, mut observation) = (report.stiffness()?.tensor, Observation::of(report)?);
+    let (stated, found) = (report.fabric.reference_axis, report.fabric.principal_axis.direction);
+    let (axis, as_stated) = match chosen(settings.axis, stated, found) {
+        Ok(chosen) => chosen,
+        Err(other) => return Some(Err(other)),
+    };
+    let along_e3 = axis.xy().norm() < ALONG;
+    let medium = tensor.transverse_isotropy_about(&if along_e3 { Vec3::z() } else { axis });
+    (observation.moduli, observation.asymmetry) = (Moduli::of_medium(&medium), Some(medium.residual));
+    let gamma = StrainRatio::of(&report.strain_ratios, settings.gamma);
+    observation.conditions.gamma = if as_stated { gamma } else { about(&axis, gamma) };
+    // That of the report is about its own axis.
+    observation.conditions.stress_ratio = observation.conditions.stress_ratio.filter(|_| as_stated);
+    Some(Ok(with_error(observation, settings.modulus_error).into()))
+}
+
+/// The moduli of a sample, which are those about its own axis, with their errors, else those of the settings.
+pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<Observed, Unobservable> {
+    let stated = reading.reference_axis;
+    let (axis, as_stated) = chosen(settings.axis, stated, stated)?;
+    if !as_stated {
+        return Err(Unobservable::NoStiffness { axis: axis.into() });
+    }
+    let stress_ratio = |value| Measured { value, stddev: reading.stress_ratio_stddev };
     let conditions = Conditions {
         pressure: Measured { value: reading.pressure, stddev: reading.pressure_stddev },
-        gamma: {
-            let gamma = StrainRatio::of(&reading.strain_ratios, settings.gamma);
-            if as_stated { gamma } else { about(&axis, gamma) }
-        },
+        gamma: StrainRatio::of(&reading.strain_ratios, settings.gamma),
         solid_fraction: reading.solid_fraction.map(Measured::exact),
-        stress_ratio: reading
-            .stress_ratio
-            .filter(|_| as_stated)
-            .map(|value| Measured { value, stddev: reading.stress_ratio_stddev }),
+        stress_ratio: reading.stress_ratio.map(stress_ratio),
         size_spread: reading.size_spread,
         material: Some(reading.material),
         shear_modulus_stddev: reading.shear_modulus_stddev,
@@ -45,22 +68,17 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
         contact_law: reading.contact_law,
         smooth: reading.smooth,
     };
-    // The covariance of the message refers to the moduli about the axis stated.
-    let covariance = reading.covariance.filter(|_| as_stated).map(|c| Mat3::from_row_slice(&c));
-    let observation = match &reading.stiffness {
-        Some(stiffness) if along_e3 => Observation::of_stiffness(&stiffness.tensor, conditions),
-        Some(stiffness) => turned(&stiffness.tensor, &axis, conditions),
-        None if as_stated => {
-            let (g12, g13, theta) = (reading.g12, reading.g13, reading.theta);
-            Observation::new(Moduli::of_values([g12, g13, theta, None, None, None]), conditions)
+    let known = [reading.g12, reading.g13, reading.theta];
+    let [g12, g13, theta] = known;
+    let moduli = Moduli::of_values([g12, g13, theta, None, None, None]);
+    let observation = Observation { grains: reading.grains, ..Observation::new(moduli, conditions) };
+    Ok(match reading.covariance {
+        None => with_error(observation, settings.modulus_error).into(),
+        Some(c) => {
+            let of_known =
+                |i: usize, j: usize| if known[i].and(known[j]).is_some() { c[3 * i + j] } else { 0.0 };
+            observation.with_g12_g13_theta_covariance(&Mat3::from_fn(of_known)).into()
         }
-        None => return Err(Unobservable::NoStiffness { axis: axis.into() }),
-    };
-    let observation = Observation { grains: reading.grains, ..observation };
-    let error = settings.modulus_error;
-    Ok(match covariance {
-        None => with_error(observation, error).into(),
-        Some(paper) => with_covariance(observation, &paper, error).into(),
     })
 }
 
@@ -70,33 +88,11 @@ fn about(axis: &Vec3, about_e3: StrainRatio) -> StrainRatio {
     StrainRatio { value: about_e3.value * (1.5 * axis.z * axis.z - 0.5), ..about_e3 }
 }
 
-fn turned(stiffness: &Stiffness, axis: &Vec3, conditions: Conditions) -> Observation {
-    let t = stiffness.transverse_isotropy_about(axis);
-    Observation { asymmetry: Some(t.residual), ..Observation::new(Moduli::of_medium(&t), conditions) }
-}
-
-/// With these errors of G12, G13 and Θ, Pa², and the error of the settings for the other two of a full
-/// stiffness.
-fn with_covariance(observation: Observation, paper: &Mat3, error: f64) -> Observation {
-    // The errors of C11 and C33 are unknown: taken as exact, these would outweigh all other data. C13
-    // follows.
-    let mut moduli = observation.moduli.without(Modulus::C13);
-    if error == 0.0 {
-        moduli = moduli.without(Modulus::C11).without(Modulus::C33);
-    }
-    let mut observation = Observation { moduli, ..observation }.with_relative_error(error);
-    let known = [Modulus::G12, Modulus::G13, Modulus::Theta].map(|m| moduli.get(m).is_some());
-    if let Some(all) = &mut observation.covariance {
-        let of_known = |i: usize, j: usize| if known[i] && known[j] { paper[(i, j)] } else { 0.0 };
-        all.fixed_view_mut::<3, 3>(0, 0).copy_from(&Mat3::from_fn(of_known));
-    }
-    observation
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use grainlab_core::TransverseIsotropy;
+    use grainlab_emt::Modulus;
 
     const T: TransverseIsotropy = TransverseIsotropy {
         c11: 360.0,
@@ -108,18 +104,13 @@ mod tests {
         residual: 0.0,
     };
 
-    fn observation(covariance: Option<Mat3>, error: f64) -> Observation {
-        let of_medium = Observation::of_stiffness(&T.stiffness(), Conditions::at(50e3));
-        let observation = match covariance {
-            None => with_error(of_medium, error),
-            Some(paper) => with_covariance(of_medium, &paper, error),
-        };
-        observation.checked().unwrap()
+    fn observation(error: f64) -> Observation {
+        with_error(Observation::of_stiffness(&T.stiffness(), Conditions::at(50e3)), error).checked().unwrap()
     }
 
     #[test]
     fn five_errors_are_independent_and_that_of_theta_follows_from_the_relation() {
-        let c = observation(None, 0.01).covariance.unwrap();
+        let c = observation(0.01).covariance.unwrap();
         let at = |a: Modulus, b: Modulus| c[(a as usize, b as usize)];
         let five = [
             (Modulus::C11, 360.0),
@@ -141,23 +132,8 @@ mod tests {
     }
 
     #[test]
-    fn with_errors_of_the_three_alone_the_others_get_that_of_the_settings_or_are_left_out() {
-        let paper = Mat3::new(4.0, 1.0, 0.0, 1.0, 9.0, 0.0, 0.0, 0.0, 16.0);
-        let with = observation(Some(paper), 0.01);
-        let c = with.covariance.unwrap();
-        assert_eq!(c.fixed_view::<3, 3>(0, 0), paper);
-        assert!((c[(3, 3)] / 3.6f64.powi(2) - 1.0).abs() < 1e-12 && (c[(4, 4)] / 16.0 - 1.0).abs() < 1e-12);
-        // C13 = (9 Θ − 4 C11 + 4 G12 − C33)/4, and its error follows from theirs.
-        let variance = (81.0 * 16.0 + 16.0 * 3.6f64.powi(2) + 16.0 * 4.0 + 16.0) / 16.0;
-        assert!((with.moduli.get(Modulus::C13).unwrap() - 70.0).abs() < 1e-12);
-        assert!((c[(5, 5)] / variance - 1.0).abs() < 1e-12);
-        let without = observation(Some(paper), 0.0);
-        assert_eq!(without.moduli.known().map(|(m, _)| m).collect::<Vec<_>>(), Modulus::ALL[..3]);
-    }
-
-    #[test]
     fn without_any_error_all_six_are_given_without_errors() {
-        let observation = observation(None, 0.0);
+        let observation = observation(0.0);
         assert_eq!((observation.moduli.known().count(), observation.covariance), (6, None));
     }
 }

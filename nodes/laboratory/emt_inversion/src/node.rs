@@ -1,7 +1,7 @@
 //! The node.
 
-use crate::{Answer, Settings, microstructure_message, microstructure_of_speeds};
-use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, WaveSpeeds};
+use crate::{Answer, Settings, microstructure_of_moduli, microstructure_of_report, microstructure_of_speeds};
+use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, PackingReport, WaveSpeeds};
 use grainlab_msgs::{Guid, Message, Topic, topics};
 use grainlab_node_kit::{
     Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, SampleInfo, Subscription,
@@ -20,7 +20,7 @@ const BACKLOG: u32 = 1024;
 struct Source<T> {
     topic: &'static str,
     messages: Subscription<T>,
-    invert: fn(&T, &Settings) -> Answer,
+    invert: fn(&T, &Settings) -> Option<Answer>,
 }
 
 /// Counts of the data so far.
@@ -41,6 +41,7 @@ struct Tally {
 #[derive(Debug)]
 pub struct EmtInversion {
     settings: Settings,
+    reports: Source<PackingReport>,
     moduli: Source<Moduli>,
     wave_speeds: Source<WaveSpeeds>,
     microstructure: Publisher<Microstructure>,
@@ -52,8 +53,11 @@ impl EmtInversion {
     pub fn new(bus: &mut dyn Bus, settings: Settings) -> Result<Self, BusError> {
         Ok(Self {
             settings,
-            moduli: Source::subscribe(bus, &topics::MODULI, microstructure_message)?,
-            wave_speeds: Source::subscribe(bus, &topics::WAVE_SPEEDS, microstructure_of_speeds)?,
+            reports: Source::subscribe(bus, &topics::PACKING_REPORT, microstructure_of_report)?,
+            moduli: Source::subscribe(bus, &topics::MODULI, |m, s| Some(microstructure_of_moduli(m, s)))?,
+            wave_speeds: Source::subscribe(bus, &topics::WAVE_SPEEDS, |m, s| {
+                Some(microstructure_of_speeds(m, s))
+            })?,
             microstructure: Publisher::advertise(bus, &topics::MICROSTRUCTURE)?,
             tally: Tally::default(),
         })
@@ -64,7 +68,7 @@ impl<T: Message> Source<T> {
     fn subscribe(
         bus: &mut dyn Bus,
         topic: &Topic,
-        invert: fn(&T, &Settings) -> Answer,
+        invert: fn(&T, &Settings) -> Option<Answer>,
     ) -> Result<Self, BusError> {
         let messages = Subscription::subscribe(bus, topic, Demand::reliable(BACKLOG))?;
         Ok(Self { topic: topic.name, messages, invert })
@@ -80,7 +84,8 @@ impl<T: Message> Source<T> {
     ) -> Result<(), BusError> {
         while let Some((data, info)) = self.messages.take_valid(bus)? {
             tally.note_gap(self.topic, &info);
-            let Answer { message, refused } = (self.invert)(&data, settings);
+            // From a packing that is not jammed nothing is inferred.
+            let Some(Answer { message, refused }) = (self.invert)(&data, settings) else { continue };
             match (microstructure.publish_about(bus, &message, info.origin()), refused) {
                 (Ok(_), None) => tally.count(&message),
                 (Ok(_), Some(error)) => {
@@ -130,7 +135,8 @@ impl Tally {
 
 impl Node for EmtInversion {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
-        let Self { settings, moduli, wave_speeds, microstructure, tally } = self;
+        let Self { settings, reports, moduli, wave_speeds, microstructure, tally } = self;
+        reports.answer(bus, settings, microstructure, tally)?;
         moduli.answer(bus, settings, microstructure, tally)?;
         wave_speeds.answer(bus, settings, microstructure, tally)?;
         Ok(Next::Wait(IDLE))

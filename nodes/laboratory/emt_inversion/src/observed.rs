@@ -1,4 +1,4 @@
-//! The input of the models, from moduli or from wave speeds.
+//! The input of the models, from a packing, moduli or wave speeds.
 
 use grainlab_emt::christoffel::{AxisError, ChristoffelError};
 use grainlab_emt::{Misfit, Modulus, Observation};
@@ -23,9 +23,6 @@ pub(crate) enum Unobservable {
     /// The message is invalid.
     #[error(transparent)]
     Refused(#[from] BoundaryError),
-    /// The axis is to be that of the data, and the data have none.
-    #[error("the axis is to be that of the data, and these data have none: set the parameter axis")]
-    NoAxis,
     /// The moduli cannot be transformed to another axis.
     #[error(
         "the moduli given are those about e3, and without the full stiffness they do not determine those about \

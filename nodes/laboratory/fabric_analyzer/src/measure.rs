@@ -1,23 +1,21 @@
-//! From one `Packing` to one `Fabric` and one `Moduli`.
+//! From one `Packing` to one `PackingReport`.
 
 use crate::Settings;
 use grainlab_core::Packing;
-use grainlab_core::results::{Elasticity, NotJammed, PackingReport, SpringNote};
+use grainlab_core::results::PackingReport;
 use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::{MicroError, analyze};
-use grainlab_msgs::boundary::{BoundaryError, fabric_message, moduli_message};
+use grainlab_msgs::boundary::{BoundaryError, packing_report_message};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{DecodeError, msg};
 
-/// The messages published for one packing.
+/// The measurement of one packing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// Its structure.
-    pub fabric: msg::Fabric,
-    /// Its stiffness, or the reason why it has none.
-    pub moduli: Result<msg::Moduli, NotJammed>,
-    /// What a reader should know about its springs.
-    pub notes: Vec<SpringNote>,
+    /// The result.
+    pub report: PackingReport,
+    /// The message that is published.
+    pub message: msg::PackingReport,
 }
 
 /// Why a packing is not measured.
@@ -54,20 +52,15 @@ pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, 
     let mut found =
         analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
     PathPosition::of(&message.run_state).inspect(|position| position.judge_strain(&mut found.report));
-    let notes = found.report.stiffness().map(|s| SpringNote::of(&packing, s.method, s.smooth));
-    Ok(Measured { notes: notes.unwrap_or_default(), ..messages(&message.header, &found.report)? })
+    Measured::of(&message.header, found.report)
 }
 
-/// The messages for a measured packing; `header` is that of the message of the packing. The caller
-/// finds the notes.
-pub fn messages(header: &Header, report: &PackingReport) -> Result<Measured, MeasureError> {
-    let unfit = |reason| MeasureError::Result { step: report.step, reason };
-    let fabric = fabric_message(header.clone(), report).map_err(unfit)?;
-    let moduli = match &report.elasticity {
-        Elasticity::NotJammed(why) => Err(*why),
-        Elasticity::Jammed(stiffness) => {
-            Ok(moduli_message(header.clone(), report, stiffness).map_err(unfit)?)
-        }
-    };
-    Ok(Measured { fabric, moduli, notes: Vec::new() })
+impl Measured {
+    /// With the message; `header` is that of the message of the packing.
+    pub fn of(header: &Header, report: PackingReport) -> Result<Self, MeasureError> {
+        let step = report.step;
+        let message = packing_report_message(header.clone(), &report)
+            .map_err(|reason| MeasureError::Result { step, reason })?;
+        Ok(Self { report, message })
+    }
 }

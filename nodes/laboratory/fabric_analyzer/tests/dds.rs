@@ -1,10 +1,11 @@
 //! The analyzer over DDS, during an analysis. One test: the watchdog counts the DDS threads of the whole
 //! process.
 
-use grainlab_core::results::NotJammed;
-use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Measured};
+use grainlab_core::{Cell, Mat3, Material, Vec3};
+use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Measured, Settings, measure};
+use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::msg::{Fabric, Packing};
+use grainlab_msgs::msg::{Packing, PackingReport};
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
     BulkPublisher, Bus, BusError, ClaimedDomain, DdsBus, Demand, Exit, Names, NodeError, Report,
@@ -17,17 +18,32 @@ use std::time::{Duration, Instant};
 
 const TIME_LIMIT: Duration = Duration::from_secs(60);
 
-/// A fabric with the step of the packing, without moduli; the gate sets the duration.
+/// The report of a grain alone with the step of the packing; the gate sets the duration.
 fn measured(packing: &Packing) -> Result<Measured, MeasureError> {
-    let fabric = Fabric { source_step: packing.step, ..Fabric::default() };
-    Ok(Measured { fabric, moduli: Err(NotJammed::NoContacts { grains: 0 }), notes: Vec::new() })
+    let alone = grainlab_core::Packing {
+        step: packing.step,
+        time: 0.0,
+        cell: Cell::cube(1e-3).unwrap(),
+        deformation: Mat3::identity(),
+        ids: vec![0],
+        radii: vec![1e-4],
+        positions: vec![Vec3::zeros()],
+        velocities: vec![Vec3::zeros()],
+        spins: vec![Vec3::zeros()],
+        contacts: Vec::new(),
+        material: Material::GLASS,
+        law: Default::default(),
+        friction: 0.3,
+        time_step: 0.0,
+    };
+    measure(&packing_message(&alone, "alone", Vec::new()), &Settings::default())
 }
 
 /// An analyzer whose measurements wait for its gate, and the messages received from it.
 struct Scene {
     bus: DdsBus,
     packings: BulkPublisher,
-    fabrics: Subscription<Fabric>,
+    measured: Subscription<PackingReport>,
     reports: Subscription<DiagnosticArray>,
     gate: Sender<()>,
     stop: Arc<AtomicBool>,
@@ -56,7 +72,8 @@ impl Scene {
         let network = domain.network();
         let mut bus = DdsBus::open(network, Names::new("source").unwrap()).unwrap();
         let packings = BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap();
-        let fabrics = Subscription::subscribe(&mut bus, &topics::FABRIC, Demand::reliable(64)).unwrap();
+        let measured =
+            Subscription::subscribe(&mut bus, &topics::PACKING_REPORT, Demand::reliable(64)).unwrap();
         let reports = Subscription::subscribe(&mut bus, &topics::DIAGNOSTICS, Demand::reliable(64)).unwrap();
         let (gate, waits) = channel();
         let stop = Arc::new(AtomicBool::new(false));
@@ -65,7 +82,7 @@ impl Scene {
         let mut scene = Self {
             bus,
             packings,
-            fabrics,
+            measured,
             reports,
             gate,
             stop,
@@ -106,12 +123,12 @@ impl Scene {
         }
     }
 
-    fn fabric(&mut self) -> u64 {
+    fn measured(&mut self) -> u64 {
         loop {
-            if let Some((fabric, _)) = self.fabrics.take_valid(&mut self.bus).unwrap() {
-                return fabric.source_step;
+            if let Some((report, _)) = self.measured.take_valid(&mut self.bus).unwrap() {
+                return report.source_step;
             }
-            self.pass("a fabric");
+            self.pass("a report of a packing");
         }
     }
 }
@@ -137,15 +154,15 @@ fn an_analyzer_beats_while_it_analyses_answers_in_order_and_leaves_at_once() {
     scene.publish(&Packing { step: 2, ..large });
     scene.publish(&Packing { step: 3, ..Packing::default() });
     while value(&scene.report(), "waiting") != "2" {}
-    assert!(scene.fabrics.take_valid(&mut scene.bus).unwrap().is_none(), "the gate is closed");
+    assert!(scene.measured.take_valid(&mut scene.bus).unwrap().is_none(), "the gate is closed");
     for step in 1..=3 {
         scene.gate.send(()).unwrap();
-        assert_eq!(scene.fabric(), step);
+        assert_eq!(scene.measured(), step);
     }
     // Stopped in the middle of the next one, it ends without a result.
     scene.publish(&Packing { step: 4, ..Packing::default() });
     while value(&scene.report(), "analysing") != "4" {}
     scene.stop.store(true, Ordering::Relaxed);
     assert_eq!(scene.node.join().unwrap(), Exit::Interrupted);
-    assert!(scene.fabrics.take_valid(&mut scene.bus).unwrap().is_none());
+    assert!(scene.measured.take_valid(&mut scene.bus).unwrap().is_none());
 }

@@ -1,9 +1,10 @@
 //! The analyzer node on the bus in memory, with a packing of known properties.
 
+use grainlab_core::results::PackingReport;
 use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
-use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, WITHOUT_MODULI, measure, parameters};
+use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
 use grainlab_msgs::boundary::packing_message;
-use grainlab_msgs::msg::{ElasticStiffness, Fabric, Moduli, Packing};
+use grainlab_msgs::msg::{self, ElasticStiffness, Packing};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publisher, RosArgs, Subscription};
 
@@ -62,20 +63,19 @@ fn refused(bus: &dyn Bus) -> u64 {
 fn a_simple_cubic_lattice_has_the_moduli_of_its_springs() {
     let packing = message(OVERLAP);
     let measured = measure(&packing, &Settings::default()).unwrap();
-    let (fabric, moduli) = (measured.fabric, measured.moduli.unwrap());
-    assert_eq!((&fabric.header, fabric.source_step), (&packing.header, 12));
-    assert_eq!((&moduli.header, moduli.source_step), (&packing.header, 12));
-    let contacts = &fabric.contacts;
+    assert_eq!((&measured.message.header, measured.message.source_step), (&packing.header, 12));
+    assert_eq!(PackingReport::try_from(&measured.message).as_ref(), Ok(&measured.report));
+    let (report, contacts) = (&measured.report, &measured.report.contacts);
     assert_eq!((contacts.coordination, contacts.mechanical_coordination), (6.0, 6.0));
     assert_eq!(contacts.rattlers, 0);
     // C_iiii = k_n l²/V = k_n/l with l = V^(1/3); nothing relaxes by symmetry. The solve stops at 1e-9.
     let edge = DIAMETER - OVERLAP;
     let c11 = Material::GLASS.normal_stiffness(DIAMETER / 4.0, OVERLAP) / edge;
-    let found = moduli.stiffness[0].stiffness[0];
+    let found = report.stiffness().unwrap().tensor.0[(0, 0)];
     assert!((found / c11 - 1.0).abs() < 1e-8, "{found} {c11}");
     // Three contacts of force F over the faces: p = F/l².
     let pressure = Material::GLASS.normal_force(DIAMETER / 4.0, OVERLAP) / (edge * edge);
-    assert!((moduli.pressure / pressure - 1.0).abs() < 1e-12);
+    assert!((report.pressure() / pressure - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -100,27 +100,24 @@ fn a_packing_that_is_none_or_cannot_be_analysed_says_why() {
 }
 
 #[test]
-fn without_a_network_there_is_a_fabric_and_a_warning_and_no_moduli() {
+fn without_a_network_there_is_a_report_with_the_reason_and_a_warning() {
     let hub = Hub::new(1);
     let mut bus = hub.bus(Names::new("source").unwrap());
     let source: Publisher<Packing> = Publisher::advertise(&mut bus, &topics::PACKING).unwrap();
-    let fabrics: Subscription<Fabric> =
-        Subscription::subscribe(&mut bus, &topics::FABRIC, Demand::reliable(8)).unwrap();
-    let moduli: Subscription<Moduli> =
-        Subscription::subscribe(&mut bus, &topics::MODULI, Demand::reliable(8)).unwrap();
+    let reports: Subscription<msg::PackingReport> =
+        Subscription::subscribe(&mut bus, &topics::PACKING_REPORT, Demand::reliable(8)).unwrap();
     source.publish(&mut bus, &message(-OVERLAP)).unwrap();
     let mut node_bus = hub.bus(Names::new("fabric_analyzer").unwrap());
     let mut node = FabricAnalyzer::new(&mut node_bus, Settings::default()).unwrap();
     node.step(&mut node_bus).unwrap();
-    assert_eq!(fabrics.take_valid(&mut bus).unwrap().unwrap().0.contacts.contacts, 0);
-    assert!(moduli.take_valid(&mut bus).unwrap().is_none());
+    let (gas, _) = reports.take_valid(&mut bus).unwrap().unwrap();
+    assert_eq!((gas.contacts.contacts, gas.stiffness.len()), (0, 0));
+    assert_eq!(gas.jamming, msg::PackingReport::NO_CONTACTS);
     let health = node.health();
     assert!(health.level == Level::Warn && health.message.contains("no contact network"), "{health:?}");
-    let (_, step) = health.values.iter().find(|(key, _)| key == WITHOUT_MODULI).unwrap();
-    assert_eq!(*step, message(-OVERLAP).step.to_string(), "the launcher does not wait for its moduli");
     source.publish(&mut bus, &message(OVERLAP)).unwrap();
     node.step(&mut node_bus).unwrap();
-    assert!(moduli.take_valid(&mut bus).unwrap().is_some());
+    assert_eq!(reports.take_valid(&mut bus).unwrap().unwrap().0.stiffness.len(), 1);
     assert_eq!((node.health().level, refused(&node_bus)), (Level::Ok, 0));
 }
 
@@ -129,8 +126,8 @@ fn a_malformed_packing_is_refused_by_name_and_the_next_one_is_analysed() {
     let hub = Hub::new(2);
     let mut bus = hub.bus(Names::new("source").unwrap());
     let source: Publisher<Packing> = Publisher::advertise(&mut bus, &topics::PACKING).unwrap();
-    let moduli: Subscription<Moduli> =
-        Subscription::subscribe(&mut bus, &topics::MODULI, Demand::reliable(8)).unwrap();
+    let reports: Subscription<msg::PackingReport> =
+        Subscription::subscribe(&mut bus, &topics::PACKING_REPORT, Demand::reliable(8)).unwrap();
     let mut node_bus = hub.bus(Names::new("fabric_analyzer").unwrap());
     let mut node = FabricAnalyzer::new(&mut node_bus, Settings::default()).unwrap();
     let short = Packing { radius: Vec::new(), ..message(OVERLAP) };
@@ -149,7 +146,7 @@ fn a_malformed_packing_is_refused_by_name_and_the_next_one_is_analysed() {
         source.publish(&mut bus, &message(OVERLAP)).unwrap();
         node.step(&mut node_bus).unwrap();
         assert_eq!(node.health().level, Level::Ok);
-        assert!(moduli.take_valid(&mut bus).unwrap().is_some());
+        assert!(reports.take_valid(&mut bus).unwrap().is_some());
     }
 }
 
@@ -162,7 +159,7 @@ fn the_method_asked_for_is_used_and_said() {
         let parameters = Parameters::resolve(&parameters(), "fabric_analyzer", &names, &ros).unwrap();
         measure(&message(OVERLAP), &Settings::try_from(&parameters).unwrap())
     };
-    let [network, probe] = ["network", "probe"].map(|method| with(method).unwrap().moduli.unwrap());
+    let [network, probe] = ["network", "probe"].map(|method| with(method).unwrap().message);
     let [network, probe] = [&network.stiffness[0], &probe.stiffness[0]];
     let expected = [ElasticStiffness::METHOD_FROZEN_NETWORK, ElasticStiffness::METHOD_PROBE];
     assert_eq!([network.method, probe.method], expected);

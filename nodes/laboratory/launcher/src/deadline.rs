@@ -6,11 +6,9 @@ use crate::nodes::NodeKind;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
 
-/// Time limit for the measurement of the last packing, for the inversion of a measurement, and for moduli after a
-/// structure.
+/// Time limit for the measurement of the last packing, and for the inversion of a measurement.
 const MEASURED_WITHIN: Duration = Duration::from_secs(600);
 const INVERTED_WITHIN: Duration = Duration::from_secs(30);
-const MODULI_WITHIN: Duration = Duration::from_secs(5);
 
 /// Time limit for the measurement of the last packing by a third-party program that measured others.
 const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
@@ -47,9 +45,6 @@ impl Deadline {
 
     pub(super) fn of(standing: ResultState) -> Self {
         let (time, exit, message) = match standing {
-            ResultState::Bare(node) => {
-                (MODULI_WITHIN, Exit::PhysicsInvalid, format!("the last packing has no {}", nothing(node)))
-            }
             ResultState::Measured(node) => {
                 let message = format!(
                     "what {node} measured of the last packing was not inverted: see logs/{}.log",

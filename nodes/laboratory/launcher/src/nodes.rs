@@ -110,7 +110,7 @@ impl NodeKind {
         match self {
             Self::DemSimulator => "advances the run: publishes stress and packings, applies strain rates",
             Self::ServoController => "returns a strain rate for every stress",
-            Self::FabricAnalyzer => "measures fabric and moduli of packings",
+            Self::FabricAnalyzer => "measures structure, stress and stiffness of packings",
             Self::AcousticProbe => "measures wave speeds of packings",
             Self::EmtInversion => "infers the microstructure from moduli and wave speeds",
             Self::Recorder => "records every topic to MCAP",
@@ -191,9 +191,11 @@ impl NodeKind {
                 topics::TF_STATIC,
             ],
             Self::ServoController => &[topics::STRESS, topics::STRAIN_RATE],
-            Self::FabricAnalyzer => &[topics::PACKING, topics::FABRIC, topics::MODULI],
+            Self::FabricAnalyzer => &[topics::PACKING, topics::PACKING_REPORT],
             Self::AcousticProbe => &[topics::PACKING, topics::WAVE_SPEEDS, topics::WAVEFORM],
-            Self::EmtInversion => &[topics::MODULI, topics::WAVE_SPEEDS, topics::MICROSTRUCTURE],
+            Self::EmtInversion => {
+                &[topics::PACKING_REPORT, topics::MODULI, topics::WAVE_SPEEDS, topics::MICROSTRUCTURE]
+            }
             Self::Recorder => topics::TOPICS,
             Self::Viewer(viewer) => viewer.topics.unwrap_or_default(),
         };
@@ -216,7 +218,7 @@ impl NodeKind {
     /// The topic of its data, from each of which a microstructure is inferred.
     pub fn measures(self) -> Option<Topic> {
         match self {
-            Self::FabricAnalyzer => Some(topics::MODULI),
+            Self::FabricAnalyzer => Some(topics::PACKING_REPORT),
             Self::AcousticProbe => Some(topics::WAVE_SPEEDS),
             Self::DemSimulator
             | Self::ServoController

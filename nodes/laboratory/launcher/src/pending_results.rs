@@ -39,6 +39,7 @@ struct Kind {
     inverted: BTreeMap<(u64, u8), usize>,
     /// Steps of the packings whose data were inverted before the run was resumed.
     settled: BTreeSet<u64>,
+    /// Steps of the packings without data to invert.
     declined: BTreeSet<u64>,
 }
 
@@ -80,8 +81,6 @@ pub(crate) enum ResultState {
     Left,
     /// No more results are expected, and this node found no data to invert.
     Declined(Source),
-    /// This node measured a structure, and no data for an inversion have arrived.
-    Bare(Source),
     /// The data are not inverted yet; this node measured them.
     Measured(Source),
     /// This node has not measured it yet.
@@ -98,28 +97,21 @@ pub(crate) struct PendingResults {
     /// Whether third-party programs run, which may publish wave speeds. If they published those of one packing, the run
     /// waits for those of its last packing.
     instruments: bool,
-    /// Steps of the packings whose structure was measured.
-    structures: BTreeSet<u64>,
 }
 
 impl PendingResults {
-    /// For the nodes of a run. A microstructure from the moduli is expected even without an analyzer: a user who
-    /// launches without analyzer and probe is informed that nothing is inferred.
+    /// For the nodes of a run. A microstructure from moduli is expected even without an analyzer: a user who launches without
+    /// analyzer and probe is informed that nothing is inferred, unless a program of another origin publishes moduli.
     pub(crate) fn of(plans: &[NodePlan]) -> Self {
         let has = |node: NodeKind| plans.iter().any(|p| p.is(node));
         let kind = |node: NodeKind| Some(Kind::new(node.measures()?.name, Source::Node(node)));
         let mut kinds: Vec<Kind> = NodeKind::all(&[]).filter(|node| has(*node)).filter_map(kind).collect();
         if kinds.is_empty() {
-            kinds.extend(kind(NodeKind::FabricAnalyzer));
+            kinds.push(Kind::new(topics::MODULI.name, Source::Node(NodeKind::FabricAnalyzer)));
         }
         let inversions = plans.iter().filter(|p| p.is(NodeKind::EmtInversion)).count().max(1);
         let instruments = !has(NodeKind::AcousticProbe) && plans.iter().any(|p| p.node.is_none());
-        Self { kinds, inversions, instruments, structures: BTreeSet::new() }
-    }
-
-    /// The structure of the packing of `step` was published. If the packing has moduli, they follow at once.
-    pub(crate) fn structure(&mut self, step: u64) {
-        self.structures.insert(step);
+        Self { kinds, inversions, instruments }
     }
 
     /// The data of this topic about the packing of `step` were published.
@@ -168,7 +160,7 @@ impl PendingResults {
         });
     }
 
-    /// There will be no data of this topic about the packing of `step`.
+    /// There is nothing to invert on this topic about the packing of `step`.
     pub(crate) fn declined(&mut self, topic: &str, step: u64) {
         self.of_topic(topic).for_each(|k| {
             k.declined.insert(step);
@@ -191,12 +183,8 @@ impl PendingResults {
         let never = |k: &Kind| k.source == Source::Instrument && !self.instruments && !k.is_measured(step);
         let owed = || self.kinds.iter().filter(|k| !inverted(k) && !never(k));
         let due = || owed().filter(|k| !k.declined.contains(&step));
-        let without_moduli = |k: &Kind| k.topic == topics::MODULI.name && self.structures.contains(&step);
-        if let Some(open) = due().find(|k| !k.is_measured(step) && !without_moduli(k)) {
+        if let Some(open) = due().find(|k| !k.is_measured(step)) {
             return ResultState::Open(open.source);
-        }
-        if let Some(bare) = due().find(|k| !k.is_measured(step)) {
-            return ResultState::Bare(bare.source);
         }
         if let Some(measured) = due().next() {
             return ResultState::Measured(measured.source);
@@ -243,8 +231,8 @@ mod tests {
         let ours = NodePlan { node: Some(NodeKind::FabricAnalyzer), ..foreign.clone() };
         let mut d = PendingResults::of(&[ours, foreign]);
         for step in [7, 9] {
-            d.measured("moduli", step);
-            d.inverted("moduli", step, 2);
+            d.measured("packing_report", step);
+            d.inverted("packing_report", step, 2);
         }
         d.measured("wave_speeds", 0);
         assert_eq!(d.state_of(9), ResultState::Complete, "speeds of no packing");
@@ -260,15 +248,15 @@ mod tests {
         of_start.measured_start();
         assert_eq!(of_start.state_of(9), ResultState::Open(Source::Instrument));
         d.measured("wave_speeds", 7);
-        assert!(d.is_measured_by_node("moduli") && !d.is_measured_by_node("wave_speeds"));
+        assert!(d.is_measured_by_node("packing_report") && !d.is_measured_by_node("wave_speeds"));
         assert_eq!(d.state_of(9), ResultState::Open(Source::Instrument));
         d.measured("wave_speeds", 9);
         assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));
         d.inverted("wave_speeds", 9, 2);
         assert_eq!(d.state_of(9), ResultState::Settling);
         assert_eq!(d.state_of(11), ResultState::Open(ANALYZER));
-        d.measured("moduli", 11);
-        d.inverted("moduli", 11, 2);
+        d.measured("packing_report", 11);
+        d.inverted("packing_report", 11, 2);
         d.instruments_left();
         assert_eq!((d.state_of(9), d.state_of(11)), (ResultState::Complete, ResultState::Left));
     }
@@ -320,8 +308,8 @@ mod tests {
     fn with_a_probe_both_kinds_of_data_must_be_inverted() {
         let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::AcousticProbe]);
         assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
-        d.measured("moduli", 7);
-        d.inverted("moduli", 7, 2);
+        d.measured("packing_report", 7);
+        d.inverted("packing_report", 7, 2);
         assert_eq!(d.state_of(7), ResultState::Open(PROBE));
         d.measured("wave_speeds", 7);
         assert_eq!(d.state_of(7), ResultState::Measured(PROBE));
@@ -336,7 +324,7 @@ mod tests {
         let mut d = pending(&[NodeKind::FabricAnalyzer]);
         d.inverted("wave_speeds", 7, 2);
         assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
-        d.inverted("moduli", 7, 2);
+        d.inverted("packing_report", 7, 2);
         assert_eq!(d.state_of(7), ResultState::Complete);
         assert_eq!(pending(&[]).state_of(7), ResultState::Open(ANALYZER));
         let mut d = pending(&[NodeKind::AcousticProbe]);
@@ -348,28 +336,38 @@ mod tests {
     fn a_probe_that_declines_is_not_waited_for() {
         let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::AcousticProbe]);
         d.declined("wave_speeds", 7);
-        d.measured("moduli", 7);
+        d.measured("packing_report", 7);
         assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
-        d.inverted("moduli", 7, 2);
+        d.inverted("packing_report", 7, 2);
         assert_eq!(d.state_of(7), ResultState::Declined(PROBE));
     }
     #[test]
     fn every_inversion_of_the_run_is_waited_for() {
         let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::EmtInversion, NodeKind::EmtInversion]);
-        d.measured("moduli", 7);
-        d.inverted("moduli", 7, 2);
-        d.inverted("moduli", 7, 2);
+        d.measured("packing_report", 7);
+        d.inverted("packing_report", 7, 2);
+        d.inverted("packing_report", 7, 2);
         assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
-        d.inverted("moduli", 7, 3);
+        d.inverted("packing_report", 7, 3);
         assert_eq!(d.state_of(7), ResultState::Complete);
     }
 
     #[test]
-    fn a_structure_without_moduli_is_not_waited_for_as_if_it_were_not_measured() {
+    fn a_packing_that_was_measured_and_has_no_stiffness_is_not_waited_for() {
         let mut d = pending(&[NodeKind::FabricAnalyzer]);
-        d.structure(7);
-        assert_eq!(d.state_of(7), ResultState::Bare(ANALYZER));
+        d.measured("packing_report", 7);
+        d.declined("packing_report", 7);
+        assert_eq!(d.state_of(7), ResultState::Declined(ANALYZER));
+        d.measured("packing_report", 9);
+        assert_eq!(d.state_of(9), ResultState::Measured(ANALYZER));
+    }
+
+    #[test]
+    fn without_an_analyzer_the_moduli_of_another_program_are_waited_for() {
+        let mut d = pending(&[NodeKind::EmtInversion]);
+        assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
         d.measured("moduli", 7);
-        assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
+        d.inverted("moduli", 7, 2);
+        assert_eq!(d.state_of(7), ResultState::Complete);
     }
 }

@@ -1,5 +1,7 @@
 //! Lines of the launcher about its run.
 
+use grainlab_msgs::topics::PACKING_REPORT;
+
 /// What the message of a simulator begins with that waits for other processes.
 const WAITS: &str = "waiting for";
 
@@ -16,7 +18,7 @@ pub(crate) fn awaited(simulator: Option<&str>, first_step: Option<u64>) -> Optio
 /// That data about the packing of a step were inverted, or why nothing was inferred from them. `of_start`: step 0 is that of the
 /// packing that the run starts from.
 pub(crate) fn inverted(source: &str, step: u64, of_start: bool, nothing: Option<&str>) -> String {
-    let data = source.replace('_', " ");
+    let data = if source == PACKING_REPORT.name { "moduli".to_owned() } else { source.replace('_', " ") };
     let packing = match step {
         0 if of_start => "the packing that the run starts from".to_owned(),
         // Data of an external instrument do not belong to a packing of the run.

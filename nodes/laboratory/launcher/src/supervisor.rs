@@ -324,10 +324,6 @@ impl Supervisor {
                 self.left.insert(pid);
             }
             Event::Open => {}
-            Event::Structure(step) => {
-                self.note_result(topics::FABRIC.name, step);
-                self.pending.structure(step);
-            }
             Event::Measured(topic, step) => {
                 self.note_result(topic, step);
                 self.pending.measured(topic, step);

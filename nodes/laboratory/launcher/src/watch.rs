@@ -5,10 +5,9 @@ use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::Failure;
 use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
 use grainlab_emt::{Status, recommended};
-use grainlab_fabric_analyzer::WITHOUT_MODULI;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::msg::{Estimate, Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
+use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::{
     Bus, BusError, DdsBus, Demand, Identity, Names, Report, Stranger, Subscription, bus_named, member_of,
@@ -45,7 +44,7 @@ const OF_THE_RUN: [Topic; 9] = [
     topics::STRESS,
     topics::STRAIN_RATE,
     topics::PACKING,
-    topics::FABRIC,
+    topics::PACKING_REPORT,
     topics::MODULI,
     topics::WAVE_SPEEDS,
     topics::WAVEFORM,
@@ -58,13 +57,11 @@ const OF_THE_RUN: [Topic; 9] = [
 pub(crate) enum Event {
     /// The state of the run.
     State(RunStateReading),
-    /// The structure of the packing of this step was measured.
-    Structure(u64),
     /// The packing of this step was measured: its data were published on this topic.
     Measured(&'static str, u64),
     /// Wave speeds with step 0 and the stamp of a packing that a run starts from.
     MeasuredStart,
-    /// The packing of this step has no data on this topic.
+    /// The packing of this step has nothing to invert on this topic.
     Declined(&'static str, u64),
     /// An acoustic probe measures the packing of this step, which may take long.
     Probing(u64),
@@ -154,7 +151,7 @@ impl Drop for Watch {
 /// Subscriptions to the run's messages.
 struct RunSubscriptions {
     states: Subscription<RunState>,
-    fabrics: Subscription<Fabric>,
+    packing_reports: Subscription<PackingReport>,
     moduli: Subscription<Moduli>,
     speeds: Subscription<WaveSpeeds>,
     microstructures: Subscription<Microstructure>,
@@ -167,7 +164,7 @@ impl RunSubscriptions {
         let reports = Demand::best_effort(BACKLOG);
         Ok(Self {
             states: Subscription::subscribe(bus, &topics::RUN_STATE, demand)?,
-            fabrics: Subscription::subscribe(bus, &topics::FABRIC, demand)?,
+            packing_reports: Subscription::subscribe(bus, &topics::PACKING_REPORT, demand)?,
             moduli: Subscription::subscribe(bus, &topics::MODULI, demand)?,
             speeds: Subscription::subscribe(bus, &topics::WAVE_SPEEDS, demand)?,
             microstructures: Subscription::subscribe(bus, &topics::MICROSTRUCTURE, demand)?,
@@ -182,8 +179,11 @@ impl RunSubscriptions {
                 Err(e) => log::warn!("{e}"),
             }
         }
-        while let Some((found, _)) = self.fabrics.take_valid(bus)? {
-            send(Event::Structure(found.source_step));
+        while let Some((found, _)) = self.packing_reports.take_valid(bus)? {
+            send(Event::Measured(topics::PACKING_REPORT.name, found.source_step));
+            if found.stiffness.is_empty() {
+                send(Event::Declined(topics::PACKING_REPORT.name, found.source_step));
+            }
         }
         while let Some((found, _)) = self.moduli.take_valid(bus)? {
             send(Event::Measured(topics::MODULI.name, found.source_step));
@@ -203,9 +203,6 @@ impl RunSubscriptions {
             for report in Report::from_message(&message) {
                 if let Some(step) = step_under(DECLINED_STEP, &report) {
                     send(Event::Declined(topics::WAVE_SPEEDS.name, step));
-                }
-                if let Some(step) = step_under(WITHOUT_MODULI, &report) {
-                    send(Event::Declined(topics::MODULI.name, step));
                 }
                 if let Some(step) = step_under(MEASURING, &report) {
                     send(Event::Probing(step));

@@ -3,9 +3,9 @@
 use crate::attenuation::AttenuationReport;
 use crate::measurements::Measurement;
 use crate::quantities::entries;
+use grainlab_core::MeasuredWave;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::*};
-use grainlab_core::{MeasuredWave, Packing};
 use grainlab_emt::{Conditions, Measured, Modulus, WaveModuli};
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use serde::Serialize;
@@ -61,8 +61,8 @@ pub static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { AcousticReport:
 };
 
 impl AcousticReport {
-    /// From the speeds of this packing.
-    pub fn new(packing: &Packing, reading: WaveSpeedsReading) -> Self {
+    /// From the speeds of a packing of this number of grains, and of this density of all grains, kg/m³.
+    pub fn new(grains: u32, bulk_density: f64, reading: WaveSpeedsReading) -> Self {
         let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
         let conditions = Conditions::at(reading.pressure);
         let medium = WaveModuli::of_speeds(
@@ -70,9 +70,8 @@ impl AcousticReport {
             density,
             reading.axis,
             conditions,
-            Some(packing.grains() as f64),
+            Some(f64::from(grains)),
         );
-        let bulk_density = packing.solid_fraction() * packing.material.density;
         Self { measurement: None, reading, bulk_density, medium, modes: Vec::new(), attenuation: None }
     }
 
@@ -189,27 +188,6 @@ mod tests {
         residual: 0.0,
     };
 
-    /// A gas: only its density and its number of grains are used.
-    fn packing() -> Packing {
-        use grainlab_core::{Cell, Mat3, Material};
-        Packing {
-            step: 12,
-            time: 0.0,
-            cell: Cell::cube(2e-3).unwrap(),
-            deformation: Mat3::identity(),
-            ids: (0..1000).collect(),
-            radii: vec![1e-4; 1000],
-            positions: vec![Vec3::zeros(); 1000],
-            velocities: vec![Vec3::zeros(); 1000],
-            spins: vec![Vec3::zeros(); 1000],
-            contacts: Vec::new(),
-            material: Material::GLASS,
-            law: Default::default(),
-            friction: 0.3,
-            time_step: 0.0,
-        }
-    }
-
     /// Exact speeds of [`MEDIUM`] along these directions, each with an error of 0.3 %.
     fn speeds(directions: &[Vec3]) -> WaveSpeedsReading {
         let density = 1500.0;
@@ -252,7 +230,7 @@ mod tests {
     #[test]
     fn the_moduli_are_those_of_the_medium_whose_speeds_were_measured() {
         let diagonal = Vec3::new(1.0, 0.0, 1.0).normalize();
-        let report = AcousticReport::new(&packing(), speeds(&[Vec3::z(), Vec3::x(), diagonal]));
+        let report = AcousticReport::new(1000, 1300.0, speeds(&[Vec3::z(), Vec3::x(), diagonal]));
         let json = serde_json::to_value(&report).unwrap();
         for (key, truth) in [
             ("ti_c33_pa", 400e6),
@@ -275,10 +253,10 @@ mod tests {
 
     #[test]
     fn undetermined_moduli_are_null_and_a_missing_medium_has_a_reason() {
-        let one = AcousticReport::new(&packing(), speeds(&[Vec3::z()])).medium;
+        let one = AcousticReport::new(1000, 1300.0, speeds(&[Vec3::z()])).medium;
         assert!(one.modulus(Modulus::C33).is_some());
         assert!(one.modulus(Modulus::C11).is_none() && one.stddev(Modulus::C11).is_none());
-        let none = AcousticReport::new(&packing(), speeds(&[]));
+        let none = AcousticReport::new(1000, 1300.0, speeds(&[]));
         assert!(Modulus::ALL.iter().all(|m| none.medium.modulus(*m).is_none()) && none.method().is_none());
         assert_eq!(none.warnings().len(), 2, "{:?}", none.warnings());
     }

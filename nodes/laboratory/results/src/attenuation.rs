@@ -1,10 +1,8 @@
 //! Attenuation of the waves of one packing, as JSON and as text.
 
-use grainlab_acoustics::dispersion::{
-    Attenuation, AttenuationPoint, AttenuationSettings, RESOLVED, Scattering,
-};
 use grainlab_console::{Table, fixed};
 use grainlab_core::Packing;
+use grainlab_core::results::{Attenuation, AttenuationPoint, ContactLoss, RESOLVED, Scattering};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -43,11 +41,11 @@ struct WaveView {
 }
 
 impl AttenuationReport {
-    /// From curves of this packing.
-    pub fn new(packing: &Packing, settings: &AttenuationSettings, curves: Vec<Attenuation>) -> Self {
+    /// From curves of this packing with this contact damping, share of critical.
+    pub fn new(packing: &Packing, contact_damping: f64, curves: Vec<Attenuation>) -> Self {
         let diameter = 2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64;
         Self {
-            contact_damping: settings.damping,
+            contact_damping,
             least_modes_in_width: RESOLVED,
             waves: curves.iter().map(|curve| WaveView::new(curve, diameter)).collect(),
         }
@@ -88,9 +86,8 @@ impl WaveView {
     fn new(curve: &Attenuation, diameter: f64) -> Self {
         let points = &curve.points;
         let wavelength = |p: &AttenuationPoint| TAU / p.wavenumber;
-        let contact = |of: fn(&grainlab_acoustics::dispersion::ContactLoss) -> f64| {
-            points.iter().map(|p| p.contact.as_ref().map(of)).collect()
-        };
+        let contact =
+            |of: fn(&ContactLoss) -> f64| points.iter().map(|p| p.contact.as_ref().map(of)).collect();
         let scattering = |of: fn(&Scattering) -> Option<f64>| {
             points.iter().map(|p| p.scattering.as_ref().and_then(of)).collect()
         };

@@ -4,6 +4,7 @@ use crate::measurements::Measurement;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Status, recommended};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
+use grainlab_msgs::topics::{MODULI, PACKING_REPORT};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::ops::Index;
@@ -99,9 +100,13 @@ impl Origin {
         Some(format!("{} ({})", self.data()?, self.by.as_deref().unwrap_or("an unknown program")))
     }
 
-    /// The topic of the data, and the measurement where there are several: `wave_speeds, shot 2`.
+    /// The data, and the measurement where there are several: `moduli` of the packing, `wave_speeds, shot 2`.
     pub fn data(&self) -> Option<String> {
-        let source = self.source.as_deref()?;
+        let source = match self.source.as_deref()? {
+            report if report == PACKING_REPORT.name => "moduli",
+            moduli if moduli == MODULI.name => "moduli of an instrument",
+            other => other,
+        };
         Some(match &self.measurement {
             Some(measurement) => format!("{source}, {}", measurement.label),
             None => source.to_owned(),
@@ -116,8 +121,10 @@ pub fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
         groups.entry(r.origin()).or_default().push(r);
     }
     let mut groups: Vec<_> = groups.into_iter().collect();
-    // Of one topic the results of a program that is not known come last.
-    groups.sort_by(|(a, _), (b, _)| (&a.source, a.by.is_none()).cmp(&(&b.source, b.by.is_none())));
+    // The report of the packing comes first, and of one topic the results of a program that is not known come last.
+    groups.sort_by_key(|(o, _)| {
+        (o.source.as_deref().is_some_and(|s| s != PACKING_REPORT.name), o.source.clone(), o.by.is_none())
+    });
     groups
 }
 
@@ -262,7 +269,7 @@ mod tests {
             grain_density: Material::GLASS.density,
             ..Moduli::default()
         };
-        let sent = grainlab_emt_inversion::microstructure_message(
+        let sent = grainlab_emt_inversion::microstructure_of_moduli(
             &message,
             &grainlab_emt_inversion::Settings::default(),
         )

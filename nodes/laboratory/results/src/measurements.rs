@@ -57,8 +57,6 @@ struct Sent {
 pub(crate) struct Measurements {
     /// In the order of arrival. A message that was sent again is one set.
     sent: Vec<Sent>,
-    /// The node that measured the structure of the packing. Its data come first, whatever arrived first.
-    pub(crate) analyzer: Option<String>,
     /// Number of answers of each inversion.
     answers: BTreeMap<(Identity, Option<String>), usize>,
 }
@@ -114,8 +112,7 @@ impl Measurements {
             (name, _, 0) => name.to_owned(),
             (name, ..) => format!("{name}, stamp {seconds}.{nanos:09}"),
         };
-        let is_analyzers = by.is_some() && by == self.analyzer.as_deref();
-        let number = if is_analyzers { 0 } else { place.unwrap_or(self.sent.len()) + 1 };
+        let number = place.unwrap_or(self.sent.len()) + 1;
         let alike = self.alike(identity);
         // An answer that was sent again is none of another measurement.
         let nth = nth.min(alike.saturating_sub(1));
@@ -188,16 +185,6 @@ mod tests {
             labels(&[shot("a", 1), shot("a", 2)]),
             some(&["a, stamp 5.000000001", "a, stamp 5.000000002"])
         );
-    }
-
-    #[test]
-    fn the_data_of_the_node_that_measured_the_structure_come_first() {
-        let mut all = Measurements { analyzer: Some("/analyzer".into()), ..Measurements::default() };
-        all.sent(shot("bench", 1), None, b"theirs");
-        all.sent(shot("", 1), Some("/analyzer"), b"ours");
-        let [bench, own] = ["bench", ""].map(|name| all.label(&shot(name, 1), 0).unwrap());
-        assert_eq!((bench.label.as_str(), own.label.as_str()), ("bench", "by /analyzer"));
-        assert!(own < bench);
     }
 
     #[test]

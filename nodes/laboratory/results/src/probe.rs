@@ -1,80 +1,52 @@
 //! Details of an explicit probe, for the results of `grainlab analyze`.
 
 use grainlab_console::Table;
-use grainlab_core::Stiffness;
-use grainlab_micromechanics::probe::{AmplitudeSweep, StrainProbeResult};
 use serde::Serialize;
 
 /// One probe: all six columns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeView {
-    pub(crate) amplitude: f64,
+    /// Strain.
+    pub amplitude: f64,
     /// Largest |C_ab - C_ba| over the largest entry of C.
-    pub(crate) asymmetry: f64,
+    pub asymmetry: f64,
     /// Total number of solver steps.
-    pub(crate) steps: u32,
+    pub steps: u32,
     /// Contacts that opened, formed, or were at the Coulomb limit under either strain, over all columns.
-    pub(crate) opened: u32,
-    pub(crate) closed: u32,
-    pub(crate) sliding: u32,
+    pub opened: u32,
+    /// See `opened`.
+    pub closed: u32,
+    /// See `opened`.
+    pub sliding: u32,
     /// Largest difference between the forward and the backward column, relative to the largest entry.
-    pub(crate) forward_backward: Option<f64>,
+    pub forward_backward: Option<f64>,
     /// Largest standard error over the largest entry of C.
-    pub(crate) error: f64,
-}
-
-impl ProbeView {
-    /// The details of a probe with strains of this amplitude.
-    pub fn new(amplitude: f64, probe: &StrainProbeResult) -> Self {
-        Self {
-            amplitude,
-            asymmetry: probe.asymmetry,
-            steps: probe.steps(),
-            opened: probe.sum(|c| c.opened),
-            closed: probe.sum(|c| c.closed),
-            sliding: probe.sum(|c| c.sliding),
-            forward_backward: probe.forward_backward(),
-            error: probe.relative_error(),
-        }
-    }
+    pub error: f64,
 }
 
 /// Probes of several amplitudes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ScanView {
-    pub(crate) probes: Vec<ScannedView>,
+    /// In the order of amplitudes.
+    pub probes: Vec<ScannedView>,
     /// Least and largest amplitude of the linear regime; null if no two neighbours agree.
-    pub(crate) linear: Option<[f64; 2]>,
+    pub linear: Option<[f64; 2]>,
 }
 
 /// One of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct ScannedView {
-    pub(crate) amplitude: f64,
+pub struct ScannedView {
+    /// Strain.
+    pub amplitude: f64,
     /// Null if it failed; then there is a reason.
-    pub(crate) probe: Option<ProbeView>,
-    pub(crate) failure: Option<String>,
+    pub probe: Option<ProbeView>,
+    /// The reason.
+    pub failure: Option<String>,
     /// Largest difference from the frozen network over its C11; null without a stiffness.
-    pub(crate) off_network: Option<f64>,
+    pub off_network: Option<f64>,
 }
 
 impl ScanView {
-    /// With the stiffness of the frozen network, if it has one.
-    pub fn new(scan: &AmplitudeSweep, network: Option<&Stiffness>) -> Self {
-        let probes = scan.probes.iter().map(|(amplitude, found)| ScannedView {
-            amplitude: *amplitude,
-            probe: found.as_ref().ok().map(|p| ProbeView::new(*amplitude, p)),
-            failure: found.as_ref().err().map(ToString::to_string),
-            off_network: found
-                .as_ref()
-                .ok()
-                .zip(network)
-                .map(|(p, c)| (p.stiffness.0 - c.0).amax() / c.0[(0, 0)].abs()),
-        });
-        let linear = scan.linear.as_ref().map(|run| [scan.probes[*run.start()].0, scan.probes[*run.end()].0]);
-        Self { probes: probes.collect(), linear }
-    }
-
     /// One line per amplitude, and the linear regime.
     pub(crate) fn text(&self) -> String {
         let mut t = Table::new([

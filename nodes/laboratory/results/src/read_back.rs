@@ -11,12 +11,8 @@ use crate::inference::Inference;
 use crate::measured_packing::MeasuredPacking;
 use crate::measurements::Measurement;
 use crate::state_warnings::of_springs;
-use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed, PackingReport};
-use grainlab_core::{Packing, PackingError, min_contacts};
-use grainlab_micromechanics::{PackingView, ReportParts, report};
-use grainlab_msgs::boundary::FabricReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::{Report, Topic, topics};
+use grainlab_msgs::{Report, Topic, TypeInfo, msg, topics};
 use grainlab_recordings::strangers::{self, Authors, StrangerView};
 use grainlab_recordings::{ChannelInfo, Message, OneRun, Recording, RunSign, Selection, SeveralRuns};
 use serde::Serialize;
@@ -109,7 +105,7 @@ pub fn read(recording: &Recording) -> ReadBack {
     recording.differing().iter().for_each(|line| grainlab_console::say!("grainlab: {line}"));
     let wanted = [
         topics::PACKING,
-        topics::FABRIC,
+        topics::PACKING_REPORT,
         topics::MODULI,
         topics::WAVE_SPEEDS,
         topics::MICROSTRUCTURE,
@@ -143,8 +139,10 @@ pub fn read(recording: &Recording) -> ReadBack {
             }
             continue;
         }
-        let step = match enter(&mut about, topic, &message, authors.node(name, message.log_time)) {
+        let by = authors.node(name, message.log_time);
+        let step = match enter(&mut about, &mut run, topic, &message, by) {
             Ok(step) => step,
+            Err(Unused::OfAnotherRun(sign)) => return ReadBack::of_several_runs(recording, sign),
             Err(Unused::Unreadable(problem)) => {
                 back.complaints.push(complaint(&message, &problem));
                 continue;
@@ -161,43 +159,44 @@ pub fn read(recording: &Recording) -> ReadBack {
             continue;
         }
         let Some(about) = about.get(&step) else { continue };
-        if let Some(Err(sign)) = about.packing.as_ref().map(|packing| run.packing(name, packing)) {
-            return ReadBack::of_several_runs(recording, sign);
-        }
         back.packings += 1;
         back.saved_step = if about.position.is_some() { Some(step) } else { back.saved_step };
     }
-    if let Some(sign) = about.iter().find_map(|(step, about)| about.contradiction(*step)) {
+    if let Some(sign) = about.values().find_map(About::contradiction) {
         return ReadBack::of_several_runs(recording, sign);
     }
     let source = recording.path().display().to_string();
+    let is_of_earlier_version =
+        channels.iter().any(|c| c.ros_type == TypeInfo::of::<msg::Fabric>().type_name);
+    if is_of_earlier_version {
+        back.complaints.push(format!(
+            "an earlier version recorded {source}: what it measured of packings, on the topics fabric and moduli, is not read; \
+             `grainlab analyze {source}` measures the packings again"
+        ));
+    }
     for (step, mut about) in about {
         back.note_unanswered(step, &about);
+        let jammed = about.report.as_ref().is_some_and(|report| report.stiffness().is_some());
         if about.is_within_phase() {
             back.film.packings += 1;
-            back.film.structures += usize::from(about.fabric.is_some());
-            back.film.moduli += usize::from(about.stiffness().is_some());
+            back.film.structures += usize::from(about.report.is_some());
+            back.film.moduli += usize::from(jammed);
             continue;
         }
-        let ((results, others), speeds) = (about.results(), about.speeds());
-        let (stiffness, notes) = (about.stiffness(), about.notes());
+        let ((results, others), speeds, notes) = (about.results(), about.speeds(), about.notes());
         back.of_instruments.extend(others);
-        match (about.packing, about.fabric) {
-            (Some(packing), Some(fabric)) => {
-                let report = match reported(&packing, fabric, stiffness) {
-                    Ok(report) => report,
-                    Err(why) => {
-                        back.complaints.push(format!("the packing of step {step}: {why}"));
-                        continue;
-                    }
-                };
+        match (about.packing, about.report) {
+            (Some(_), Some(report)) => {
                 let mut measured = MeasuredPacking::new(source.clone(), report).at(about.position);
-                measured.warnings.extend(measured.report.elasticity.not_jammed().map(ToString::to_string));
-                measured.warnings.extend(of_springs(&packing, &measured.report));
+                let report = &measured.report;
+                measured.warnings =
+                    report.elasticity.not_jammed().map(ToString::to_string).into_iter().collect();
+                measured.warnings.extend(of_springs(report));
                 measured.warnings.extend(notes);
+                let (grains, density) = (report.contacts.grains, report.bulk_density());
                 let mut acoustic = speeds.into_iter().map(|(measurement, reading)| AcousticReport {
                     measurement,
-                    ..AcousticReport::new(&packing, reading)
+                    ..AcousticReport::new(grains, density, reading)
                 });
                 let first = acoustic.next();
                 back.states.push(InvertedPacking {
@@ -212,7 +211,9 @@ pub fn read(recording: &Recording) -> ReadBack {
             (None, _) => back.complaints.push(format!("the packing of step {step} is not in the recording")),
             (_, None) => {
                 back.not_analysed += 1;
-                back.complaints.push(format!("the packing of step {step} was not analysed"));
+                if !is_of_earlier_version {
+                    back.complaints.push(format!("the packing of step {step} was not analysed"));
+                }
             }
         }
     }
@@ -247,27 +248,6 @@ impl ReadBack {
 
 fn complaint(message: &Message, problem: &str) -> String {
     format!("message {} on {}: {problem}", message.sequence, message.channel.topic)
-}
-
-/// The report from the messages about a packing.
-fn reported(
-    packing: &Packing,
-    found: FabricReading,
-    stiffness: Option<ElasticStiffness>,
-) -> Result<PackingReport, PackingError> {
-    let FabricReading { contacts, fabric, stress_decomposition, strain_ratios } = found;
-    let elasticity = match (stiffness, packing.ids.len()) {
-        (Some(stiffness), _) => Elasticity::Jammed(Box::new(stiffness)),
-        (None, grains) => Elasticity::NotJammed(match contacts.contacts as usize {
-            0 => NotJammed::NoContacts { grains },
-            _ if contacts.rattlers as usize == grains => {
-                NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) }
-            }
-            _ => NotJammed::NotReported,
-        }),
-    };
-    let parts = ReportParts { contacts, fabric, stress_decomposition, strain_ratios, elasticity };
-    Ok(report(&PackingView::new(packing)?, parts))
 }
 
 /// Nodes by the messages that they sent.

@@ -2,7 +2,7 @@
 
 use grainlab_core::Packing;
 use grainlab_core::non_rattlers;
-use grainlab_core::results::{ElasticStiffness, PackingReport, SpringNote};
+use grainlab_core::results::{ElasticStiffness, PackingReport};
 use grainlab_experiment::PathPosition;
 use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
@@ -40,7 +40,7 @@ pub fn state_warnings(
     ]
     .into_iter()
     .flatten()
-    .chain(of_springs(packing, report))
+    .chain(of_springs(report))
     .collect()
 }
 
@@ -129,10 +129,9 @@ fn pulling(packing: &Packing) -> Option<String> {
     Some(format!("{pull} (normal force below 0), the first of grains {i} and {j}: Hertz's law only presses"))
 }
 
-/// What a reader should know about the springs of the stiffness.
-pub fn of_springs(packing: &Packing, report: &PackingReport) -> Vec<String> {
-    let notes = report.stiffness().map(|s| SpringNote::of(packing, s.method, s.smooth)).unwrap_or_default();
-    notes.iter().map(|note| format!("stiffness {note}")).collect()
+/// Notes on the springs of the stiffness.
+pub(crate) fn of_springs(report: &PackingReport) -> Vec<String> {
+    report.spring_notes().iter().map(|note| format!("stiffness {note}")).collect()
 }
 
 /// Contacts by position that are missing in the list; the readers of some files have already reported them.

@@ -75,7 +75,7 @@ fn inferred(s: &InvertedPacking) -> String {
         if sources.len() > 1 || several {
             let data = match (source.as_deref(), s.acoustic_of(measurement.as_ref())) {
                 (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic_text::heading(a),
-                (Some(name), _) if name == topics::MODULI.name && measurement.is_none() => {
+                (Some(name), _) if name == topics::PACKING_REPORT.name && measurement.is_none() => {
                     let method = s.packing.report.stiffness().map_or("given", |s| s.method.name());
                     format!("moduli ({})", method.replace('_', " "))
                 }

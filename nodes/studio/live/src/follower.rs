@@ -2,7 +2,7 @@
 
 use crate::laboratory::Laboratory;
 use grainlab_console::Failure;
-use grainlab_msgs::msg::{Fabric, Microstructure, Moduli, Packing, RunState, Stress};
+use grainlab_msgs::msg::{Microstructure, Packing, PackingReport, RunState, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, topics};
 use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, DdsBus, Demand, Identity, Names, Network, Participant, PeerWatch, Peers,
@@ -35,8 +35,7 @@ pub(crate) struct Follower {
     stress: Subscription<Stress>,
     run_state: Subscription<RunState>,
     packings: BulkSubscription,
-    fabric: Subscription<Fabric>,
-    moduli: Subscription<Moduli>,
+    packing_reports: Subscription<PackingReport>,
     microstructure: Subscription<Microstructure>,
     watch: PeerWatch,
     /// The simulator of the run, once heard.
@@ -64,8 +63,7 @@ impl Follower {
             // Repeated once a second.
             run_state: Subscription::subscribe(&mut bus, &topics::RUN_STATE, Demand::best_effort(16))?,
             packings: BulkSubscription::subscribe(&mut bus, &topics::PACKING, Demand::reliable(PACKINGS))?,
-            fabric: latched(&mut bus, &topics::FABRIC)?,
-            moduli: latched(&mut bus, &topics::MODULI)?,
+            packing_reports: latched(&mut bus, &topics::PACKING_REPORT)?,
             microstructure: latched(&mut bus, &topics::MICROSTRUCTURE)?,
             watch: PeerWatch::subscribe(&mut bus)?,
             simulator: None,
@@ -124,13 +122,9 @@ impl Follower {
         let of_run = |known: &mut Option<Laboratory>, info: &SampleInfo| {
             known.as_ref().is_some_and(|l| l.run == run_of(&info.writer.participant()))
         };
-        while let Some((message, info)) = self.fabric.take_valid(&mut self.bus)? {
+        while let Some((message, info)) = self.packing_reports.take_valid(&mut self.bus)? {
             let ours = of_run(laboratory, &info);
-            laboratory.iter_mut().filter(|_| ours).for_each(|l| l.fabric(&message));
-        }
-        while let Some((message, info)) = self.moduli.take_valid(&mut self.bus)? {
-            let ours = of_run(laboratory, &info);
-            laboratory.iter_mut().filter(|_| ours).for_each(|l| l.moduli(&message));
+            laboratory.iter_mut().filter(|_| ours).for_each(|l| l.packing_report(&message));
         }
         while let Some((message, info)) = self.microstructure.take_valid(&mut self.bus)? {
             let ours = of_run(laboratory, &info);

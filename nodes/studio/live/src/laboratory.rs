@@ -2,9 +2,8 @@
 
 use grainlab_console::Pace;
 use grainlab_core::Packing;
-use grainlab_msgs::boundary::{
-    FabricReading, MicrostructureReading, ModuliReading, RunStateReading, RunStatus,
-};
+use grainlab_core::results::PackingReport;
+use grainlab_msgs::boundary::{MicrostructureReading, RunStateReading, RunStatus};
 use grainlab_msgs::{msg, simulated_seconds};
 use grainlab_node_kit::{Exit, Report, RunId};
 use grainlab_report::Timeline;
@@ -54,9 +53,8 @@ pub struct Laboratory {
     pub(crate) timeline: Timeline,
     pub(crate) latest: Option<ServoRequest>,
     pub(crate) state: Option<RunStateReading>,
-    /// Structure and stiffness of the last measured packing, with its step.
-    pub(crate) fabric: Option<(u64, FabricReading)>,
-    pub(crate) moduli: Option<(u64, ModuliReading)>,
+    /// The last measured packing.
+    pub(crate) report: Option<PackingReport>,
     /// The estimates from one packing, with its step.
     pub(crate) inferred: (u64, Vec<Inference>),
     pub(crate) grains: Option<u32>,
@@ -87,8 +85,7 @@ impl Laboratory {
             timeline: Timeline::of_phases(PHASES),
             latest: None,
             state: None,
-            fabric: None,
-            moduli: None,
+            report: None,
             inferred: (0, Vec::new()),
             grains: None,
             steps: Pace::over(RATE_WINDOW),
@@ -140,19 +137,11 @@ impl Laboratory {
         }
     }
 
-    /// Takes the structure of a packing.
-    pub fn fabric(&mut self, message: &msg::Fabric) {
-        let Ok(reading) = FabricReading::try_from(message) else { return self.refused += 1 };
-        self.timeline.structure(simulated_seconds(&message.header.stamp), &reading);
-        self.fabric = Some((message.source_step, reading));
-    }
-
-    /// Takes the stiffness of a packing.
-    pub fn moduli(&mut self, message: &msg::Moduli) {
-        match ModuliReading::try_from(message) {
-            Ok(reading) => self.moduli = Some((message.source_step, reading)),
-            Err(_) => self.refused += 1,
-        }
+    /// Takes the report of a packing.
+    pub fn packing_report(&mut self, message: &msg::PackingReport) {
+        let Ok(report) = PackingReport::try_from(message) else { return self.refused += 1 };
+        self.timeline.structure(simulated_seconds(&message.header.stamp), &report);
+        self.report = Some(report);
     }
 
     /// Takes what was inferred from a packing.

@@ -5,12 +5,12 @@ use grainlab_console::count;
 use grainlab_core::results::InferredQuantity;
 use grainlab_core::{ComponentControl, SymTensor};
 use grainlab_page::{Cell, Html, card, fixed, grid, paragraph, plus_minus, signed, table, with_unit};
+use grainlab_results::brief::moduli;
 use grainlab_results::{Inference, by_origin};
 use grainlab_servo::ServoRequest;
 use serde_json::json;
 
 const KPA: f64 = 1e-3;
-const MPA: f64 = 1e-6;
 
 /// A large number in thousands or millions.
 fn large(value: f64) -> Html {
@@ -52,7 +52,7 @@ impl Laboratory {
         let published = self.state.as_ref().map(|s| format!("{} published", count(s.packings, "packing")));
         let time = value(|r| 1e3 * r.time, 4);
         let step = self.step().map_or_else(String::new, |s| format!("step {s}"));
-        let z = self.fabric.as_ref().map_or_else(String::new, |(_, f)| {
+        let z = self.report.as_ref().map_or_else(String::new, |f| {
             format!("z {:.3} without rattlers, last packing", f.contacts.mechanical_coordination)
         });
         let all = [
@@ -100,16 +100,16 @@ impl Laboratory {
 
     /// Moduli and microstructure of the last measured packing.
     pub(crate) fn structure(&self) -> Html {
-        let Some((step, fabric)) = &self.fabric else {
+        let Some(report) = &self.report else {
             return paragraph("No packing has been measured yet: at the states set in the scene.");
         };
-        let (inferred_step, results) = &self.inferred;
+        let (step, (inferred_step, results)) = (report.step, &self.inferred);
         let best = by_origin(results)
             .iter()
             .find_map(|(_, results)| Inference::recommended(results))
-            .filter(|_| inferred_step == step);
+            .filter(|_| *inferred_step == step);
         let rows = InferredQuantity::countable().map(|q| {
-            let (counted, digits) = (q.counted(&fabric.contacts, &fabric.fabric), q.digits());
+            let (counted, digits) = (report.counted(q), q.digits());
             let value = best.and_then(|b| b.values[q]);
             let error = value.zip(counted).map(|(v, c)| signed(v - c, digits));
             [
@@ -126,17 +126,16 @@ impl Laboratory {
         let by = best.map_or_else(String::new, |b| format!(", by model {}{which}", b.model));
         let caption = format!("Packing of step {step}{by}");
         let inferred = table(caption, ["", "", "counted", "inferred", "", "error"], rows);
-        let moduli = self.moduli.iter().filter(|(of, _)| of == step).flat_map(|(_, m)| {
-            [
-                ("G12", "shear across the axis", m.g12),
-                ("G13", "shear along the axis", m.g13),
-                ("Θ", "bulk modulus", m.theta),
-            ]
-        });
-        let moduli = moduli.map(|(name, meaning, value)| {
-            [Cell::text(name), Cell::text(meaning), Cell::fixed(value.map(|v| v * MPA), 2)]
-        });
-        grid(inferred + table("Moduli", ["", "", "MPa"], moduli))
+        if report.stiffness().is_none() {
+            return grid(inferred);
+        }
+        let names =
+            [("G12", "shear across the axis"), ("G13", "shear along the axis"), ("Θ", "bulk modulus")];
+        let rows = names
+            .into_iter()
+            .zip(moduli(report))
+            .map(|((name, meaning), value)| [Cell::text(name), Cell::text(meaning), Cell::fixed(value, 2)]);
+        grid(inferred + table("Moduli", ["", "", "MPa"], rows))
     }
 
     /// The latest request for programs: SI units, Voigt order xx, yy, zz, yz, xz, xy; null where no stress is imposed.

@@ -2,6 +2,7 @@
 
 use crate::run::{Run, recommended};
 use grainlab_core::results::InferredQuantity;
+use grainlab_msgs::topics::PACKING_REPORT;
 use grainlab_page::plot::{Bar, Bars};
 use grainlab_page::{
     Cell, Html, csv, details, figure, fixed, grid, list, paragraph, plus_minus, signed, six_digits, table,
@@ -13,10 +14,10 @@ use grainlab_results::read_back::InvertedPacking;
 /// Most bars of a plot; its data have all.
 const MOST_BARS: usize = 60;
 
-/// Name of a result: its model, and its data unless these are moduli.
+/// Name of a result: its model, and its data unless these are the report of the packing.
 fn name(e: &Inference) -> String {
     let which = || e.measurement.as_ref().map_or_else(String::new, |m| format!(" {}", m.label));
-    let is_named = |s: &&str| *s != "moduli" || e.measurement.is_some();
+    let is_named = |s: &&str| *s != PACKING_REPORT.name || e.measurement.is_some();
     let data = e.source.as_deref().filter(is_named).map(|s| format!(", {}{}", s.replace('_', " "), which()));
     let by =
         e.by.as_deref().filter(|b| *b != "/emt_inversion" && *b != "emt_inversion").map(|b| format!(", {b}"));

@@ -1,8 +1,9 @@
 //! A run against time, from one pass over its recording.
 
 use crate::phased::{MOST_PHASES, PhaseAxis, Phased};
+use grainlab_core::results::PackingReport;
 use grainlab_core::{ComponentControl, Packing};
-use grainlab_msgs::boundary::{EnergyReading, FabricReading};
+use grainlab_msgs::boundary::EnergyReading;
 use grainlab_msgs::{Topic, msg, simulated_seconds, topics};
 use grainlab_recordings::{ChannelInfo, Message, OneRun, ReadError, Recording, RunSign, Selection};
 use grainlab_servo::ServoRequest;
@@ -90,7 +91,8 @@ impl Timeline {
 
     /// Reads the recording of a run of this number of phases.
     pub(crate) fn read(recording: &Recording, phases: usize) -> Result<Self, ReadError> {
-        let wanted = [topics::STRESS, topics::FABRIC, topics::PACKING, topics::RUN_STATE, topics::ENERGY];
+        let wanted =
+            [topics::STRESS, topics::PACKING_REPORT, topics::PACKING, topics::RUN_STATE, topics::ENERGY];
         let of = |c: &ChannelInfo| {
             Topic::of_channel(&c.topic, &c.ros_type).filter(|t| wanted.iter().any(|w| w.name == t.name))
         };
@@ -118,10 +120,10 @@ impl Timeline {
     fn take(&mut self, topic: &str, recorded: &Message) -> Option<()> {
         if topic == topics::STRESS.name {
             self.request(&ServoRequest::try_from(&recorded.decoded::<msg::Stress>().ok()?).ok()?);
-        } else if topic == topics::FABRIC.name {
-            let message: msg::Fabric = recorded.decoded().ok()?;
+        } else if topic == topics::PACKING_REPORT.name {
+            let message: msg::PackingReport = recorded.decoded().ok()?;
             let time = simulated_seconds(&message.header.stamp);
-            self.structure(time, &FabricReading::try_from(&message).ok()?);
+            self.structure(time, &PackingReport::try_from(&message).ok()?);
         } else if topic == topics::PACKING.name {
             self.packing(Packing::try_from(&recorded.decoded::<msg::Packing>().ok()?).ok()?);
         } else if topic == topics::ENERGY.name {
@@ -169,7 +171,7 @@ impl Timeline {
     }
 
     /// Takes the structure of the packing at a time, s.
-    pub fn structure(&mut self, time: f64, FabricReading { contacts, fabric, .. }: &FabricReading) {
+    pub fn structure(&mut self, time: f64, PackingReport { contacts, fabric, .. }: &PackingReport) {
         if self.fabrics.last().is_some_and(|s| s.time >= time) {
             return;
         }

@@ -1,14 +1,15 @@
 //! One packing measured: its state, and the messages that a node would publish.
 
 use crate::commands::packings::Measure;
-use grainlab_core::Packing;
+use grainlab_core::{Packing, Stiffness};
 use grainlab_experiment::PathPosition;
-use grainlab_fabric_analyzer::{Measured, messages};
 use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
 use grainlab_micromechanics::probe::{StrainProbe, StrainProbeResult, amplitude_sweep};
 use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
+use grainlab_msgs::boundary::packing_report_message;
+use grainlab_msgs::msg;
 use grainlab_recordings::import::Imported;
-use grainlab_results::{MeasuredPacking, ProbeView, ScanView, state_warnings};
+use grainlab_results::{MeasuredPacking, ProbeView, ScanView, ScannedView, state_warnings};
 use std::time::Instant;
 
 /// Relative difference of the forward and the backward stiffness of a probe without a warning: half of it is
@@ -31,8 +32,8 @@ const AGREEMENT: f64 = 1e-3;
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) packing: MeasuredPacking,
-    /// The messages that the node `fabric_analyzer` would publish, or the reason why it would not.
-    pub(super) messages: Result<Measured, String>,
+    /// The message that the node `fabric_analyzer` would publish, or the reason why it would not.
+    pub(super) message: Result<msg::PackingReport, String>,
 }
 
 impl Measure for Analysis {
@@ -48,7 +49,7 @@ impl Measure for Analysis {
         measured.step = imported.step;
         measured.seconds = Some(began.elapsed().as_secs_f64());
         let (report, probe) = (&measured.report, found.probe.as_ref());
-        measured.probe = probe.zip(self.settings.probe).map(|(p, set)| ProbeView::new(set.amplitude, p));
+        measured.probe = probe.zip(self.settings.probe).map(|(p, set)| probe_view(set.amplitude, p));
         if !self.scan.is_empty() && report.stiffness().is_some() {
             measured.scan = Some(self.scanned(packing).map_err(|e| named(&e))?);
         }
@@ -57,8 +58,9 @@ impl Measure for Analysis {
         warnings.extend(report.elasticity.not_jammed().map(ToString::to_string));
         warnings.extend(probe.and_then(one_sided));
         measured.warnings = warnings;
-        let messages = messages(&imported.header, &measured.report).map_err(|e| named(&e));
-        Ok(Found { packing: measured, messages })
+        let message =
+            packing_report_message(imported.header.clone(), &measured.report).map_err(|e| named(&e));
+        Ok(Found { packing: measured, message })
     }
 }
 
@@ -69,7 +71,35 @@ impl Analysis {
         let sweep = amplitude_sweep(packing, &explicit(set.springs), &self.scan, AGREEMENT)?;
         let network = SpringNetwork::new(&PackingView::new(packing)?, set.springs)?;
         let found = relaxed_stiffness(&network, set.solver, set.tolerance, set.max_iterations)?;
-        Ok(ScanView::new(&sweep, found.map(|s| s.relaxed).as_ref()))
+        let network = found.map(|s| s.relaxed);
+        let probes = sweep.probes.iter().map(|(amplitude, found)| {
+            let probe = found.as_ref().ok();
+            let off =
+                |(p, c): (&StrainProbeResult, Stiffness)| (p.stiffness.0 - c.0).amax() / c.0[(0, 0)].abs();
+            ScannedView {
+                amplitude: *amplitude,
+                probe: probe.map(|p| probe_view(*amplitude, p)),
+                failure: found.as_ref().err().map(ToString::to_string),
+                off_network: probe.zip(network).map(off),
+            }
+        });
+        let linear =
+            sweep.linear.as_ref().map(|run| [sweep.probes[*run.start()].0, sweep.probes[*run.end()].0]);
+        Ok(ScanView { probes: probes.collect(), linear })
+    }
+}
+
+/// The details of a probe with strains of this amplitude.
+fn probe_view(amplitude: f64, probe: &StrainProbeResult) -> ProbeView {
+    ProbeView {
+        amplitude,
+        asymmetry: probe.asymmetry,
+        steps: probe.steps(),
+        opened: probe.sum(|c| c.opened),
+        closed: probe.sum(|c| c.closed),
+        sliding: probe.sum(|c| c.sliding),
+        forward_backward: probe.forward_backward(),
+        error: probe.relative_error(),
     }
 }
 

@@ -32,13 +32,9 @@ impl packings::Outlet for Outlet {
         let text = self.printer.next(&found.packing)?;
         bar.around(|| print(&text))?;
         let Some(tape) = &mut self.tape else { return Ok(Exit::Done) };
-        match &found.messages {
-            Ok(measured) => {
-                let fabric = &measured.fabric;
-                tape.put(&topics::FABRIC, &fabric.header, fabric)?;
-                if let Ok(moduli) = &measured.moduli {
-                    tape.put(&topics::MODULI, &moduli.header, moduli)?;
-                }
+        match &found.message {
+            Ok(report) => {
+                tape.put(&topics::PACKING_REPORT, &report.header, report)?;
                 Ok(Exit::Done)
             }
             Err(message) => {

@@ -18,7 +18,7 @@ Examples:
   grainlab bag record -a -o my_run
   grainlab bag record --topics stress packing
   grainlab bag record --regex '/camera/.*' --msg-path my_ws/install/share
-  grainlab bag record --snapshot 30 --trigger moduli -o last_seconds     # or: kill -USR1 PID
+  grainlab bag record --snapshot 30 --trigger packing_report -o last_seconds     # or: kill -USR1 PID
 
 Topics of any type are recorded, also those that appear later. Definitions of types come from grainlab, which has its own and
 those in msgs/std, then from the folders of --msg-path. A topic whose definition is not found is recorded with an empty

@@ -125,13 +125,13 @@ fn table(campaign: &Campaign, states: &[State<'_>]) -> Dataset {
     table
 }
 
-/// What each model inferred: `MODEL.k`, its standard deviation `MODEL.k_stddev`, …, `MODEL.status`. Data other than moduli and
+/// What each model inferred: `MODEL.k`, its standard deviation `MODEL.k_stddev`, …, `MODEL.status`. Data other than the report of the packing and
 /// the name of a node, where several infer, precede the model.
 fn inferred(results: &[Inference]) -> BTreeMap<String, Cell> {
     let mut cells = BTreeMap::new();
     for r in results {
-        let data = r.source.as_deref().filter(|source| *source != topics::MODULI.name);
-        // Moduli of several programs need their topic, too.
+        let data = r.source.as_deref().filter(|source| *source != topics::PACKING_REPORT.name);
+        // Reports of several programs need their topic, too.
         let data = if r.measurement.is_some() { r.source.as_deref() } else { data };
         let measurement = r.measurement.as_ref().map(|m| m.label.as_str());
         let by = r.by.as_deref().filter(|by| !by.ends_with("emt_inversion"));

@@ -52,11 +52,12 @@ impl Measure for Probe {
         };
         let messages = messages(&imported.header, packing, &found).map_err(|e| named(&e))?;
         let reading = WaveSpeedsReading::try_from(&messages.wave_speeds).map_err(|e| named(&e))?;
-        let mut acoustic = AcousticReport::new(packing, reading);
+        let density = packing.solid_fraction() * packing.material.density;
+        let mut acoustic = AcousticReport::new(packing.grains() as u32, density, reading);
         acoustic.modes = found.modes;
         if let Some(settings) = &self.attenuation {
             let curves = measure_attenuation(packing, &self.settings.0, settings).map_err(|e| named(&e))?;
-            acoustic.attenuation = Some(AttenuationReport::new(packing, settings, curves));
+            acoustic.attenuation = Some(AttenuationReport::new(packing, settings.damping, curves));
         }
         // The axis of the rays, or the one inferred from the speeds.
         let measured = measured(acoustic.medium.axis)?;

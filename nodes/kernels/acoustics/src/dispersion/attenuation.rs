@@ -3,7 +3,7 @@
 //! Two causes are computed, and never mixed:
 //!
 //! - dissipation by the dashpots of the contacts, of the damped modes ([`ContactLoss`]): 1/Q ∝ ζ ω at long waves
-//! - scattering by disorder, without dissipation ([`Scattering`]): 1/Q grows with ω³ or faster
+//! - scattering by disorder, without dissipation ([`Scattering`](grainlab_core::results::Scattering)): 1/Q grows with ω³ or faster
 //!
 //! While both are small, 1/Q of a wave is their sum. Friction at sliding contacts, viscous pore fluids and the material of
 //! the grains are not included.
@@ -15,9 +15,10 @@ use crate::dispersion::damped_modes::damped_modes;
 use crate::dispersion::dashpots::dashpots;
 use crate::dispersion::mean_diameter::mean_diameter;
 use crate::dispersion::modes::modes;
-use crate::dispersion::scattering::{Scattering, scattering};
+use crate::dispersion::scattering::scattering;
 use crate::error::AcousticsError;
 use crate::ray::Ray;
+use grainlab_core::results::{Attenuation, AttenuationPoint, ContactLoss};
 use grainlab_core::{Packing, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -63,43 +64,6 @@ impl AttenuationSettings {
         }
         Ok(self)
     }
-}
-
-/// Attenuation of the mode nearest to one polarization of one ray.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Attenuation {
-    /// Unit direction of propagation.
-    pub direction: Vec3,
-    /// Unit polarization asked for.
-    pub polarization: Vec3,
-    /// One per wavelength, longest first.
-    pub points: Vec<AttenuationPoint>,
-}
-
-/// Attenuation at one wave vector.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AttenuationPoint {
-    /// Wave number, rad/m.
-    pub wavenumber: f64,
-    /// By the dashpots of the contacts. `None` at wavelengths below 30 mean diameters, where a plane wave is not one mode,
-    /// where the mode was not found, and where it does not oscillate.
-    pub contact: Option<ContactLoss>,
-    /// By scattering. `None` where the wave is so long that the periodic sample has no other wave of its frequency, and
-    /// where no tone was found.
-    pub scattering: Option<Scattering>,
-}
-
-/// Loss by the dashpots of the contacts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactLoss {
-    /// ω of the damped mode, rad/s.
-    pub omega: f64,
-    /// 1/Q = 2 Im ω/Re ω.
-    pub loss: f64,
-    /// Its numerical error: change in the last round of the solution.
-    pub stddev: f64,
-    /// 1/Q to first order in the dashpots, u*C u/(ω u*M u) of the undamped mode u. The difference is of higher order.
-    pub first_order: f64,
 }
 
 /// Attenuation of all polarizations of all rays, in that order; the same to the last bit for any number of threads.

@@ -15,11 +15,9 @@ use crate::dispersion::bloch::Bloch;
 use crate::dispersion::coherence::Coherence;
 use crate::dispersion::joint_diagonal::joint_diagonal;
 use crate::standing_wave::tone::Tone;
+use grainlab_core::results::{RESOLVED, Scattering};
 use grainlab_core::{Mat3, Vec3};
 use std::f64::consts::{PI, TAU};
-
-/// Least number of modes in the width of a line for its width to be that of a larger sample.
-pub const RESOLVED: f64 = 10.0;
 
 /// Wave number times the cube root of the volume of the cell below which no mode of the sample is as slow as the wave,
 /// whatever its kind.
@@ -40,29 +38,6 @@ const LEFT_OUT: f64 = 0.25;
 /// Relative standard deviation of γ between samples whose lines hold one mode, by the scatter of rays and the difference
 /// between 2,000 and 8,000 grains. It falls as one over the root of the number of modes.
 const SAMPLING: f64 = 1.0;
-
-/// Decay of one polarization at one wave vector.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scattering {
-    /// ω of the coherent wave, rad/s.
-    pub omega: f64,
-    /// 1/Q = 2γ/ω of the coherent amplitude: that of the material only where it is resolved.
-    pub loss: f64,
-    /// Its standard deviation: fit, length of the fitted time, and the number of modes in the line.
-    pub stddev: f64,
-    /// Number of modes of the periodic sample in the width 2γ of the line.
-    pub modes_in_width: f64,
-    /// The least 1/Q that a sample of this size resolves at this frequency.
-    pub least_loss: f64,
-}
-
-impl Scattering {
-    /// Whether the sample is large enough for the loss to be that of the material. Just above the limit resolved values tend
-    /// to be too high, because lower ones are not resolved.
-    pub fn is_resolved(&self) -> bool {
-        self.modes_in_width >= RESOLVED
-    }
-}
 
 /// The decay of the modes nearest to each of three perpendicular polarizations. `None` where there is no tone, and for all
 /// where the wave is so long that it has no other mode to scatter to.

@@ -123,7 +123,4 @@ pub enum NotJammed {
         /// Number of contacts.
         contacts: usize,
     },
-    /// The report was put together from messages, and none of them had a stiffness.
-    #[error("no moduli were published for this packing")]
-    NotReported,
 }

@@ -4,6 +4,7 @@ use super::contact_statistics::ContactStatistics;
 use super::elastic_stiffness::{ElasticStiffness, Elasticity};
 use super::fabric::Fabric;
 use super::microstructure::InferredQuantity;
+use super::spring_notes::SpringNote;
 use super::strain_ratios::StrainRatios;
 use super::stress_decomposition::StressDecomposition;
 use crate::contact::ContactLaw;
@@ -55,6 +56,11 @@ impl PackingReport {
         self.stress.tensor.mean()
     }
 
+    /// Density of all grains, kg/m³ of the cell.
+    pub fn bulk_density(&self) -> f64 {
+        self.solid_fraction * self.material.density
+    }
+
     /// q/p; `None` without pressure.
     pub fn stress_ratio(&self) -> Option<f64> {
         let (p, q) = (self.pressure(), self.stress.tensor.deviatoric_invariant());
@@ -80,6 +86,14 @@ impl PackingReport {
     /// The stiffness, if there is one.
     pub fn stiffness(&self) -> Option<&ElasticStiffness> {
         self.elasticity.stiffness()
+    }
+
+    /// Notes on the springs of the stiffness; none without one.
+    pub fn spring_notes(&self) -> Vec<SpringNote> {
+        let sliding = self.contacts.sliding_fraction;
+        let notes =
+            |s: &ElasticStiffness| SpringNote::on(&self.law, self.friction, sliding, s.method, s.smooth);
+        self.stiffness().map(notes).unwrap_or_default()
     }
 
     /// The stiffness projected on media isotropic about the reference axis.

@@ -1,6 +1,7 @@
 //! What a reader of a stiffness should know about its springs.
 
 use super::elastic_stiffness::StiffnessMethod;
+use crate::contact::ContactLaw;
 use crate::packing::Packing;
 
 /// A difference between the springs of a stiffness and the contact law of the packing, or those that inversions are
@@ -54,18 +55,25 @@ pub enum SpringNote {
 impl SpringNote {
     /// Notes on a stiffness of `packing` by this method; `smooth` if it has no tangential springs.
     pub fn of(packing: &Packing, method: StiffnessMethod, smooth: bool) -> Vec<Self> {
-        let friction = packing.friction;
+        Self::on(&packing.law, packing.friction, packing.sliding_fraction(), method, smooth)
+    }
+
+    /// Notes for a contact law, a friction coefficient in force, and a share of contacts at its limit.
+    pub(super) fn on(
+        law: &ContactLaw,
+        friction: f64,
+        share: f64,
+        method: StiffnessMethod,
+        smooth: bool,
+    ) -> Vec<Self> {
         let tangential = match (smooth, friction > 0.0) {
             (true, true) => Some(Self::TangentialLeftOut { friction }),
             (true, false) => Some(Self::Frictionless),
             (false, false) => Some(Self::TangentialAdded),
-            (false, true) => {
-                let share = packing.sliding_fraction();
-                (share > 0.0).then_some(Self::SlidingStuck { share })
-            }
+            (false, true) => (share > 0.0).then_some(Self::SlidingStuck { share }),
         };
         let network = !matches!(method, StiffnessMethod::StrainProbe);
-        let rolling = (network && packing.law.rolling.is_some()).then_some(Self::WithoutRolling);
+        let rolling = (network && law.rolling.is_some()).then_some(Self::WithoutRolling);
         let unstressed = matches!(method, StiffnessMethod::FrozenNetwork);
         let prestress = (unstressed && smooth && friction <= 0.0).then_some(Self::WithoutPrestress);
         tangential.into_iter().chain(rolling).chain(prestress).collect()

@@ -17,14 +17,8 @@ use std::rc::Rc;
 use std::time::Duration;
 
 /// The reproducible topics.
-pub(crate) const REPRODUCIBLE: [Topic; 6] = [
-    topics::STRESS,
-    topics::STRAIN_RATE,
-    topics::PACKING,
-    topics::FABRIC,
-    topics::MODULI,
-    topics::MICROSTRUCTURE,
-];
+pub(crate) const REPRODUCIBLE: [Topic; 5] =
+    [topics::STRESS, topics::STRAIN_RATE, topics::PACKING, topics::PACKING_REPORT, topics::MICROSTRUCTURE];
 
 /// Virtual time that exceeds every run.
 pub(crate) const FOREVER: Duration = Duration::from_secs(10_000);

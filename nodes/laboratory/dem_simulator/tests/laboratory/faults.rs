@@ -3,7 +3,7 @@
 use crate::bench::{Bench, FOREVER, Record, exit_of};
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_dem_simulator::Settings;
-use grainlab_msgs::msg::{self, Fabric, RunState, StrainRate, Stress};
+use grainlab_msgs::msg::{self, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{
     Actor, Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription, run_until,
@@ -164,11 +164,12 @@ fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_continues() 
     packings.publish(&mut source, &broken).unwrap();
     source.publish(packings.id(), &to_cdr(&good)[..1000]).unwrap();
     run_until(&bench.hub, &mut actors, Duration::from_secs(1), |_| false);
-    assert!(bench.record.borrow().bodies(&topics::FABRIC).is_empty());
+    assert!(bench.record.borrow().bodies(&topics::PACKING_REPORT).is_empty());
     assert_eq!(actors[1].bus().received().iter().map(|r| r.refused).sum::<u64>(), 2);
     packings.publish(&mut source, &good).unwrap();
     run_until(&bench.hub, &mut actors, Duration::from_secs(2), |_| false);
-    let fabric: Fabric = bench.record.borrow().last(&topics::FABRIC).unwrap();
-    assert_eq!(fabric.source_step, good.step);
-    assert_eq!(bench.record.borrow().bodies(&topics::MODULI).last(), record.bodies(&topics::MODULI).last());
+    let report: PackingReport = bench.record.borrow().last(&topics::PACKING_REPORT).unwrap();
+    assert_eq!(report.source_step, good.step);
+    let last = |record: &Record| record.bodies(&topics::PACKING_REPORT).last().cloned();
+    assert_eq!(last(&bench.record.borrow()), last(&record));
 }

@@ -129,7 +129,7 @@ fn an_analyzer_that_comes_late_gets_the_last_packing_and_makes_the_same_bytes() 
     actors.push(Actor::new(&mut analyzer, analyzer_bus));
     actors.push(Actor::new(&mut inversion, inversion_bus));
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
-    for topic in [topics::FABRIC, topics::MODULI, topics::MICROSTRUCTURE] {
+    for topic in [topics::PACKING_REPORT, topics::MICROSTRUCTURE] {
         assert!(
             bench.record.borrow().bodies(&topic) == &clean.bodies(&topic)[clean.bodies(&topic).len() - 1..]
         );

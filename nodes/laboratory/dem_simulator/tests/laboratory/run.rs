@@ -3,10 +3,14 @@
 use crate::bench::{Bench, FOREVER, Record, exit_of};
 use grainlab_dem_simulator::{Mode, Settings};
 use grainlab_emt_inversion::Models;
-use grainlab_msgs::msg::{Estimate, Fabric, Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
+use grainlab_msgs::msg::{Estimate, Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::{Actor, Exit, run_until};
 use std::time::Duration;
+
+fn pressure(PackingReport { stress, .. }: &PackingReport) -> f64 {
+    (stress.xx + stress.yy + stress.zz) / 3.0
+}
 
 fn clean_run() -> Record {
     Bench::new(0).whole_run(&Settings::default(), None)
@@ -16,31 +20,30 @@ fn clean_run() -> Record {
 fn every_packing_is_measured_and_inverted_with_its_stamp_and_step() {
     let record = clean_run();
     let packings: Vec<Packing> = record.messages(&topics::PACKING);
-    let fabrics: Vec<Fabric> = record.messages(&topics::FABRIC);
-    let moduli: Vec<Moduli> = record.messages(&topics::MODULI);
+    let reports: Vec<PackingReport> = record.messages(&topics::PACKING_REPORT);
     let inferred: Vec<Microstructure> = record.messages(&topics::MICROSTRUCTURE);
-    assert_eq!((packings.len(), fabrics.len(), moduli.len(), inferred.len()), (3, 3, 2, 2));
-    for (packing, fabric) in packings.iter().zip(&fabrics) {
+    assert_eq!((packings.len(), reports.len(), inferred.len()), (3, 3, 2));
+    for (packing, report) in packings.iter().zip(&reports) {
         assert_eq!(packing.header.stamp, stamp(packing.time));
-        assert_eq!((&packing.header, packing.step), (&fabric.header, fabric.source_step));
+        assert_eq!((&packing.header, packing.step), (&report.header, report.source_step));
     }
-    // The first one has no contact network, hence a fabric and no moduli.
-    for ((packing, moduli), inferred) in packings[1..].iter().zip(&moduli).zip(&inferred) {
-        assert_eq!((&packing.header, packing.step), (&moduli.header, moduli.source_step));
+    // The first one has no contact network, hence no stiffness.
+    assert_eq!(reports.iter().map(|r| r.stiffness.len()).collect::<Vec<_>>(), [0, 1, 1]);
+    for ((packing, report), inferred) in packings.iter().zip(&reports).skip(1).zip(&inferred) {
         assert_eq!((&packing.header, packing.step), (&inferred.header, inferred.source_step));
-        assert_eq!(inferred.source, "moduli");
+        assert_eq!(inferred.source, "packing_report");
         let models: Vec<&str> = inferred.estimates.iter().map(|e| e.model.as_str()).collect();
         assert_eq!(models, Models::all().iter().map(|m| m.name()).collect::<Vec<_>>());
         for e in inferred.estimates.iter().filter(|e| e.model.starts_with("ratio")) {
             assert!(matches!(e.status, Estimate::STATUS_OK | Estimate::STATUS_EXTRAPOLATED), "{e:?}");
             assert_eq!(
                 (e.gamma_over_delta_source.as_str(), &e.gamma_over_delta),
-                ("total", &moduli.strain_ratios.total)
+                ("total", &report.strain_ratios.total)
             );
             assert!(e.credible_level > 0.0 && e.interval[0] < e.k[0] && e.k[0] < e.interval[1], "{e:?}");
         }
     }
-    let pressure = moduli[1].pressure;
+    let pressure = pressure(&reports[2]);
     // The scene stops its servo at 2 percent of 100 kPa.
     assert!((pressure - 100e3).abs() < 2e3, "{pressure}");
 }
@@ -92,7 +95,7 @@ fn free_run_does_not_wait_for_each_answer_and_arrives_at_the_same_pressure() {
         let bench = Bench::faulty(5);
         let hub = bench.hub.clone();
         let record = bench.whole_run(&Settings { mode, ..Settings::default() }, None);
-        let pressure = record.last::<Moduli>(&topics::MODULI).unwrap().pressure;
+        let pressure = pressure(&record.last::<PackingReport>(&topics::PACKING_REPORT).unwrap());
         (hub.now(), pressure)
     };
     let (in_step, _) = run(Mode::Lockstep);
@@ -137,7 +140,7 @@ fn end_of_simulator(until_inverted: &[Topic], with_inversion: bool) -> (Option<E
 
 #[test]
 fn a_simulator_that_awaits_inversions_ends_when_its_last_packing_is_inverted() {
-    let (exit, _, record) = end_of_simulator(&[topics::MODULI], true);
+    let (exit, _, record) = end_of_simulator(&[topics::PACKING_REPORT], true);
     assert_eq!(exit, Some(Exit::Done));
     assert!(record.complete(), "it ended before the inversion");
 }
@@ -145,7 +148,7 @@ fn a_simulator_that_awaits_inversions_ends_when_its_last_packing_is_inverted() {
 #[test]
 fn a_simulator_whose_last_packing_is_never_inverted_ends_after_the_time_that_is_set() {
     for (awaited, with_inversion) in
-        [(&[topics::MODULI][..], false), (&[topics::MODULI, topics::WAVE_SPEEDS], true)]
+        [(&[topics::PACKING_REPORT][..], false), (&[topics::PACKING_REPORT, topics::WAVE_SPEEDS], true)]
     {
         let (exit, took, _) = end_of_simulator(awaited, with_inversion);
         let limit = Settings::default().inverted_within;

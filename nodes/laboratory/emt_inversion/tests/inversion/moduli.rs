@@ -1,11 +1,13 @@
-use crate::{corrected, of_data, of_ratio, s1, sent};
-use grainlab_core::results::{InferredQuantity, Microstructure};
+use crate::{corrected, message, of_data, of_packing, of_ratio, report_of, s1};
+use grainlab_core::results::{
+    Elasticity, InferredQuantity, Microstructure, NotJammed, PackingReport, StrainRatios,
+};
 use grainlab_core::{Stiffness, TransverseIsotropy, Vec3};
 use grainlab_emt::{Calibration, Conditions, Measured, Modulus, StrainRatio};
-use grainlab_emt_inversion::{Axis, Settings, microstructure_message};
+use grainlab_emt_inversion::{Answer, Axis, Settings, microstructure_of_moduli, microstructure_of_report};
 use grainlab_msgs::boundary::{DATA, MicrostructureReading};
 use grainlab_msgs::geometry_msgs::Vector3;
-use grainlab_msgs::msg::{Estimate, Moduli, StrainRatios};
+use grainlab_msgs::msg::{self, Estimate, Moduli};
 use nalgebra::Rotation3;
 
 /// A medium with the three moduli of S1.
@@ -17,9 +19,9 @@ pub(crate) fn s1_medium() -> Stiffness {
     TransverseIsotropy { c11, c12, c13, c33, g13: m.g13[0], g12: m.g12[0], residual: 0.0 }.stiffness()
 }
 
-/// S1 with the whole stiffness of that medium.
-pub(crate) fn s1_stiffness() -> Moduli {
-    Moduli { stiffness: sent(&s1_medium()), ..s1() }
+/// A packing in the state of S1 with the whole stiffness of that medium.
+pub(crate) fn s1_stiffness() -> PackingReport {
+    report_of(&s1_medium())
 }
 
 fn with_error(modulus_error: f64) -> Settings {
@@ -33,7 +35,7 @@ fn names_in_messages_are_those_of_the_kernel() {
 
 #[test]
 fn table_iii_comes_back_with_header_step_source_and_models_in_order() {
-    let message = microstructure_message(&s1(), &Settings::default()).message;
+    let message = microstructure_of_moduli(&s1(), &Settings::default()).message;
     assert_eq!((&message.header, message.source_step), (&s1().header, 42));
     assert_eq!(message.source, "moduli");
     let names: Vec<&str> = message.estimates.iter().map(|e| e.model.as_str()).collect();
@@ -68,9 +70,8 @@ fn every_model_finds_the_structure_it_was_given_through_the_message() {
     };
     let mut whole = 0;
     for (i, model) in grainlab_emt::models().iter().enumerate() {
-        let answer = |moduli: &Moduli| {
-            microstructure_message(moduli, &Settings::default()).message.estimates.remove(i)
-        };
+        let of = |answer: Answer| answer.message.estimates.into_iter().nth(i).unwrap();
+        let answer = |moduli: &Moduli| of(microstructure_of_moduli(moduli, &Settings::default()));
         let calibration = Calibration::builtin(&answer(&m).calibration).unwrap();
         let mut structure = Microstructure::default();
         for (q, range) in InferredQuantity::ALL.into_iter().zip(model.domain(calibration).structure) {
@@ -83,13 +84,14 @@ fn every_model_finds_the_structure_it_was_given_through_the_message() {
         let [g12, g13, _, c11, c33, c13] = Modulus::ALL.map(get);
         let one = |modulus| predicted.get(modulus).into_iter().collect();
         let [of_g12, of_g13, theta] = [Modulus::G12, Modulus::G13, Modulus::Theta].map(one);
-        let mut moduli = Moduli { g12: of_g12, g13: of_g13, theta, ..m.clone() };
-        if predicted.known().count() == 6 {
-            let t = TransverseIsotropy { c11, c12: c11 - 2.0 * g12, c13, c33, g13, g12, residual: 0.0 };
-            moduli.stiffness = sent(&t.stiffness());
+        let e = if predicted.known().count() == 6 {
             whole += 1;
-        }
-        let e = answer(&moduli);
+            let t = TransverseIsotropy { c11, c12: c11 - 2.0 * g12, c13, c33, g13, g12, residual: 0.0 };
+            let packing = message(&report_of(&t.stiffness()));
+            of(microstructure_of_report(&packing, &Settings::default()).unwrap())
+        } else {
+            answer(&Moduli { g12: of_g12, g13: of_g13, theta, ..m.clone() })
+        };
         let found = [&e.k, &e.k_hat, &e.z, &e.eps, &e.eps_stiffness];
         for q in InferredQuantity::ALL {
             let Some(given) = structure.get(q) else { continue };
@@ -140,7 +142,7 @@ fn an_estimate_names_the_strain_ratio_it_used() {
     };
     assert_eq!(of(|_| ()), (vec![-0.0623], "total".into()));
     assert_eq!(of(|m| m.strain_ratios.total.clear()), (vec![-0.02], "contact".into()));
-    let unknown = |m: &mut Moduli| m.strain_ratios = StrainRatios::default();
+    let unknown = |m: &mut Moduli| m.strain_ratios = msg::StrainRatios::default();
     assert_eq!(of(unknown), (vec![0.0], "zero".into()));
 }
 
@@ -186,7 +188,7 @@ fn a_modulus_that_is_missing_leaves_the_rest_known() {
 
 #[test]
 fn of_a_full_stiffness_the_error_is_that_of_five_moduli_and_theta_follows() {
-    let (three, six) = (corrected(&s1(), &with_error(0.01)), corrected(&s1_stiffness(), &with_error(0.01)));
+    let (three, six) = (corrected(&s1(), &with_error(0.01)), of_packing(&s1_stiffness(), &with_error(0.01)));
     assert!((six.k[0] - three.k[0]).abs() < 1e-9 && (six.eps[0] - three.eps[0]).abs() < 1e-12);
     // ε needs only G12 and G13. Θ depends mostly on C11, and has a larger error than a measured Θ.
     assert!((of_data(&six, 18) / of_data(&three, 18) - 1.0).abs() < 1e-6);
@@ -195,65 +197,55 @@ fn of_a_full_stiffness_the_error_is_that_of_five_moduli_and_theta_follows() {
 }
 
 #[test]
-fn a_covariance_of_the_three_is_kept_where_the_stiffness_is_known_too() {
-    let covariance = vec![1e12, 3e11, 0.0, 3e11, 2e12, 0.0, 0.0, 0.0, 4e12];
-    let three = corrected(&Moduli { covariance: covariance.clone(), ..s1() }, &with_error(0.01));
-    for error in [0.0, 0.01] {
-        let six = corrected(&Moduli { covariance: covariance.clone(), ..s1_stiffness() }, &with_error(error));
-        for at in [0, 1, 6, 18] {
-            assert!((six.covariance[at] / three.covariance[at] - 1.0).abs() < 1e-6, "{at} {error}");
-        }
-    }
-}
-
-#[test]
 fn a_stiffness_that_is_not_isotropic_about_the_axis_gives_a_warning() {
-    let mut orthotropic = s1_stiffness();
-    orthotropic.stiffness[0].stiffness[0] *= 1.4;
-    let e = corrected(&orthotropic, &Settings::default());
+    let mut orthotropic = s1_medium();
+    orthotropic.0[(0, 0)] *= 1.4;
+    let e = of_packing(&report_of(&orthotropic), &Settings::default());
     assert!(e.warnings.iter().any(|w| w.contains("not isotropic about the axis")), "{:?}", e.warnings);
     assert_eq!(e.status, Estimate::STATUS_EXTRAPOLATED);
-    let e = corrected(&s1_stiffness(), &Settings::default());
+    let e = of_packing(&s1_stiffness(), &Settings::default());
     assert!(!e.warnings.iter().any(|w| w.contains("not isotropic")), "{:?}", e.warnings);
 }
 
+#[test]
+fn from_a_packing_without_a_stiffness_nothing_is_inferred() {
+    let elasticity = Elasticity::NotJammed(NotJammed::Floppy { contacts: 3 });
+    let floppy = message(&PackingReport { elasticity, ..s1_stiffness() });
+    assert_eq!(microstructure_of_report(&floppy, &Settings::default()), None);
+    let answer = microstructure_of_report(&message(&s1_stiffness()), &Settings::default()).unwrap().message;
+    assert_eq!((answer.source.as_str(), answer.source_step), ("packing_report", 42));
+}
+
 /// S1 rotated: its axis e3 is now along this axis.
-fn turned(axis: Vec3) -> Moduli {
+fn turned(axis: Vec3) -> PackingReport {
     let turn = Rotation3::rotation_between(&Vec3::z(), &axis).unwrap();
-    let lying = s1_medium().rotated(turn.matrix());
-    let t = lying.transverse_isotropy();
-    Moduli {
-        stiffness: sent(&lying),
-        g12: vec![t.g12],
-        g13: vec![t.g13],
-        theta: vec![lying.bulk_voigt()],
-        axis: Vector3 { x: axis.x, y: axis.y, z: axis.z },
-        strain_ratios: StrainRatios::default(),
-        ..s1()
-    }
+    let mut report = report_of(&s1_medium().rotated(turn.matrix()));
+    report.fabric.principal_axis.direction = axis;
+    report.strain_ratios = StrainRatios::default();
+    report
 }
 
 #[test]
 fn a_rotated_sample_is_inverted_about_the_axis_found_or_given() {
     let axis = Vec3::new(0.6, -0.48, 0.64);
-    let zero = Moduli { strain_ratios: StrainRatios::default(), ..s1_stiffness() };
-    let upright = corrected(&zero, &Settings::default());
+    let zero = PackingReport { strain_ratios: StrainRatios::default(), ..s1_stiffness() };
+    let upright = of_packing(&zero, &Settings::default());
     for about in [Axis::Found, Axis::Given(axis), Axis::Given(-axis)] {
-        let e = corrected(&turned(axis), &Settings { axis: about, ..Settings::default() });
+        let e = of_packing(&turned(axis), &Settings { axis: about, ..Settings::default() });
         assert!(
             (e.k[0] - upright.k[0]).abs() < 1e-6 && (e.eps[0] - upright.eps[0]).abs() < 1e-9,
             "{about:?} {e:?}"
         );
         assert!(!e.warnings.iter().any(|w| w.contains("not isotropic")), "{:?}", e.warnings);
     }
-    let about_e3 = corrected(&turned(axis), &Settings::default());
+    let about_e3 = of_packing(&turned(axis), &Settings::default());
     assert!((about_e3.eps[0] - upright.eps[0]).abs() > 0.02, "{}", about_e3.eps[0]);
 }
 
 #[test]
 fn the_strain_ratio_turns_with_the_axis() {
     let about = |axis: Vec3| {
-        corrected(&s1_stiffness(), &Settings { axis: Axis::Given(axis), ..Settings::default() })
+        of_packing(&s1_stiffness(), &Settings { axis: Axis::Given(axis), ..Settings::default() })
             .gamma_over_delta[0]
     };
     // For a strain symmetric about e3, γ about e1 is −1/2 of that about e3, and zero at the magic angle.
@@ -266,16 +258,12 @@ fn the_strain_ratio_turns_with_the_axis() {
 #[test]
 fn moduli_and_strain_ratio_about_another_axis_are_taken_as_they_are() {
     let axis = Vec3::new(0.6, -0.48, 0.64);
-    let upright = corrected(&s1_stiffness(), &Settings::default());
-    let lying = Moduli {
-        reference_axis: Vector3 { x: axis.x, y: axis.y, z: axis.z },
-        g12: s1().g12,
-        g13: s1().g13,
-        strain_ratios: s1().strain_ratios,
-        ..turned(axis)
-    };
+    let upright = of_packing(&s1_stiffness(), &Settings::default());
+    let mut lying = turned(axis);
+    lying.fabric.reference_axis = axis;
+    lying.strain_ratios = s1_stiffness().strain_ratios;
     for about in [Axis::Stated, Axis::Found, Axis::Given(axis), Axis::Given(-axis)] {
-        let e = corrected(&lying, &Settings { axis: about, ..Settings::default() });
+        let e = of_packing(&lying, &Settings { axis: about, ..Settings::default() });
         assert_eq!(e.gamma_over_delta, [-0.0623], "{about:?}");
         assert!(
             (e.k[0] - upright.k[0]).abs() < 1e-6 && (e.eps[0] - upright.eps[0]).abs() < 1e-9,
@@ -283,41 +271,39 @@ fn moduli_and_strain_ratio_about_another_axis_are_taken_as_they_are() {
         );
     }
     // Without a stiffness no transformation is possible, and the results are the same.
-    let three = Moduli { stiffness: vec![], ..lying.clone() };
+    let three = Moduli { reference_axis: Vector3 { x: axis.x, y: axis.y, z: axis.z }, ..s1() };
     let e = corrected(&three, &Settings::default());
     assert_eq!(e.eps, corrected(&s1(), &Settings::default()).eps);
     for about in [Axis::E3, Axis::Given(Vec3::x())] {
-        let e = corrected(&lying, &Settings { axis: about, ..Settings::default() });
-        assert_eq!((e.status, !e.k.is_empty()), (Estimate::STATUS_UNKNOWN, false));
-        let why = e.warnings.join("; ");
-        assert!(why.contains("are about (0.6000, -0.4800, 0.6400)") && why.contains("stated"), "{why}");
+        let settings = Settings { axis: about, ..Settings::default() };
+        for e in [of_packing(&lying, &settings), corrected(&three, &settings)] {
+            assert_eq!((e.status, !e.k.is_empty()), (Estimate::STATUS_UNKNOWN, false));
+            let why = e.warnings.join("; ");
+            assert!(why.contains("are about (0.6000, -0.4800, 0.6400)") && why.contains("stated"), "{why}");
+        }
     }
 }
 
 #[test]
-fn an_axis_that_the_data_cannot_be_turned_to_leaves_them_undetermined() {
-    let because = |moduli: &Moduli, axis| {
-        let e = corrected(moduli, &Settings { axis, ..Settings::default() });
-        assert_eq!(
-            (e.status, !e.k.is_empty(), e.gamma_over_delta_source.as_str()),
-            (Estimate::STATUS_UNKNOWN, false, "zero")
-        );
-        e.warnings.join("; ")
-    };
-    let why = because(&s1_stiffness(), Axis::Found);
-    assert!(why.contains("these data have none"), "{why}");
-    let why = because(&s1(), Axis::Given(Vec3::x()));
+fn moduli_that_cannot_be_turned_to_an_axis_leave_it_undetermined() {
+    let e = corrected(&s1(), &Settings { axis: Axis::Given(Vec3::x()), ..Settings::default() });
+    assert_eq!(
+        (e.status, !e.k.is_empty(), e.gamma_over_delta_source.as_str()),
+        (Estimate::STATUS_UNKNOWN, false, "zero")
+    );
+    let why = e.warnings.join("; ");
     assert!(why.contains("(1.0000, 0.0000, 0.0000)"), "{why}");
-    let e = corrected(&s1(), &Settings { axis: Axis::Given(-Vec3::z()), ..Settings::default() });
-    assert_eq!(e, corrected(&s1(), &Settings::default()), "an axis has no direction");
+    for axis in [Axis::Given(-Vec3::z()), Axis::Found] {
+        let e = corrected(&s1(), &Settings { axis, ..Settings::default() });
+        assert_eq!(e, corrected(&s1(), &Settings::default()), "an axis has no direction");
+    }
 }
 
 #[test]
 fn what_is_sent_crosses_every_check_of_a_reader() {
-    let mut odd = s1_stiffness();
     for scale in [1e-200, 1e-9, 1.0, 1e9, 1e200] {
-        odd.stiffness[0].stiffness = s1_medium().row_major().map(|c| c * scale);
-        let message = microstructure_message(&odd, &Settings::default()).message;
+        let odd = message(&report_of(&Stiffness(s1_medium().0 * scale)));
+        let message = microstructure_of_report(&odd, &Settings::default()).unwrap().message;
         assert!(MicrostructureReading::try_from(&message).is_ok(), "{scale}: {message:?}");
     }
 }

@@ -1,7 +1,7 @@
 use crate::{corrected, s1};
 use grainlab_core::Vec3;
 use grainlab_emt::{Calibration, StrainRatioSource};
-use grainlab_emt_inversion::{Axis, Models, Settings, SettingsError, microstructure_message, parameters};
+use grainlab_emt_inversion::{Axis, Models, Settings, SettingsError, microstructure_of_moduli, parameters};
 use grainlab_node_kit::{Names, Parameters, RosArgs};
 
 /// The built-in calibration as text, with another name.
@@ -29,7 +29,7 @@ fn given(arguments: &[&str]) -> Result<Settings, SettingsError> {
 
 fn models_of(arguments: &[&str]) -> Vec<String> {
     let settings = given(arguments).unwrap();
-    microstructure_message(&s1(), &settings).message.estimates.into_iter().map(|e| e.model).collect()
+    microstructure_of_moduli(&s1(), &settings).message.estimates.into_iter().map(|e| e.model).collect()
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn the_models_named_answer_each_once_and_in_the_order_of_the_list() {
 
 /// Model and calibration of every estimate.
 fn calibrations_of(arguments: &[&str]) -> Vec<(String, String)> {
-    let message = microstructure_message(&s1(), &given(arguments).unwrap()).message;
+    let message = microstructure_of_moduli(&s1(), &given(arguments).unwrap()).message;
     message.estimates.into_iter().map(|e| (e.model, e.calibration)).collect()
 }
 

@@ -1,7 +1,7 @@
 //! S1 as measured by an acoustic instrument.
 
 use crate::moduli::{s1_medium, s1_stiffness};
-use crate::{corrected, of_data, of_ratio, s1};
+use crate::{of_data, of_packing, of_ratio, s1};
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt_inversion::{Axis, Settings, microstructure_of_speeds};
 use grainlab_msgs::boundary::MicrostructureReading;
@@ -65,7 +65,7 @@ fn speeds_give_what_the_moduli_of_the_same_medium_give() {
     );
     let mut silent = s1_stiffness();
     silent.strain_ratios = Default::default();
-    let (heard, told) = (of_ratio(message), corrected(&silent, &Settings::default()));
+    let (heard, told) = (of_ratio(message), of_packing(&silent, &Settings::default()));
     assert!(
         (heard.k[0] - told.k[0]).abs() < 1e-6 && (heard.k_hat[0] - told.k_hat[0]).abs() < 1e-6,
         "{heard:?}"
@@ -96,7 +96,7 @@ fn the_error_is_that_of_the_speeds_and_the_density_else_that_of_the_settings() {
     let exact = answer(&unknown, &none);
     assert_eq!(exact.covariance, exact.covariance_model, "the error of the model alone");
     let assumed = answer(&unknown, &Settings::default());
-    let of_moduli = corrected(&s1_stiffness(), &Settings::default());
+    let of_moduli = of_packing(&s1_stiffness(), &Settings::default());
     assert!(
         (of_data(&assumed, 6) / of_data(&of_moduli, 6) - 1.0).abs() < 1e-4,
         "as for moduli without errors"

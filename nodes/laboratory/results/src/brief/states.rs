@@ -5,7 +5,6 @@ use crate::inference::{Inference, Origin, by_origin};
 use crate::read_back::InvertedPacking;
 use grainlab_console::{Table, count, fixed};
 use grainlab_core::results::InferredQuantity;
-use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 
 /// Rows of the table; with more states, the last ones have rows.
@@ -68,7 +67,7 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
             }
         }
         let first = shown.first();
-        if let Some(other) = first.and_then(|(o, _)| named(o)).filter(|from| from != topics::MODULI.name) {
+        if let Some(other) = first.and_then(|(o, _)| named(o)).filter(|from| from != "moduli") {
             note(format!("step {step}: inferred from {other}"));
         }
         let unknown = if groups.is_empty() { "" } else { "unknown" };

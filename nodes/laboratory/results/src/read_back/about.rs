@@ -3,18 +3,16 @@
 use crate::inference::Inference;
 use crate::measurements::{Identity, Measurement, Measurements};
 use grainlab_core::Packing;
-use grainlab_core::results::ElasticStiffness;
+use grainlab_core::results::PackingReport;
 use grainlab_experiment::PathPosition;
-use grainlab_msgs::boundary::{
-    BoundaryError, FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading,
-};
+use grainlab_msgs::boundary::{BoundaryError, MicrostructureReading, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::{Topic, msg, topics};
-use grainlab_recordings::{Message, RunSign};
+use grainlab_recordings::{Message, OneRun, RunSign};
 use std::collections::BTreeMap;
 
 /// Topics of data that an inversion reads.
-const INVERTED: [&str; 2] = [topics::MODULI.name, topics::WAVE_SPEEDS.name];
+const INVERTED: [&str; 3] = [topics::PACKING_REPORT.name, topics::MODULI.name, topics::WAVE_SPEEDS.name];
 
 /// A message that is not used.
 pub(super) enum Unused {
@@ -22,6 +20,8 @@ pub(super) enum Unused {
     Refused(u64, String),
     /// It cannot be read.
     Unreadable(String),
+    /// It is of another run than the messages before it.
+    OfAnotherRun(RunSign),
 }
 
 /// The answer to one set of data.
@@ -34,28 +34,19 @@ struct Answer {
     estimates: Vec<Inference>,
 }
 
-/// What one message of moduli has of the stiffness.
-struct Stiffness {
-    identity: Identity,
-    by: Option<String>,
-    tensor: Option<ElasticStiffness>,
-}
-
 /// The messages about one packing; repeated ones are equal.
 #[derive(Default)]
 pub(super) struct About {
+    step: u64,
     /// Position on the loading path. A packing within a phase need not be at rest, and may have no results.
     pub(super) position: Option<PathPosition>,
-    pub(super) packing: Option<Packing>,
+    /// Number of its grains and of its contacts.
+    pub(super) packing: Option<(usize, usize)>,
     stamp: Option<Time>,
-    pub(super) fabric: Option<FabricReading>,
-    fabric_stamp: Option<Time>,
-    /// The node that measured it.
-    fabric_by: Option<String>,
-    /// Another structure was sent, too.
-    fabrics_differ: bool,
-    /// The moduli that were sent, and the stiffness of each.
-    moduli: Vec<Stiffness>,
+    pub(super) report: Option<PackingReport>,
+    report_stamp: Option<Time>,
+    /// Another report was sent, too.
+    reports_differ: bool,
     wave_speeds: Vec<(Identity, WaveSpeedsReading)>,
     answers: Vec<Answer>,
     /// What was sent and answered, by topic.
@@ -73,28 +64,16 @@ impl About {
     /// Whether data of the identity are about this packing. Those of an instrument without a simulation have step 0, too, and
     /// the stamp tells them from data of the packing that a run starts from.
     fn is_of_packing(&self, identity: &Identity) -> bool {
-        self.packing.as_ref().is_some_and(|p| p.step > 0 || self.stamp == Some(identity.stamp()))
-    }
-
-    /// The stiffness: that of the node that measured the structure, else the first one.
-    pub(super) fn stiffness(&self) -> Option<ElasticStiffness> {
-        let mut own: Vec<&Stiffness> =
-            self.moduli.iter().filter(|m| self.is_of_packing(&m.identity)).collect();
-        own.sort_by_key(|m| m.by != self.fabric_by);
-        own.into_iter().find_map(|m| m.tensor)
+        self.packing.is_some() && (self.step > 0 || self.stamp == Some(identity.stamp()))
     }
 
     /// Notes on several results of one kind.
     pub(super) fn notes(&self) -> Vec<String> {
-        let moduli = self.moduli.iter().filter(|m| self.is_of_packing(&m.identity)).count();
-        let of_moduli = (moduli > 1).then(|| {
-            format!("{moduli} different moduli of this packing were sent: the stiffness is that of the node that measured its structure")
-        });
-        let of_fabrics = self.fabrics_differ.then(|| {
-            "different structures of this packing were sent: that of the last is the one counted".to_owned()
+        let of_reports = self.reports_differ.then(|| {
+            "different reports of this packing were sent: that of the last is the one counted".to_owned()
         });
         let confused = self.data.iter().filter_map(|(topic, data)| data.confusion(topic));
-        of_moduli.into_iter().chain(of_fabrics).chain(confused).collect()
+        of_reports.into_iter().chain(confused).collect()
     }
 
     /// Every measurement of wave speeds of this packing.
@@ -116,7 +95,6 @@ impl About {
     /// What was inferred from data about this packing, and from data that are not about it, in the order of arrival.
     pub(super) fn results(&mut self) -> (Vec<Inference>, Vec<Inference>) {
         let (mut own, mut others) = (Vec::new(), Vec::new());
-        self.data.values_mut().for_each(|data| data.analyzer.clone_from(&self.fabric_by));
         for answer in std::mem::take(&mut self.answers) {
             let known = self.data.iter().find(|(topic, _)| **topic == answer.source);
             let known = known.map(|(_, known)| known);
@@ -136,29 +114,27 @@ impl About {
         (own, others)
     }
 
-    /// What shows that the structure is not that of the packing: it has another stamp, or other numbers of grains or contacts.
-    pub(super) fn contradiction(&self, step: u64) -> Option<RunSign> {
-        let (packing, fabric) = (self.packing.as_ref()?, self.fabric.as_ref()?);
-        let difference = if self.stamp != self.fabric_stamp {
+    /// What shows that the report is not that of the packing: it has another stamp, or other numbers of grains or contacts.
+    pub(super) fn contradiction(&self) -> Option<RunSign> {
+        let ((grains, contacts), report) = (self.packing?, self.report.as_ref()?);
+        let found = &report.contacts;
+        let difference = if self.stamp != self.report_stamp {
             "its stamp is another one".to_owned()
-        } else if fabric.contacts.grains as usize != packing.grains() {
-            format!("it has {} grains, and the packing {}", fabric.contacts.grains, packing.grains())
-        } else if fabric.contacts.contacts as usize != packing.contacts.len() {
-            format!(
-                "it has {} contacts, and the packing {}",
-                fabric.contacts.contacts,
-                packing.contacts.len()
-            )
+        } else if found.grains as usize != grains {
+            format!("it has {} grains, and the packing {grains}", found.grains)
+        } else if found.contacts as usize != contacts {
+            format!("it has {} contacts, and the packing {contacts}", found.contacts)
         } else {
             return None;
         };
-        Some(RunSign::Result { topic: topics::FABRIC.name, step, difference })
+        Some(RunSign::Result { topic: topics::PACKING_REPORT.name, step: self.step, difference })
     }
 }
 
 /// Adds one message; returns the step of its packing.
 pub(super) fn enter(
-    about: &mut BTreeMap<u64, About>,
+    all: &mut BTreeMap<u64, About>,
+    run: &mut OneRun,
     topic: &Topic,
     recorded: &Message,
     by: Option<&str>,
@@ -168,38 +144,39 @@ pub(super) fn enter(
         name if name == topics::PACKING.name => {
             let message: msg::Packing = read(recorded)?;
             let packing = Packing::try_from(&message).map_err(refused(message.step))?;
-            let step = packing.step;
-            let about = about.entry(step).or_default();
+            run.packing(&recorded.channel.topic, &packing).map_err(Unused::OfAnotherRun)?;
+            let about = about(all, packing.step);
             about.position = PathPosition::of(&message.run_state);
             about.stamp = Some(message.header.stamp);
-            about.packing = Some(packing);
-            Ok(step)
+            about.packing = Some((packing.grains(), packing.contacts.len()));
+            Ok(packing.step)
         }
-        name if name == topics::FABRIC.name => {
-            let message: msg::Fabric = read(recorded)?;
-            let step = message.source_step;
-            let reading = FabricReading::try_from(&message).map_err(refused(step))?;
-            let about = about.entry(step).or_default();
-            about.fabrics_differ |= about.fabric.as_ref().is_some_and(|known| *known != reading);
-            (about.fabric, about.fabric_stamp) = (Some(reading), Some(message.header.stamp));
-            about.fabric_by = by.map(str::to_owned);
+        name if name == topics::PACKING_REPORT.name => {
+            let message: msg::PackingReport = read(recorded)?;
+            let (step, stamp) = (message.source_step, message.header.stamp);
+            let about = about(all, step);
+            // Nothing is inferred from a packing without a stiffness.
+            if !message.stiffness.is_empty() {
+                sent(about, &topics::PACKING_REPORT, Identity::new("", stamp), by, recorded);
+            }
+            let report = PackingReport::try_from(&message).map_err(refused(step))?;
+            about.reports_differ |= about.report.as_ref().is_some_and(|known| *known != report);
+            (about.report, about.report_stamp) = (Some(report), Some(stamp));
             Ok(step)
         }
         name if name == topics::MODULI.name => {
             let message: msg::Moduli = read(recorded)?;
             let step = message.source_step;
-            let about = about.entry(step).or_default();
             let identity = Identity::new(&message.name, message.header.stamp);
-            if sent(about, &topics::MODULI, identity.clone(), by, recorded) {
-                let tensor = ModuliReading::try_from(&message).map_err(refused(step))?.stiffness;
-                about.moduli.push(Stiffness { identity, by: by.map(str::to_owned), tensor });
+            if sent(about(all, step), &topics::MODULI, identity, by, recorded) {
+                ModuliReading::try_from(&message).map_err(refused(step))?;
             }
             Ok(step)
         }
         name if name == topics::WAVE_SPEEDS.name => {
             let message: msg::WaveSpeeds = read(recorded)?;
             let step = message.source_step;
-            let about = about.entry(step).or_default();
+            let about = about(all, step);
             let identity = Identity::new(&message.name, message.header.stamp);
             if sent(about, &topics::WAVE_SPEEDS, identity.clone(), by, recorded) {
                 about
@@ -213,7 +190,7 @@ pub(super) fn enter(
             let step = message.source_step;
             let reading = MicrostructureReading::try_from(&message).map_err(refused(step))?;
             let by = by.map(str::to_owned);
-            let about = about.entry(step).or_default();
+            let about = about(all, step);
             let identity = Identity::new(&message.name, message.header.stamp);
             let data = INVERTED.into_iter().find(|topic| *topic == message.source);
             let nth = data
@@ -224,6 +201,10 @@ pub(super) fn enter(
             Ok(step)
         }
     }
+}
+
+fn about(all: &mut BTreeMap<u64, About>, step: u64) -> &mut About {
+    all.entry(step).or_insert_with(|| About { step, ..About::default() })
 }
 
 /// Notes data; false if they were sent before.

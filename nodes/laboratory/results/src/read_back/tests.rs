@@ -2,9 +2,13 @@
 
 use super::*;
 use crate::measured_packing::tests::{lattice, measured};
+use grainlab_core::Packing;
+use grainlab_core::contact::RollingResistance;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt_inversion::{Settings, microstructure_message, microstructure_of_speeds};
-use grainlab_msgs::boundary::{fabric_message, moduli_message, packing_header, packing_message};
+use grainlab_emt_inversion::{
+    Answer, Settings, microstructure_of_moduli, microstructure_of_report, microstructure_of_speeds,
+};
+use grainlab_msgs::boundary::{packing_header, packing_message, packing_report_message};
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::geometry_msgs::Vector3;
 use grainlab_msgs::{Exit, Guid, msg, to_cdr};
@@ -13,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 const TOPICS: [(&Topic, &str); 5] = [
     (&topics::PACKING, "/packing"),
-    (&topics::FABRIC, "/fabric"),
+    (&topics::PACKING_REPORT, "/packing_report"),
     (&topics::MODULI, "/moduli"),
     (&topics::WAVE_SPEEDS, "/wave_speeds"),
     (&topics::MICROSTRUCTURE, "/microstructure"),
@@ -28,8 +32,12 @@ struct Made {
 
 impl Made {
     fn new() -> Self {
+        Self::with(&TOPICS)
+    }
+
+    fn with(topics: &[(&Topic, &str)]) -> Self {
         let directory = tempfile::tempdir().unwrap();
-        let specs = TOPICS.map(|(topic, name)| TopicSpec::of_contract(topic, name));
+        let specs: Vec<_> = topics.iter().map(|(topic, name)| TopicSpec::of_contract(topic, name)).collect();
         let writer = RunWriter::create(&directory.path().join("r"), "r", &specs, WriterOptions::default());
         Self { directory, writer: Some(writer.unwrap()), sent: 0 }
     }
@@ -43,26 +51,25 @@ impl Made {
 
     /// The packing, and what analyzer and inversion send about it.
     fn state(&mut self, packing: &Packing) {
-        let report = measured(packing).report;
-        let header = || packing_header(packing);
         self.write("/packing", &to_cdr(&packing_message(packing, "made", Vec::new())));
-        self.write("/fabric", &to_cdr(&fabric_message(header(), &report).unwrap()));
-        let moduli = moduli_message(header(), &report, report.stiffness().unwrap()).unwrap();
-        self.moduli(&moduli);
+        let report = report(packing);
+        self.write("/packing_report", &to_cdr(&report));
+        self.answer(microstructure_of_report(&report, &Settings::default()));
+    }
+
+    fn answer(&mut self, answer: Option<Answer>) {
+        let message = answer.map(|answer| to_cdr(&answer.message));
+        message.iter().for_each(|message| self.write("/microstructure", message));
     }
 
     fn moduli(&mut self, moduli: &msg::Moduli) {
         self.write("/moduli", &to_cdr(moduli));
-        let answer = microstructure_message(moduli, &Settings::default()).message;
-        self.write("/microstructure", &to_cdr(&answer));
+        self.answer(Some(microstructure_of_moduli(moduli, &Settings::default())));
     }
 
     fn speeds(&mut self, speeds: &msg::WaveSpeeds, answered: bool) {
         self.write("/wave_speeds", &to_cdr(speeds));
-        let answer = microstructure_of_speeds(speeds, &Settings::default()).message;
-        if answered {
-            self.write("/microstructure", &to_cdr(&answer));
-        }
+        self.answer(answered.then(|| microstructure_of_speeds(speeds, &Settings::default())));
     }
 
     fn path(&self) -> PathBuf {
@@ -73,6 +80,11 @@ impl Made {
         self.writer.take().unwrap().finish().unwrap();
         read(&Recording::open(&self.path()).unwrap())
     }
+}
+
+/// The message of the report of a packing.
+fn report(packing: &Packing) -> msg::PackingReport {
+    packing_report_message(packing_header(packing), &measured(packing).report).unwrap()
 }
 
 /// The lattice at another step and time, with its grain elsewhere.
@@ -133,12 +145,11 @@ fn results_of_two_runs_are_never_joined_by_their_step() {
         assert_eq!(back.several_runs.as_ref().map(|s| &s.sign), Some(&sign));
         assert!(back.states.is_empty() && back.complaints[0].contains("holds several runs"), "{back:?}");
     }
-    // The structure of another run, whose packings are not there.
+    // The report of another run, whose packings are not there.
     let mut made = Made::new();
     made.state(&later(7, 0.0));
     let foreign = Packing { time: 0.5, ..later(7, 0.0) };
-    let report = measured(&foreign).report;
-    made.write("/fabric", &to_cdr(&fabric_message(packing_header(&foreign), &report).unwrap()));
+    made.write("/packing_report", &to_cdr(&report(&foreign)));
     assert!(matches!(made.read().several_runs.unwrap().sign, RunSign::Result { step: 7, .. }));
 }
 
@@ -225,20 +236,54 @@ fn refused_data_are_in_the_recording_and_the_reason_is_said() {
 }
 
 #[test]
-fn the_moduli_of_another_program_do_not_replace_those_of_the_network() {
-    let packing = later(7, 0.0);
-    let report = measured(&packing).report;
-    let own = moduli_message(packing_header(&packing), &report, report.stiffness().unwrap()).unwrap();
-    let bench = msg::Moduli { name: "bench".into(), g12: vec![6e7], stiffness: Vec::new(), ..own };
+fn a_report_is_read_back_as_it_was_recorded() {
+    let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+    let mut packing = later(7, 0.0);
+    packing.law = packing.law.with_rolling(rolling);
     let mut made = Made::new();
     made.state(&packing);
+    made.state(&Packing { contacts: Vec::new(), ..later(9, 1e-6) });
+    let states = made.read().states;
+    assert_eq!(states[0].packing.report, measured(&packing).report);
+    assert!(states[0].packing.warnings.iter().any(|w| w.contains("rolling springs")));
+    // The reason is that of the analyzer.
+    assert!(states[1].packing.warnings[0].starts_with("no contact network: none of the 1 grains"));
+    assert!(states[1].results.is_empty());
+}
+
+#[test]
+fn the_moduli_of_another_program_do_not_replace_those_of_the_network() {
+    let packing = later(7, 0.0);
+    let bench = msg::Moduli {
+        header: packing_header(&packing),
+        name: "bench".into(),
+        source_step: 7,
+        g12: vec![6e7],
+        pressure: 5e4,
+        grain_shear_modulus: 29e9,
+        grain_poisson_ratio: 0.2,
+        grain_density: 2500.0,
+        ..msg::Moduli::default()
+    };
+    let mut made = Made::new();
     made.moduli(&bench);
+    made.state(&packing);
     let back = made.read();
+    assert!(back.complaints.is_empty(), "{:?}", back.complaints);
     let state = &back.states[0];
     assert!(state.packing.report.stiffness().is_some());
-    assert!(state.packing.warnings.iter().any(|w| w.starts_with("2 different moduli")));
     let data: Vec<_> = crate::by_origin(&state.results).iter().filter_map(|(o, _)| o.data()).collect();
-    assert!(data.len() == 2 && data.contains(&"moduli, bench".to_owned()), "{data:?}");
+    assert_eq!(data, ["moduli", "moduli of an instrument"]);
+}
+
+#[test]
+fn a_recording_of_an_earlier_version_says_how_its_packings_are_measured_again() {
+    let old = Topic { name: "fabric", info: TypeInfo::of::<msg::Fabric>(), ..topics::PACKING_REPORT };
+    let mut made = Made::with(&[(&topics::PACKING, "/packing"), (&old, "/fabric")]);
+    made.write("/packing", &to_cdr(&packing_message(&later(7, 0.0), "made", Vec::new())));
+    let back = made.read();
+    assert_eq!((back.states.len(), back.not_analysed, back.complaints.len()), (0, 1, 1));
+    assert!(back.complaints[0].contains("grainlab analyze"), "{:?}", back.complaints);
 }
 
 #[test]
@@ -256,7 +301,10 @@ fn what_an_instrument_measured_elsewhere_is_no_result_of_the_packing_that_a_run_
     made.speeds(&elsewhere, true);
     let back = made.read();
     let state = &back.states[0];
-    assert!(state.acoustic.is_none() && state.results.iter().all(|r| r.source.as_deref() == Some("moduli")));
+    assert!(
+        state.acoustic.is_none()
+            && state.results.iter().all(|r| r.source.as_deref() == Some("packing_report"))
+    );
     assert!(!back.of_instruments.is_empty());
     assert!(back.of_instruments.iter().all(|r| r.origin().data().unwrap() == "wave_speeds, glass beads"));
 }

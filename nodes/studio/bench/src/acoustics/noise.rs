@@ -8,7 +8,7 @@ use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
 use grainlab_core::Packing;
 use grainlab_core::results::InferredQuantity;
 use grainlab_core::results::PackingReport;
-use grainlab_msgs::boundary::MicrostructureReading;
+use grainlab_msgs::boundary::{MicrostructureReading, packing_report_message};
 use grainlab_msgs::msg::Microstructure;
 use grainlab_node_kit::Exit;
 use grainlab_page::plot::{Bar, Bars};
@@ -75,10 +75,10 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     let truth =
         grainlab_micromechanics::analyze(packing, &Default::default()).map_err(|e| invalid(&e))?.report;
     let header = Default::default();
-    let analysed = grainlab_fabric_analyzer::messages(&header, &truth).map_err(|e| invalid(&e))?;
-    let moduli = analysed.moduli.map_err(|e| invalid(&e))?;
+    let report = packing_report_message(Default::default(), &truth).map_err(|e| invalid(&e))?;
     let inversion = inversion()?;
-    let by_moduli = grainlab_emt_inversion::microstructure_message(&moduli, &inversion);
+    let by_moduli = grainlab_emt_inversion::microstructure_of_report(&report, &inversion);
+    let by_moduli = by_moduli.ok_or_else(|| invalid(&"the packing has no stiffness"))?;
     let mut errors = vec![vec![compared(&answered(by_moduli)?, &truth)]];
     for noise in &args.noise {
         let draws = if *noise > 0.0 { args.draws } else { 1 };

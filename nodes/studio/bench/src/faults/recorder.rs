@@ -11,14 +11,8 @@ use std::rc::Rc;
 use std::time::Duration;
 
 /// Topics that are a pure function of scene and seed.
-const REPRODUCIBLE: [Topic; 6] = [
-    topics::STRESS,
-    topics::STRAIN_RATE,
-    topics::PACKING,
-    topics::FABRIC,
-    topics::MODULI,
-    topics::MICROSTRUCTURE,
-];
+const REPRODUCIBLE: [Topic; 5] =
+    [topics::STRESS, topics::STRAIN_RATE, topics::PACKING, topics::PACKING_REPORT, topics::MICROSTRUCTURE];
 
 /// The record of a run.
 #[derive(Debug, Default)]
@@ -55,21 +49,26 @@ impl Record {
     }
 
     /// The first result that a finished run lacks: the structure of a packing, or the microstructure from its
-    /// moduli. The launcher ends such a run with exit 3.
+    /// stiffness. The launcher ends such a run with exit 3.
     pub(super) fn lacks(&self) -> Option<String> {
-        let steps = |topic: &Topic, step: fn(&[u8]) -> Option<u64>| -> BTreeSet<u64> {
+        let steps = |topic: &Topic, step: &dyn Fn(&[u8]) -> Option<u64>| -> BTreeSet<u64> {
             self.bodies.get(topic.name).into_iter().flatten().filter_map(|body| step(body)).collect()
         };
-        let packings = steps(&topics::PACKING, |b| from_cdr::<msg::Packing>(b).ok().map(|m| m.step));
-        let fabrics = steps(&topics::FABRIC, |b| from_cdr::<msg::Fabric>(b).ok().map(|m| m.source_step));
-        let moduli = steps(&topics::MODULI, |b| from_cdr::<msg::Moduli>(b).ok().map(|m| m.source_step));
-        let found = steps(&topics::MICROSTRUCTURE, |b| {
+        let packings = steps(&topics::PACKING, &|b| from_cdr::<msg::Packing>(b).ok().map(|m| m.step));
+        let report = |b: &[u8]| from_cdr::<msg::PackingReport>(b).ok();
+        let measured = steps(&topics::PACKING_REPORT, &|b| Some(report(b)?.source_step));
+        let jammed = steps(&topics::PACKING_REPORT, &|b| {
+            report(b).filter(|m| !m.stiffness.is_empty()).map(|m| m.source_step)
+        });
+        let found = steps(&topics::MICROSTRUCTURE, &|b| {
             from_cdr::<msg::Microstructure>(b).ok().map(|m| m.source_step)
         });
-        let packing =
-            packings.difference(&fabrics).next().map(|s| format!("the packing of step {s} was not analysed"));
+        let packing = packings
+            .difference(&measured)
+            .next()
+            .map(|s| format!("the packing of step {s} was not analysed"));
         packing.or_else(|| {
-            moduli.difference(&found).next().map(|s| format!("the moduli of step {s} were not inverted"))
+            jammed.difference(&found).next().map(|s| format!("the moduli of step {s} were not inverted"))
         })
     }
 

@@ -2,7 +2,7 @@
 
 use super::forgery::Forgery;
 use super::plan;
-use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
+use grainlab_msgs::msg::{Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{Message, from_cdr, to_cdr};
 use grainlab_node_kit::{
     Bus, BusError, Demand, Dice, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId,
@@ -93,14 +93,18 @@ fn forged(forgery: Forgery, sample: &Sample, by: f64) -> Option<Vec<u8>> {
             scale(&mut packing.contact_normal_force);
             to_cdr(&packing)
         }
-        Forgery::Moduli => {
-            let mut moduli: Moduli = decoded(sample)?;
-            moduli.g12.iter_mut().for_each(|g12| *g12 *= by);
-            to_cdr(&moduli)
+        Forgery::Report => {
+            let mut report: PackingReport = decoded(sample)?;
+            report.stiffness.iter_mut().for_each(|s| s.stiffness[35] *= by);
+            to_cdr(&report)
         }
         Forgery::Microstructure => {
-            let source_step = decoded::<Moduli>(sample)?.source_step;
-            to_cdr(&Microstructure { source_step, source: "moduli".to_owned(), ..Microstructure::default() })
+            let source_step = decoded::<PackingReport>(sample)?.source_step;
+            to_cdr(&Microstructure {
+                source_step,
+                source: "packing_report".to_owned(),
+                ..Microstructure::default()
+            })
         }
         Forgery::Finished => to_cdr(&RunState { state: RunState::FINISHED, ..RunState::default() }),
         Forgery::Failed => to_cdr(&RunState { state: RunState::FAILED, ..RunState::default() }),
