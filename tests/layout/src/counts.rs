@@ -10,7 +10,7 @@ use syn::{Item, UseTree, Visibility};
 /// rise only by what a feature states.
 const LABORATORY: usize = 56_200;
 const STUDIO_AND_COMMAND: usize = 28_500;
-const TESTS: usize = 44_750;
+const TESTS: usize = 44_860;
 
 /// Most comments that begin with a word that names nothing.
 const HEADLESS: usize = 1_085;
