@@ -57,7 +57,7 @@ fn table_iii_comes_back_with_header_step_source_and_models_in_order() {
 #[test]
 fn every_model_finds_the_structure_it_was_given_through_the_message() {
     let assumed = [5.2, 5.25, 5.4, 0.05, 0.04];
-    let m = s1();
+    let m = Moduli { stress_ratio: vec![0.0], size_spread: vec![0.0], ..s1() };
     let material = grainlab_core::Material { shear_modulus: 29e9, poisson_ratio: 0.2, density: 2500.0 };
     let conditions = Conditions {
         gamma: StrainRatio {
@@ -65,6 +65,8 @@ fn every_model_finds_the_structure_it_was_given_through_the_message() {
             ..StrainRatio::given(m.strain_ratios.total[0])
         },
         solid_fraction: Some(Measured::exact(m.solid_fraction[0])),
+        stress_ratio: Some(Measured::exact(0.0)),
+        size_spread: Some(0.0),
         material: Some(material),
         ..Conditions::at(m.pressure)
     };
