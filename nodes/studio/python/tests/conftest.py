@@ -5,7 +5,7 @@ import pathlib
 import grainlab
 import pytest
 
-TOP = pathlib.Path(__file__).resolve().parents[3]
+TOP = pathlib.Path(__file__).resolve().parents[4]
 
 
 @pytest.fixture(scope="session")
