@@ -41,6 +41,9 @@ pub enum NodeKind {
     Viewer(&'static Viewer),
 }
 
+/// Makes a node on a bus from its parameters.
+type BuildNode = fn(&mut dyn Bus, &Parameters) -> Result<Box<dyn Node>, NodeError>;
+
 /// A node for viewers.
 #[derive(Debug)]
 pub struct Viewer {
@@ -53,7 +56,7 @@ pub struct Viewer {
     /// The recorded topics that it reads; `None` if it finds topics of any name by itself.
     pub topics: Option<&'static [Topic]>,
     /// Creates it on its bus.
-    pub build: fn(&mut dyn Bus, &Parameters) -> Result<Box<dyn Node>, NodeError>,
+    pub build: BuildNode,
 }
 
 impl PartialEq for Viewer {
