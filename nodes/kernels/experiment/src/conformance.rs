@@ -1,4 +1,4 @@
-//! Tests that every engine passes: the contract of [`ParticleEngine`](crate::ParticleEngine), claim by claim.
+//! Tests that every engine passes: the contract of [`ParticleEngine`], claim by claim.
 //!
 //! ```
 //! use grainlab_experiment::{Dem, conformance::CLAIMS};
@@ -10,7 +10,7 @@
 use crate::engine::{EngineFactory, Observables, ParticleEngine};
 use crate::error::ExperimentError;
 use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
 use grainlab_dem::{Compute, EngineSettings};
 
 /// A point of the contract.
@@ -186,7 +186,7 @@ fn has_pressure(bench: &Bench<'_>) -> Result<(), String> {
     let modulus = glass.shear_modulus / (1.0 - glass.poisson_ratio);
     let force = 4.0 / 3.0 * modulus * (0.5 * RADIUS).sqrt() * OVERLAP.powf(1.5);
     let expected = force / (2.0 * RADIUS - OVERLAP).powi(2);
-    for (found, name) in seen.stress.tensor.voigt().into_iter().zip(["xx", "yy", "zz"]) {
+    for (found, name) in seen.stress.tensor.voigt().into_iter().zip(SymTensor::COMPONENTS).take(3) {
         close(&format!("the stress {name}"), found, expected, 1e-6)?;
     }
     let shear = seen.stress.tensor.yz.abs() + seen.stress.tensor.xz.abs() + seen.stress.tensor.xy.abs();
