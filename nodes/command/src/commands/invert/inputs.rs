@@ -143,7 +143,8 @@ pub(super) fn reference() -> String {
     let law =
         "  contact_law                        hertz_mindlin, or linear:KN,RATIO, which no model can invert\n";
     let smooth = "  smooth                             true: the stiffness is without tangential springs, which no model can invert\n";
-    INPUTS.iter().map(line).chain([law, smooth].map(str::to_owned)).collect()
+    let axis = "  axis_found                         of grainlab probe: false if no axis stood out in the speeds, which is noted\n";
+    INPUTS.iter().map(line).chain([law, smooth, axis].map(str::to_owned)).collect()
 }
 
 /// The inputs given, with the standard deviations in force.
