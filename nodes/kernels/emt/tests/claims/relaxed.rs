@@ -313,6 +313,13 @@ fn the_ends_of_the_stated_domain_belong_to_it() {
     for (at, ends) in ends {
         ends.into_iter().for_each(|end| inside(5.3, 0.02, at(conditions(), end)));
     }
+    // The first values outside have a warning.
+    for (at, outside) in [(stress, [-0.201, 0.301]), (sizes, [0.301, 0.31]), (nu, [0.455, 0.47])] {
+        for value in outside {
+            let found = Relaxed.infer(&Observation::new(moduli(5.3, 0.02), at(conditions(), value)), ours());
+            assert_eq!(found.unwrap().status, grainlab_emt::Status::Extrapolated, "{value}");
+        }
+    }
     for (z, eps) in [(4.2, 0.02), (6.4, 0.02), (5.3, -0.08), (5.3, 0.13)] {
         inside(z, eps, conditions());
     }
