@@ -27,6 +27,7 @@ pub(crate) struct Columns {
     contact_law: Option<usize>,
     smooth: Option<usize>,
     axis_found: Option<usize>,
+    friction: Option<usize>,
     sample: Option<usize>,
     source: Option<usize>,
     step: Option<usize>,
@@ -85,6 +86,14 @@ impl Columns {
             inputs.extend(found.into_iter().next());
         }
         no_slips(&names, by, stiffness.is_some())?;
+        for (flag, key) in defaults.flags() {
+            if let Some((_, column, _)) = inputs.iter().find(|(input, ..)| input.key == key) {
+                return Err(format!(
+                    "--{flag} is beside the column {}: leave one of them out",
+                    names[*column]
+                ));
+            }
+        }
         let has = |role: Role| inputs.iter().any(|(input, ..)| input.role == role);
         if stiffness.is_none() && !has(Role::Modulus) {
             let moduli: Vec<&str> =
@@ -105,6 +114,7 @@ impl Columns {
             contact_law: find("contact_law")?,
             smooth: find("smooth")?,
             axis_found: find("axis_found")?,
+            friction: find("friction")?,
             sample: find("sample")?,
             source: find("source")?,
             step: find("step")?,
@@ -177,7 +187,16 @@ impl Columns {
         if let Some(text) = self.contact_law.map(|column| cells.get(column)).filter(|text| !text.is_empty()) {
             state.contact_law = Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
         }
-        state.smooth = flag(cells, self.smooth, "smooth")?.unwrap_or(false);
+        let smooth = flag(cells, self.smooth, "smooth")?;
+        let friction = self.friction.and_then(|column| cells.get(column).parse().ok());
+        if smooth.is_none() && friction == Some(0.0) {
+            let reason =
+                "contacts without friction have no tangential springs, and no model can invert their moduli";
+            return Err(format!(
+                "column friction is 0: {reason}; if springs were added, say so by a column smooth, false"
+            ));
+        }
+        state.smooth = smooth.unwrap_or(false);
         if flag(cells, self.axis_found, "axis_found")? == Some(false) {
             let note = "no axis stood out in the wave speeds: the moduli are about e3, which need not be an axis of symmetry";
             state.notes.push(note.to_owned());
@@ -199,6 +218,9 @@ impl Columns {
             }
         }
         state.notes.extend(state.taken_as_exact());
+        let improbable: Vec<String> =
+            INPUTS.iter().filter_map(|input| input.improbable_error(&state)).collect();
+        state.notes.extend(improbable);
         Ok(state)
     }
 
@@ -346,7 +368,8 @@ fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), 
                  leave it out"
             ));
         }
-        let Some(meant) = slips::meant(name, &read) else { continue };
+        let extended = || slips::extended(name, &read).filter(|_| !printed.contains(name));
+        let Some(meant) = slips::meant(name, &read).or_else(extended) else { continue };
         // An axis changes nothing but a stiffness: moduli of a medium are given about it.
         if meant.starts_with("reference_axis") && !has_stiffness {
             continue;

@@ -7,6 +7,9 @@ use grainlab_emt::{Measured, Modulus};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::sync::LazyLock;
 
+/// Share of a quantity below which a standard deviation of 1 Pa and less is improbable.
+const SHARE: f64 = 1e-5;
+
 /// One number of a state.
 pub(super) struct Input {
     /// Its name in JSON.
@@ -114,6 +117,19 @@ impl Input {
             Role::Truth(q) => state.truth = state.truth.with(q, value),
             _ => (self.set)(state, value),
         }
+    }
+
+    /// A note on a standard deviation in Pa that is probably a share of its quantity.
+    pub(super) fn improbable_error(&self, state: &State) -> Option<String> {
+        let key = self.key.strip_suffix("_sigma_pa").filter(|_| self.role == Role::Stddev)?;
+        let of = INPUTS.iter().find(|input| input.key.strip_suffix("_pa") == Some(key))?;
+        let (stddev, value) = (self.get(state)?, of.get(state)?);
+        (stddev > 0.0 && stddev <= 1.0 && stddev < SHARE * value.abs()).then(|| {
+            format!(
+                "{} = {stddev} Pa is improbably small beside {} = {value:e} Pa: is it a share of it?",
+                self.key, of.key
+            )
+        })
     }
 
     /// Column names of an input, the preferred one first, with its unit in SI: the quantity of a packing with
