@@ -57,7 +57,7 @@ pub fn each(
     if any { Ok(()) } else { Err(ImportError::Empty) }
 }
 
-/// What of the packings of a topic shows that they are of several runs.
+/// The sign in the packings of a topic that they are of several runs.
 fn several_runs(recording: &Recording, topic: &str) -> Result<Option<RunSign>, ReadError> {
     let mut run = OneRun::default();
     let sign = |message: Message| run.packing(topic, &packing(&message).ok()?.packing).err();
