@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 0.02;
 /// Share of a range beyond each end up to which nothing is said: for q/p, z and p a rounding; the packings taught do not reach
 /// the stated ends of ε, of the sizes and of k_t/k_n.
 const ROUNDING: f64 = 1e-3;
-const EPS_END: f64 = 0.013;
+const EPS_END: f64 = 0.015;
 const SIZE_END: f64 = 0.007;
 const RATIO_END: f64 = 0.006;
 
