@@ -7,7 +7,7 @@
 //!   `j` to `i`, full overlap, and the force on `i`, fn·n + ft; with `,frx,fry,frz` after it, the elastic rolling force of
 //!   a contact law with resistance to rolling.
 //!
-//! Lines that start with `#` are comments. Without contact rows, contacts are found from positions.
+//! Lines that start with `#` are comments; one that names these columns in another order is refused. Without contact rows, contacts are found from positions.
 //!
 //! Sidecar keys: `G` or `shear_modulus` (Pa), `nu` or `poisson_ratio`, `density` (kg/m³), `mu_prep` or `friction` (a number, or `"inf"`), `cell` (three rows of
 //! three; columns are the edge vectors, m) or `box_L` (three edges, m), and optionally `step`, `time` (s),
@@ -34,7 +34,11 @@ pub fn packing(csv: &str, sidecar: Option<&str>, options: &ImportOptions) -> Res
     let sidecar = Sidecar::parse(sidecar)?;
     let settings = sidecar.known()?.complete(options)?;
     let (mut grains, mut contacts) = (GrainTable::default(), Vec::new());
-    for line in lines(csv).filter(|l| !l.text.trim().is_empty() && !l.text.trim_start().starts_with('#')) {
+    for line in lines(csv).filter(|l| !l.text.trim().is_empty()) {
+        if let Some(comment) = line.text.trim_start().strip_prefix('#') {
+            in_order(&line, comment)?;
+            continue;
+        }
         let fields: Vec<&str> = line.text.trim().split(',').collect();
         match fields.as_slice() {
             ["p", rest @ ..] => grain(&line, rest, options, &mut grains)?,
@@ -45,6 +49,33 @@ pub fn packing(csv: &str, sidecar: Option<&str>, options: &ImportOptions) -> Res
     sidecar.counts(grains.ids.len(), contacts.len())?;
     let listed = (!contacts.is_empty()).then_some(contacts.as_slice());
     assemble::packing(grains, &settings, listed, sidecar.state()?, "CSV".into(), Vec::new())
+}
+
+/// The columns of grains and of contacts after `p` and `c`.
+const ORDERS: [(&str, &str); 2] = [
+    ("particles", "id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz"),
+    ("contacts", "i,j,nx,ny,nz,delta,fn,ftx,fty,ftz,frx,fry,frz"),
+];
+
+/// Refuses a comment that names columns in another order than that in which they are read.
+fn in_order(line: &Line<'_>, comment: &str) -> Result<(), ImportError> {
+    let Some((kind, columns)) = comment.split_once(':') else { return Ok(()) };
+    let Some((_, order)) = ORDERS.iter().find(|(name, _)| *name == kind.trim()) else { return Ok(()) };
+    let order: Vec<&str> = order.split(',').collect();
+    let named = columns.split(',').filter_map(|column| column.split_whitespace().next());
+    let named: Vec<&str> = named.skip_while(|column| ["p", "c"].contains(column)).collect();
+    // A sentence has no order.
+    let is_list = named.first() == Some(&order[0]);
+    let elsewhere = |(k, name): &(usize, &&str)| order.get(*k) != Some(*name) && order.contains(*name);
+    match named.iter().enumerate().find(elsewhere).filter(|_| is_list) {
+        Some((k, name)) => Err(line.error(format!(
+            "the comment names {name} as column {} of the {}; columns are {}",
+            k + 1,
+            kind.trim(),
+            order.join(",")
+        ))),
+        None => Ok(()),
+    }
 }
 
 fn grain(

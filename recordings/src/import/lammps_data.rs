@@ -14,6 +14,7 @@ use super::imported::Imported;
 use super::lammps_cell::lammps_cell;
 use super::lammps_local::{self, Local};
 use super::settings::{ImportOptions, Known};
+use super::stated;
 use super::text::{Line, lines};
 
 /// The packing of a data file.
@@ -47,6 +48,12 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
     file.finish(options, local.as_ref())
 }
 
+/// Sections of what is no single sphere, which the header counts under the same names.
+const NO_SPHERES: [&str; 8] =
+    ["bonds", "angles", "dihedrals", "impropers", "ellipsoids", "lines", "triangles", "bodies"];
+
+const SINGLE: &str = "grains must be single spheres without bonds";
+
 #[derive(Clone, Copy)]
 enum Section {
     Header,
@@ -64,14 +71,9 @@ impl Section {
                 Err(ImportError::Unsupported { line, what, reason: "only spheres are (atom_style sphere)" })
             }
             "Velocities" => Ok(Self::Velocities),
-            "Bonds" | "Angles" | "Dihedrals" | "Impropers" | "Ellipsoids" | "Lines" | "Triangles"
-            | "Bodies" => {
+            _ if NO_SPHERES.contains(&name.to_lowercase().as_str()) => {
                 let (line, what) = (line.number, format!("the section {name}"));
-                Err(ImportError::Unsupported {
-                    line,
-                    what,
-                    reason: "grains must be single spheres without bonds",
-                })
+                Err(ImportError::Unsupported { line, what, reason: SINGLE })
             }
             _ => Ok(Self::Other),
         }
@@ -102,14 +104,7 @@ impl DataFile {
         if let Some(step) = value("timestep") {
             self.step = line.number("timestep", step)?;
         }
-        match value("units").map(str::trim) {
-            None | Some("si") => Ok(()),
-            Some(other) => Err(ImportError::Unsupported {
-                line: line.number,
-                what: format!("units {other}"),
-                reason: "only SI units are: convert with LAMMPS (units si)",
-            }),
-        }
+        value("units").map_or(Ok(()), |units| stated::lammps_units(line.number, units))
     }
 
     fn header(&mut self, line: &Line<'_>, words: &[&str]) -> Result<(), ImportError> {
@@ -128,7 +123,11 @@ impl DataFile {
             [x, y, z, "avec"] => self.edges[0] = Some(line.vector("edge vector", [x, y, z])?),
             [x, y, z, "bvec"] => self.edges[1] = Some(line.vector("edge vector", [x, y, z])?),
             [x, y, z, "cvec"] => self.edges[2] = Some(line.vector("edge vector", [x, y, z])?),
-            // Numbers of types, bonds and so on.
+            [n, kind] if NO_SPHERES.contains(&kind) && line.number::<u64>(kind, n)? > 0 => {
+                let (line, what) = (line.number, format!("a packing with {n} {kind}"));
+                return Err(ImportError::Unsupported { line, what, reason: SINGLE });
+            }
+            // Numbers of types and so on.
             _ => {}
         }
         Ok(())
@@ -136,7 +135,11 @@ impl DataFile {
 
     fn atom(&mut self, line: &Line<'_>, words: &[&str]) -> Result<(), ImportError> {
         let [id, kind, diameter, density, x, y, z] = match *words {
-            [id, t, d, rho, x, y, z] | [id, t, d, rho, x, y, z, _, _, _] => [id, t, d, rho, x, y, z],
+            [id, t, d, rho, x, y, z] => [id, t, d, rho, x, y, z],
+            [id, t, d, rho, x, y, z, ref images @ ..] if images.len() == 3 => {
+                images.iter().try_for_each(|flag| line.number::<i32>("an image flag", flag).map(|_| ()))?;
+                [id, t, d, rho, x, y, z]
+            }
             _ => {
                 let problem = "an atom is id type diameter density x y z, and three image flags or none";
                 return Err(line.error(format!("{problem}: 7 or 10 fields, not {}", words.len())));
@@ -186,8 +189,7 @@ impl DataFile {
         }
         let found = self.grains.ids.len();
         if let Some(expected) = self.expected.filter(|n| *n != found) {
-            let problem = format!("the file ends after {found} of {expected} atoms");
-            return Err(ImportError::Syntax { line: 1, problem });
+            return Err(ImportError::Count { what: "atoms", stated: expected, found });
         }
         if self.edges.iter().any(Option::is_some) && self.bounds.iter().any(Option::is_some) {
             let problem = "the header has a box twice: xlo xhi and avec".to_owned();

@@ -19,7 +19,7 @@ use super::lammps_cell::lammps_cell;
 use super::lammps_local::{self, Local};
 use super::settings::{ImportOptions, Known};
 use super::stated;
-use super::text::{Line, cut, lines, shown};
+use super::text::{Line, lines, shown};
 
 /// The packings of a dump, in order.
 ///
@@ -120,14 +120,7 @@ impl<'a, L: Iterator<Item = Line<'a>>> Frames<'a, L> {
                 cell = Some(bounds(&line, words, [follow()?, follow()?, follow()?])?);
             } else if item == "UNITS" {
                 let value = follow()?;
-                if value.text.trim() != "si" {
-                    let (line, what) = (value.number, format!("units {}", cut(value.text.trim())));
-                    return Err(ImportError::Unsupported {
-                        line,
-                        what,
-                        reason: "only SI units are (units si)",
-                    });
-                }
+                stated::lammps_units(value.number, value.text)?;
             } else if item == "TIME" {
                 let value = follow()?;
                 time = value.finite("the time", value.text)?;

@@ -21,6 +21,7 @@ use std::collections::BTreeMap;
 use super::assemble::{GrainTable, ListedContact, ListedForce};
 use super::error::ImportError;
 use super::lammps_columns::{self, Row};
+use super::stated;
 use super::text::lines;
 use grainlab_core::{Cell, Vec3};
 
@@ -72,6 +73,9 @@ pub(super) fn contacts<'a>(text: &'a str, chosen: &[String], step: u64) -> Resul
                 let value = follow()?;
                 steps.push(value.number("the time step", value.text)?);
                 is_of_step = steps.last() == Some(&step);
+            } else if item == "UNITS" {
+                let value = follow()?;
+                stated::lammps_units(value.number, value.text)?;
             } else if item.starts_with("NUMBER OF") && is_of_step {
                 let value = follow()?;
                 entries = Some(value.number::<usize>("the number of entries", value.text)?);

@@ -8,12 +8,12 @@ use grainlab_msgs::{Message as _, msg, topics};
 use super::ImportOptions;
 use super::error::ImportError;
 use super::imported::Imported;
-use crate::one_run::OneRun;
+use crate::one_run::{OneRun, RunSign};
 use crate::reader::{Message, ReadError, Recording, Selection};
 
 /// Passes the packings of a recording to `take` one by one, in order of log time, until it stops. A message
 /// that is not a packing is an error; the readable part of a damaged or truncated recording is used, with
-/// warnings. From the first packing on that shows that the recording holds several runs, each has a note that says so.
+/// warnings. If the packings show that the recording holds several runs, each has a note that says so.
 ///
 /// # Errors
 /// If the options give data that a recording has itself, the topic does not exist or carries another type, or a message on it
@@ -40,12 +40,11 @@ pub fn each(
         return Err(ReadError::NoSuchTopic { path, topic, known }.into());
     }
     let mut any = false;
-    let mut run = OneRun::default();
-    let mut several = None;
+    // The sign may be in the last packing only, and the note is for the first, too.
+    let several = several_runs(recording, topic)?;
     for message in recording.messages(&Selection::topics([topic]))? {
         any = true;
         let mut imported = packing(&message)?;
-        several = several.or_else(|| run.packing(topic, &imported.packing).err());
         imported.notes.extend(several.as_ref().map(|sign| {
             format!(
                 "the recording holds several runs: {sign}; of which of them this packing is, it does not say"
@@ -56,6 +55,13 @@ pub fn each(
         }
     }
     if any { Ok(()) } else { Err(ImportError::Empty) }
+}
+
+/// The sign in the packings of a topic that they are of several runs.
+fn several_runs(recording: &Recording, topic: &str) -> Result<Option<RunSign>, ReadError> {
+    let mut run = OneRun::default();
+    let sign = |message: Message| run.packing(topic, &packing(&message).ok()?.packing).err();
+    Ok(recording.messages(&Selection::topics([topic]))?.find_map(sign))
 }
 
 /// The packing of one recorded message.

@@ -15,6 +15,15 @@ pub(super) fn units(line: usize, text: &str) -> Result<(), ImportError> {
     Err(ImportError::Unsupported { line, what, reason: "only SI units are: convert to m, kg and s" })
 }
 
+/// Refuses units that LAMMPS states, if they are not `si`.
+pub(super) fn lammps_units(line: usize, text: &str) -> Result<(), ImportError> {
+    if text.trim() == "si" {
+        return Ok(());
+    }
+    let what = format!("units {}", cut(text.trim()));
+    Err(ImportError::Unsupported { line, what, reason: "only SI units are: convert with LAMMPS (units si)" })
+}
+
 /// Refuses boundaries that are not periodic on three sides, as `T T T`.
 pub(super) fn periodic(line: usize, text: &str) -> Result<(), ImportError> {
     let words: Vec<String> =

@@ -26,6 +26,9 @@ pub fn packing(
     options: &ImportOptions,
 ) -> Result<Imported, ImportError> {
     let file = Data::open(grains)?;
+    if file.0.dataset("VTKHDF/CellData/pair").is_ok() {
+        return Err(damaged("it holds contacts: give the file of the grains, which is read with it"));
+    }
     let field = |name: &str| file.scalar(&format!("FieldData/{name}"));
     let matrix = |name: &str| -> Result<Option<Mat3>, ImportError> {
         match file.numbers::<f64>(&format!("FieldData/{name}"))? {

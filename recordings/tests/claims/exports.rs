@@ -63,6 +63,7 @@ fn vtkhdf_files_that_contradict_each_other_or_themselves_are_refused() {
     };
     let error = refused(read(&files[0]), Some(read(&later[1])));
     assert!(error.contains("step is") && error.contains("in the file of contacts"), "{error}");
+    assert!(refused(read(&files[1]), None).contains("it holds contacts"));
     // One coordinate, in one of the two places that have it.
     let mut bytes = read(&files[0]);
     let x = packing.positions.iter().map(|p| p.x).find(|x| *x > 0.0).unwrap();

@@ -245,7 +245,9 @@ fn what_a_data_file_must_not_be_is_refused() {
     for (from, to, expected) in [
         ("units = si", "units = lj", "units lj"),
         ("# sphere", "# ellipsoid", "atom_style ellipsoid"),
-        ("3 atoms", "4 atoms", "after 3 of 4 atoms"),
+        ("3 atoms", "4 atoms", "has 3 atoms, and states 4"),
+        ("3 atoms", "3 atoms\n5 bonds", "5 bonds"),
+        ("0.45 0 0 0 0 0", "0.45 0 0 0 0 x", "an image flag is \"x\""),
         ("0.25 0 0 xy xz yz", "1 0 nan avec", "edge vector"),
         ("20 1 0.3 2500", "20 1 0.3 2600", ""),
         ("10 1 2 3 4 5 6", "11 1 2 3 4 5 6", "none of grain 10"),

@@ -61,6 +61,14 @@ fn normal_and_tangential_forces_of_lammps_give_its_stress_and_balance_every_grai
 }
 
 #[test]
+fn forces_in_other_units_than_si_are_refused() {
+    let with = |units: &str| options(format!("ITEM: UNITS\n{units}\n{}", forces()), &[]);
+    assert!(packing(&with("si")).is_ok());
+    let fault = problem(&with("cgs"));
+    assert!(fault.contains("line 2: units cgs is not supported"), "{fault}");
+}
+
+#[test]
 fn columns_are_found_by_the_names_given_too() {
     let expected = packing(&options(forces(), &[])).unwrap();
     let default = "c_pl[1] c_pl[2] c_pf[1] c_pf[2] c_pf[3] c_pf[4] c_pf[5] c_pf[6] c_pf[7]";

@@ -79,6 +79,19 @@ fn windows_line_ends_byte_order_marks_blank_and_comment_lines_change_nothing() {
 }
 
 #[test]
+fn a_header_of_csv_that_names_another_order_of_columns_is_refused() {
+    let folder = Folder::new();
+    let error = folder.refusal(CSV.replacen("id,x,y,z", "id,z,y,x", 1), &in_cube(1.0));
+    assert!(error.contains("line 1: the comment names z as column 2 of the particles"), "{error}");
+    for header in
+        ["# particles: p,id,x,y,z,radius", "# particles: made by y, z", "# particles: id, x, y, z, r"]
+    {
+        let text = CSV.replacen(CSV.lines().next().unwrap(), header, 1);
+        assert!(load(&folder.write("a", text), &in_cube(1.0)).is_ok(), "{header}");
+    }
+}
+
+#[test]
 fn numbers_that_are_not_finite_are_named_by_line() {
     let folder = Folder::new();
     for (text, line) in ALL.into_iter().zip([3, 4, 11, 11]) {

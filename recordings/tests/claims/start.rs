@@ -6,7 +6,7 @@ use grainlab_experiment::Simulation;
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_recordings::copy::{CopyOptions, Select, copy};
-use grainlab_recordings::import::{self, Start, StartError};
+use grainlab_recordings::import::{self, ImportOptions, Start, StartError, load};
 use grainlab_recordings::{Recording, RunWriter, TopicSpec};
 use grainlab_scene::{Draft, SceneError, Source};
 
@@ -133,6 +133,9 @@ fn a_merged_recording_starts_a_run_only_from_a_step_that_one_of_its_runs_has() {
     let sources = runs.map(|run| Recording::open(&run).unwrap());
     let merged = root.path().join("merged.mcap");
     copy(&sources, &Select::default(), &merged, &CopyOptions::default()).unwrap();
+    let packings = load(&merged, &ImportOptions::default()).unwrap().packings;
+    assert_eq!(packings.len(), 4);
+    assert!(packings.iter().all(|p| p.notes.iter().any(|n| n.contains("holds several runs"))));
     let of = |path: &Path, start: &str| {
         let text = format!(
             "name = 'x'\n[start]\npacking = '{}'\n{start}\n[[phase]]\nkind = 'strain'\nfriction = 0.3\n\

@@ -66,11 +66,11 @@ Examples:
     grainlab invert --table tests/golden/ensembles/held_out.csv --judge --calibration grainlab --gamma all --by mu2
 
 A table has a header line and one state per line; lines that begin with # are comments, empty cells are unknown. Other columns
-are ignored, but one whose name is almost that of an input is refused, unless it begins with _. The pressure and at least one
-modulus are required; k, z and eps are for --judge:
+are ignored, but one whose name is almost that of an input, or begins with it, is refused, unless it begins with _. The pressure and
+at least one modulus are required; k, z and eps are for --judge:
   sample, or source and step         kept with the result
   c11_pa c12_pa ... c66_pa           all 36, or one half: a stiffness, projected on the medium isotropic about
-  reference_axis_x _y _z             this axis, to which all other columns refer, too; default e3
+  reference_axis_x _y _z             this axis, to which all other columns refer, too; default e3, the only one with single entries
 {COLUMNS}An invalid row, or one without an estimate of a model, is reported with its line number and has the status unknown in the
 results; the other rows are processed. The exit code is that of the worst row.
 

@@ -1,6 +1,6 @@
 //! The moduli from wave speeds, with a given or an inferred axis.
 
-use crate::christoffel::{self, ChristoffelError, SpeedFit};
+use crate::christoffel::{self, AxisError, ChristoffelError, SpeedFit};
 use crate::conditions::{Conditions, Measured};
 use crate::moduli::Modulus;
 use grainlab_core::{Vec3, WaveSpeed};
@@ -10,6 +10,8 @@ use grainlab_core::{Vec3, WaveSpeed};
 pub struct WaveModuli {
     /// The given axis, else the one inferred from the speeds, else e3; unit.
     pub axis: Vec3,
+    /// Why none was named and the speeds show none, so that it is e3.
+    pub no_axis: Option<AxisError>,
     /// The moduli about it, or the reason why no medium has these speeds.
     pub fitted: Result<SpeedFit, ChristoffelError>,
 }
@@ -24,9 +26,11 @@ impl WaveModuli {
         conditions: Conditions,
         grains: Option<f64>,
     ) -> Self {
-        let inferred = || christoffel::find_axis(speeds).ok().map(|found| found.axis);
-        let axis = named.or_else(inferred).unwrap_or_else(Vec3::z);
-        Self { axis, fitted: christoffel::moduli_of_sample(speeds, density, Some(axis), conditions, grains) }
+        let inferred = || christoffel::find_axis(speeds).map(|found| found.axis);
+        let found = named.map_or_else(inferred, Ok);
+        let axis = *found.as_ref().unwrap_or(&Vec3::z());
+        let fitted = christoffel::moduli_of_sample(speeds, density, Some(axis), conditions, grains);
+        Self { axis, no_axis: found.err(), fitted }
     }
 
     /// One of the moduli, Pa; `None` where the speeds do not determine it.

@@ -39,6 +39,8 @@ pub static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { AcousticReport:
     "axis_named" "" "1" "axis that the rays were sent about" List, |a| a.reading.axis.map(<[f64; 3]>::from);
     "axis" "" "1" "axis of the moduli: that one, else the one inferred from the speeds, else e3"
         Vector, |a| a.medium.axis;
+    "axis_found" "" "" "whether that axis is named or stands out in the speeds; if false, it is e3 for want of one"
+        Scalar, |a| a.medium.no_axis.is_none();
     "g12_pa" "G12" "Pa" "C66 about the axis, by Christoffel's equation" Scalar, |a| a.medium.modulus(Modulus::G12);
     "g12_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::G12);
     "g13_pa" "G13" "Pa" "C44 about the axis" Scalar, |a| a.medium.modulus(Modulus::G13);
@@ -115,6 +117,11 @@ impl AcousticReport {
     /// Notes on the speeds and their medium.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let mut warnings = self.reading.warnings.clone();
+        let no_axis = self.medium.no_axis.iter().filter(|_| self.medium.fitted.is_ok());
+        warnings.extend(
+            no_axis
+                .map(|why| format!("no axis stands out in the speeds, and the moduli are about e3: {why}")),
+        );
         warnings.extend(match &self.medium.fitted {
             Ok(fitted) => fitted.conflict.as_ref().map(|conflict| {
                 format!(
@@ -249,6 +256,19 @@ mod tests {
         assert_eq!(json["degrees_of_freedom"], 4);
         assert!((report.relative_error().unwrap() - 0.003).abs() < 1e-12);
         assert_eq!(report.warnings(), ["send less"]);
+    }
+
+    #[test]
+    fn moduli_about_e3_for_want_of_an_axis_are_marked() {
+        let unnamed = |directions: &[Vec3]| {
+            let reading = WaveSpeedsReading { axis: None, ..speeds(directions) };
+            AcousticReport::new(1000, 1300.0, reading)
+        };
+        let (few, named) = (unnamed(&[Vec3::z()]), AcousticReport::new(1000, 1300.0, speeds(&[Vec3::z()])));
+        let found = |report| serde_json::to_value(report).unwrap()["axis_found"].clone();
+        assert_eq!((found(&few), found(&named), few.medium.axis), (false.into(), true.into(), Vec3::z()));
+        assert!(few.warnings()[1].contains("no axis stands out"), "{:?}", few.warnings());
+        assert_eq!(named.warnings().len(), 1);
     }
 
     #[test]

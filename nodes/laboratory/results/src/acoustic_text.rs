@@ -26,8 +26,11 @@ pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
         scatter(a),
     );
     let [x, y, z]: [f64; 3] = a.medium.axis.into();
-    let chosen = if a.reading.axis.is_none() { ", the axis that the speeds show" } else { "" };
-    text += &format!("  moduli about ({x:.3}, {y:.3}, {z:.3}){chosen}\n");
+    text += &match (&a.medium.no_axis, a.reading.axis) {
+        (Some(_), _) => "  no axis stands out in the speeds; moduli about e3 = z\n".to_owned(),
+        (None, None) => format!("  moduli about ({x:.3}, {y:.3}, {z:.3}), the axis that the speeds show\n"),
+        (None, Some(_)) => format!("  moduli about ({x:.3}, {y:.3}, {z:.3})\n"),
+    };
     text += &indented(&moduli(a, report.stiffness().map(|s| &s.tensor)).without_empty_columns().text());
     if let Some(shift) = a.mode_shift() {
         text += &format!(

@@ -26,6 +26,8 @@ pub(crate) struct Columns {
     projected: bool,
     contact_law: Option<usize>,
     smooth: Option<usize>,
+    axis_found: Option<usize>,
+    friction: Option<usize>,
     sample: Option<usize>,
     source: Option<usize>,
     step: Option<usize>,
@@ -84,6 +86,14 @@ impl Columns {
             inputs.extend(found.into_iter().next());
         }
         no_slips(&names, by, stiffness.is_some())?;
+        for (flag, key) in defaults.flags() {
+            if let Some((_, column, _)) = inputs.iter().find(|(input, ..)| input.key == key) {
+                return Err(format!(
+                    "--{flag} is beside the column {}: leave one of them out",
+                    names[*column]
+                ));
+            }
+        }
         let has = |role: Role| inputs.iter().any(|(input, ..)| input.role == role);
         if stiffness.is_none() && !has(Role::Modulus) {
             let moduli: Vec<&str> =
@@ -103,6 +113,8 @@ impl Columns {
             reference_axis: axis_columns(&find)?,
             contact_law: find("contact_law")?,
             smooth: find("smooth")?,
+            axis_found: find("axis_found")?,
+            friction: find("friction")?,
             sample: find("sample")?,
             source: find("source")?,
             step: find("step")?,
@@ -175,11 +187,20 @@ impl Columns {
         if let Some(text) = self.contact_law.map(|column| cells.get(column)).filter(|text| !text.is_empty()) {
             state.contact_law = Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
         }
-        state.smooth = match self.smooth.map_or("", |column| cells.get(column)) {
-            "" | "false" => false,
-            "true" => true,
-            other => return Err(format!("column smooth: {other:?} is not true or false")),
-        };
+        let smooth = flag(cells, self.smooth, "smooth")?;
+        let friction = self.friction.and_then(|column| cells.get(column).parse().ok());
+        if smooth.is_none() && friction == Some(0.0) {
+            let reason =
+                "contacts without friction have no tangential springs, and no model can invert their moduli";
+            return Err(format!(
+                "column friction is 0: {reason}; if springs were added, say so by a column smooth, false"
+            ));
+        }
+        state.smooth = smooth.unwrap_or(false);
+        if flag(cells, self.axis_found, "axis_found")? == Some(false) {
+            let note = "no axis stood out in the wave speeds: the moduli are about e3, which need not be an axis of symmetry";
+            state.notes.push(note.to_owned());
+        }
         if let Some(grains) =
             state.grains.filter(|n| !(1.0..=f64::from(u32::MAX)).contains(n) || n.fract() != 0.0)
         {
@@ -187,6 +208,8 @@ impl Columns {
         }
         if let Some(stiffness) = self.stiffness(cells)? {
             self.project(&mut state, &stiffness, &self.axis(cells)?)?;
+        } else {
+            self.about_e3(cells)?;
         }
         for (input, column, _) in self.inputs.iter().filter(|(input, ..)| input.role == Role::Stddev) {
             if !cells.get(*column).is_empty() && input.get(&state).is_none() {
@@ -195,6 +218,9 @@ impl Columns {
             }
         }
         state.notes.extend(state.taken_as_exact());
+        let improbable: Vec<String> =
+            INPUTS.iter().filter_map(|input| input.improbable_error(&state)).collect();
+        state.notes.extend(improbable);
         Ok(state)
     }
 
@@ -224,6 +250,29 @@ impl Columns {
         }
         (state.moduli, state.asymmetry) = (moduli, Some(medium.residual));
         Ok(())
+    }
+
+    /// Refuses entries of a stiffness, which are in the frame of the cell, as moduli about another axis than e3.
+    fn about_e3(&self, cells: &Cells<'_>) -> Result<(), String> {
+        let axis = self.axis(cells)?;
+        let in_cell = [
+            ("c11_pa", "ti_c11_pa"),
+            ("c33_pa", "ti_c33_pa"),
+            ("c13_pa", "ti_c13_pa"),
+            ("c44_pa", "g13_pa"),
+            ("c66_pa", "g12_pa"),
+        ];
+        let given = |column: usize| {
+            in_cell.iter().find(|(name, _)| *name == self.names[column] && !cells.get(column).is_empty())
+        };
+        match self.inputs.iter().find_map(|(_, column, _)| given(*column)) {
+            Some((entry, about_axis)) if axis.xy().norm() > SAME => Err(format!(
+                "column {entry} is in the frame of the cell, and the reference axis is ({:.3}, {:.3}, {:.3}): give {about_axis}, which \
+                 is about that axis, or all 36 entries of the stiffness",
+                axis.x, axis.y, axis.z
+            )),
+            _ => Ok(()),
+        }
     }
 
     fn number(&self, cells: &Cells<'_>, column: usize) -> Result<Option<f64>, String> {
@@ -278,6 +327,16 @@ impl Columns {
     }
 }
 
+/// A cell that is true or false, in any case; `None` if it is empty or not there.
+fn flag(cells: &Cells<'_>, column: Option<usize>, name: &str) -> Result<Option<bool>, String> {
+    match column.map_or("", |column| cells.get(column)).to_ascii_lowercase().as_str() {
+        "" => Ok(None),
+        "false" => Ok(Some(false)),
+        "true" => Ok(Some(true)),
+        other => Err(format!("column {name}: {other:?} is not true or false")),
+    }
+}
+
 /// The names of the entries of a stiffness, row by row.
 fn entries() -> Vec<String> {
     (0..36).map(|n| format!("c{}{}_pa", n / 6 + 1, n % 6 + 1)).collect()
@@ -288,7 +347,14 @@ fn entries() -> Vec<String> {
 fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), String> {
     let entries = entries();
     let mut read: Vec<&str> = INPUTS.iter().flat_map(|i| i.names()).map(|alias| alias.name).collect();
-    read.extend(["contact_law", "smooth", "reference_axis_x", "reference_axis_y", "reference_axis_z"]);
+    read.extend([
+        "contact_law",
+        "smooth",
+        "axis_found",
+        "reference_axis_x",
+        "reference_axis_y",
+        "reference_axis_z",
+    ]);
     let printed: Vec<String> = QUANTITIES.iter().flat_map(|q| q.columns()).collect();
     let labels = ["sample", "source", "step"];
     for name in names {
@@ -302,7 +368,8 @@ fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), 
                  leave it out"
             ));
         }
-        let Some(meant) = slips::meant(name, &read) else { continue };
+        let extended = || slips::extended(name, &read).filter(|_| !printed.contains(name));
+        let Some(meant) = slips::meant(name, &read).or_else(extended) else { continue };
         // An axis changes nothing but a stiffness: moduli of a medium are given about it.
         if meant.starts_with("reference_axis") && !has_stiffness {
             continue;

@@ -7,6 +7,9 @@ use grainlab_emt::{Measured, Modulus};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::sync::LazyLock;
 
+/// Share of a quantity below which a standard deviation of 1 Pa and less is improbable.
+const SHARE: f64 = 1e-5;
+
 /// One number of a state.
 pub(super) struct Input {
     /// Its name in JSON.
@@ -116,6 +119,19 @@ impl Input {
         }
     }
 
+    /// A note on a standard deviation in Pa that is probably a share of its quantity.
+    pub(super) fn improbable_error(&self, state: &State) -> Option<String> {
+        let key = self.key.strip_suffix("_sigma_pa").filter(|_| self.role == Role::Stddev)?;
+        let of = INPUTS.iter().find(|input| input.key.strip_suffix("_pa") == Some(key))?;
+        let (stddev, value) = (self.get(state)?, of.get(state)?);
+        (stddev > 0.0 && stddev <= 1.0 && stddev < SHARE * value.abs()).then(|| {
+            format!(
+                "{} = {stddev} Pa is improbably small beside {} = {value:e} Pa: is it a share of it?",
+                self.key, of.key
+            )
+        })
+    }
+
     /// Column names of an input, the preferred one first, with its unit in SI: the quantity of a packing with
     /// this key or alias, and all its aliases.
     pub(super) fn names(&self) -> Vec<Alias> {
@@ -143,7 +159,8 @@ pub(super) fn reference() -> String {
     let law =
         "  contact_law                        hertz_mindlin, or linear:KN,RATIO, which no model can invert\n";
     let smooth = "  smooth                             true: the stiffness is without tangential springs, which no model can invert\n";
-    INPUTS.iter().map(line).chain([law, smooth].map(str::to_owned)).collect()
+    let axis = "  axis_found                         of grainlab probe: false if no axis stood out in the speeds, which is noted\n";
+    INPUTS.iter().map(line).chain([law, smooth, axis].map(str::to_owned)).collect()
 }
 
 /// The inputs given, with the standard deviations in force.

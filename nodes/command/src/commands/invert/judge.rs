@@ -101,7 +101,7 @@ pub(super) fn run(
         Format::Table => people(&judged, by),
     })?;
     if let Some(path) = plot.filter(|_| points.iter().all(Vec::is_empty)) {
-        tally.end(rows.name())?;
+        tally.end(&rows)?;
         return Err(Failure::usage(format!(
             "{} is not written: no row of {} has eps, and a model that infers it",
             path.display(),
@@ -117,7 +117,7 @@ pub(super) fn run(
         say!("{complaint}\ngrainlab: {} without an estimate, this the first", count(unsolved.len(), "row"));
         tally.unsolved(unsolved.len(), *exit);
     }
-    tally.end(rows.name())
+    tally.end(&rows)
 }
 
 impl Verdict {

@@ -19,6 +19,8 @@ pub(crate) struct Rows {
     first: Option<Piece>,
     /// Number of the header's line.
     header: u64,
+    /// Number of lines below it so far that begin with `#`.
+    comments: usize,
 }
 
 impl Rows {
@@ -35,7 +37,7 @@ impl Rows {
             let Some((header, line)) = header else { continue };
             let columns = Columns::of_header(line, by, defaults)
                 .map_err(|e| Failure::usage(format!("{}: {e}", lines.name())))?;
-            return Ok(Self { lines, columns, first: Some(piece), header });
+            return Ok(Self { lines, columns, first: Some(piece), header, comments: 0 });
         }
     }
 
@@ -52,6 +54,7 @@ impl Rows {
             },
         };
         let lines: Vec<(u64, &[u8])> = piece.lines().filter(|(number, _)| *number > self.header).collect();
+        self.comments += lines.iter().filter(|(_, line)| line.starts_with(b"#")).count();
         let of_share = |share: &[(u64, &[u8])]| -> Vec<T> {
             let mut splitter = Splitter::new();
             let of_line =
@@ -60,6 +63,14 @@ impl Rows {
         };
         let worked: Vec<Vec<T>> = lines.par_chunks(SHARE).map(of_share).collect();
         Ok(Some(worked.into_iter().flatten().collect()))
+    }
+
+    /// Lines below the header that were left out as comments, as words after a number of rows; empty if there are none.
+    pub(super) fn left_out(&self) -> String {
+        match self.comments {
+            0 => String::new(),
+            n => format!(", {} with # left out", grainlab_console::count(n, "line")),
+        }
     }
 
     /// The name of the table in messages.
@@ -78,6 +89,19 @@ mod tests {
     use super::*;
     use crate::commands::invert::answer::Answer;
     use crate::commands::invert::way;
+
+    #[test]
+    fn comments_below_the_header_are_counted_and_those_above_are_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        std::fs::write(&path, "# made by hand\np_pa,g12_pa\n5e4,1e8\n#2,1e8\n\n5e4,1e8\n").unwrap();
+        let mut rows = Rows::open(&path, &[], Defaults::default()).unwrap();
+        let mut found = 0;
+        while let Some(piece) = rows.next(|_, row| row.is_ok()).unwrap() {
+            found += piece.len();
+        }
+        assert_eq!((found, rows.left_out().as_str()), (2, ", 1 line with # left out"));
+    }
 
     #[test]
     fn a_mutated_table_gives_answers_or_faults_of_rows() {

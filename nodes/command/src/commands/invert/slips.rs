@@ -11,7 +11,14 @@ const SIGMA: [&str; 11] =
 const DELTA: [&str; 2] = ["d", "u"];
 
 /// Names of the flags and of Python for what a table calls otherwise.
-const SYNONYMS: [(&str, &str); 8] = [
+const SYNONYMS: [(&str, &str); 15] = [
+    ("qp", "axial_q_over_p"),
+    ("spread", "size_spread"),
+    ("young_pa", "grain_shear_modulus_pa"),
+    ("young_modulus_pa", "grain_shear_modulus_pa"),
+    ("youngs_modulus_pa", "grain_shear_modulus_pa"),
+    ("relative_sigma", "g12_sigma_pa"),
+    ("modulus_sigma", "g12_sigma_pa"),
     ("q_pressure", "axial_q_over_p"),
     ("gamma_delta", "gamma_over_delta"),
     ("stress_ratio", "axial_q_over_p"),
@@ -27,27 +34,15 @@ const UNITS: [&str; 4] = ["pa", "kpa", "mpa", "gpa"];
 /// Shortest name in which one letter may be wrong: below it, other names are as near.
 const LONG: usize = 5;
 
+/// Shortest name that another name is taken to extend.
+const SHORTEST: usize = 3;
+
 /// The name that a column probably means: the same but for case, separators, its unit, a word for standard deviation, its first
 /// word, or one letter. `None` for unlike names, and for those that begin with `_`.
 pub(super) fn meant<'a>(column: &str, known: &[&'a str]) -> Option<&'a str> {
     if column.starts_with('_') {
         return None;
     }
-    let words = |name: &str| -> Vec<String> {
-        let lower = name.to_lowercase();
-        let words = lower.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty());
-        let words: Vec<&str> =
-            words.map(|w| WORDS.iter().find(|(from, _)| *from == w).map_or(w, |(_, to)| *to)).collect();
-        let is_error =
-            |(n, w): (usize, &&str)| SIGMA.contains(w) || n == 0 && words.len() > 1 && DELTA.contains(w);
-        let (errors, others): (Vec<_>, Vec<_>) =
-            words.iter().enumerate().partition(|(n, w)| is_error((*n, w)));
-        let last = (!errors.is_empty()).then_some("sigma");
-        others.into_iter().map(|(_, w)| *w).chain(last).map(str::to_owned).collect()
-    };
-    let bare = |words: &[String]| -> Vec<String> {
-        words.iter().filter(|w| !UNITS.contains(&w.as_str())).cloned().collect()
-    };
     let written = words(column);
     let whole = written.join("_");
     let synonyms = SYNONYMS.iter().filter(|(synonym, _)| *synonym == whole);
@@ -75,6 +70,37 @@ pub(super) fn meant<'a>(column: &str, known: &[&'a str]) -> Option<&'a str> {
         joined.len() >= LONG && of_name.len() >= LONG && one_letter_apart(&joined, &of_name)
     };
     known.iter().copied().find(same).or_else(|| known.iter().copied().find(nearly))
+}
+
+/// The name that a column begins with, followed by something else, as in phi_percent. Names of one letter and of truths begin
+/// other names, too.
+pub(super) fn extended<'a>(column: &str, known: &[&'a str]) -> Option<&'a str> {
+    let written = words(column);
+    let begins = |name: &&&str| {
+        let name = bare(&words(name));
+        name.concat().len() >= SHORTEST && written.len() > name.len() && written.starts_with(&name)
+    };
+    let is_own =
+        |name: &&&str| !column.starts_with('_') && !["grains", "eps", "k_hat", "smooth"].contains(*name);
+    known.iter().filter(is_own).filter(begins).max_by_key(|name| name.len()).copied()
+}
+
+/// The words of a name in lower case, a word for standard deviation last.
+fn words(name: &str) -> Vec<String> {
+    let lower = name.to_lowercase();
+    let words = lower.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty());
+    let words: Vec<&str> =
+        words.map(|w| WORDS.iter().find(|(from, _)| *from == w).map_or(w, |(_, to)| *to)).collect();
+    let is_error =
+        |(n, w): (usize, &&str)| SIGMA.contains(w) || n == 0 && words.len() > 1 && DELTA.contains(w);
+    let (errors, others): (Vec<_>, Vec<_>) = words.iter().enumerate().partition(|(n, w)| is_error((*n, w)));
+    let last = (!errors.is_empty()).then_some("sigma");
+    others.into_iter().map(|(_, w)| *w).chain(last).map(str::to_owned).collect()
+}
+
+/// The words without units.
+fn bare(words: &[String]) -> Vec<String> {
+    words.iter().filter(|w| !UNITS.contains(&w.as_str())).cloned().collect()
 }
 
 /// Whether one letter is added, missing or another, or two are exchanged.
@@ -143,9 +169,28 @@ mod tests {
             ("poisson_ratio", "poisson"),
             ("tehta_pa", "theta_pa"),
             ("Phi", "phi"),
+            ("qp", "axial_q_over_p"),
+            ("young_pa", "grain_shear_modulus_pa"),
+            ("relative_error", "g12_sigma_pa"),
+            ("modulus_error", "g12_sigma_pa"),
             ("K", "k"),
         ] {
             assert_eq!(meant(column, &KNOWN), Some(name), "{column}");
+        }
+    }
+
+    #[test]
+    fn a_name_that_extends_that_of_an_input_is_meant_for_it() {
+        for (column, name) in [
+            ("phi_percent", "phi"),
+            ("grain_shear_modulus_gpa_at_20_C", "grain_shear_modulus_pa"),
+            ("pressure_cell", "pressure_pa"),
+        ] {
+            assert_eq!(extended(column, &KNOWN), Some(name), "{column}");
+        }
+        for column in ["phi", "_phi_percent", "k_of_spring", "pressured", "set.phi", "eps_v", "relaxed.theta"]
+        {
+            assert_eq!(extended(column, &KNOWN), None, "{column}");
         }
     }
 

@@ -22,6 +22,23 @@ pub(crate) struct Defaults {
     pub(crate) poisson_sigma: f64,
 }
 
+impl Defaults {
+    /// The flags given, with the keys of the inputs that they set; --error is for moduli without an error of their own.
+    pub(super) fn flags(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        [
+            (self.grain_shear_modulus.is_some(), ("grain-shear-modulus", "grain_shear_modulus_pa")),
+            (
+                self.grain_shear_modulus_sigma > 0.0,
+                ("grain-shear-modulus-sigma", "grain_shear_modulus_sigma_pa"),
+            ),
+            (self.poisson.is_some(), ("poisson", "poisson")),
+            (self.poisson_sigma > 0.0, ("poisson-sigma", "poisson_sigma")),
+        ]
+        .into_iter()
+        .filter_map(|(given, flag)| given.then_some(flag))
+    }
+}
+
 /// One state, as given.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {

@@ -44,12 +44,18 @@ impl Tally {
     }
 
     /// Ends the output; returns the exit code.
-    pub(super) fn end(self, name: &str) -> Result<Exit, Failure> {
+    pub(super) fn end(self, table: &Rows) -> Result<Exit, Failure> {
+        let left_out = table.left_out();
         if self.rows == 0 {
-            return Err(Failure::usage(format!("{name}: there is no state below the header")));
+            let name = table.name();
+            return Err(Failure::usage(format!("{name}: there is no state below the header{left_out}")));
         }
         let seconds = self.begin.elapsed().as_secs_f64();
-        say!("grainlab: {}, {} bad, {seconds:.1} s", grainlab_console::count(self.rows, "row"), self.bad);
+        say!(
+            "grainlab: {}, {} bad{left_out}, {seconds:.1} s",
+            grainlab_console::count(self.rows, "row"),
+            self.bad
+        );
         Ok(self.exit)
     }
 }
@@ -96,7 +102,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
     if format == Format::Table && tally.rows > 0 {
         out.write(&[printer.people(&kept)])?;
     }
-    let ended = tally.end(rows.name());
+    let ended = tally.end(&rows);
     out.end()?;
     ended
 }

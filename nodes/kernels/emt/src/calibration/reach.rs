@@ -13,9 +13,16 @@ const GROWTH: f64 = 12.0;
 /// Factor of the variance just outside, at the distance [`TOLERANCE`].
 const OUTSIDE: f64 = 1.8;
 
-/// Share of a range beyond its ends that still counts as inside: random packings do not reach the ends of the ranges that
-/// they were drawn from, which are those stated. The variance grows from the outermost packing.
+/// Share of a range beyond its ends over which the variance grows to [`OUTSIDE`], and that the domain of the model contains:
+/// random packings do not reach the ends of the ranges that they were drawn from.
 const TOLERANCE: f64 = 0.02;
+
+/// Share of a range beyond each end up to which nothing is said: for q/p, z and p a rounding; the packings taught do not reach
+/// the stated ends of ε, of the sizes and of k_t/k_n.
+const ROUNDING: f64 = 1e-3;
+const EPS_END: f64 = 0.015;
+const SIZE_END: f64 = 0.007;
+const RATIO_END: f64 = 0.006;
 
 /// Least width of a range by which distances from it are measured: of ln p, of z, and of the others.
 const LN_WIDTH: f64 = 1.0;
@@ -48,12 +55,14 @@ pub(crate) struct Outside {
     pub(crate) range: [f64; 2],
     /// Distance from the range in widths of it.
     distance: f64,
+    /// Distance up to which it is one of the ends of the range.
+    end: f64,
 }
 
 impl Outside {
     /// Whether it is an extrapolation, and not one of the ends of the range.
     pub(crate) fn is_extrapolation(&self) -> bool {
-        self.distance.is_nan() || self.distance > TOLERANCE
+        self.distance.is_nan() || self.distance > self.end
     }
 
     /// Whether it is too far for an estimate.
@@ -74,10 +83,10 @@ impl Reach {
         let size_spread = state.size_variance.max(0.0).sqrt();
         let stiffness_ratio = state.stiffness_ratio + REFERENCE_STIFFNESS_RATIO;
         [
-            beyond("p/E*", pressure, self.pressure, f64::ln, LN_WIDTH),
-            beyond("k_t/k_n", stiffness_ratio, self.stiffness_ratio, |v| v, WIDTH),
-            beyond("the spread of the grain sizes", size_spread, self.size_spread, |v| v, WIDTH),
-            beyond("q/p", state.stress_ratio, self.stress_ratio, |v| v, WIDTH),
+            beyond("p/E*", pressure, self.pressure, f64::ln, (LN_WIDTH, ROUNDING)),
+            beyond("k_t/k_n", stiffness_ratio, self.stiffness_ratio, |v| v, (WIDTH, RATIO_END)),
+            beyond("the spread of the grain sizes", size_spread, self.size_spread, |v| v, (WIDTH, SIZE_END)),
+            beyond("q/p", state.stress_ratio, self.stress_ratio, |v| v, (WIDTH, ROUNDING)),
         ]
         .into_iter()
         .flatten()
@@ -123,26 +132,32 @@ impl Reach {
 
     /// The inferred structure, if it is beyond the ranges; ε `None` is inside.
     pub(crate) fn outside_structure(&self, z: f64, eps: Option<f64>) -> Vec<Outside> {
-        let of_eps = eps.and_then(|eps| beyond("eps", eps, self.eps, |v| v, WIDTH));
-        beyond("z", z, self.z, |v| v, Z_WIDTH).into_iter().chain(of_eps).collect()
+        let of_eps = eps.and_then(|eps| beyond("eps", eps, self.eps, |v| v, (WIDTH, EPS_END)));
+        beyond("z", z, self.z, |v| v, (Z_WIDTH, ROUNDING)).into_iter().chain(of_eps).collect()
+    }
+
+    /// The ranges of z and ε without a warning.
+    pub(crate) fn without_warning(&self) -> [[f64; 2]; 2] {
+        let wider = |[low, high]: [f64; 2], by: f64| [low - by * (high - low), high + by * (high - low)];
+        [wider(self.z, ROUNDING), wider(self.eps, EPS_END)]
     }
 }
 
 /// The value, if it is beyond the range: the distance is measured on the given scale, in widths of the range or of `least`, if that is
-/// wider.
+/// wider; `end` is the share of it that is an end of the range.
 fn beyond(
     quantity: &'static str,
     value: f64,
     range: [f64; 2],
     scale: fn(f64) -> f64,
-    least: f64,
+    (least, end): (f64, f64),
 ) -> Option<Outside> {
     let [low, high] = range.map(scale);
     let width = (high - low).max(least);
     let at = scale(value);
     let distance = (low - at).max(at - high) / width;
     let is_beyond = distance.is_nan() || distance > 0.0;
-    is_beyond.then_some(Outside { quantity, value, range, distance })
+    is_beyond.then_some(Outside { quantity, value, range, distance, end })
 }
 
 #[cfg(test)]
@@ -151,9 +166,9 @@ mod tests {
 
     #[test]
     fn variances_grow_with_the_distance_and_half_a_range_away_there_is_no_estimate() {
-        let at = |value| beyond("q/p", value, [-0.2, 0.3], |v| v, 0.1);
+        let at = |value| beyond("q/p", value, [-0.2, 0.3], |v| v, (0.1, ROUNDING));
         assert_eq!(at(0.3), None);
-        let [end, beyond] = [-0.2099, -0.2101].map(|v| at(v).unwrap());
+        let [end, beyond] = [-0.2004, -0.2006].map(|v| at(v).unwrap());
         assert!(!end.is_extrapolation() && beyond.is_extrapolation());
         assert!((at(0.300_001).unwrap().growth() - 1.0).abs() < 1e-3, "the variance does not jump");
         let near = at(0.35).unwrap();
@@ -164,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_pressure_is_compared_by_its_logarithm() {
-        let at = |value| beyond("p/E*", value, [1e-7, 1e-5], f64::ln, 1.0);
+        let at = |value| beyond("p/E*", value, [1e-7, 1e-5], f64::ln, (1.0, ROUNDING));
         let (above, below) = (at(5e-5).unwrap(), at(2e-8).unwrap());
         assert!((above.growth() - below.growth()).abs() < 1e-9 && !above.is_too_far());
         assert!(at(1.1e-4).unwrap().is_too_far());

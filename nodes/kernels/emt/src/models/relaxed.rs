@@ -57,6 +57,7 @@ impl Model for Relaxed {
         structure[InferredQuantity::Z as usize] = Some(z);
         structure[InferredQuantity::Eps as usize] = Some(eps);
         let mut fitted = [None; InferredQuantity::COUNT];
+        let [z, eps] = network.reach.without_warning();
         for (quantity, range, inside) in
             [(InferredQuantity::Z, network.reach.z, z), (InferredQuantity::Eps, network.reach.eps, eps)]
         {

@@ -313,6 +313,13 @@ fn the_ends_of_the_stated_domain_belong_to_it() {
     for (at, ends) in ends {
         ends.into_iter().for_each(|end| inside(5.3, 0.02, at(conditions(), end)));
     }
+    // The first values outside have a warning.
+    for (at, value) in [(stress, -0.201), (stress, 0.301), (sizes, 0.301), (nu, 0.455)] {
+        let there = at(conditions(), value);
+        let moduli = Relaxed.predict(&structure(5.3, 0.02), &there, ours()).unwrap();
+        let found = Relaxed.infer(&Observation::new(moduli, there), ours()).unwrap();
+        assert_eq!(found.status, grainlab_emt::Status::Extrapolated, "{value}: {:?}", found.warnings);
+    }
     for (z, eps) in [(4.2, 0.02), (6.4, 0.02), (5.3, -0.08), (5.3, 0.13)] {
         inside(z, eps, conditions());
     }

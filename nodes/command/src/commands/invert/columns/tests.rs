@@ -60,6 +60,25 @@ fn three_constants_are_moduli_and_a_whole_stiffness_is_projected() {
 }
 
 #[test]
+fn entries_in_the_frame_of_the_cell_are_no_moduli_about_another_axis() {
+    let axis = "reference_axis_x,reference_axis_y,reference_axis_z";
+    for (entry, modulus) in [("c11_pa", "ti_c11_pa"), ("c44_pa", "g13_pa"), ("c66_pa", "g12_pa")] {
+        let row = |cells: &str| state(&format!("p_pa,theta_pa,{entry},{axis}"), &format!("5e4,1e8,{cells}"));
+        let fault = row("3e8,1,0,0").unwrap_err();
+        assert!(fault.contains(entry) && fault.contains(&format!("give {modulus},")), "{fault}");
+        assert!(["3e8,0,0,-1", "3e8,,,", ",1,0,0"].iter().all(|cells| row(cells).is_ok()));
+    }
+    assert!(state(&format!("p_pa,ti_c11_pa,{axis}"), "5e4,3e8,1,0,0").is_ok());
+}
+
+#[test]
+fn moduli_about_e3_for_want_of_an_axis_have_a_note() {
+    let notes = |found: &str| state("p_pa,g12_pa,axis_found", &format!("5e4,1e8,{found}")).unwrap().notes;
+    assert!(notes("false")[0].contains("no axis stood out"), "{:?}", notes("false"));
+    assert!(notes("true").is_empty() && notes("").is_empty());
+}
+
+#[test]
 fn the_projection_that_analyze_prints_is_that_of_a_stiffness() {
     let names = "p_pa,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa";
     let printed = state(names, "5e4,1,2,3,4,5,6").unwrap();
@@ -174,17 +193,50 @@ fn a_column_that_is_almost_one_that_is_read_is_refused_by_both_names() {
         assert!(fault.contains(column) && fault.contains(&format!("almost {meant}:")), "{fault}");
         assert_eq!(refused(&format!("p_pa,g12_pa,_{column}")), "");
     }
+    assert!(refused("p_pa,g12_pa,size_spread_percent").contains("almost size_spread:"));
     assert_eq!(refused("name,operator,mu2,p_pa,g12_pa,stddev_c11_pa"), "");
     assert!(refused("p_pa,c11_pa,c12_pa").contains("c12_pa is an entry of a stiffness"));
 }
 
 #[test]
 fn smooth_grains_of_an_analysis_and_errors_of_what_is_not_there_are_not_overlooked() {
-    assert!(state("p_pa,g12_pa,smooth", "5e4,1e8,true").unwrap().smooth);
+    assert!(
+        ["true", "True"]
+            .iter()
+            .all(|yes| state("p_pa,g12_pa,smooth", &format!("5e4,1e8,{yes}")).unwrap().smooth)
+    );
     assert!(!state("p_pa,g12_pa,smooth", "5e4,1e8,").unwrap().smooth);
     assert!(state("p_pa,g12_pa,smooth", "5e4,1e8,maybe").unwrap_err().contains("not true or false"));
     let lonely = state("p_pa,g12_pa,axial_q_over_p,axial_q_over_p_sigma", "5e4,1e8,,0.1").unwrap_err();
     assert!(lonely.contains("column axial_q_over_p_sigma is a standard deviation"), "{lonely}");
+}
+
+#[test]
+fn a_flag_beside_its_column_is_refused_and_fills_a_missing_one() {
+    let with = |header: &str| {
+        let defaults = Defaults { poisson: Some(0.3), grain_shear_modulus_sigma: 1e9, ..Defaults::default() };
+        Columns::of_header(header.as_bytes(), &[], defaults).err().unwrap_or_default()
+    };
+    assert!(with("p_pa,g12_pa,poisson").contains("--poisson is beside the column poisson"));
+    assert!(
+        with("p_pa,g12_pa,grain_shear_modulus_sigma_pa").contains("--grain-shear-modulus-sigma is beside")
+    );
+    assert_eq!(with("p_pa,g12_pa,grain_shear_modulus_pa"), "");
+}
+
+#[test]
+fn frictionless_rows_without_a_word_on_springs_are_refused() {
+    let fault = state("p_pa,g12_pa,friction", "5e4,1e8,0").unwrap_err();
+    assert!(fault.contains("no tangential springs") && fault.contains("column smooth"), "{fault}");
+    assert!(state("p_pa,g12_pa,friction", "5e4,1e8,0.3").is_ok());
+    assert!(!state("p_pa,g12_pa,friction,smooth", "5e4,1e8,0,false").unwrap().smooth);
+}
+
+#[test]
+fn an_error_in_pa_that_is_probably_a_share_has_a_note() {
+    let notes = |sigma: &str| state("p_pa,g12_pa,g12_sigma_pa", &format!("5e4,1e8,{sigma}")).unwrap().notes;
+    assert!(notes("0.01")[0].contains("g12_sigma_pa = 0.01 Pa is improbably small"), "{:?}", notes("0.01"));
+    assert!(notes("1e6").is_empty() && notes("0").is_empty());
 }
 
 #[test]
