@@ -11,7 +11,7 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Guid, Topic, from_cdr, topics};
 use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Published, Report, Sample,
-    Stranger, SubscriptionId, member_of, run_of,
+    Stranger, SubscriptionId,
 };
 use grainlab_recordings::strangers::{self, Authors, StrangerView};
 use grainlab_recordings::{Finished, Incoming, Outcome, Recording, RunWriter, TopicSpec};
@@ -252,16 +252,21 @@ impl Recorder {
                 }
                 let incoming = incoming(&sample);
                 let novelty = self.repeats.as_mut().map_or(Novelty::New, |repeats| {
-                    repeats.enter(&channel.topic, author(sample.info.writer), &sample.body)
+                    let there = |writer: &Guid| bus.foreign_writers(topic).contains(writer);
+                    repeats.enter(topic, sample.info.writer, &sample.body, there)
                 });
                 if novelty != Novelty::New {
-                    writer.ledger_mut().repeat(&channel.name, incoming.guid, incoming.sequence);
-                    if let Novelty::Contradiction { sequence } = novelty {
+                    let ledger = writer.ledger_mut();
+                    if novelty == Novelty::Repeat {
+                        ledger.repeat(&channel.name, incoming.guid, incoming.sequence);
+                    }
+                    if let Novelty::Contradiction { number } = novelty {
+                        ledger.conflict(&channel.name, incoming.guid, incoming.sequence);
                         self.contradictions += 1;
                         if self.contradictions.is_power_of_two() {
                             let who = bus.describe(sample.info.writer);
                             log::error!(
-                                "{}: message {sequence} of {who} is not the one that was recorded under this number: it is \
+                                "{}: message {number} of {who} is not the one that was recorded under this number: it is \
                                  left out ({} so far)",
                                 channel.name,
                                 self.contradictions
@@ -349,15 +354,6 @@ fn keep_last(snapshot: &mut Snapshot, writer: &mut RunWriter) -> Result<u64, Nod
 fn leave_out(writer: &mut RunWriter, kept: &Kept) {
     let info = &kept.sample.info;
     writer.ledger_mut().leave_out(&kept.topic, info.writer, info.sequence);
-}
-
-/// The same value for a process of a launched run and for its restarted successor.
-fn author(writer: Guid) -> u64 {
-    let participant = writer.participant();
-    match (run_of(&participant), member_of(&participant)) {
-        (Some(_), member @ 1..) => u64::from(member),
-        _ => participant[4..].iter().fold(0, |bits, byte| bits << 8 | u64::from(*byte)),
-    }
 }
 
 /// Logs a process whose messages are left out, once for each kind of message.
