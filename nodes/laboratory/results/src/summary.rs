@@ -70,6 +70,8 @@ pub(crate) struct TopicCount {
     pub(crate) recorded: u64,
     pub(crate) lost: u64,
     pub(crate) repeated: u64,
+    /// Left out because others are recorded in their place.
+    pub(crate) conflicting: u64,
 }
 
 impl TopicCount {
@@ -83,6 +85,7 @@ impl TopicCount {
                 recorded: there,
                 lost: t.lost,
                 repeated: t.repeated,
+                conflicting: t.conflicting,
             }
         };
         tallies.iter().map(count).collect()
