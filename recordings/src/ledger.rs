@@ -1,4 +1,4 @@
-//! Counts of recorded, lost and repeated messages, per topic and per writer.
+//! Counts of recorded, lost, repeated and conflicting messages, per topic and per writer.
 //!
 //! Loss is found from RTPS sequence numbers, which count every message of one writer from 1: a missing number
 //! is a lost message, wherever it was lost. Messages that a writer sent after the last number received are
@@ -22,6 +22,8 @@ struct Writer {
     reported: Option<u64>,
     /// Received messages that equal a recorded one byte for byte.
     same: u64,
+    /// Received messages in whose place another one is recorded.
+    conflicting: u64,
     /// Received messages that are left out on purpose: they count neither as published nor as recorded.
     left_out: u64,
 }
@@ -59,19 +61,25 @@ impl Ledger {
     /// Counts message `sequence` of this writer, which is not recorded because it equals a recorded one; it
     /// counts as repeated.
     pub fn repeat(&mut self, topic: &str, guid: Guid, sequence: i64) {
-        if self.enter(topic, guid, sequence)
-            && let Some(writer) = self.topics.get_mut(topic).and_then(|writers| writers.get_mut(&guid))
-        {
-            writer.same += 1;
-        }
+        self.enter_as(topic, guid, sequence, |writer| writer.same += 1);
+    }
+
+    /// Counts message `sequence` of this writer, which is not recorded because another one is in its place: a process
+    /// contradicts another, or itself.
+    pub fn conflict(&mut self, topic: &str, guid: Guid, sequence: i64) {
+        self.enter_as(topic, guid, sequence, |writer| writer.conflicting += 1);
     }
 
     /// Counts message `sequence` of this writer as received and left out on purpose.
     pub fn leave_out(&mut self, topic: &str, guid: Guid, sequence: i64) {
+        self.enter_as(topic, guid, sequence, |writer| writer.left_out += 1);
+    }
+
+    fn enter_as(&mut self, topic: &str, guid: Guid, sequence: i64, count: fn(&mut Writer)) {
         if self.enter(topic, guid, sequence)
             && let Some(writer) = self.topics.get_mut(topic).and_then(|writers| writers.get_mut(&guid))
         {
-            writer.left_out += 1;
+            count(writer);
         }
     }
 
@@ -129,6 +137,7 @@ impl Ledger {
             recorded: 0,
             lost: 0,
             repeated: 0,
+            conflicting: 0,
             redelivered: 0,
             writers: Vec::new(),
         };
@@ -140,7 +149,7 @@ impl Ledger {
             }
             let before = if self.from_first.contains(name) { writer.before_first() } else { 0 };
             let held = s.held();
-            let recorded = held - writer.same - writer.left_out;
+            let recorded = held - writer.same - writer.conflicting - writer.left_out;
             // A report below the highest received number is out of date; it does not mean a negative loss.
             let published = writer.reported.unwrap_or(0).max(s.highest().max(0) as u64).max(held) - before;
             let lost = published.saturating_sub(held);
@@ -149,6 +158,7 @@ impl Ledger {
             topic.recorded += recorded;
             topic.lost += lost;
             topic.repeated += writer.same;
+            topic.conflicting += writer.conflicting;
             topic.redelivered += s.redelivered();
             topic.writers.push(WriterTally {
                 guid: guid.to_string(),
@@ -164,6 +174,7 @@ impl Ledger {
                     .take(LISTED_GAPS)
                     .collect(),
                 repeated: writer.same,
+                conflicting: writer.conflicting,
                 redelivered: s.redelivered(),
             });
         }

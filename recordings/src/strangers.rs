@@ -1,5 +1,6 @@
-//! Processes on the bus that are not part of the run, and the writers of the results.
+//! Processes on the bus that are not part of the run, the writers of the results, and disputes between processes.
 
+use crate::ledger::TopicTally;
 use crate::metadata_keys::METADATA_RECORD;
 use crate::reader::Recording;
 use grainlab_msgs::Guid;
@@ -11,6 +12,9 @@ pub const STRANGERS: &str = "strangers";
 
 /// Key of the metadata record of a recording with the writers of the results.
 pub const AUTHORS: &str = "authors";
+
+/// Key of the metadata record of a recording with what makes it doubtful, one line each.
+pub const DISPUTES: &str = "disputes";
 
 /// A process whose messages were left out of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,6 +62,19 @@ pub fn strangers(recording: &Recording) -> Vec<StrangerView> {
 /// The writers of the results in a recording.
 pub fn authors(recording: &Recording) -> Authors {
     read(recording, AUTHORS).unwrap_or_default()
+}
+
+/// What the recorders of a recording noted as doubtful: two processes of one name or one task, another scene.
+pub fn noted_disputes(recording: &Recording) -> Vec<String> {
+    read(recording, DISPUTES).unwrap_or_default()
+}
+
+/// Why it is unknown which messages of a recording are right, one line each: what its recorders noted, and messages
+/// that contradict recorded ones.
+pub fn disputes(recording: &Recording) -> Vec<String> {
+    let tallies = recording.ledger().unwrap_or_default();
+    let of_messages = tallies.iter().filter_map(TopicTally::dispute);
+    noted_disputes(recording).into_iter().chain(of_messages).collect()
 }
 
 fn read<T: for<'a> Deserialize<'a>>(recording: &Recording, key: &str) -> Option<T> {

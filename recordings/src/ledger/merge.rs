@@ -29,13 +29,14 @@ fn topic(name: String, writers: Vec<WriterTally>) -> TopicTally {
         recorded: sum(|w| w.recorded),
         lost: sum(|w| w.lost),
         repeated: sum(|w| w.repeated),
+        conflicting: sum(|w| w.conflicting),
         redelivered: sum(|w| w.redelivered),
         writers,
     }
 }
 
 fn received(w: &WriterTally) -> u64 {
-    w.recorded.saturating_add(w.repeated)
+    w.recorded.saturating_add(w.repeated).saturating_add(w.conflicting)
 }
 
 fn published(w: &WriterTally) -> u64 {
@@ -58,16 +59,18 @@ fn of_one_writer(a: &WriterTally, b: &WriterTally) -> WriterTally {
     let first = [a.first, b.first].into_iter().flatten().min();
     let received = published - lost;
     let repeated = a.repeated.saturating_add(b.repeated).min(received);
+    let conflicting = a.conflicting.saturating_add(b.conflicting).min(received - repeated);
     WriterTally {
         guid: a.guid.clone(),
         node: b.node.clone().or_else(|| a.node.clone()),
-        recorded: received - repeated,
+        recorded: received - repeated - conflicting,
         reported: a.reported.max(b.reported),
         first,
         last,
         lost,
         gaps: gaps.into_iter().take(LISTED_GAPS).collect(),
         repeated,
+        conflicting,
         redelivered: a
             .redelivered
             .saturating_add(b.redelivered)
@@ -150,10 +153,15 @@ mod tests {
         let mut ledger = Ledger::default();
         [1, 2, 2, 5].iter().for_each(|n| _ = ledger.enter("/stress", A, *n));
         ledger.repeat("/stress", A, 6);
+        ledger.conflict("/stress", B, 1);
         let one = ledger.tallies();
         assert_eq!(merge(vec![one.clone()]), one);
         let both = merge(vec![one, account(&[(A, &[5, 7])], Some(9))]);
         let t = &both[0];
-        assert_eq!((t.published, t.recorded, t.repeated, t.lost, t.redelivered), (9, 4, 1, 4, 2));
+        assert_eq!((t.published, t.recorded, t.repeated, t.lost, t.redelivered), (10, 4, 1, 4, 2));
+        assert_eq!(t.conflicting, 1, "what contradicts a message stays in the counts when a run is resumed");
+        assert!(
+            t.dispute().is_some_and(|line| line.contains(&B.to_string()) && line.contains(&A.to_string()))
+        );
     }
 }

@@ -1,6 +1,8 @@
 //! Counts of topics and writers.
 
+use grainlab_console::count;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Counts of one topic, all writers together.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -8,7 +10,7 @@ pub struct TopicTally {
     /// Name of the topic, absolute.
     pub name: String,
     /// Messages published: a writer's own count if reported, else its highest received sequence number. The sum of
-    /// `recorded`, `repeated` and `lost`.
+    /// `recorded`, `repeated`, `conflicting` and `lost`.
     pub published: u64,
     /// Messages in the recording.
     pub recorded: u64,
@@ -17,6 +19,9 @@ pub struct TopicTally {
     /// Published again with the bytes of a recorded message, for example a request without an answer; not
     /// recorded again.
     pub repeated: u64,
+    /// Not recorded because another message is in their place: two processes sent them, and it is unknown which is right.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub conflicting: u64,
     /// Deliveries of a message that was received before; not counted as published.
     #[serde(default)]
     pub redelivered: u64,
@@ -47,9 +52,36 @@ pub struct WriterTally {
     pub gaps: Vec<(i64, i64)>,
     /// Published again with the bytes of a recorded message.
     pub repeated: u64,
+    /// Not recorded because another message is in their place.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub conflicting: u64,
     /// Deliveries of a message that was received before.
     #[serde(default)]
     pub redelivered: u64,
+}
+
+impl TopicTally {
+    /// That messages contradict recorded ones, with the processes that sent either; `None` if none do.
+    pub fn dispute(&self) -> Option<String> {
+        let of = |wanted: fn(&WriterTally) -> bool| {
+            let names = self.writers.iter().filter(|w| wanted(w)).map(|w| w.node.as_ref().unwrap_or(&w.guid));
+            names.cloned().collect::<BTreeSet<_>>().into_iter().collect::<Vec<_>>().join(", ")
+        };
+        (self.conflicting > 0).then(|| {
+            format!(
+                "{}: {} of {} contradict those recorded in their place, of {}: it is unknown which are right",
+                self.name,
+                count(self.conflicting, "message"),
+                of(|w| w.conflicting > 0),
+                of(|w| w.recorded > 0)
+            )
+        })
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Maximum number of ranges in a [`WriterTally`].

@@ -73,10 +73,14 @@ fn read(path: &Path) -> Result<Run, Failure> {
     }
 }
 
-/// Data were lost if something could not be read.
+/// Data were lost if something could not be read, or it is unknown which are right.
 fn standing(path: &Path, run: &Run) -> Exit {
     if run.is_incomplete() {
         say!("grainlab: {}: not all of it can be read: the page names what is missing", path.display());
+        return Exit::DataLoss;
+    }
+    if run.is_disputed() {
+        say!("grainlab: {}: two processes contradict each other: the page names them", path.display());
         return Exit::DataLoss;
     }
     Exit::Done

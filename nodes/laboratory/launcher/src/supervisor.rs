@@ -171,7 +171,7 @@ impl Supervisor {
     /// Starts every process, waits for the end, ends every process.
     pub async fn run(mut self) -> Result<Supervised, Failure> {
         let begin = Instant::now();
-        let (watch, mut events) = Watch::start(self.run, self.names.clone())?;
+        let (watch, mut events) = Watch::start(self.run, self.names.clone(), self.member(SIMULATOR))?;
         // The watch starts first, so that it receives all messages.
         if let Some(event) = events.recv().await {
             self.take(event);
@@ -207,6 +207,10 @@ impl Supervisor {
     /// The exit code of a node that has ended by itself.
     pub(super) fn code(&self, node: NodeKind) -> Option<i32> {
         self.children.iter().find(|c| c.plan.is(node))?.code
+    }
+
+    fn member(&self, node: NodeKind) -> Option<u8> {
+        self.children.iter().find(|c| c.plan.is(node)).map(|c| c.member)
     }
 
     fn start_all(&mut self) -> Result<(), Failure> {

@@ -2,7 +2,7 @@
 
 use crate::run::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
-use grainlab_console::Failure;
+use grainlab_console::{Failure, say};
 use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
 use grainlab_emt::{Status, recommended};
 use grainlab_msgs::boundary::RunStateReading;
@@ -10,8 +10,8 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::{
-    Bus, BusError, DdsBus, Demand, Identity, Names, Report, Stranger, Subscription, bus_named, member_of,
-    watchdog,
+    Bus, BusError, DdsBus, Demand, Identity, Names, Participant, Report, Stranger, Subscription, bus_named,
+    member_of, watchdog,
 };
 use grainlab_recorder::strangers::name;
 use std::collections::BTreeSet;
@@ -102,7 +102,13 @@ pub(crate) struct Watch {
 
 impl Watch {
     /// Joins the domain as a process of the run, with the names of its topics, and receives until it is dropped.
-    pub(crate) fn start(run: Run, names: Names) -> Result<(Self, UnboundedReceiver<Event>), Failure> {
+    ///
+    /// `simulator` is the member number of the simulator: another process cannot end the run by a state.
+    pub(crate) fn start(
+        run: Run,
+        names: Names,
+        simulator: Option<u8>,
+    ) -> Result<(Self, UnboundedReceiver<Event>), Failure> {
         let (events, receiver) = unbounded_channel();
         let stop = Arc::new(AtomicBool::new(false));
         let asked = Arc::clone(&stop);
@@ -113,7 +119,7 @@ impl Watch {
             let identity = Identity { root, ..Identity::member_of(run.id, LAUNCHER) };
             let bus = bus_named(run.domain, names.for_node("launcher"), identity);
             let watched = bus.map_err(|e| e.to_string()).and_then(|mut bus| {
-                let watched = watch(&mut bus, &events, &asked);
+                let watched = watch(&mut bus, &events, &asked, simulator);
                 if watched.is_err() {
                     // Dropping the bus would wait for threads that have ended.
                     std::mem::forget(bus);
@@ -151,6 +157,9 @@ impl Drop for Watch {
 /// Subscriptions to the run's messages.
 struct RunSubscriptions {
     states: Subscription<RunState>,
+    simulator: Option<u8>,
+    /// Other processes of the run that published a state.
+    pretenders: BTreeSet<Participant>,
     packing_reports: Subscription<PackingReport>,
     moduli: Subscription<Moduli>,
     speeds: Subscription<WaveSpeeds>,
@@ -159,10 +168,12 @@ struct RunSubscriptions {
 }
 
 impl RunSubscriptions {
-    fn new(bus: &mut dyn Bus) -> Result<Self, BusError> {
+    fn new(bus: &mut dyn Bus, simulator: Option<u8>) -> Result<Self, BusError> {
         let demand = Demand::reliable(BACKLOG);
         let reports = Demand::best_effort(BACKLOG);
         Ok(Self {
+            simulator,
+            pretenders: BTreeSet::new(),
             states: Subscription::subscribe(bus, &topics::RUN_STATE, demand)?,
             packing_reports: Subscription::subscribe(bus, &topics::PACKING_REPORT, demand)?,
             moduli: Subscription::subscribe(bus, &topics::MODULI, demand)?,
@@ -172,8 +183,18 @@ impl RunSubscriptions {
         })
     }
 
-    fn receive(&self, bus: &mut dyn Bus, mut send: impl FnMut(Event)) -> Result<(), BusError> {
-        while let Some((state, _)) = self.states.take_valid(bus)? {
+    fn receive(&mut self, bus: &mut dyn Bus, mut send: impl FnMut(Event)) -> Result<(), BusError> {
+        while let Some((state, info)) = self.states.take_valid(bus)? {
+            let who = info.writer.participant();
+            if self.simulator.is_some_and(|member| member_of(&who) != member) {
+                if self.pretenders.len() < NAMED && self.pretenders.insert(who) {
+                    let name = bus.describe(info.writer);
+                    say!(
+                        "grainlab: {name} publishes run_state and is not the simulator of this run: it is ignored"
+                    );
+                }
+                continue;
+            }
             match RunStateReading::try_from(&state) {
                 Ok(reading) => send(Event::State(reading)),
                 Err(e) => log::warn!("{e}"),
@@ -220,12 +241,17 @@ impl RunSubscriptions {
     }
 }
 
-fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -> Result<(), String> {
+fn watch(
+    bus: &mut DdsBus,
+    events: &UnboundedSender<Event>,
+    stop: &AtomicBool,
+    simulator: Option<u8>,
+) -> Result<(), String> {
     // The receiver is closed only when the launcher ends.
     let send = |event| {
         let _ = events.send(event);
     };
-    let subscriptions = RunSubscriptions::new(bus).map_err(|e| e.to_string())?;
+    let mut subscriptions = RunSubscriptions::new(bus, simulator).map_err(|e| e.to_string())?;
     send(Event::Open);
     let mut named = BTreeSet::new();
     let mut next_look = bus.now() + DISCOVERY_TIME;

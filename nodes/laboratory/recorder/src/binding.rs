@@ -5,7 +5,7 @@
 
 use grainlab_msgs::{Guid, Topic, topics};
 use grainlab_node_kit::{Participant, SampleInfo};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Maximum number of participants counted separately.
 const MAX_COUNTED: usize = 64;
@@ -37,7 +37,6 @@ pub(crate) struct Binding {
     simulators: Vec<Participant>,
     /// The writer of each kind of answer and result.
     authors: BTreeMap<&'static str, Participant>,
-    seconds: BTreeSet<(&'static str, Participant)>,
     ignored: BTreeMap<Participant, BTreeMap<&'static str, u64>>,
 }
 
@@ -50,13 +49,10 @@ impl Binding {
         present: impl Fn(&Topic) -> Vec<Guid>,
     ) -> Result<(), Outside> {
         let verdict = self.judge(topic, info, present);
-        if let Err(outside) = verdict {
+        if verdict.is_err() {
             let participant = info.writer.participant();
             if self.ignored.len() < MAX_COUNTED || self.ignored.contains_key(&participant) {
                 *self.ignored.entry(participant).or_default().entry(topic.name).or_default() += 1;
-            }
-            if outside == Outside::Second && self.seconds.len() < MAX_COUNTED {
-                self.seconds.insert((topic.name, participant));
             }
         }
         verdict
@@ -101,12 +97,6 @@ impl Binding {
         &self.ignored
     }
 
-    /// Topics on which two processes published about this run, and the second of them: it is unknown which one is
-    /// right.
-    pub(crate) fn seconds(&self) -> &BTreeSet<(&'static str, Participant)> {
-        &self.seconds
-    }
-
     /// The participant of the simulator, which is the id of the run.
     pub(crate) fn run(&self) -> Option<Participant> {
         self.simulators.first().copied()
@@ -136,7 +126,6 @@ mod tests {
         assert_eq!(takes(topics::MODULI, 2, None), Err(Outside::Stranger), "about nothing");
         assert_eq!(takes(topics::MODULI, 2, Some(1)), Err(Outside::Second));
         assert_eq!(takes(topics::DIAGNOSTICS, 2, None), Ok(()));
-        assert_eq!(binding.seconds().len(), 1);
         assert_eq!(binding.ignored()[&[2; 12]]["moduli"], 2);
     }
 

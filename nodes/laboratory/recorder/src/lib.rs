@@ -2,6 +2,7 @@
 //!
 //! - [`Settings`], [`parameters`]: what is recorded, and where to
 //! - `binding`: the messages of a run by hand; [`repeats`]: repetitions of recorded messages
+//! - `disputes`: processes that contradict each other, packings of another scene
 //! - [`strangers`]: processes on the bus that are not part of the run
 //! - [`OtherTopics`], [`Wanted`]: topics of other programs, found on the bus
 //! - [`Recorder`]: the node; [`ResultSlot`]: the finished recording
@@ -9,7 +10,9 @@
 //! - [`tallies`]: losses, and the table of counts
 
 mod binding;
+mod company;
 mod discovery;
+mod disputes;
 mod node;
 pub mod repeats;
 mod settings;

@@ -2,7 +2,9 @@
 
 use crate::Settings;
 use crate::binding::{Binding, Outside};
+use crate::company::Company;
 use crate::discovery::{Finder, Found};
+use crate::disputes::Disputes;
 use crate::repeats::{Novelty, Repeats};
 use crate::snapshot::{Kept, Snapshot};
 use crate::strangers::grouped;
@@ -11,7 +13,7 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Guid, Topic, from_cdr, topics};
 use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Published, Report, Sample,
-    Stranger, SubscriptionId, member_of, run_of,
+    Stranger, SubscriptionId,
 };
 use grainlab_recordings::strangers::{self, Authors, StrangerView};
 use grainlab_recordings::{Finished, Incoming, Outcome, Recording, RunWriter, TopicSpec};
@@ -48,8 +50,6 @@ const SILENCE: Duration = Duration::from_millis(200);
 
 /// The recording that a recorder finished, for the code that started it.
 pub type ResultSlot = Rc<RefCell<Option<Finished>>>;
-
-type Participant = [u8; 12];
 
 /// How the messages of a topic are received and written.
 enum Source {
@@ -101,6 +101,8 @@ pub struct Recorder {
     /// For the recording of one run.
     repeats: Option<Repeats>,
     contradictions: u64,
+    /// What makes the recording doubtful, that of earlier recorders included.
+    disputes: Disputes,
     /// The writer of each result.
     authors: Authors,
     /// Time of the last step, since the bus was opened.
@@ -111,32 +113,6 @@ pub struct Recorder {
     snapshot: Option<Snapshot>,
     /// Finds topics outside the contract.
     finder: Option<Finder>,
-}
-
-/// The processes that published, and those that sent their last report, which counts all messages of the process.
-#[derive(Debug, Default)]
-struct Company {
-    own: Option<Participant>,
-    heard: BTreeSet<Participant>,
-    left: BTreeSet<Participant>,
-}
-
-impl Company {
-    fn note_writer(&mut self, writer: Guid) {
-        self.heard.insert(writer.participant());
-    }
-
-    /// Number of processes that left without a last report.
-    fn missing(&self, present: &[Guid]) -> usize {
-        let there: BTreeSet<_> = present.iter().map(Guid::participant).chain(self.own).collect();
-        self.heard.iter().filter(|p| !self.left.contains(*p) && !there.contains(*p)).count()
-    }
-
-    /// Whether every process that published, or has a writer in `present`, has sent its last report.
-    fn all_left(&self, present: &[Guid]) -> bool {
-        let mut known = self.heard.iter().copied().chain(present.iter().map(Guid::participant));
-        known.all(|p| Some(p) == self.own || self.left.contains(&p))
-    }
 }
 
 impl Recorder {
@@ -165,9 +141,11 @@ impl Recorder {
             directory.file_name().map_or_else(|| "recording".into(), |n| n.to_string_lossy().into_owned());
         let mut repeats = settings.whole_run.then(Repeats::default);
         let mut authors = Authors::default();
+        let mut disputes = Disputes::new(settings.scene.as_ref().map(|s| s.scene.fingerprint));
         let before = if settings.append { Recording::open(&directory).ok() } else { None };
         if let Some(recording) = &before {
             authors = strangers::authors(recording);
+            disputes.remember(strangers::noted_disputes(recording));
             if let Some(repeats) = &mut repeats {
                 repeats.remember(recording).map_err(|e| failed(&e))?;
             }
@@ -200,6 +178,7 @@ impl Recorder {
             binding: (settings.whole_run && run.is_none()).then(Binding::default),
             repeats,
             contradictions: 0,
+            disputes,
             authors,
             stepped: None,
             stalled: false,
@@ -234,7 +213,11 @@ impl Recorder {
                 if let Some(binding) = &mut self.binding
                     && let Err(outside) = binding.takes(topic, info, |t| bus.foreign_writers(t))
                 {
-                    note_outside(outside, topic, bus.describe(info.writer), binding);
+                    let who = bus.describe(info.writer);
+                    if outside == Outside::Second {
+                        self.disputes.second(topic.name, &who.to_string());
+                    }
+                    note_outside(outside, topic, who, binding);
                     writer.ledger_mut().leave_out(&channel.name, info.writer, info.sequence);
                     continue;
                 }
@@ -245,6 +228,16 @@ impl Recorder {
                 if channel.reports && enter_reports(writer, &self.names, &sample) {
                     self.company.left.insert(sample.info.writer.participant());
                 }
+                if self.whole_run {
+                    match topic.name {
+                        // Processes without a run may be of another laboratory.
+                        name if name == topics::DIAGNOSTICS.name && bus.identity().run.is_some() => {
+                            self.disputes.report(&sample, |who| bus.describe(who).to_string());
+                        }
+                        name if name == topics::PACKING.name => self.disputes.packing(&sample),
+                        _ => {}
+                    }
+                }
                 if let Some(snapshot) = &mut self.snapshot {
                     let (topic, latched) = (channel.name.clone(), channel.topic.qos.transient_local);
                     snapshot.keep(Kept { topic, sample, latched });
@@ -252,16 +245,21 @@ impl Recorder {
                 }
                 let incoming = incoming(&sample);
                 let novelty = self.repeats.as_mut().map_or(Novelty::New, |repeats| {
-                    repeats.enter(&channel.topic, author(sample.info.writer), &sample.body)
+                    let there = |writer: &Guid| bus.foreign_writers(topic).contains(writer);
+                    repeats.enter(topic, sample.info.writer, &sample.body, there)
                 });
                 if novelty != Novelty::New {
-                    writer.ledger_mut().repeat(&channel.name, incoming.guid, incoming.sequence);
-                    if let Novelty::Contradiction { sequence } = novelty {
+                    let ledger = writer.ledger_mut();
+                    if novelty == Novelty::Repeat {
+                        ledger.repeat(&channel.name, incoming.guid, incoming.sequence);
+                    }
+                    if let Novelty::Contradiction { number } = novelty {
+                        ledger.conflict(&channel.name, incoming.guid, incoming.sequence);
                         self.contradictions += 1;
                         if self.contradictions.is_power_of_two() {
                             let who = bus.describe(sample.info.writer);
                             log::error!(
-                                "{}: message {sequence} of {who} is not the one that was recorded under this number: it is \
+                                "{}: message {number} of {who} is not the one that was recorded under this number: it is \
                                  left out ({} so far)",
                                 channel.name,
                                 self.contradictions
@@ -351,15 +349,6 @@ fn leave_out(writer: &mut RunWriter, kept: &Kept) {
     writer.ledger_mut().leave_out(&kept.topic, info.writer, info.sequence);
 }
 
-/// The same value for a process of a launched run and for its restarted successor.
-fn author(writer: Guid) -> u64 {
-    let participant = writer.participant();
-    match (run_of(&participant), member_of(&participant)) {
-        (Some(_), member @ 1..) => u64::from(member),
-        _ => participant[4..].iter().fold(0, |bits, byte| bits << 8 | u64::from(*byte)),
-    }
-}
-
 /// Logs a process whose messages are left out, once for each kind of message.
 fn note_outside(outside: Outside, topic: &Topic, who: Stranger, binding: &Binding) {
     let first =
@@ -436,6 +425,9 @@ impl Node for Recorder {
         }
         let express = |value: serde_json::Result<String>| value.map_err(|e| lost(&e));
         writer.set_metadata(strangers::STRANGERS, &express(serde_json::to_string(&strangers))?);
+        if !self.disputes.lines().is_empty() {
+            writer.set_metadata(strangers::DISPUTES, &express(serde_json::to_string(self.disputes.lines()))?);
+        }
         writer.set_metadata(strangers::AUTHORS, &express(serde_json::to_string(&self.authors))?);
         if let Some(run) = self.binding.as_ref().and_then(Binding::run) {
             writer.set_metadata("run", &Guid::of_participant(run).to_string()[..24]);
@@ -468,8 +460,10 @@ impl Node for Recorder {
             );
             return Ok(Exit::DataLoss);
         }
-        let seconds = self.binding.as_ref().map_or(0, |b| b.seconds().len());
-        if seconds > 0 || self.contradictions > 0 {
+        if self.disputes.found_scene() {
+            return Ok(Exit::Failure);
+        }
+        if self.disputes.found_processes() || self.contradictions > 0 {
             log::error!(
                 "two processes wrote results of one run: it is unknown which of them is right. Start the processes of a run \
                  with a run of their own (GRAINLAB_RUN=any_name for each of them)"
@@ -477,23 +471,5 @@ impl Node for Recorder {
             return Ok(Exit::Failure);
         }
         Ok(Exit::Done)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn everyone_has_left_after_the_last_report_of_each() {
-        let writer = |who| Guid([who; 16]);
-        let mut company = Company { own: Some([1; 12]), ..Company::default() };
-        assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
-        company.note_writer(writer(2));
-        assert!(!company.all_left(&[]), "gone without a word: it may have been killed");
-        assert_eq!((company.missing(&[]), company.missing(&[writer(2)])), (1, 0));
-        company.left.insert([2; 12]);
-        assert!(company.all_left(&[writer(1), writer(2)]));
-        assert!(!company.all_left(&[writer(2), writer(3)]), "one that was never heard may still speak");
     }
 }

@@ -233,7 +233,7 @@ fn estimate(
 fn pace(s: &Summary) -> String {
     let since = if s.resumed { " since it was resumed" } else { "" };
     let mut text = format!("{:.1} s{since}", s.wall_seconds);
-    if let Some(rate) = s.particle_steps_per_second {
+    if let Some(rate) = s.particle_steps_per_second.filter(|rate| *rate > 0.0) {
         text += &format!(", {:.1} M particle-steps/s", rate / 1e6);
     }
     if let Some(n) = s.exchanges {

@@ -35,7 +35,9 @@ pub(crate) struct Identity {
 
 impl Identity {
     pub(crate) fn new(name: &str, stamp: Time) -> Self {
-        Self { name: name.to_owned(), stamp: (stamp.sec, stamp.nanosec) }
+        // A control character would break the line or the table that it is printed in.
+        let printed = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+        Self { name: name.chars().map(printed).collect(), stamp: (stamp.sec, stamp.nanosec) }
     }
 
     pub(crate) fn stamp(&self) -> Time {
@@ -181,6 +183,7 @@ mod tests {
         let some = |texts: &[&str]| texts.iter().map(|t| Some((*t).to_owned())).collect::<Vec<_>>();
         assert_eq!(labels(&[shot("a", 1), shot("b", 1)]), some(&["a", "b"]));
         assert_eq!(labels(&[shot("", 1), shot("", 20)]), some(&["stamp 5.000000001", "stamp 5.000000020"]));
+        assert_eq!(labels(&[shot("a\nb", 1), shot("b", 1)]), some(&["a\\nb", "b"]), "one line each");
         assert_eq!(
             labels(&[shot("a", 1), shot("a", 2)]),
             some(&["a, stamp 5.000000001", "a, stamp 5.000000002"])

@@ -72,6 +72,8 @@ pub struct ReadBack {
     pub results: BTreeMap<&'static str, BTreeSet<u64>>,
     /// Processes on the bus that are not part of the run.
     pub strangers: Vec<StrangerView>,
+    /// It is unknown which of its messages are right.
+    pub disputed: bool,
     /// Messages that could not be read.
     pub complaints: Vec<String>,
 }
@@ -80,6 +82,12 @@ impl ReadBack {
     /// A recording that cannot be read, with the reason.
     pub fn failed(error: impl ToString) -> Self {
         Self { complaints: vec![error.to_string()], ..Self::default() }
+    }
+
+    fn dispute(&mut self, lines: impl IntoIterator<Item = String>) {
+        let before = self.complaints.len();
+        self.complaints.extend(lines);
+        self.disputed |= self.complaints.len() > before;
     }
 
     fn of_several_runs(recording: &Recording, sign: RunSign) -> Self {
@@ -118,6 +126,7 @@ pub fn read(recording: &Recording) -> ReadBack {
     let names = channels.iter().filter(|c| of(c).is_some()).map(|c| c.topic.clone());
     let authors = Names::of(recording);
     back.strangers = strangers::strangers(recording);
+    back.dispute(strangers::disputes(recording));
     let mut about: BTreeMap<u64, About> = BTreeMap::new();
     let messages = match recording.messages(&Selection::topics(names)) {
         Ok(messages) => messages,
@@ -176,6 +185,7 @@ pub fn read(recording: &Recording) -> ReadBack {
     }
     for (step, mut about) in about {
         back.note_unanswered(step, &about);
+        back.dispute(about.dispute());
         let jammed = about.report.as_ref().is_some_and(|report| report.stiffness().is_some());
         if about.is_within_phase() {
             back.film.packings += 1;
@@ -234,7 +244,10 @@ impl ReadBack {
                 (_, 0) => {}
                 (sent, open) if sent == open => {
                     self.not_inverted += 1;
-                    self.complaints.push(format!("the {topic} of step {step} were not inverted"));
+                    self.complaints.push(format!(
+                        "the recording has no estimate from the {topic} of step {step}: they were not inverted, or it was \
+                         lost; `grainlab analyze RUN --format csv | grainlab invert --table -` infers from the packings"
+                    ));
                 }
                 (sent, open) => {
                     self.not_inverted += open;

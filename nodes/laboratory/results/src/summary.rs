@@ -70,6 +70,9 @@ pub(crate) struct TopicCount {
     pub(crate) recorded: u64,
     pub(crate) lost: u64,
     pub(crate) repeated: u64,
+    /// Left out because others are recorded in their place, if any are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) conflicting: Option<u64>,
 }
 
 impl TopicCount {
@@ -83,6 +86,7 @@ impl TopicCount {
                 recorded: there,
                 lost: t.lost,
                 repeated: t.repeated,
+                conflicting: Some(t.conflicting).filter(|n| *n > 0),
             }
         };
         tallies.iter().map(count).collect()

@@ -34,6 +34,8 @@ pub struct Run {
     pub(crate) recorded_by: Option<String>,
     /// Files whose recorder was killed, and left no count of lost messages.
     pub(crate) uncounted_files: usize,
+    /// It is unknown which messages of the recording are right; the lines are in the summary or in `missing`.
+    disputed: bool,
     /// What could not be read, one line each.
     pub(crate) missing: Vec<String>,
 }
@@ -52,6 +54,11 @@ impl Run {
         !self.missing.is_empty()
     }
 
+    /// Whether it is unknown which messages of the recording are right.
+    pub fn is_disputed(&self) -> bool {
+        self.disputed
+    }
+
     /// Reads the files of a run: a run directory, or a recording.
     pub fn read(path: &Path) -> Self {
         let directory = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
@@ -67,6 +74,7 @@ impl Run {
             launched: launched(&directory.join("launch.json")),
             recorded_by: None,
             uncounted_files: 0,
+            disputed: false,
             missing: Vec::new(),
         };
         run.read_summary(&directory.join("summary.json"));
@@ -111,6 +119,7 @@ impl Run {
             return self.refuse(back.several_runs);
         }
         (self.states, self.of_instruments) = (back.states, back.of_instruments);
+        self.disputed = back.disputed;
         // The launcher writes these lines to the summary, too.
         let known = |line: &String| self.summary.warnings.contains(line);
         self.missing.extend(back.complaints.into_iter().filter(|line| !known(line)));

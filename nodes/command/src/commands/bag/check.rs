@@ -2,7 +2,7 @@
 
 use grainlab_console::{Failure, Format, Table, count, json, print, say};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::{Check, Recording, SeveralRuns};
+use grainlab_recordings::{Check, Recording, SeveralRuns, strangers};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -12,8 +12,8 @@ Examples:
   grainlab bag check run.mcap --format json
 
 Reads every record: framing, checksums of chunks, attachments, summary and data, the index against the messages, the order
-of files, the recorder's ledger against the messages, and the definitions of types against those of this program. Exit 0 without
-faults, else 3; a definition that is read by the names of its fields is no fault, nor are several runs in one recording, nor a
+of files, the recorder's ledger against the messages, what its recorder noted as disputed between processes, and the definitions
+of types against those of this program. Exit 0 without faults, else 3; a definition that is read by the names of its fields is no fault, nor are several runs in one recording, nor a
 ledger that is absent because another program, or a copy, wrote the file: then losses cannot be judged.";
 
 /// Arguments of `grainlab bag check`.
@@ -31,9 +31,14 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let recording = Recording::open(&args.path).map_err(Failure::failed)?;
     let check = recording.check();
-    let view = View { check, several_runs: SeveralRuns::of(&recording).map(|s| s.to_string()) };
+    let view = View {
+        check,
+        disputes: strangers::disputes(&recording),
+        several_runs: SeveralRuns::of(&recording).map(|s| s.to_string()),
+    };
     let check = &view.check;
     let sound = check.warnings.is_empty()
+        && view.disputes.is_empty()
         && check.unaccounted.is_empty()
         && !check.refused
         && check.lost.unwrap_or(0) == 0;
@@ -44,7 +49,12 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     })?;
     if args.format != Format::Table {
         check.warnings.iter().for_each(|w| say!("grainlab: {w}"));
-        check.definitions.iter().chain(&view.several_runs).for_each(|line| say!("grainlab: {line}"));
+        check
+            .definitions
+            .iter()
+            .chain(&view.disputes)
+            .chain(&view.several_runs)
+            .for_each(|line| say!("grainlab: {line}"));
     }
     Ok(if sound { Exit::Done } else { Exit::DataLoss })
 }
@@ -54,6 +64,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 struct View {
     #[serde(flatten)]
     check: Check,
+    /// Why it is unknown which messages are right.
+    disputes: Vec<String>,
     /// That the recording holds several runs, and by what; null if it is of one.
     several_runs: Option<String>,
 }
@@ -77,7 +89,7 @@ fn text(view: &View) -> String {
     if let Some(lost) = check.lost.filter(|n| *n > 0) {
         lines.push(format!("according to the ledger, {lost} messages were published and not recorded"));
     }
-    lines.extend(check.definitions.iter().cloned());
+    lines.extend(check.definitions.iter().chain(&view.disputes).cloned());
     if lines.len() == 1 {
         let ledgers = if check.unjudged.is_empty() { ", ledgers" } else { "" };
         lines.push(format!("all records, checksums, indexes{ledgers} and definitions are valid"));

@@ -25,6 +25,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         info: recording.info(),
         run: recording.metadata(METADATA_RECORD).and_then(|record| record.get("run").cloned()),
         strangers: strangers::strangers(&recording),
+        disputes: strangers::disputes(&recording),
         several_runs: SeveralRuns::of_scenes(&recording).map(|s| s.to_string()),
         unaccounted: recording.unaccounted(),
     };
@@ -39,7 +40,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let warnings = recording.warnings();
     warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
-    Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
+    Ok(if warnings.is_empty() && view.disputes.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
 
 /// The recording and the recorder's metadata of its run.
@@ -51,6 +52,8 @@ struct View {
     run: Option<String>,
     /// Processes whose messages were left out.
     strangers: Vec<StrangerView>,
+    /// Why it is unknown which messages are right.
+    disputes: Vec<String>,
     /// That the recording has the scenes of several runs; null if it has one or none.
     several_runs: Option<String>,
     /// Files whose recorder was killed, or is still running: their messages are not in the counts of lost ones.
@@ -65,7 +68,12 @@ fn notes(view: &View) -> Vec<String> {
             path.display()
         )
     };
-    view.several_runs.iter().cloned().chain(view.unaccounted.iter().map(uncounted)).collect()
+    view.disputes
+        .iter()
+        .chain(&view.several_runs)
+        .cloned()
+        .chain(view.unaccounted.iter().map(uncounted))
+        .collect()
 }
 
 fn table(view: &View) -> String {

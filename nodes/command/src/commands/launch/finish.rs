@@ -60,7 +60,7 @@ pub(super) fn finish(
     let has = |node: NodeKind| children.iter().any(|c| c.plan.is(node));
     let unanswered = (has(NodeKind::FabricAnalyzer) && back.not_analysed > 0)
         || (has(NodeKind::EmtInversion) && back.not_inverted > 0);
-    let unused = back.refused > 0 || back.several_runs.is_some();
+    let unused = back.refused > 0 || back.several_runs.is_some() || back.disputed;
     if !missing.is_empty() || unanswered || unused {
         exit = worse(exit, Exit::DataLoss);
         back.complaints.extend(missing);

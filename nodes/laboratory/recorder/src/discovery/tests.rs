@@ -124,6 +124,7 @@ fn a_topic_that_was_found_and_of_which_nothing_came_is_silent() {
         recorded: published,
         lost: 0,
         repeated: 0,
+        conflicting: 0,
         redelivered: 0,
         writers: Vec::new(),
     };

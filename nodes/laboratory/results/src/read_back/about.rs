@@ -45,8 +45,12 @@ pub(super) struct About {
     stamp: Option<Time>,
     pub(super) report: Option<PackingReport>,
     report_stamp: Option<Time>,
+    /// Node of the first report.
+    report_by: Option<String>,
     /// Another report was sent, too.
     reports_differ: bool,
+    /// The node that sent it, if it is another one.
+    disputed_by: Option<String>,
     wave_speeds: Vec<(Identity, WaveSpeedsReading)>,
     answers: Vec<Answer>,
     /// What was sent and answered, by topic.
@@ -69,11 +73,21 @@ impl About {
 
     /// Notes on several results of one kind.
     pub(super) fn notes(&self) -> Vec<String> {
-        let of_reports = self.reports_differ.then(|| {
+        let of_reports = (self.reports_differ && self.disputed_by.is_none()).then(|| {
             "different reports of this packing were sent: that of the last is the one counted".to_owned()
         });
         let confused = self.data.iter().filter_map(|(topic, data)| data.confusion(topic));
         of_reports.into_iter().chain(confused).collect()
+    }
+
+    /// That two processes reported this packing differently.
+    pub(super) fn dispute(&self) -> Option<String> {
+        let (step, second) = (self.step, self.disputed_by.as_ref()?);
+        let first = self.report_by.as_deref().unwrap_or("an unknown process");
+        Some(format!(
+            "{first} and {second} sent different reports of the packing of step {step}: it is unknown which is right, \
+             and that of {first} is shown"
+        ))
     }
 
     /// Every measurement of wave speeds of this packing.
@@ -160,8 +174,14 @@ pub(super) fn enter(
                 sent(about, &topics::PACKING_REPORT, Identity::new("", stamp), by, recorded);
             }
             let report = PackingReport::try_from(&message).map_err(refused(step))?;
-            about.reports_differ |= about.report.as_ref().is_some_and(|known| *known != report);
-            (about.report, about.report_stamp) = (Some(report), Some(stamp));
+            let by = by.map(str::to_owned);
+            let differs = about.report.as_ref().is_some_and(|known| *known != report);
+            about.reports_differ |= differs;
+            if differs && by != about.report_by {
+                about.disputed_by = Some(by.unwrap_or_else(|| "an unknown process".to_owned()));
+                return Ok(step);
+            }
+            (about.report, about.report_stamp, about.report_by) = (Some(report), Some(stamp), by);
             Ok(step)
         }
         name if name == topics::MODULI.name => {

@@ -329,3 +329,23 @@ fn the_table_of_a_launch_has_a_row_for_every_shot_and_counts_those_that_it_leave
     let many = shown(200);
     assert!(many.contains("step 7: and 190 estimates more: summary.json has all"), "{many}");
 }
+
+#[test]
+fn two_nodes_that_report_a_packing_differently_are_named_and_the_first_is_shown() {
+    let mut made = Made::new();
+    let (packing, mut authors) = (lattice(true), Authors::default());
+    made.write("/packing", &to_cdr(&packing_message(&packing, "made", Vec::new())));
+    let own = report(&packing);
+    for (who, report) in [(1, own.clone()), (2, msg::PackingReport { size_spread: 0.5, ..own.clone() })] {
+        made.write("/packing_report", &to_cdr(&report));
+        authors.enter("/packing_report", made.sent, Guid([who; 16]));
+        let ledger = made.writer.as_mut().unwrap().ledger_mut();
+        ledger.report("/packing_report", Guid([who; 16]), 0);
+        ledger.name(Guid([who; 16]), &format!("/node{who}"));
+    }
+    let text = serde_json::to_string(&authors).unwrap();
+    made.writer.as_mut().unwrap().set_metadata(strangers::AUTHORS, &text);
+    let back = made.read();
+    assert!(back.disputed && back.complaints[0].starts_with("/node1 and /node2 sent different reports"));
+    assert_eq!(back.states[0].packing.report.size_spread.to_bits(), own.size_spread.to_bits());
+}

@@ -2,7 +2,7 @@
 
 use grainlab_core::Packing;
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
-use grainlab_msgs::{Topic, from_cdr, msg, topics};
+use grainlab_msgs::{Guid, Topic, from_cdr, msg, topics};
 use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, SubscriptionId, member_of};
 use grainlab_recorder::repeats::{Novelty, Repeats};
 use std::cell::RefCell;
@@ -108,8 +108,9 @@ impl Node for MemoryRecorder {
         for (topic, subscription) in &self.subscriptions {
             while let Some(sample) = bus.take(*subscription)? {
                 record.seen += 1;
-                let author = u64::from(member_of(&sample.info.writer.participant()));
-                match self.repeats.enter(topic, author, &sample.body) {
+                // A process that was started again counts as the one before it.
+                let author = Guid([member_of(&sample.info.writer.participant()); 16]);
+                match self.repeats.enter(topic, author, &sample.body, |_| true) {
                     Novelty::New => record.bodies.entry(topic.name).or_default().push(sample.body),
                     Novelty::Repeat => {}
                     Novelty::Contradiction { .. } => record.contradictions += 1,

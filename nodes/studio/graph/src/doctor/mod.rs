@@ -26,7 +26,8 @@ const LEAST: Duration = Duration::from_secs(1);
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example:\n  ROS_DOMAIN_ID=7 grainlab doctor\n\nExit 1 if something is wrong that keeps nodes from \
-                  working together, 0 if there are warnings or notes only."
+                  working together, 0 if there are warnings or notes only. Partitions \
+                  and exclusive ownership are not looked at: endpoints that these keep apart are not reported."
 )]
 pub struct Args {
     #[command(flatten)]

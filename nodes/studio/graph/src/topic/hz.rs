@@ -84,19 +84,19 @@ fn bandwidth_line(s: &Summary) -> String {
 }
 
 fn delay_line(s: &Summary) -> String {
-    let Some(transport) = s.transport else {
-        return if s.received == 0 {
-            few(s)
-        } else {
-            format!("{} without a time of publishing", count(s.received, "sample"))
-        };
-    };
+    if s.received == 0 {
+        return few(s);
+    }
     let micros = |m: super::stream::Moments| {
         let [mean, min, max] = [m.mean, m.min, m.max].map(|v| fixed(Some(1e6 * v), 1));
         format!("{mean} us on average, {min} to {max} us")
     };
     let age = s.age.map_or_else(String::new, |age| format!("; age of the stamps {}", micros(age)));
-    format!("{} samples, from the publisher to here {}{age}", s.received, micros(transport))
+    let transport = s.transport.map_or_else(
+        || " without a time of publishing".to_owned(),
+        |transport| format!(", from the publisher to here {}", micros(transport)),
+    );
+    format!("{}{transport}{age}", count(s.received, "sample"))
 }
 
 fn few(s: &Summary) -> String {
