@@ -39,7 +39,7 @@ pub(super) fn elastic_stiffness(m: &msg::ElasticStiffness) -> Result<ElasticStif
         CHECK.not_negative(&format!("stddev[{i}]"), *stddev)?;
     }
     let method = StiffnessMethod::ALL.into_iter().find(|method| code(*method) == m.method);
-    Ok(ElasticStiffness {
+    let read = ElasticStiffness {
         smooth: m.smooth,
         method: method.ok_or_else(|| {
             let known = "0 (frozen network), 2 (probe), 4 (prestressed network)";
@@ -54,5 +54,25 @@ pub(super) fn elastic_stiffness(m: &msg::ElasticStiffness) -> Result<ElasticStif
             uniform_rotation: matrix("uniform_rotation", &m.uniform_rotation)?,
             bulk_reuss: CHECK.optional_not_negative("bulk_reuss_bound", &m.bulk_reuss_bound)?,
         },
-    })
+    };
+    // Small strains of a simulation have errors of their own.
+    if read.method != StiffnessMethod::StrainProbe {
+        consistent(&read)?;
+    }
+    Ok(read)
+}
+
+/// A solved stiffness is symmetric, and relaxation makes it softer, both to the residual of its solve.
+fn consistent(s: &ElasticStiffness) -> Result<(), BoundaryError> {
+    let (c, (affine, bulk)) = (s.tensor.row_major(), (s.bounds.affine.bulk_voigt(), s.tensor.bulk_voigt()));
+    let largest = c.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    let slack = (1e-6 + 10.0 * s.residual) * largest;
+    for at in 0..36 {
+        let across = c[6 * (at % 6) + at / 6];
+        let symmetric = (c[at] - across).abs() <= slack;
+        CHECK.that(symmetric, &format!("stiffness[{at}]"), c[at], "that of the transposed entry")?;
+    }
+    let requirement = "at least the bulk modulus of the relaxed stiffness";
+    CHECK.that(affine + slack >= bulk, "affine (bulk modulus)", affine, requirement)?;
+    Ok(())
 }

@@ -64,6 +64,14 @@ impl TryFrom<&msg::PackingReport> for PackingReport {
         CHECK.header(&m.header)?;
         let contacts = contact_statistics(&m.contacts)?;
         let friction = CHECK.that(m.friction >= 0.0, "friction", m.friction, "0 or more")?;
+        let (elasticity, symmetry) =
+            (elasticity(m)?, CHECK.optional("symmetry", &m.symmetry, |_, s| symmetry(s))?);
+        if let (Elasticity::Jammed(stiffness), Some(symmetry)) = (&elasticity, &symmetry) {
+            let found = symmetry.moduli.stiffness().bulk_voigt();
+            let (expected, largest) = (stiffness.tensor.bulk_voigt(), symmetry.moduli.c11.abs());
+            let same = (found - expected).abs() <= 1e-6 * largest.max(expected.abs());
+            CHECK.that(same, "symmetry.moduli (bulk modulus)", found, "that of the stiffness")?;
+        }
         Ok(Self {
             step: m.source_step,
             material: CHECK.material(m.grain_shear_modulus, m.grain_poisson_ratio, m.grain_density)?,
@@ -82,8 +90,8 @@ impl TryFrom<&msg::PackingReport> for PackingReport {
             fabric: fabric(&m.fabric, contacts.contacts)?,
             stress_decomposition: stress_decomposition(&m.stress_decomposition, contacts.contacts)?,
             strain_ratios: CHECK.strain_ratios(&m.strain_ratios)?,
-            elasticity: elasticity(m)?,
-            symmetry: CHECK.optional("symmetry", &m.symmetry, |_, s| symmetry(s))?,
+            elasticity,
+            symmetry,
         })
     }
 }
