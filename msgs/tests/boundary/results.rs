@@ -255,12 +255,15 @@ fn each_fault_of_a_report_is_refused_by_name() {
             ),
             (|m| m.stiffness[0].residual = NAN, "PackingReport.stiffness.residual = NaN is refused"),
             // Numbers that contradict each other.
-            (|m| m.stiffness[0].stiffness[1] *= 1.5, "it must be that of the transposed entry"),
+            (
+                |m| m.stiffness[0].stiffness[1] *= 1.5,
+                "PackingReport.stiffness.stiffness[1] = 120000000.0 is refused: it must be that of the",
+            ),
             (
                 |m| m.stiffness[0].affine.fill(0.0),
-                "it must be at least the bulk modulus of the relaxed stiffness",
+                "PackingReport.stiffness.affine (bulk modulus) = 0.0 is refused: it must be at least",
             ),
-            (|m| m.symmetry[0].moduli.c11 *= 1.5, "it must be that of the stiffness"),
+            (|m| m.symmetry[0].moduli.c11 *= 1.5, "PackingReport.symmetry.moduli (bulk modulus) = "),
             (
                 |m| m.stiffness.push(Default::default()),
                 "PackingReport.stiffness has 2 entries and is refused: it must have 1 (or none, if it is not known)",
