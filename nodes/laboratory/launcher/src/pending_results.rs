@@ -97,6 +97,8 @@ pub(crate) struct PendingResults {
     /// Whether third-party programs run, which may publish wave speeds. If they published those of one packing, the run
     /// waits for those of its last packing.
     instruments: bool,
+    /// Names of those programs.
+    programs: Vec<String>,
 }
 
 impl PendingResults {
@@ -110,8 +112,18 @@ impl PendingResults {
             kinds.push(Kind::new(topics::MODULI.name, Source::Node(NodeKind::FabricAnalyzer)));
         }
         let inversions = plans.iter().filter(|p| p.is(NodeKind::EmtInversion)).count().max(1);
-        let instruments = !has(NodeKind::AcousticProbe) && plans.iter().any(|p| p.node.is_none());
-        Self { kinds, inversions, instruments }
+        let programs = plans.iter().filter(|p| p.node.is_none() && !has(NodeKind::AcousticProbe));
+        let programs: Vec<String> = programs.map(|p| p.name.clone()).collect();
+        Self { kinds, inversions, instruments: !programs.is_empty(), programs }
+    }
+
+    /// A sentence on third-party programs, if none of them sent wave speeds of any packing.
+    pub(crate) fn silent_programs(&self) -> Option<String> {
+        let sent = self.kinds.iter().any(|k| k.source == Source::Instrument);
+        let text = || {
+            format!("no wave speeds of a packing came from {} before the run ended", self.programs.join(", "))
+        };
+        (!sent && !self.programs.is_empty()).then(text)
     }
 
     /// The data of this topic about the packing of `step` were published.
@@ -271,11 +283,13 @@ mod tests {
             respawn: false,
         };
         let mut d = PendingResults::of(&[program]);
+        assert!(d.silent_programs().unwrap().contains("from instrument before"));
         d.remember(&RecordedSpeeds { measured: [7, 9].into(), inverted: [7].into() });
         for step in [7, 9, 11] {
             d.measured("moduli", step);
             d.inverted("moduli", step, 2);
         }
+        assert_eq!(d.silent_programs(), None);
         assert_eq!(d.state_of(7), ResultState::Settling);
         assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));
         assert_eq!(d.state_of(11), ResultState::Open(Source::Instrument));

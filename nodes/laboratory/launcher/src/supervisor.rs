@@ -290,6 +290,9 @@ impl Supervisor {
     /// Ends a complete run, but waits until a stopped process continues and has had time to catch up: its writers keep
     /// the samples it missed only until they leave.
     async fn caught_up(&mut self) -> Exit {
+        if let Some(text) = self.pending.silent_programs() {
+            self.progress.say(&text);
+        }
         self.look_for_stopped();
         let behind = self.stopped.any_within(CATCHES_UP_WITHIN);
         let mut catching_up = TimeLimit::new(if behind { CATCHES_UP_WITHIN } else { Duration::ZERO });

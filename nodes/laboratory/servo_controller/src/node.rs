@@ -27,6 +27,9 @@ pub struct ServoController {
     strain_rate: Publisher<StrainRate>,
     answered: u64,
     unanswered: u64,
+    /// Sequence number of the next stress, and the number of those before it that did not arrive.
+    next: Option<u64>,
+    missed: u64,
     /// The fault of the latest stress, if any.
     trouble: Option<String>,
 }
@@ -43,8 +46,24 @@ impl ServoController {
             strain_rate: Publisher::advertise(bus, &topics::STRAIN_RATE)?,
             answered: 0,
             unanswered: 0,
+            next: None,
+            missed: 0,
             trouble: None,
         })
+    }
+
+    /// Counts stresses that did not arrive. The lockstep repeats them; a player does not.
+    fn note_gap(&mut self, sequence: u64) {
+        let gap = self.next.map_or(0, |next| sequence.saturating_sub(next));
+        self.next = Some(sequence.wrapping_add(1));
+        self.missed += gap;
+        // Not every time, for a reader that is always behind.
+        if gap > 0 && self.missed >= 2 * (self.missed - gap) {
+            log::warn!(
+                "{gap} stresses before {sequence} did not arrive ({} so far): they are not answered",
+                self.missed
+            );
+        }
     }
 
     fn reply(&mut self, bus: &mut dyn Bus, stress: &Stress, request: SampleId) -> Result<(), BusError> {
@@ -85,6 +104,7 @@ impl Node for ServoController {
             }
         }
         while let Some((stress, info)) = self.stress.take_valid(bus)? {
+            self.note_gap(stress.sequence);
             if self.ready {
                 self.reply(bus, &stress, info.id())?;
             } else {
@@ -99,9 +119,10 @@ impl Node for ServoController {
 
     fn health(&self) -> Health {
         let health = match &self.trouble {
+            None if self.missed > 0 => Health::warn(format!("{} stresses did not arrive", self.missed)),
             None => Health::ok(format!("{} answers", self.answered)),
             Some(trouble) => Health::warn(trouble.clone()),
         };
-        health.with("answered", self.answered).with("unanswered", self.unanswered)
+        health.with("answered", self.answered).with("unanswered", self.unanswered).with("missed", self.missed)
     }
 }

@@ -115,6 +115,15 @@ fn requests_that_cannot_be_answered_are_counted_and_the_node_continues() {
     servo.step(&mut bus).unwrap();
     assert_eq!(asker.answers().len(), 1);
     assert_eq!(servo.health().level, Level::Ok);
+    // Those between did not arrive: a player does not repeat them.
+    asker.stress.publish(&mut asker.bus, &question(7)).unwrap();
+    servo.step(&mut bus).unwrap();
+    let health = servo.health();
+    assert!(
+        health.level == Level::Warn && health.message.contains("3 stresses did not arrive"),
+        "{}",
+        health.message
+    );
 }
 
 #[test]
