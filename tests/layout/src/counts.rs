@@ -8,12 +8,12 @@ use syn::{Item, UseTree, Visibility};
 
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
-const LABORATORY: usize = 56_000;
-const STUDIO_AND_COMMAND: usize = 28_900;
-const TESTS: usize = 45_100;
+const LABORATORY: usize = 56_380;
+const STUDIO_AND_COMMAND: usize = 29_100;
+const TESTS: usize = 45_830;
 
 /// Most comments that begin with a word that names nothing.
-const HEADLESS: usize = 1_085;
+const HEADLESS: usize = 1_081;
 
 /// First words that leave open what is described.
 const OPENINGS: [&str; 9] = ["What", "How", "Where", "Which", "Whether", "Its", "Their", "Of", "The same"];

@@ -22,7 +22,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Whether the claim holds for engines of `factory`.
+    /// Tests the claim on engines of `factory`.
     ///
     /// # Errors
     /// The claim, and what was found.

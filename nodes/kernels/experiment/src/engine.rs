@@ -6,7 +6,7 @@ use grainlab_core::{Cell, Mat3, Packing};
 use grainlab_dem::{Compute, EnergyBalance, EngineSettings};
 use std::fmt::Debug;
 
-/// What an engine measures on its present contacts.
+/// Measurements of an engine on its present contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observables {
     /// Love–Weber stress of the elastic contact forces, Pa, positive in compression.

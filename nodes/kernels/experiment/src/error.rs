@@ -11,7 +11,7 @@ pub enum ExperimentError {
     /// Another engine failed.
     #[error("{engine}: {reason}")]
     OtherEngine {
-        /// Which engine.
+        /// Name of the engine.
         engine: String,
         /// Why, and what to do.
         reason: String,

@@ -34,7 +34,7 @@ pub(crate) fn at_random(scene: &Scene) -> Result<Packing, ExperimentError> {
     })
 }
 
-/// Whether the grains of a phase are hard spheres.
+/// True for a phase of hard spheres.
 pub(crate) fn is_event_driven(phase: &Phase) -> bool {
     matches!(phase.kind, PhaseKind::Gas { method: GasMethod::EventDriven, .. })
 }

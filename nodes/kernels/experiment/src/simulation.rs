@@ -67,7 +67,7 @@ impl Simulation {
         Self::with_engine(scene, Arc::new(Dem))
     }
 
-    /// The same with another engine, which takes over where the event-driven gas ends.
+    /// The start of a scene with another engine, which takes over where the event-driven gas ends.
     pub fn with_engine(scene: Scene, factory: Arc<dyn EngineFactory>) -> Result<Self, ExperimentError> {
         let packing = at_random(&scene)?;
         let mut run = Self::begin(scene, factory, &packing)?;
@@ -80,7 +80,7 @@ impl Simulation {
         Self::from_packing_with_engine(scene, packing, Arc::new(Dem))
     }
 
-    /// The same with another engine.
+    /// A start from a packing with another engine.
     pub fn from_packing_with_engine(
         scene: Scene,
         packing: &Packing,
@@ -130,7 +130,7 @@ impl Simulation {
         Self::resume_with_engine(scene, packing, run_state, Arc::new(Dem))
     }
 
-    /// The same with another engine.
+    /// A resumed run with another engine.
     pub fn resume_with_engine(
         scene: Scene,
         packing: &Packing,

@@ -23,7 +23,7 @@ pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {
     check_stability(input)
 }
 
-/// Whether the law of `input` is stable with its tangent stiffness and control interval: a part of the checks of
+/// Checks that the law of `input` is stable with its tangent stiffness and control interval: a part of the checks of
 /// [`crate::control`], for callers that need the result earlier.
 ///
 /// Without a stress target there is no control loop, and any law is accepted. Without a tangent stiffness only the integral
