@@ -252,7 +252,7 @@ impl ReadBack {
                 (sent, open) => {
                     self.not_inverted += open;
                     self.complaints
-                        .push(format!("{open} of {sent} {topic} of step {step} were not inverted"));
+                        .push(format!("{open} of {sent} {topic} of step {step} have no estimate of their own in the recording"));
                 }
             }
         }

@@ -216,7 +216,10 @@ fn data_without_an_answer_are_counted() {
     }
     let back = made.read();
     assert_eq!(back.not_inverted, 2);
-    assert_eq!(back.complaints, ["2 of 5 wave_speeds of step 7 were not inverted"]);
+    assert_eq!(
+        back.complaints,
+        ["2 of 5 wave_speeds of step 7 have no estimate of their own in the recording"]
+    );
 }
 
 #[test]
