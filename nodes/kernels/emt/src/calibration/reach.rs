@@ -17,12 +17,13 @@ const OUTSIDE: f64 = 1.8;
 /// random packings do not reach the ends of the ranges that they were drawn from.
 const TOLERANCE: f64 = 0.02;
 
-/// Share of a range beyond each end up to which nothing is said: for q/p, z and p a rounding; the packings taught do not reach
-/// the stated ends of ε, of the sizes and of k_t/k_n.
+/// Share of a range beyond each end up to which nothing is said: for q/p and z a rounding; the packings taught do not reach
+/// the stated ends of ε, of the sizes, of k_t/k_n and of p/E*.
 const ROUNDING: f64 = 1e-3;
 const EPS_END: f64 = 0.015;
 const SIZE_END: f64 = 0.007;
 const RATIO_END: f64 = 0.006;
+const PRESSURE_END: f64 = 0.017;
 
 /// Least width of a range by which distances from it are measured: of ln p, of z, and of the others.
 const LN_WIDTH: f64 = 1.0;
@@ -83,7 +84,7 @@ impl Reach {
         let size_spread = state.size_variance.max(0.0).sqrt();
         let stiffness_ratio = state.stiffness_ratio + REFERENCE_STIFFNESS_RATIO;
         [
-            beyond("p/E*", pressure, self.pressure, f64::ln, (LN_WIDTH, ROUNDING)),
+            beyond("p/E*", pressure, self.pressure, f64::ln, (LN_WIDTH, PRESSURE_END)),
             beyond("k_t/k_n", stiffness_ratio, self.stiffness_ratio, |v| v, (WIDTH, RATIO_END)),
             beyond("the spread of the grain sizes", size_spread, self.size_spread, |v| v, (WIDTH, SIZE_END)),
             beyond("q/p", state.stress_ratio, self.stress_ratio, |v| v, (WIDTH, ROUNDING)),
