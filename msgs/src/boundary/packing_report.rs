@@ -96,7 +96,7 @@ impl TryFrom<&msg::PackingReport> for PackingReport {
     }
 }
 
-/// The stiffness, or the reason why there is none: exactly one of them must be stated.
+/// The stiffness, or the reason for its absence. A message must state exactly one of them.
 fn elasticity(m: &msg::PackingReport) -> Result<Elasticity, BoundaryError> {
     let stiffness = CHECK.optional("stiffness", &m.stiffness, |_, s| elastic_stiffness(s))?;
     let grains = m.contacts.grains as usize;

@@ -101,7 +101,7 @@ pub trait ParticleEngine: Debug + Send + Sync {
         false
     }
 
-    /// Returns to the state that was kept, at most once. False: there is none.
+    /// Returns to the state that [`save`](Self::save) kept, and drops the copy. False: no state is kept.
     fn restore(&mut self) -> bool {
         false
     }

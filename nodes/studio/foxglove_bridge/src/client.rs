@@ -79,7 +79,7 @@ impl Client {
         Ok(())
     }
 
-    /// Ends a subscription, and drops its messages; false if there is none.
+    /// Ends a subscription, and drops its messages. False: there is no such subscription.
     pub(crate) fn unsubscribe(&mut self, id: u32) -> bool {
         let before = self.subscriptions.len();
         self.subscriptions.retain(|_, used| *used != id);

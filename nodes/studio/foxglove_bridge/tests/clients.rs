@@ -238,7 +238,7 @@ fn a_fault_of_a_client_is_told_to_it_and_the_others_are_served() {
         assert_eq!((&told["op"], &told["level"]), (&json!("status"), &json!(level)), "{told}");
         assert!(told["message"].as_str().unwrap().contains(answer), "{told}");
     }
-    // No handshake; a text that is too long; a frame that is none.
+    // No handshake; a text that is too long; an invalid frame.
     let mut noise = bridge.socket();
     noise.write_all(&[0; 64]).unwrap();
     let _ = noise.read(&mut [0; 64]);
