@@ -4,8 +4,10 @@ use super::check::Check;
 use super::error::BoundaryError;
 use crate::msg::Estimate;
 use grainlab_core::results::InferredQuantity;
+use serde::{Serialize, Serializer};
+use std::ops::Index;
 
-/// The data, in the order of every row of [`Inferred::information`].
+/// The data, in the order of every row of `information`.
 pub const DATA: [&str; 13] = [
     "G12",
     "G13",
@@ -22,81 +24,92 @@ pub const DATA: [&str; 13] = [
     "grain Poisson ratio",
 ];
 
-/// The checked result of one model.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EstimateReading {
+/// The result of one model: checked, if it is from a message. As JSON it has the stable keys of `results[]`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModelResult {
     /// Name of the model.
     pub model: String,
     /// Name of the calibration.
     pub calibration: String,
-    /// Status of the inversion.
-    pub status: EstimateStatus,
+    /// Inferred values; `None`: undetermined, or not part of the model.
+    #[serde(flatten)]
+    pub values: Quantities<Option<f64>>,
+    /// Standard deviations, from data and model.
+    pub sigma: Quantities<Option<f64>>,
+    /// Their part due to the model.
+    pub sigma_model: Quantities<Option<f64>>,
+    /// Credible intervals.
+    pub interval: Interval,
+    /// Misfit: weighted sum of squares, by errors of data and model; `None` without degrees of freedom.
+    pub chi_square: Option<f64>,
+    /// Number of data minus number of unknowns; `None` without a solution.
+    pub degrees_of_freedom: Option<usize>,
+    /// Condition number, 1 or more: how much the effects of errors of the data differ between combinations.
+    pub condition_number: Option<f64>,
+    /// `ok`, `extrapolated`, `contradictory` or `unknown`.
+    pub status: &'static str,
     /// The strain ratio γ/Δ that the model used; `None` if it uses none.
-    pub strain_ratio: Option<StrainRatio>,
-    /// The values; `None` where the status is `Unknown`.
-    pub inferred: Option<Inferred>,
+    pub gamma_over_delta: Option<f64>,
+    /// Its source: `total`, `elastic`, `contact`: one of the three measured ones; `given`; `zero`: unknown, taken as 0.
+    pub gamma_over_delta_source: Option<&'static str>,
     /// Notes.
     pub warnings: Vec<String>,
 }
 
-/// Status of an inversion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EstimateStatus {
-    /// All unknowns of the model, inside its range.
-    Ok,
-    /// A solution outside that range, or some unknowns of the model alone.
-    Extrapolated,
-    /// The data contradict each other or the model.
-    Contradictory,
-    /// No answer.
-    Unknown,
-}
+/// One value per quantity of the microstructure, in the order of [`InferredQuantity::ALL`]; as JSON by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Quantities<T>(pub [T; N]);
 
-/// A strain ratio γ/Δ with its source.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StrainRatio {
-    /// γ/Δ, dimensionless.
-    pub value: f64,
-    /// `total`, `elastic` or `contact`: one of the three measured ones; `given`; `zero`: unknown, taken as 0.
-    pub source: &'static str,
-}
-
-/// Inferred values; arrays have the order of [`InferredQuantity::ALL`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inferred {
-    /// The values, at least one of them known; `None`: undetermined, or not part of the model.
-    pub values: [Option<f64>; N],
-    /// Covariance from data and model, row-major; 0 for unknown values.
-    pub covariance: Option<[f64; N * N]>,
-    /// Its part due to the model.
-    pub covariance_model: Option<[f64; N * N]>,
-    /// Credible intervals.
-    pub interval: Option<Interval>,
-    /// Misfit if there are more data than unknowns; else `None`.
-    pub misfit: Option<Misfit>,
-    /// Condition number, 1 or more: how much the effects of errors of the data differ between combinations.
-    pub condition_number: Option<f64>,
-    /// Contribution of each of [`DATA`] to the variance of each quantity from the data; the sum of a row is
-    /// 1.
-    pub information: [Option<[f64; DATA.len()]>; N],
-}
-
-/// Credible intervals.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Central intervals, low and high.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Interval {
-    /// Probability inside each, between 0 and 1.
-    pub level: f64,
-    /// Low and high of each known quantity.
-    pub bounds: [Option<[f64; 2]>; N],
+    /// Probability inside each.
+    pub level: Option<f64>,
+    /// Low and high of each quantity.
+    #[serde(flatten)]
+    pub bounds: Quantities<Option<[f64; 2]>>,
 }
 
-/// Misfit of the data about the best structure.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Misfit {
-    /// Weighted sum of squares, by errors of data and model.
-    pub chi_square: f64,
-    /// Number of data minus number of unknowns, 1 or more.
-    pub degrees_of_freedom: u32,
+impl<T> Quantities<T> {
+    /// Each by this function.
+    pub fn of(value: impl FnMut(InferredQuantity) -> T) -> Self {
+        Self(InferredQuantity::ALL.map(value))
+    }
+}
+
+impl<T> Index<InferredQuantity> for Quantities<T> {
+    type Output = T;
+
+    fn index(&self, quantity: InferredQuantity) -> &T {
+        &self.0[quantity as usize]
+    }
+}
+
+impl<T: Serialize> Serialize for Quantities<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(InferredQuantity::ALL.map(InferredQuantity::name).into_iter().zip(&self.0))
+    }
+}
+
+impl ModelResult {
+    /// A model without an estimate, and the reason.
+    pub fn unknown(model: &str, calibration: &str, warnings: Vec<String>) -> Self {
+        Self {
+            model: model.to_owned(),
+            calibration: calibration.to_owned(),
+            values: Quantities::default(),
+            sigma: Quantities::default(),
+            sigma_model: Quantities::default(),
+            interval: Interval::default(),
+            chi_square: None,
+            degrees_of_freedom: None,
+            condition_number: None,
+            status: "unknown",
+            gamma_over_delta: None,
+            gamma_over_delta_source: None,
+            warnings,
+        }
+    }
 }
 
 const CHECK: Check = Check("Estimate");
@@ -115,32 +128,53 @@ impl Estimate {
     }
 }
 
-impl TryFrom<&Estimate> for EstimateReading {
+impl TryFrom<&Estimate> for ModelResult {
     type Error = BoundaryError;
 
     fn try_from(m: &Estimate) -> Result<Self, BoundaryError> {
         let status = match m.status {
-            Estimate::STATUS_OK => EstimateStatus::Ok,
-            Estimate::STATUS_EXTRAPOLATED => EstimateStatus::Extrapolated,
-            Estimate::STATUS_CONTRADICTORY => EstimateStatus::Contradictory,
-            Estimate::STATUS_UNKNOWN => EstimateStatus::Unknown,
+            Estimate::STATUS_OK => "ok",
+            Estimate::STATUS_EXTRAPOLATED => "extrapolated",
+            Estimate::STATUS_CONTRADICTORY => "contradictory",
+            Estimate::STATUS_UNKNOWN => "unknown",
             other => {
                 let allowed = "0 (ok), 1 (extrapolated), 2 (contradictory), 3 (unknown)";
                 return Err(CHECK.code("status", other, allowed));
             }
         };
-        Ok(Self {
-            model: m.model.clone(),
-            calibration: m.calibration.clone(),
+        let (gamma_over_delta, gamma_over_delta_source) = strain_ratio(m)?;
+        let unknown = Self {
             status,
-            strain_ratio: strain_ratio(m)?,
-            inferred: if status == EstimateStatus::Unknown { None } else { Some(inferred(m)?) },
-            warnings: m.warnings.clone(),
+            gamma_over_delta,
+            gamma_over_delta_source,
+            ..Self::unknown(&m.model, &m.calibration, m.warnings.clone())
+        };
+        if m.status == Estimate::STATUS_UNKNOWN {
+            return Ok(unknown);
+        }
+        let values = values(m)?;
+        let known = values.map(|v| v.is_some());
+        let sigma = standard_deviations("covariance", &m.covariance, &known)?;
+        let sigma_model = standard_deviations("covariance_model", &m.covariance_model, &known)?;
+        part_is_at_most_the_whole(m)?;
+        let interval = interval(m, &known)?;
+        let chi_square = chi_square(m)?;
+        let condition_number = condition_number(m)?;
+        information(m, &known)?;
+        Ok(Self {
+            values: Quantities(values),
+            sigma,
+            sigma_model,
+            interval,
+            chi_square,
+            degrees_of_freedom: Some(m.degrees_of_freedom as usize),
+            condition_number,
+            ..unknown
         })
     }
 }
 
-fn strain_ratio(m: &Estimate) -> Result<Option<StrainRatio>, BoundaryError> {
+fn strain_ratio(m: &Estimate) -> Result<(Option<f64>, Option<&'static str>), BoundaryError> {
     const SOURCES: [&str; 6] = ["total", "elastic", "contact", "given", "zero", "none"];
     let listed = "total, elastic, contact, given, zero, none";
     let source = CHECK.word("gamma_over_delta_source", &m.gamma_over_delta_source, &SOURCES, listed)?;
@@ -148,21 +182,7 @@ fn strain_ratio(m: &Estimate) -> Result<Option<StrainRatio>, BoundaryError> {
     let expected = usize::from(source != "none");
     let reason = "one strain ratio, or none where its source is none";
     CHECK.length("gamma_over_delta", m.gamma_over_delta.len(), expected, reason)?;
-    Ok(value.map(|value| StrainRatio { value, source }))
-}
-
-fn inferred(m: &Estimate) -> Result<Inferred, BoundaryError> {
-    let values = values(m)?;
-    let known = values.map(|v| v.is_some());
-    Ok(Inferred {
-        values,
-        covariance: covariance("covariance", &m.covariance, &known)?,
-        covariance_model: covariance_model(m, &known)?,
-        interval: interval(m, &known)?,
-        misfit: misfit(m)?,
-        condition_number: condition_number(m)?,
-        information: information(m, &known)?,
-    })
+    Ok((value, value.map(|_| source)))
 }
 
 fn values(m: &Estimate) -> Result<[Option<f64>; N], BoundaryError> {
@@ -178,34 +198,36 @@ fn values(m: &Estimate) -> Result<[Option<f64>; N], BoundaryError> {
 /// The value of every entry that belongs to an unknown quantity.
 const NOTHING: &str = "0, because its quantity is not known";
 
-fn covariance(
+fn standard_deviations(
     field: &'static str,
     values: &[f64],
     known: &[bool; N],
-) -> Result<Option<[f64; N * N]>, BoundaryError> {
-    let checked = CHECK.covariance(field, values)?;
+) -> Result<Quantities<Option<f64>>, BoundaryError> {
+    let checked: Option<[f64; N * N]> = CHECK.covariance(field, values)?;
     for (at, value) in values.iter().enumerate() {
         let both = known[at / N] && known[at % N];
         CHECK.that(both || *value == 0.0, &format!("{field}[{at}]"), *value, NOTHING)?;
     }
-    Ok(checked)
+    Ok(Quantities::of(|q| {
+        let variance = checked.filter(|_| known[q as usize])?[(N + 1) * q as usize];
+        Some(variance.sqrt())
+    }))
 }
 
-fn covariance_model(m: &Estimate, known: &[bool; N]) -> Result<Option<[f64; N * N]>, BoundaryError> {
-    let part = covariance("covariance_model", &m.covariance_model, known)?;
+fn part_is_at_most_the_whole(m: &Estimate) -> Result<(), BoundaryError> {
     for at in (0..m.covariance_model.len()).step_by(N + 1) {
         let whole = m.covariance.get(at).copied().unwrap_or_default();
         let part = m.covariance_model[at];
         let fits = part <= whole * (1.0 + 1e-9);
         CHECK.that(fits, &format!("covariance_model[{at}]"), part, "at most the same entry of covariance")?;
     }
-    Ok(part)
+    Ok(())
 }
 
-fn interval(m: &Estimate, known: &[bool; N]) -> Result<Option<Interval>, BoundaryError> {
+fn interval(m: &Estimate, known: &[bool; N]) -> Result<Interval, BoundaryError> {
     let level = CHECK.share("credible_level", m.credible_level)?;
     if level == 0.0 {
-        return Ok(None);
+        return Ok(Interval::default());
     }
     CHECK.all_finite("interval", &m.interval)?;
     let ends = CHECK.array::<{ 2 * N }>("interval", &m.interval)?.unwrap_or_default();
@@ -221,16 +243,16 @@ fn interval(m: &Estimate, known: &[bool; N]) -> Result<Option<Interval>, Boundar
             CHECK.that(low == 0.0 && high == 0.0, &name, low, requirement)?;
         }
     }
-    Ok(Some(Interval { level, bounds }))
+    Ok(Interval { level: Some(level), bounds: Quantities(bounds) })
 }
 
-fn misfit(m: &Estimate) -> Result<Option<Misfit>, BoundaryError> {
+fn chi_square(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
     let chi_square = CHECK.not_negative("chi_square", m.chi_square)?;
     if m.degrees_of_freedom == 0 {
         CHECK.that(chi_square == 0.0, "chi_square", chi_square, "0 where degrees_of_freedom is 0")?;
         return Ok(None);
     }
-    Ok(Some(Misfit { chi_square, degrees_of_freedom: m.degrees_of_freedom }))
+    Ok(Some(chi_square))
 }
 
 fn condition_number(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
@@ -239,21 +261,17 @@ fn condition_number(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
     })
 }
 
-fn information(m: &Estimate, known: &[bool; N]) -> Result<[Option<[f64; DATA.len()]>; N], BoundaryError> {
+fn information(m: &Estimate, known: &[bool; N]) -> Result<(), BoundaryError> {
     CHECK.all_finite("information", &m.information)?;
-    let mut rows = [None; N];
-    for (i, row) in rows.iter_mut().enumerate() {
+    for (i, shares) in m.information.chunks_exact(DATA.len()).enumerate() {
         let start = DATA.len() * i;
-        let shares: [f64; DATA.len()] = std::array::from_fn(|j| m.information[start + j]);
-        if let Some(j) = shares.iter().position(|s| *s != 0.0) {
-            CHECK.that(known[i], &format!("information[{}]", start + j), shares[j], NOTHING)?;
-            // Contributions of correlated data may be large and cancel, so that rounding affects the sum.
-            let slack = 1e-6 * shares.iter().map(|s| s.abs()).sum::<f64>();
-            let (sum, name) =
-                (shares.iter().sum::<f64>(), format!("sum of information[{start}..{}]", start + DATA.len()));
-            CHECK.that((sum - 1.0).abs() <= slack, &name, sum, "1, or the row all 0 if unknown")?;
-            *row = Some(shares);
-        }
+        let Some(j) = shares.iter().position(|s| *s != 0.0) else { continue };
+        CHECK.that(known[i], &format!("information[{}]", start + j), shares[j], NOTHING)?;
+        // Contributions of correlated data may be large and cancel, so that rounding affects the sum.
+        let slack = 1e-6 * shares.iter().map(|s| s.abs()).sum::<f64>();
+        let (sum, name) =
+            (shares.iter().sum::<f64>(), format!("sum of information[{start}..{}]", start + DATA.len()));
+        CHECK.that((sum - 1.0).abs() <= slack, &name, sum, "1, or the row all 0 if unknown")?;
     }
-    Ok(rows)
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! `Microstructure`: the inferred microstructure.
 
 use super::error::BoundaryError;
-use super::estimate::EstimateReading;
+use super::estimate::ModelResult;
 use crate::msg::Microstructure;
 
 /// The checked estimates from one set of data.
@@ -14,7 +14,7 @@ pub struct MicrostructureReading {
     /// Topic of the data.
     pub source: String,
     /// One estimate per model.
-    pub estimates: Vec<EstimateReading>,
+    pub estimates: Vec<ModelResult>,
 }
 
 impl TryFrom<&Microstructure> for MicrostructureReading {
@@ -26,7 +26,7 @@ impl TryFrom<&Microstructure> for MicrostructureReading {
             name: m.name.clone(),
             source_step: m.source_step,
             source: m.source.clone(),
-            estimates: m.estimates.iter().map(EstimateReading::try_from).collect::<Result<_, _>>()?,
+            estimates: m.estimates.iter().map(ModelResult::try_from).collect::<Result<_, _>>()?,
         })
     }
 }

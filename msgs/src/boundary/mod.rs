@@ -24,7 +24,7 @@ mod waveform;
 
 pub use energy::EnergyReading;
 pub use error::BoundaryError;
-pub use estimate::{DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, StrainRatio};
+pub use estimate::{DATA, Interval, ModelResult, Quantities};
 pub use microstructure::MicrostructureReading;
 pub use moduli::ModuliReading;
 pub use packing::{packing_header, packing_message};

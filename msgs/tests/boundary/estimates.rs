@@ -1,6 +1,6 @@
 use super::refuses;
 use grainlab_core::results::InferredQuantity;
-use grainlab_msgs::boundary::{DATA, EstimateStatus, Interval, MicrostructureReading, Misfit, StrainRatio};
+use grainlab_msgs::boundary::{DATA, Interval, MicrostructureReading, ModelResult, Quantities};
 use grainlab_msgs::msg::{Estimate, Microstructure};
 use grainlab_msgs::{from_cdr, to_cdr};
 
@@ -42,7 +42,7 @@ fn message(estimates: Vec<Estimate>) -> Microstructure {
     Microstructure { source: "moduli".into(), estimates, ..Microstructure::default() }
 }
 
-fn read(estimate: Estimate) -> grainlab_msgs::boundary::EstimateReading {
+fn read(estimate: Estimate) -> ModelResult {
     let received: Microstructure = from_cdr(&to_cdr(&message(vec![estimate]))).unwrap();
     MicrostructureReading::try_from(&received).unwrap().estimates.remove(0)
 }
@@ -50,29 +50,24 @@ fn read(estimate: Estimate) -> grainlab_msgs::boundary::EstimateReading {
 #[test]
 fn an_estimate_has_none_where_the_model_gives_no_value() {
     let e = read(estimate());
-    assert_eq!((e.model.as_str(), e.calibration.as_str(), e.status), ("ratio", "paper", EstimateStatus::Ok));
-    assert_eq!(e.strain_ratio, Some(StrainRatio { value: -0.0623, source: "total" }));
-    let found = e.inferred.unwrap();
-    assert_eq!(found.values, [Some(5.2), Some(5.1), None, Some(0.06), None]);
-    assert_eq!((found.covariance.unwrap()[1], found.covariance_model.unwrap()[0]), (0.004, 0.005));
-    let bounds = [Some([5.1, 5.3]), Some([4.9, 5.3]), None, Some([0.05, 0.07]), None];
-    assert_eq!(found.interval, Some(Interval { level: 0.68, bounds }));
-    assert_eq!(found.misfit, Some(Misfit { chi_square: 1.5, degrees_of_freedom: 2 }));
-    assert_eq!(found.condition_number, Some(12.0));
-    let mut of_eps = [0.0; DATA.len()];
-    of_eps[..3].copy_from_slice(&[0.75, 0.5, -0.25]);
-    assert_eq!(found.information, [None, None, None, Some(of_eps), None]);
+    assert_eq!((e.model.as_str(), e.calibration.as_str(), e.status), ("ratio", "paper", "ok"));
+    assert_eq!((e.gamma_over_delta, e.gamma_over_delta_source), (Some(-0.0623), Some("total")));
+    assert_eq!(e.values.0, [Some(5.2), Some(5.1), None, Some(0.06), None]);
+    assert_eq!(e.sigma.0, [Some(0.1), Some(0.2), None, Some(0.01), None]);
+    assert_eq!(e.sigma_model.0.map(|s| s.map(|s| s * s)), [Some(0.005), Some(0.02), None, Some(5e-5), None]);
+    let bounds = Quantities([Some([5.1, 5.3]), Some([4.9, 5.3]), None, Some([0.05, 0.07]), None]);
+    assert_eq!(e.interval, Interval { level: Some(0.68), bounds });
+    assert_eq!((e.chi_square, e.degrees_of_freedom, e.condition_number), (Some(1.5), Some(2), Some(12.0)));
 }
 
 #[test]
 fn what_is_left_out_is_not_known_and_a_zero_is_zero() {
     let bare = Estimate { gamma_over_delta_source: "none".into(), eps: vec![0.0], ..Estimate::default() };
     let e = read(bare);
-    assert_eq!(e.strain_ratio, None);
-    let found = e.inferred.unwrap();
-    assert_eq!(found.values, [None, None, None, Some(0.0), None]);
-    assert_eq!((found.covariance, found.covariance_model, found.interval), (None, None, None));
-    assert_eq!((found.misfit, found.condition_number, found.information), (None, None, [None; 5]));
+    assert_eq!((e.gamma_over_delta, e.gamma_over_delta_source), (None, None));
+    assert_eq!(e.values.0, [None, None, None, Some(0.0), None]);
+    assert_eq!((e.sigma.0, e.sigma_model.0, e.interval), ([None; 5], [None; 5], Interval::default()));
+    assert_eq!((e.chi_square, e.degrees_of_freedom, e.condition_number), (None, Some(0), None));
 }
 
 #[test]
@@ -83,9 +78,8 @@ fn each_quantity_is_read_from_its_own_field() {
     for (i, field) in fields.into_iter().enumerate() {
         let mut e = Estimate { gamma_over_delta_source: "none".into(), ..Estimate::default() };
         field(&mut e).push(0.5);
-        let found = read(e.clone()).inferred.unwrap();
         let expected: Vec<Option<f64>> = (0..5).map(|j| (j == i).then_some(0.5)).collect();
-        assert_eq!(found.values.to_vec(), expected);
+        assert_eq!(read(e.clone()).values.0.to_vec(), expected);
         field(&mut e)[0] = NAN;
         let refused = MicrostructureReading::try_from(&message(vec![e])).unwrap_err().to_string();
         assert_eq!(
@@ -97,16 +91,15 @@ fn each_quantity_is_read_from_its_own_field() {
 
 #[test]
 fn an_estimate_has_values_unless_it_is_unknown() {
-    for (status, expected) in [
-        (Estimate::STATUS_EXTRAPOLATED, EstimateStatus::Extrapolated),
-        (Estimate::STATUS_CONTRADICTORY, EstimateStatus::Contradictory),
-    ] {
+    for (status, expected) in
+        [(Estimate::STATUS_EXTRAPOLATED, "extrapolated"), (Estimate::STATUS_CONTRADICTORY, "contradictory")]
+    {
         let e = read(Estimate { status, ..estimate() });
-        assert_eq!((e.status, e.inferred.map(|i| i.values[0])), (expected, Some(Some(5.2))));
+        assert_eq!((e.status, e.values.0[0]), (expected, Some(5.2)));
     }
     let e = read(Estimate { status: Estimate::STATUS_UNKNOWN, k: vec![NAN], ..estimate() });
-    assert_eq!((e.status, e.inferred), (EstimateStatus::Unknown, None));
-    assert_eq!(e.strain_ratio.map(|g| g.value), Some(-0.0623), "what it was fed with stays");
+    assert_eq!((e.status, e.values, e.degrees_of_freedom), ("unknown", Quantities::default(), None));
+    assert_eq!(e.gamma_over_delta, Some(-0.0623), "what it was fed with stays");
 }
 
 #[test]

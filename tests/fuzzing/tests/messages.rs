@@ -5,8 +5,8 @@ use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::PackingReport;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::{
-    EstimateReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer,
-    WaveSpeedsReading, WaveformReading, packing_message,
+    MicrostructureReading, ModelResult, ModuliReading, RunStateReading, StrainRateAnswer, WaveSpeedsReading,
+    WaveformReading, packing_message,
 };
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::{Message, from_cdr, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs, to_cdr};
@@ -84,7 +84,7 @@ fn every_message_gives_a_value_or_an_error() {
     let estimates = vec![msg::Estimate::default(); 2];
     decode("cdr-microstructure", msg::Microstructure { estimates, ..Default::default() }, |m| {
         drop(MicrostructureReading::try_from(m));
-        m.estimates.iter().for_each(|e| drop(EstimateReading::try_from(e)));
+        m.estimates.iter().for_each(|e| drop(ModelResult::try_from(e)));
     });
     decode("cdr-packing-chunk", msg::PackingChunk::default(), |_| ());
     decode("cdr-packing-credit", msg::PackingCredit::default(), |_| ());

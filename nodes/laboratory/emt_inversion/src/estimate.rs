@@ -3,13 +3,13 @@
 use crate::observed::{Observed, Unobservable};
 use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
 use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Status, StrainRatio};
-use grainlab_msgs::boundary::EstimateReading;
+use grainlab_msgs::boundary::ModelResult;
 use grainlab_msgs::msg;
 
 /// The message of an estimate. An invalid estimate is sent as unknown, with the reason.
 pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let message = as_it_is(estimate, observed);
-    match EstimateReading::try_from(&message) {
+    match ModelResult::try_from(&message) {
         Ok(_) => message,
         Err(error) => msg::Estimate {
             model: message.model,

@@ -3,13 +3,13 @@
 use crate::measurements::Measurement;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Status, recommended};
-use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
+use grainlab_msgs::boundary::{Interval, ModelResult, Quantities};
 use grainlab_msgs::topics::{MODULI, PACKING_REPORT};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::collections::BTreeMap;
-use std::ops::Index;
+use std::ops::Deref;
 
-/// One model's result.
+/// One model's result, and the origin of its data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inference {
     /// Topic of the data; absent if they came from a command line or a file.
@@ -21,66 +21,23 @@ pub struct Inference {
     /// Which of several measurements of the packing it is from; absent if there is one only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measurement: Option<Measurement>,
-    /// Name of the model.
-    pub model: String,
-    /// Name of the calibration.
-    pub calibration: String,
-    /// Inferred values.
+    /// Result of the model.
     #[serde(flatten)]
-    pub values: Quantities<Option<f64>>,
-    /// Standard deviations, from data and model.
-    pub sigma: Quantities<Option<f64>>,
-    /// Their part due to the model.
-    pub(crate) sigma_model: Quantities<Option<f64>>,
-    /// Credible intervals.
-    pub interval: Interval,
-    /// Misfit by the errors of data and model; null without degrees of freedom.
-    pub(crate) chi_square: Option<f64>,
-    /// Number of data minus number of unknowns; null without a solution.
-    pub(crate) degrees_of_freedom: Option<usize>,
-    /// Condition number: how much the effects of errors of the data differ between combinations.
-    pub(crate) condition_number: Option<f64>,
-    /// `ok`, `extrapolated`, `contradictory` or `unknown`.
-    pub status: &'static str,
-    /// The strain ratio that the model used, and its source; null if it uses none.
-    pub gamma_over_delta: Option<f64>,
-    pub(crate) gamma_over_delta_source: Option<String>,
-    /// Notes.
-    pub warnings: Vec<String>,
+    pub result: ModelResult,
 }
 
-/// One value per quantity of the microstructure, in the order of [`InferredQuantity::ALL`]; as JSON by name.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Quantities<T>(pub(crate) [T; InferredQuantity::COUNT]);
+impl Deref for Inference {
+    type Target = ModelResult;
 
-impl<T> Quantities<T> {
-    pub(crate) fn of(value: impl FnMut(InferredQuantity) -> T) -> Self {
-        Self(InferredQuantity::ALL.map(value))
+    fn deref(&self) -> &ModelResult {
+        &self.result
     }
 }
 
-impl<T> Index<InferredQuantity> for Quantities<T> {
-    type Output = T;
-
-    fn index(&self, quantity: InferredQuantity) -> &T {
-        &self.0[quantity as usize]
+impl From<ModelResult> for Inference {
+    fn from(result: ModelResult) -> Self {
+        Self { source: None, by: None, measurement: None, result }
     }
-}
-
-impl<T: Serialize> Serialize for Quantities<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(InferredQuantity::ALL.map(InferredQuantity::name).into_iter().zip(&self.0))
-    }
-}
-
-/// Central intervals, low and high.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Interval {
-    /// Probability inside each.
-    pub level: Option<f64>,
-    /// Low and high of each quantity.
-    #[serde(flatten)]
-    pub bounds: Quantities<Option<[f64; 2]>>,
 }
 
 /// Origin of results.
@@ -153,70 +110,11 @@ impl Inference {
         Some(format!("model {name}: {}", without.warnings.first()?))
     }
 
-    /// A model without an estimate, and the reason.
-    pub fn unknown(model: &str, calibration: &str, warnings: Vec<String>) -> Self {
-        Self {
-            by: None,
-            measurement: None,
-            source: None,
-            model: model.to_owned(),
-            calibration: calibration.to_owned(),
-            values: Quantities::default(),
-            sigma: Quantities::default(),
-            sigma_model: Quantities::default(),
-            interval: Interval::default(),
-            chi_square: None,
-            degrees_of_freedom: None,
-            condition_number: None,
-            status: "unknown",
-            gamma_over_delta: None,
-            gamma_over_delta_source: None,
-            warnings,
-        }
-    }
-
-    /// From a recording, for data from the topic `source`.
-    pub fn of_reading(source: &str, e: &EstimateReading) -> Self {
-        let status = match e.status {
-            EstimateStatus::Ok => "ok",
-            EstimateStatus::Extrapolated => "extrapolated",
-            EstimateStatus::Contradictory => "contradictory",
-            EstimateStatus::Unknown => "unknown",
-        };
-        let without_values = Self {
-            source: Some(source.to_owned()),
-            gamma_over_delta: e.strain_ratio.map(|g| g.value),
-            gamma_over_delta_source: e.strain_ratio.map(|g| g.source.to_owned()),
-            status,
-            ..Self::unknown(&e.model, &e.calibration, e.warnings.clone())
-        };
-        let Some(found) = &e.inferred else { return without_values };
-        let value = |q: InferredQuantity| found.values[q as usize];
-        let sigma = |covariance: Option<[f64; InferredQuantity::COUNT * InferredQuantity::COUNT]>| {
-            Quantities::of(|q| {
-                value(q).and(covariance).map(|c| c[(InferredQuantity::COUNT + 1) * q as usize].sqrt())
-            })
-        };
-        Self {
-            values: Quantities::of(value),
-            sigma: sigma(found.covariance),
-            sigma_model: sigma(found.covariance_model),
-            interval: Interval {
-                level: found.interval.map(|i| i.level),
-                bounds: Quantities::of(|q| found.interval?.bounds[q as usize]),
-            },
-            chi_square: found.misfit.map(|m| m.chi_square),
-            degrees_of_freedom: Some(found.misfit.map_or(0, |m| m.degrees_of_freedom as usize)),
-            condition_number: found.condition_number,
-            ..without_values
-        }
-    }
-
     /// From the result of a model of the kernel.
     pub fn of(model: &str, calibration: &str, outcome: &Result<Estimate, EmtError>) -> Self {
         let estimate = match outcome {
             Ok(estimate) => estimate,
-            Err(e) => return Self::unknown(model, calibration, vec![e.to_string()]),
+            Err(e) => return ModelResult::unknown(model, calibration, vec![e.to_string()]).into(),
         };
         // A covariance of zeros contains no information.
         let known = estimate.covariance().is_some_and(|c| c.amax() > 0.0);
@@ -224,13 +122,10 @@ impl Inference {
             let i = q as usize;
             estimate.structure.get(q).and(estimate.model_covariance).map(|c| c[(i, i)].max(0.0).sqrt())
         };
-        Self {
-            by: None,
-            measurement: None,
-            source: None,
+        let result = ModelResult {
             model: estimate.model.to_owned(),
             calibration: estimate.calibration.clone(),
-            values: Quantities::of(|q| estimate.structure.get(q)),
+            values: Quantities(estimate.structure.values()),
             sigma: Quantities::of(|q| estimate.stddev(q).filter(|_| known)),
             sigma_model: Quantities::of(of_model),
             interval: Interval {
@@ -242,9 +137,10 @@ impl Inference {
             condition_number: estimate.condition_number(),
             status: estimate.status.name(),
             gamma_over_delta: estimate.gamma.map(|g| g.value),
-            gamma_over_delta_source: estimate.gamma.map(|g| g.source.name().to_owned()),
+            gamma_over_delta_source: estimate.gamma.map(|g| g.source.name()),
             warnings: estimate.warnings.iter().map(ToString::to_string).collect(),
-        }
+        };
+        result.into()
     }
 }
 
@@ -276,7 +172,7 @@ mod tests {
         .message;
         let reading = MicrostructureReading::try_from(&sent).unwrap();
         let at = reading.estimates.iter().position(|e| e.model == "ratio").unwrap();
-        let read = Inference::of_reading("moduli", &reading.estimates[at]);
+        let read = Inference::from(reading.estimates[at].clone());
         let mut observation =
             Observation::from_g12_g13_theta(121.71e6, 127.37e6, 144.38e6, 50e3, StrainRatio::ZERO);
         observation.conditions.solid_fraction = Some(Measured::exact(0.636));
@@ -285,12 +181,12 @@ mod tests {
         let outcome = grainlab_emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER);
         let direct = Inference::of("ratio", "paper", &outcome);
         assert!(direct.sigma[InferredQuantity::K].is_some() && direct.interval.level.is_some(), "{direct:?}");
-        assert_eq!(read, Inference { source: Some("moduli".to_owned()), ..direct });
+        assert_eq!(read, direct);
     }
 
     #[test]
     fn the_keys_of_a_result_are_the_agreed_ones() {
-        let unknown = Inference::unknown("ratio", "paper", vec!["why".into()]);
+        let unknown = Inference::from(ModelResult::unknown("ratio", "paper", vec!["why".into()]));
         let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
         let value = serde_json::to_value(&unknown).unwrap();
         let quantities = ["eps", "eps_stiffness", "k", "k_hat", "z"];

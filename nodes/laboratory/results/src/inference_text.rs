@@ -77,8 +77,8 @@ pub fn table(results: &[Inference]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inference::Quantities;
     use grainlab_emt::{Calibration, Observation, StrainRatio};
+    use grainlab_msgs::boundary::{ModelResult, Quantities};
 
     fn s1(modulus_error: f64) -> Inference {
         let observation =
@@ -93,13 +93,13 @@ mod tests {
 
     #[test]
     fn the_text_table_leaves_out_what_no_model_infers() {
-        let failed = || Inference::unknown("ours", "paper", vec!["because".into()]);
+        let failed = || Inference::from(ModelResult::unknown("ours", "paper", vec!["because".into()]));
         let text = table(&[s1(0.01), failed()]);
         let words: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();
         assert_eq!(words, ["model", "calibration", "k", "sigma", "k_hat", "sigma", "eps", "sigma", "status"]);
         assert!(text.contains("5.73") && text.ends_with("  ours: because\n"), "{text}");
         let mut with_z = s1(0.01);
-        with_z.values = Quantities::of(|q| (q == InferredQuantity::Z).then_some(5.9));
+        with_z.result.values = Quantities::of(|q| (q == InferredQuantity::Z).then_some(5.9));
         assert!(table(&[with_z, failed()]).contains("  5.900"), "one model that knows z brings its column");
     }
 
@@ -107,10 +107,11 @@ mod tests {
     fn every_exact_cell_stands_under_its_name() {
         let mut r = s1(0.01);
         let [z, eps_stiffness] = [InferredQuantity::Z, InferredQuantity::EpsStiffness].map(|q| q as usize);
-        (r.values.0[z], r.values.0[eps_stiffness]) = (Some(5.9), Some(0.02));
-        (r.sigma_model.0[z], r.sigma_model.0[eps_stiffness]) = (Some(0.04), None);
-        r.interval.bounds.0[eps_stiffness] = Some([-0.01, 0.05]);
-        (r.chi_square, r.degrees_of_freedom) = (Some(1.5), Some(2));
+        let found = &mut r.result;
+        (found.values.0[z], found.values.0[eps_stiffness]) = (Some(5.9), Some(0.02));
+        (found.sigma_model.0[z], found.sigma_model.0[eps_stiffness]) = (Some(0.04), None);
+        found.interval.bounds.0[eps_stiffness] = Some([-0.01, 0.05]);
+        (found.chi_square, found.degrees_of_freedom) = (Some(1.5), Some(2));
         let cells = r.exact_cells();
         let columns = Inference::exact_columns();
         assert_eq!(cells.len(), columns.len());

@@ -31,7 +31,7 @@ pub mod summary_text;
 
 pub use acoustic::{ACOUSTIC, AcousticReport};
 pub use attenuation::AttenuationReport;
-pub use inference::{Inference, Interval, Origin, Quantities, by_origin};
+pub use inference::{Inference, Origin, by_origin};
 pub use measured_packing::{MeasuredPacking, ORIGIN};
 pub use measurements::Measurement;
 pub use printer::{Printed, Printer};

@@ -151,10 +151,10 @@ impl Laboratory {
         if *step != reading.source_step {
             (*step, *known) = (reading.source_step, Vec::new());
         }
-        for estimate in &reading.estimates {
+        for result in reading.estimates {
             // A name tells several measurements of a packing apart.
-            let mut found = Inference::of_reading(&reading.source, estimate);
-            found.measurement = (!reading.name.is_empty()).then(|| Measurement::named(&reading.name));
+            let measurement = (!reading.name.is_empty()).then(|| Measurement::named(&reading.name));
+            let found = Inference { source: Some(reading.source.clone()), by: None, measurement, result };
             if known.len() < ESTIMATES && !known.contains(&found) {
                 known.push(found);
             }

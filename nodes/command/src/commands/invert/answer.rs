@@ -9,6 +9,7 @@ use super::state::State;
 use super::way::Way;
 use grainlab_console::worse;
 use grainlab_emt::{EmtError, Estimate, Status, Warning, recommended};
+use grainlab_msgs::boundary::ModelResult;
 use grainlab_node_kit::Exit;
 use grainlab_results::Inference;
 use serde::Serialize;
@@ -78,14 +79,15 @@ impl Answer {
         match (&self.state, outcome) {
             (Ok(state), Some(outcome)) => {
                 let mut inference = Inference::of(way.model.name(), name, outcome);
-                inference.status = status(state, outcome).name();
+                let result = &mut inference.result;
+                result.status = status(state, outcome).name();
                 // The reason of a model without an estimate comes first, then what is wrong with the data.
-                let at = if outcome.is_ok() { 0 } else { inference.warnings.len() };
-                inference.warnings.splice(at..at, state.notes.iter().cloned());
+                let at = if outcome.is_ok() { 0 } else { result.warnings.len() };
+                result.warnings.splice(at..at, state.notes.iter().cloned());
                 inference
             }
-            (Err(row), _) => Inference::unknown(way.model.name(), name, vec![row.fault.clone()]),
-            (Ok(_), None) => Inference::unknown(way.model.name(), name, Vec::new()),
+            (Err(row), _) => ModelResult::unknown(way.model.name(), name, vec![row.fault.clone()]).into(),
+            (Ok(_), None) => ModelResult::unknown(way.model.name(), name, Vec::new()).into(),
         }
     }
 

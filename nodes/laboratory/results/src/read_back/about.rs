@@ -215,8 +215,13 @@ pub(super) fn enter(
             let data = INVERTED.into_iter().find(|topic| *topic == message.source);
             let nth = data
                 .map_or(0, |data| about.data.entry(data).or_default().answered(identity.clone(), by.clone()));
-            let of = |e| Inference { by: by.clone(), ..Inference::of_reading(&reading.source, e) };
-            let estimates = reading.estimates.iter().map(of).collect();
+            let of = |result| Inference {
+                source: Some(message.source.clone()),
+                by: by.clone(),
+                measurement: None,
+                result,
+            };
+            let estimates = reading.estimates.into_iter().map(of).collect();
             about.answers.push(Answer { source: message.source, identity, nth, estimates });
             Ok(step)
         }

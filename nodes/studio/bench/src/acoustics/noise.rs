@@ -108,12 +108,11 @@ fn inversion() -> Result<grainlab_emt_inversion::Settings, Failure> {
 
 fn compared(found: &Microstructure, truth: &PackingReport) -> Errors {
     let reading = MicrostructureReading::try_from(found).ok();
-    let inferred = reading.and_then(|r| r.estimates.into_iter().next()?.inferred);
+    let inferred = reading.and_then(|r| r.estimates.into_iter().next());
     let of = |quantity: InferredQuantity| {
-        let (inferred, at) = (inferred.as_ref()?, quantity as usize);
-        let counted = truth.counted(quantity)?;
-        let error = inferred.values[at]? - counted;
-        Some((error, error / inferred.covariance?[(InferredQuantity::COUNT + 1) * at].sqrt()))
+        let inferred = inferred.as_ref()?;
+        let error = inferred.values[quantity]? - truth.counted(quantity)?;
+        Some((error, error / inferred.sigma[quantity]?))
     };
     JUDGED.map(of)
 }
