@@ -137,7 +137,8 @@ impl Default for CsvText {
 impl CsvText {
     /// Without lines.
     pub fn new() -> Self {
-        Self(csv::WriterBuilder::new().flexible(true).from_writer(Vec::new()))
+        // The default buffer of 8 KiB costs more than a line.
+        Self(csv::WriterBuilder::new().flexible(true).buffer_capacity(512).from_writer(Vec::new()))
     }
 
     /// Adds a line.

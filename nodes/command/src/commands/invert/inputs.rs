@@ -121,10 +121,12 @@ impl Input {
 
     /// A note on a standard deviation in Pa that is probably a share of its quantity.
     pub(super) fn improbable_error(&self, state: &State) -> Option<String> {
-        let key = self.key.strip_suffix("_sigma_pa").filter(|_| self.role == Role::Stddev)?;
+        // Numbers before names: this is asked of every input of every row.
+        let stddev = self.get(state).filter(|s| self.role == Role::Stddev && *s > 0.0 && *s <= 1.0)?;
+        let key = self.key.strip_suffix("_sigma_pa")?;
         let of = INPUTS.iter().find(|input| input.key.strip_suffix("_pa") == Some(key))?;
-        let (stddev, value) = (self.get(state)?, of.get(state)?);
-        (stddev > 0.0 && stddev <= 1.0 && stddev < SHARE * value.abs()).then(|| {
+        let value = of.get(state)?;
+        (stddev < SHARE * value.abs()).then(|| {
             format!(
                 "{} = {stddev} Pa is improbably small beside {} = {value:e} Pa: is it a share of it?",
                 self.key, of.key

@@ -55,13 +55,12 @@ impl Rows {
         };
         let lines: Vec<(u64, &[u8])> = piece.lines().filter(|(number, _)| *number > self.header).collect();
         self.comments += lines.iter().filter(|(_, line)| line.starts_with(b"#")).count();
-        let of_share = |share: &[(u64, &[u8])]| -> Vec<T> {
-            let mut splitter = Splitter::new();
+        let of_share = |splitter: &mut Splitter, share: &[(u64, &[u8])]| -> Vec<T> {
             let of_line =
-                |(number, line): &(u64, &[u8])| Some(work(*number, self.columns.row(line, &mut splitter)?));
+                |(number, line): &(u64, &[u8])| Some(work(*number, self.columns.row(line, splitter)?));
             share.iter().filter_map(of_line).collect()
         };
-        let worked: Vec<Vec<T>> = lines.par_chunks(SHARE).map(of_share).collect();
+        let worked: Vec<Vec<T>> = lines.par_chunks(SHARE).map_init(Splitter::new, of_share).collect();
         Ok(Some(worked.into_iter().flatten().collect()))
     }
 
