@@ -12,10 +12,10 @@ pub struct Topic {
     pub info: TypeInfo,
     /// The QoS that the writer offers.
     pub qos: Qos,
-    /// Node that publishes it.
+    /// Node that publishes it; `an instrument` where no node of ours does.
     pub writer: &'static str,
     /// Whether every recorded byte is a function of scene and seed: without a wall clock or a counter of a
-    /// process.
+    /// process. If it is transient local, too, the recorder writes each message to disk at once.
     pub reproducible: bool,
     /// Its content in one line.
     pub summary: &'static str,

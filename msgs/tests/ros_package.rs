@@ -61,3 +61,15 @@ fn the_dependencies_of_the_ros_package_are_the_packages_used_by_the_message_file
     assert_eq!(elements(&xml, "name"), BTreeSet::from(["grainlab_msgs".to_owned()]));
     assert_eq!(elements(&xml, "version"), BTreeSet::from([env!("CARGO_PKG_VERSION").to_owned()]));
 }
+
+#[test]
+fn the_page_lists_every_topic_and_its_quality_of_service() {
+    let page = read("README.md");
+    for topic in grainlab_msgs::topics::TOPICS {
+        let name = format!("`{}`", topic.name);
+        let rows = page.lines().filter(|line| line.starts_with("| ") && line.contains(&name)).count();
+        // Those of ROS 2 have the quality of service that ROS 2 gives them.
+        let expected = if topic.name.starts_with('/') { 1 } else { 2 };
+        assert_eq!(rows, expected, "rows of README.md with {name}");
+    }
+}

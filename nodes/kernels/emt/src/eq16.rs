@@ -4,7 +4,7 @@ use crate::moments::Moments;
 
 /// A reading of Eqs. 13 and 16.
 ///
-/// Both equations are printed without a factor a on their first ε term; quadrature over the sphere confirms the factor.
+/// Both equations are printed without the factor a, [`Moments::spin`], on their first ε term; quadrature over the sphere confirms the factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Eq16Reading {
     /// With the factor a.

@@ -62,7 +62,7 @@ keys! {
     POISSON_RATIO = number("material.poisson_ratio", "", Interval::from_to(0.0, 0.5), DefaultValue::Number(GLASS.poisson_ratio), "Poisson ratio of the grains");
     DENSITY = number("material.density", "kg/m3", Interval::POSITIVE, DefaultValue::Number(GLASS.density), "density of the grains");
 
-    CONTACT_LAW = choice("contact.law", &SpringLaw::NAMES, "hertz_mindlin", "springs of a contact: Hertz and Mindlin, with stiffnesses from the material, or linear ones");
+    CONTACT_LAW = choice("contact.law", &SpringLaw::NAMES, "hertz_mindlin", "spring law of the contacts: that of Hertz and Mindlin follows from the material, others have keys of their own");
 
     TIME_STEP_SAFETY = number("numerics.time_step_safety", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.8), "time step over its stability bound");
     SKIN = number("numerics.skin", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.05), "Verlet skin over grain diameter");

@@ -12,16 +12,13 @@ use grainlab_core::ComponentControl;
 /// - Held: zero.
 /// - A strain rate: the setpoint, limited to the rate limit.
 /// - A stress target under [`grainlab_core::ServoLaw::Scaled`]: (σ − σ*)/(K τ), limited to the rate limit. K is the
-///   change of the
-///   stress component per unit of the *tensor* strain component: C_iiii on the diagonal, 2 C_ijij off it. For K = 0 (no
-///   contacts) the output is the limit of the law for K → 0: the rate limit with the sign of the error, zero without an
+///   change of the stress component per unit of the *tensor* strain component: C_iiii on the diagonal, 2 C_ijij off it.
+///   For K = 0 (no contacts) the output is the limit of the law for K → 0: the rate limit with the sign of the error, zero without an
 ///   error.
 /// - A stress target under [`grainlab_core::ServoLaw::Normalised`]: (1 − leak)·rate + share·(4 − 2 leak)/(K h)·(σ −
-///   σ*), limited to the
-///   rate limit. K is the closed-loop stiffness: as above, plus for a normal component C_iijj of every other servoed one.
+///   σ*), limited to the rate limit. K is the closed-loop stiffness: as above, plus for a normal component C_iijj of every other servoed one.
 /// - A stress target under [`grainlab_core::ServoLaw::Integral`]: (1 − leak)·rate + gain·(σ − σ*), limited to the rate
-///   limit. An error
-///   from [`crate::critical_gain`] on.
+///   limit. An error from [`crate::critical_gain`] on.
 ///
 /// Under the last two laws the rate is the integral, so that the limit prevents windup: an unreachable target
 /// saturates, and the rate reverses with the first error of the other sign.

@@ -15,7 +15,7 @@ pub(crate) struct Lockstep {
     lag: u64,
     resend_after: Duration,
     resend_at_most: Duration,
-    /// The current request, after earlier ones whose answers are still accepted. Empty before the first request.
+    /// The current request, in a free run after earlier ones whose answers are still accepted. Empty before the first request.
     questions: VecDeque<Question>,
     body: Vec<u8>,
     /// The previous request; empty for the first one.

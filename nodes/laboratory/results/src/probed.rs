@@ -8,7 +8,7 @@ use crate::printer::Printed;
 use crate::quantities::{cells, columns};
 use grainlab_console::Table;
 use grainlab_core::quantity::{Quantity, by_key};
-use grainlab_core::results::{PackingReport, QUANTITIES};
+use grainlab_core::results::{InferredQuantity, PackingReport, QUANTITIES};
 use serde::Serialize;
 
 /// The measurements on one packing.
@@ -23,25 +23,12 @@ pub struct Probed {
 
 /// Quantities of the packing in CSV: the inputs of an inversion besides the speeds, and its truth. The moduli
 /// are those from the speeds, under the names that `grainlab invert --table` reads.
-const BESIDE: [&str; 14] = [
-    "grains",
-    "phi",
-    "axial_q_over_p",
-    "size_spread",
-    "pressure_pa",
-    "grain_shear_modulus_pa",
-    "poisson",
-    "contact_law",
-    "smooth",
-    "k",
-    "z",
-    "eps",
-    "eps_stiffness",
-    "rattlers",
-];
-
 fn beside() -> impl Iterator<Item = &'static Quantity<PackingReport>> {
-    BESIDE.into_iter().filter_map(|key| by_key(QUANTITIES, key))
+    let inputs = ["grains", "phi", "axial_q_over_p", "size_spread", "pressure_pa"];
+    let grains = ["grain_shear_modulus_pa", "poisson", "contact_law", "smooth"];
+    let truth = InferredQuantity::countable().map(InferredQuantity::name);
+    let keys = inputs.into_iter().chain(grains).chain(truth).chain(["rattlers"]);
+    keys.filter_map(|key| by_key(QUANTITIES, key))
 }
 
 impl Printed for Probed {

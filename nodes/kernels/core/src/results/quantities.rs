@@ -233,12 +233,12 @@ fn bin_edges() -> [f64; ORIENTATION_BINS + 1] {
     std::array::from_fn(|b| b as f64 / ORIENTATION_BINS as f64)
 }
 
-/// Means of the bins that have contacts.
 /// A property of the orientation of contacts: unknown without contacts.
 fn of_contacts(r: &PackingReport, value: f64) -> Option<f64> {
     (r.contacts.contacts > 0).then_some(value)
 }
 
+/// Means of the bins that have contacts.
 fn known(r: &PackingReport, means: &[f64; ORIENTATION_BINS]) -> [Option<f64>; ORIENTATION_BINS] {
     let counts = &r.fabric.orientation.contacts;
     std::array::from_fn(|b| (counts[b] > 0).then_some(means[b]))

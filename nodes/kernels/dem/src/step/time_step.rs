@@ -13,7 +13,7 @@ const INERTIA_RATIO: f64 = 2.5;
 /// Longest stable time step of the present contacts, s. Infinite where nothing touches.
 ///
 /// With velocities half a step behind, grains of stiffness K and damping C (per mass) are stable while
-/// 4 − h² K − 2 h C ≥ 0: the roots of a mode x are those of the scalar step with k = x·Kx and c = x·Cx. The relative
+/// 4 − h² K − 2 h C ≥ 0: a mode x moves as one degree of freedom with stiffness x·Kx and damping x·Cx. The relative
 /// displacement at a contact is B u = B_i u_i + B_j u_j. Its square |B u|² is at most (1 + θ) |B_i u_i|² + (1 + 1/θ) |B_j u_j|²,
 /// for any θ > 0. This leaves one block of 6 × 6 per grain, translations and rotations:
 ///
@@ -25,7 +25,7 @@ const INERTIA_RATIO: f64 = 2.5;
 /// A rolling spring adds the relative displacement R* (ω_j − ω_i) × n to B u, with its own stiffness and dashpot.
 ///
 /// A rigorous bound for contacts that stick, for any damping and sizes. It is 0.75 to 0.95 of the true limit in packings of
-/// equal grains, and 0.66 to 0.93 for sizes from 1 to 5; lower with more damping. (Tests check 0.7 and 0.6.)
+/// equal grains, and 0.66 to 0.93 for sizes from 1 to 5; lower with more damping. (`tests/hard/time_step.rs` checks 0.7 and 0.6.)
 pub(crate) fn stable(state: &State, contacts: &Contacts, settings: &EngineSettings) -> f64 {
     let springs = state.law.visit(&state.material, CollectSprings { state, contacts, settings });
     // With θ = 1 and the trace for the largest eigenvalue: about half of the result.

@@ -100,10 +100,10 @@ impl CalibrationSample {
         }
         let structure = Microstructure {
             k: Some(self.k),
-            k_hat: None,
             z: Some(self.z),
             eps: Some(self.eps),
             eps_stiffness: Some(self.eps_stiffness),
+            ..Microstructure::default()
         };
         let sound = check_structure(&structure)
             .and_then(|()| self.observation(StrainRatioSource::Zero).checked().map(|_| ()));

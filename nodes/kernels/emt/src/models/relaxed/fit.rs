@@ -268,10 +268,10 @@ impl Fit {
         let known = self.fits_eps;
         let structure = Microstructure {
             k: Some(of_k.value(z, laws) + beyond[1]),
-            k_hat: None,
             z: Some(z),
             eps: known.then_some(eps),
             eps_stiffness: known.then_some(of_eps.value(z, eps, laws) + beyond[0]),
+            ..Microstructure::default()
         };
 
         let rows =
