@@ -14,15 +14,13 @@ use grainlab_node_kit::Exit;
 use grainlab_page::plot::{Bar, Bars};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The model of the inversion: it needs no γ/Δ and includes the scatter between packings.
 const MODEL: &str = "relaxed";
 
 /// Half the width of a 95 % interval, standard deviations.
 const INTERVAL: f64 = 1.96;
-
-const JUDGED: [InferredQuantity; 4] =
-    [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness];
 
 /// One level of noise, or the analyzer's moduli.
 #[derive(Debug, Serialize)]
@@ -31,10 +29,9 @@ struct Row {
     noise: Option<f64>,
     packings: usize,
     inferred: usize,
-    k: Score,
-    z: Score,
-    eps: Score,
-    eps_stiffness: Score,
+    /// By the name of the quantity.
+    #[serde(flatten)]
+    scores: BTreeMap<&'static str, Score>,
 }
 
 /// Inferred minus counted.
@@ -46,8 +43,8 @@ struct Score {
     covered: Option<f64>,
 }
 
-/// Inferred minus counted values, also in units of their standard deviations.
-type Errors = [Option<(f64, f64)>; 4];
+/// Inferred minus counted values, also in units of their standard deviations, in the order of [`InferredQuantity::ALL`].
+type Errors = [Option<(f64, f64)>; InferredQuantity::COUNT];
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let packings = load_all(&args.packing)?;
@@ -114,29 +111,30 @@ fn compared(found: &Microstructure, truth: &PackingReport) -> Errors {
         let error = inferred.values[quantity]? - truth.counted(quantity)?;
         Some((error, error / inferred.sigma[quantity]?))
     };
-    JUDGED.map(of)
+    InferredQuantity::ALL.map(of)
 }
 
 fn row(noise: Option<f64>, packings: usize, errors: &[Errors]) -> Row {
-    let score = |at: usize| {
-        let known: Vec<(f64, f64)> = errors.iter().filter_map(|e| e[at]).collect();
+    let score = |quantity: InferredQuantity| {
+        let known: Vec<(f64, f64)> = errors.iter().filter_map(|e| e[quantity as usize]).collect();
         let mean = |of: fn(&(f64, f64)) -> f64| {
             (!known.is_empty()).then(|| known.iter().map(of).sum::<f64>() / known.len() as f64)
         };
-        Score {
+        let score = Score {
             rms: mean(|e| e.0 * e.0).map(f64::sqrt),
             bias: mean(|e| e.0),
             covered: mean(|e| f64::from(u8::from(e.1.abs() <= INTERVAL))),
-        }
+        };
+        (quantity.name(), score)
     };
     let inferred = errors.iter().filter(|e| e.iter().any(Option::is_some)).count();
-    Row { noise, packings, inferred, k: score(0), z: score(1), eps: score(2), eps_stiffness: score(3) }
+    Row { noise, packings, inferred, scores: InferredQuantity::countable().map(score).collect() }
 }
 
 /// The error of ε by level of noise.
 fn bars(rows: &[Row]) -> Bars {
     let bar = |r: &Row| {
-        let rms = r.eps.rms?;
+        let rms = r.scores[InferredQuantity::Eps.name()].rms?;
         let name = r.noise.map_or_else(|| "moduli".to_owned(), |n| format!("noise {n}"));
         Some(Bar { name, value: rms, text: format!("{rms:.4}"), ..Bar::default() })
     };
@@ -145,31 +143,20 @@ fn bars(rows: &[Row]) -> Bars {
 }
 
 fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
-    let mut t = Table::new([
-        "speed noise",
-        "packings",
-        "inferred",
-        "k rms",
-        "bias",
-        "in 95 %",
-        "z rms",
-        "bias",
-        "in 95 %",
-        "eps rms",
-        "bias",
-        "in 95 %",
-        "eps_k rms",
-        "bias",
-        "in 95 %",
-    ]);
+    let of = |q: InferredQuantity| [format!("{} rms", q.text()), "bias".to_owned(), "in 95 %".to_owned()];
+    let head = ["speed noise", "packings", "inferred"].map(str::to_owned);
+    let mut t = Table::new(head.into_iter().chain(InferredQuantity::countable().flat_map(of)));
     for r in rows {
         let head = [
             r.noise.map_or_else(|| "moduli".to_owned(), |n| n.to_string()),
             r.packings.to_string(),
             r.inferred.to_string(),
         ];
-        let score = |s: &Score| [number(s.rms), number(s.bias), number(s.covered)];
-        t.row(head.into_iter().chain([r.k, r.z, r.eps, r.eps_stiffness].iter().flat_map(score)));
+        let score = |q: InferredQuantity| {
+            let s = &r.scores[q.name()];
+            [number(s.rms), number(s.bias), number(s.covered)]
+        };
+        t.row(head.into_iter().chain(InferredQuantity::countable().flat_map(score)));
     }
     t
 }
