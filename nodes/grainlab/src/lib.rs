@@ -27,7 +27,7 @@
 //! for packing in grainlab::open("recordings/runs/demo-1-1")?.packings()? {
 //!     println!("step {}", packing?.step);
 //! }
-//! let from_lammps = grainlab::load("dump.lammpstrj", &Default::default())?;
+//! let from_lammps = grainlab::load("dump.lammpstrj", &Default::default())?.packings;
 //! # Ok(())
 //! # }
 //! ```
@@ -38,6 +38,7 @@
 mod error;
 mod recording;
 mod simulation;
+mod state;
 
 pub use error::Error;
 pub use grainlab_core::contact::ContactLaw;
@@ -45,17 +46,26 @@ pub use grainlab_core::results::{InferredQuantity, Microstructure, PackingReport
 pub use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Stiffness, Vec3};
 pub use grainlab_emt::{Conditions, Estimate, Measured, Moduli, Observation, Status};
 pub use grainlab_recordings::import::ImportOptions;
-pub use recording::{Recording, load, open};
-pub use simulation::{Simulation, simulate};
+pub use recording::{Loaded, Recording, load, open};
+pub use simulation::{Simulation, resume, simulate};
+pub use state::State;
 
 /// Structure, stress and stiffness of a packing, about e3, as `grainlab analyze` prints them.
 ///
 /// # Errors
-/// If the packing contradicts itself, or the stiffness cannot be solved for. A packing that is not jammed is no error: its report
-/// has no stiffness, and the reason.
-pub fn measure(packing: &Packing) -> Result<PackingReport, Error> {
-    let found = grainlab_micromechanics::analyze(packing, &grainlab_micromechanics::Settings::default());
-    found.map(|found| found.report).map_err(|e| Error::Measurement(e.to_string()))
+/// If there are no grains, if the packing contradicts itself, or if the stiffness cannot be solved for. A packing that is not
+/// jammed is no error: its report has no stiffness, and the reason.
+pub fn measure(state: &State) -> Result<PackingReport, Error> {
+    let failed = |e: &dyn std::fmt::Display| Error::Measurement(e.to_string());
+    if state.grains() == 0 {
+        return Err(failed(&"the packing has no grains"));
+    }
+    state.packing.check().and_then(|()| state.packing.check_consistency()).map_err(|e| failed(&e))?;
+    let found =
+        grainlab_micromechanics::analyze(&state.packing, &grainlab_micromechanics::Settings::default());
+    let mut report = found.map_err(|e| failed(&e))?.report;
+    state.position().inspect(|position| position.judge_strain(&mut report));
+    Ok(report)
 }
 
 /// The microstructure of a packing by the recommended model, `relaxed`, with its calibration.

@@ -1,7 +1,6 @@
 //! Packings from recordings and from files of other programs.
 
-use crate::Error;
-use grainlab_core::Packing;
+use crate::{Error, State};
 use grainlab_recordings::import::{self, ImportOptions};
 use grainlab_recordings::{Messages, Selection};
 use std::path::Path;
@@ -17,7 +16,7 @@ pub struct Recording(grainlab_recordings::Recording);
 /// Opens a recording.
 ///
 /// # Errors
-/// If it cannot be read. A damaged recording is opened, and [`Recording::warnings`] says what is damaged.
+/// If it cannot be read. A damaged recording is opened.
 pub fn open(path: impl AsRef<Path>) -> Result<Recording, Error> {
     grainlab_recordings::Recording::open(path.as_ref()).map(Recording).map_err(file)
 }
@@ -31,19 +30,35 @@ impl Recording {
     /// The packings of the topic `packing`, in the order of their recording.
     ///
     /// # Errors
-    /// If the recording cannot be read; an invalid packing is an error of its own item.
-    pub fn packings(&self) -> Result<impl Iterator<Item = Result<Packing, Error>> + '_, Error> {
+    /// If the recording cannot be read. An invalid packing is an error of its own item; damage, by which packings may be
+    /// missing, is one of the last item.
+    pub fn packings(&self) -> Result<impl Iterator<Item = Result<State, Error>> + '_, Error> {
         let selection = Selection { topics: Some(vec!["packing".to_owned()]), ..Selection::default() };
         let messages: Messages = self.0.messages(&selection).map_err(file)?;
-        Ok(messages.map(|message| Ok(import::recording::packing(&message).map_err(file)?.packing)))
+        let packings = messages.map(|message| Ok(import::recording::packing(&message).map_err(file)?.into()));
+        let damage = || {
+            let found = self.warnings().join("; ");
+            (!found.is_empty()).then(|| Err(file(format!("packings may be missing: {found}"))))
+        };
+        Ok(packings.chain(std::iter::once_with(damage).flatten()))
     }
+}
+
+/// Packings of a file.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The packings, at least one, in order.
+    pub packings: Vec<State>,
+    /// Parts of a recording that could not be read: packings may be missing if this is not empty.
+    pub warnings: Vec<String>,
 }
 
 /// The packings of a file by LAMMPS, YADE, ASE, ParaView or another program, or of a recording.
 ///
 /// # Errors
 /// If the file is not a packing, contradicts itself, or lacks what `options` could give, such as the material.
-pub fn load(path: impl AsRef<Path>, options: &ImportOptions) -> Result<Vec<Packing>, Error> {
-    let loaded = import::load(path.as_ref(), options).map_err(file)?;
-    Ok(loaded.packings.into_iter().map(|imported| imported.packing).collect())
+pub fn load(path: impl AsRef<Path>, options: &ImportOptions) -> Result<Loaded, Error> {
+    let found = import::load(path.as_ref(), options).map_err(file)?;
+    let warnings = found.warnings.iter().map(ToString::to_string).collect();
+    Ok(Loaded { packings: found.packings.into_iter().map(State::from).collect(), warnings })
 }

@@ -1,7 +1,6 @@
 //! Runs of scenes in one process.
 
-use crate::Error;
-use grainlab_core::Packing;
+use crate::{Error, State};
 use grainlab_dem::{Compute, Simd};
 use grainlab_recordings::scenes;
 use std::time::{Duration, Instant};
@@ -12,7 +11,7 @@ use std::time::{Duration, Instant};
 pub struct Simulation {
     run: grainlab_experiment::Simulation,
     /// The packing that the scene starts from, which is returned first.
-    start: Option<Packing>,
+    start: Option<State>,
     notes: Vec<String>,
     failed: bool,
 }
@@ -23,11 +22,7 @@ pub struct Simulation {
 /// # Errors
 /// If there is no such scene, or it has faults; all of them are named.
 pub fn simulate(scene: &str, settings: &[&str]) -> Result<Simulation, Error> {
-    let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
-    let found = scenes::read(scene, &settings, None).map_err(|e| match e.exit {
-        grainlab_msgs::Exit::Failure => Error::File(e.to_string()),
-        _ => Error::Scene(e.to_string()),
-    })?;
+    let found = read(scene, settings)?;
     let simulation = |e: grainlab_experiment::ExperimentError| Error::Simulation(e.to_string());
     let run = match &found.start {
         Some(packing) => grainlab_experiment::Simulation::from_packing(found.scene, packing),
@@ -35,8 +30,31 @@ pub fn simulate(scene: &str, settings: &[&str]) -> Result<Simulation, Error> {
     };
     let run = run.map_err(simulation)?;
     // As the run holds it: at its first step, without the strain of the file.
-    let start = found.start.is_some().then(|| run.packing());
+    let start = found.start.is_some().then(|| present(&run));
     Ok(Simulation { run, start, notes: found.notes, failed: false })
+}
+
+/// Goes on with a run of the same scene and settings from one of its states, to the same packings bit for bit.
+///
+/// # Errors
+/// As [`simulate`]; if the state is of another scene or seed, or of no run.
+pub fn resume(scene: &str, settings: &[&str], state: &State) -> Result<Simulation, Error> {
+    let found = read(scene, settings)?;
+    let run = grainlab_experiment::Simulation::resume(found.scene, &state.packing, &state.run_state);
+    let run = run.map_err(|e| Error::Simulation(e.to_string()))?;
+    Ok(Simulation { run, start: None, notes: found.notes, failed: false })
+}
+
+fn read(scene: &str, settings: &[&str]) -> Result<scenes::SceneText, Error> {
+    let settings: Vec<String> = settings.iter().map(|&s| s.to_owned()).collect();
+    scenes::read(scene, &settings, None).map_err(|e| match e.exit {
+        grainlab_msgs::Exit::Failure => Error::File(e.to_string()),
+        _ => Error::Scene(e.to_string()),
+    })
+}
+
+fn present(run: &grainlab_experiment::Simulation) -> State {
+    State { packing: run.packing(), run_state: run.run_state(), notes: Vec::new() }
 }
 
 impl Simulation {
@@ -70,37 +88,33 @@ impl Simulation {
         &self.notes
     }
 
-    /// Where on its loading path the run is, as recorded with a packing: the two resume the run bit for bit.
-    pub fn run_state(&self) -> Vec<u8> {
-        self.run.run_state()
-    }
-
-    /// Goes on until a packing is due, `limit` has passed, or the path is done; the packing, if one is due. For programs that
-    /// have to look for signals.
+    /// Goes on until a packing is due, `limit` has passed, or the path is done, for one exchange at least; the packing, if one
+    /// is due. For programs that have to look for signals.
     ///
     /// # Errors
     /// If the run cannot go on; it has ended then.
-    pub fn advance(&mut self, limit: Duration) -> Result<Option<Packing>, Error> {
+    pub fn advance(&mut self, limit: Duration) -> Result<Option<State>, Error> {
         let found = self.try_advance(limit);
         self.failed |= found.is_err();
         found
     }
 
-    fn try_advance(&mut self, limit: Duration) -> Result<Option<Packing>, Error> {
+    fn try_advance(&mut self, limit: Duration) -> Result<Option<State>, Error> {
         if self.failed {
             return Ok(None);
         }
-        if let Some(packing) = self.start.take() {
-            return Ok(Some(packing));
+        if let Some(state) = self.start.take() {
+            return Ok(Some(state));
         }
         let began = Instant::now();
-        while began.elapsed() < limit
-            && let Some(request) = self.run.request()
-        {
+        while let Some(request) = self.run.request() {
             let simulation = |e: &dyn std::fmt::Display| Error::Simulation(e.to_string());
             let output = grainlab_servo::control(&request.input).map_err(|e| simulation(&e))?;
             if self.run.advance(&output.rate).map_err(|e| simulation(&e))?.packing_due {
-                return Ok(Some(self.run.packing()));
+                return Ok(Some(present(&self.run)));
+            }
+            if began.elapsed() >= limit {
+                break;
             }
         }
         Ok(None)
@@ -108,7 +122,7 @@ impl Simulation {
 }
 
 impl Iterator for Simulation {
-    type Item = Result<Packing, Error>;
+    type Item = Result<State, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {

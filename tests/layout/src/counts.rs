@@ -31,9 +31,10 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
             && !["vendor", "generated", "target", "golden", "runs", "campaigns"].contains(&name.as_str())
         {
             files(&path, found);
-        } else if path
-            .extension()
-            .is_some_and(|e| ["rs", "py", "html", "js", "css"].iter().any(|known| e == *known))
+        } else if !name.ends_with(".min.js")
+            && path
+                .extension()
+                .is_some_and(|e| ["rs", "py", "html", "js", "css"].iter().any(|known| e == *known))
         {
             found.push(path);
         }

@@ -21,6 +21,11 @@ impl Packing {
     ///
     /// Not checked is whether all contacts are listed, nor whether forces balance: a packing in motion is one, too.
     pub fn consistent(self) -> Result<Self, PackingError> {
+        self.check_consistency().map(|()| self)
+    }
+
+    /// Whether its numbers belong together, as [`consistent`](Self::consistent) says: the first fault found.
+    pub fn check_consistency(&self) -> Result<(), PackingError> {
         self.check_ids()?;
         let solid_fraction = self.solid_fraction();
         if solid_fraction > 1.0 {
@@ -44,7 +49,7 @@ impl Packing {
                 }
             }
         }
-        Ok(self)
+        Ok(())
     }
 
     /// Mean difference of the normal forces from those of the contact law at the same overlaps, over the mean of the latter; 0

@@ -32,14 +32,18 @@ impl Claim {
 }
 
 /// Every claim.
-pub const CLAIMS: [Claim; 12] = [
+pub const CLAIMS: [Claim; 16] = [
     Claim { name: "an_engine_has_the_grains_of_its_packing", test: has_the_grains },
     Claim { name: "steps_and_time_count_from_those_of_the_packing", test: counts_steps },
     Claim { name: "the_cell_follows_the_strain_rate", test: strains },
+    Claim { name: "grains_follow_the_strain_of_the_cell", test: follows },
     Claim { name: "grains_that_are_pressed_together_have_positive_pressure", test: has_pressure },
     Claim { name: "the_observables_are_those_of_the_packing", test: observes_the_packing },
+    Claim { name: "contacts_have_the_forces_of_the_law_of_the_packing", test: has_the_law },
+    Claim { name: "a_grain_is_accelerated_along_the_net_force_on_it", test: accelerates },
     Claim { name: "overlapping_grains_are_pushed_apart_and_momentum_is_kept", test: repels },
     Claim { name: "drag_slows_grains_down", test: drags },
+    Claim { name: "friction_and_damping_act_or_are_refused", test: acts },
     Claim { name: "the_same_calls_give_the_same_bits", test: repeats },
     Claim { name: "observing_changes_nothing", test: observing_is_free },
     Claim { name: "an_engine_that_starts_from_a_packing_continues_the_run", test: continues },
@@ -118,6 +122,28 @@ fn uneven() -> Packing {
     packing
 }
 
+/// Unequal grains of another material in a sheared cell: no stress component is zero, none is another.
+fn crooked() -> Packing {
+    let mut packing = lattice();
+    let shear = Mat3::new(1.0, 3e-3, -2e-3, 0.0, 1.0, 4e-3, 0.0, 0.0, 1.0);
+    packing.cell = packing.cell.deformed(&shear).expect("a cell with a volume");
+    packing.positions.iter_mut().for_each(|p| *p = shear * *p);
+    packing.radii.iter_mut().enumerate().for_each(|(n, r)| *r += (7 * n % 5) as f64 * 0.1 * OVERLAP);
+    packing.material = Material { shear_modulus: 5e9, poisson_ratio: 0.35, density: 1400.0 };
+    packing
+}
+
+/// Net contact force on each grain, N.
+fn net_forces(packing: &Packing) -> Vec<Vec3> {
+    let mut net = vec![Vec3::zeros(); packing.grains()];
+    for c in &packing.contacts {
+        let on_i = c.tangential_force - c.normal * c.normal_force;
+        net[c.i as usize] += on_i;
+        net[c.j as usize] -= on_i;
+    }
+    net
+}
+
 fn run(engine: &mut dyn ParticleEngine, steps: u32) -> Result<(Mat3, Observables), String> {
     engine.run(steps).map_err(|e| e.to_string())
 }
@@ -179,6 +205,33 @@ fn strains(bench: &Bench<'_>) -> Result<(), String> {
     close("the volume", seen.cell.volume(), deformation.determinant() * before.volume(), 1e-9)
 }
 
+fn follows(bench: &Bench<'_>) -> Result<(), String> {
+    let mut engine = bench.ready(&lattice())?;
+    engine.set_rate(&[-900.0, 300.0, 150.0, 12.0, 120.0, -600.0]).map_err(|e| e.to_string())?;
+    let before = engine.packing(Mat3::identity());
+    let (nothing, _) = run(&mut *engine, 0)?;
+    holds(nothing == Mat3::identity() && engine.packing(nothing) == before, || "no step is one".to_owned())?;
+    let mut parts = bench.ready(&lattice())?;
+    parts.set_rate(&engine.rate()).map_err(|e| e.to_string())?;
+    run(&mut *engine, 60)?;
+    for steps in [1, 2, 57] {
+        run(&mut *parts, steps)?;
+    }
+    let (after, in_parts) = (engine.packing(Mat3::identity()), parts.packing(Mat3::identity()));
+    for (n, id) in before.ids.iter().enumerate() {
+        let of = |p: &Packing| (0..p.grains()).find(|m| p.ids[*m] == *id).unwrap_or_default();
+        let place = |p: &Packing| p.cell.inverse() * p.positions[of(p)];
+        let moved = (place(&after) - before.cell.inverse() * before.positions[n]).map(|s| s - s.round());
+        // By symmetry a lattice is strained as its cell.
+        holds(moved.amax() < 1e-6, || {
+            format!("grain {id} leaves its place in the cell by {:e}", moved.amax())
+        })?;
+        let apart = (after.positions[of(&after)] - in_parts.positions[of(&in_parts)]).norm();
+        holds(apart < 1e-9 * RADIUS, || format!("60 steps at once differ from 1, 2 and 57 by {apart:e} m"))?;
+    }
+    Ok(())
+}
+
 fn has_pressure(bench: &Bench<'_>) -> Result<(), String> {
     let seen = bench.ready(&lattice())?.observables().map_err(|e| e.to_string())?;
     // Hertz: F = 4/3 E* sqrt(R*) overlap^(3/2), one force on each face of the cube of a grain.
@@ -196,17 +249,80 @@ fn has_pressure(bench: &Bench<'_>) -> Result<(), String> {
 }
 
 fn observes_the_packing(bench: &Bench<'_>) -> Result<(), String> {
-    let mut engine = bench.ready(&uneven())?;
+    let mut engine = bench.ready(&crooked())?;
     let (_, seen) = run(&mut *engine, 20)?;
-    let packing = engine.packing(Mat3::identity());
-    let stress = grainlab_core::stress::stress(&packing).tensor;
-    close("the stress xx", seen.stress.tensor.xx, stress.xx, 1e-9)?;
+    let deformation = Mat3::new(1.0, 0.1, 0.0, 0.2, 0.9, 0.0, 0.0, 0.3, 1.1);
+    let packing = engine.packing(deformation);
+    holds(packing.deformation == deformation, || "another deformation".to_owned())?;
+    let stress = grainlab_core::stress::stress(&packing).tensor.voigt();
+    for ((found, expected), name) in
+        seen.stress.tensor.voigt().into_iter().zip(stress).zip(SymTensor::COMPONENTS)
+    {
+        close(&format!("the stress {name}"), found, expected, 1e-9)?;
+    }
+    let net: f64 = net_forces(&packing).iter().map(|f| f.norm()).sum();
+    let forces: f64 = packing.contacts.iter().map(|c| c.normal_force).sum();
+    let unbalanced = net / packing.grains() as f64 / (forces / packing.contacts.len() as f64);
+    close("the unbalanced force", seen.unbalanced, unbalanced, 1e-6)?;
     holds(seen.contacts as usize == packing.contacts.len(), || {
         format!("{} contacts, {} in the packing", seen.contacts, packing.contacts.len())
     })?;
     holds(seen.cell == packing.cell, || "another cell".to_owned())?;
     let squares: f64 = packing.velocities.iter().map(|v| v.norm_squared()).sum();
     close("the speed", seen.speed, (squares / packing.grains() as f64).sqrt(), 1e-9)
+}
+
+fn has_the_law(bench: &Bench<'_>) -> Result<(), String> {
+    for law in ContactLaw::examples() {
+        let given = Packing { law, ..crooked() };
+        // A law that the engine does not have is refused.
+        let Ok(mut engine) = bench.try_start(&given, &settings()) else { continue };
+        engine.begin_phase(&settings()).map_err(|e| e.to_string())?;
+        let packing = engine.packing(Mat3::identity());
+        let off = packing.law_difference();
+        holds(packing.law == law && off < 1e-6, || format!("forces are off those of {law:?} by {off:e}"))?;
+        packing.check().and_then(|()| packing.check_consistency()).map_err(|e| e.to_string())?;
+    }
+    Ok(())
+}
+
+fn accelerates(bench: &Bench<'_>) -> Result<(), String> {
+    let mut given = crooked();
+    given.positions[21] += 0.3 * OVERLAP * Vec3::new(1.0, -0.7, 0.4);
+    let mut engine = bench.ready(&given)?;
+    let before = engine.packing(Mat3::identity());
+    run(&mut *engine, 1)?;
+    let after = engine.packing(Mat3::identity());
+    let of = |p: &Packing| (0..p.grains()).find(|n| p.ids[*n] == given.ids[21]).unwrap_or_default();
+    let force = net_forces(&before)[of(&before)];
+    let gained = after.velocities[of(&after)] - before.velocities[of(&before)];
+    let expected = force / given.material.sphere_mass(given.radii[21]) * engine.time_step();
+    // Velocities may be half a step behind.
+    let share = gained.norm() / expected.norm();
+    let along = gained.normalize().dot(&expected.normalize());
+    holds((0.45..1.05).contains(&share) && along > 0.999, || {
+        format!("a force gives {share:.3} of its impulse in a step, and cos {along:.4} of its direction")
+    })
+}
+
+fn acts(bench: &Bench<'_>) -> Result<(), String> {
+    let mut engine = bench.ready(&lattice())?;
+    if engine.begin_phase(&EngineSettings { friction: 0.3, ..settings() }).is_ok() {
+        engine.set_rate(&[0.0, 0.0, 0.0, 0.0, 10.0, 0.0]).map_err(|e| e.to_string())?;
+        run(&mut *engine, 50)?;
+        let slip =
+            engine.packing(Mat3::identity()).contacts.iter().any(|c| c.tangential_force != Vec3::zeros());
+        holds(slip, || "friction is taken, and no contact has a tangential force".to_owned())?;
+    }
+    let speed = |damping: f64| {
+        let mut engine = bench.ready(&uneven())?;
+        if engine.begin_phase(&EngineSettings { damping, ..settings() }).is_err() {
+            return Ok(None);
+        }
+        (0..20).try_fold(0.0, |sum, _| Ok::<_, String>(sum + run(&mut *engine, 10)?.1.speed)).map(Some)
+    };
+    let Some((free, damped)) = speed(0.0)?.zip(speed(0.5)?) else { return Ok(()) };
+    holds(damped < 0.9 * free, || format!("damping is taken, and speeds are {damped:e} to {free:e} m/s"))
 }
 
 fn repels(bench: &Bench<'_>) -> Result<(), String> {

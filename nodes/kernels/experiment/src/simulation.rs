@@ -141,6 +141,13 @@ impl Simulation {
         if saved.scene != scene.fingerprint {
             return Err(ExperimentError::Resume("the packing belongs to another scene or seed".into()));
         }
+        // The stamp of a recorded packing has whole nanoseconds.
+        if (packing.time - saved.time).abs() > 1e-9 {
+            let (at, of) = (packing.time, saved.time);
+            let why =
+                format!("the packing is of {at} s, and the run state of {of} s: they do not belong together");
+            return Err(ExperimentError::Resume(why));
+        }
         if packing.strain().is_none() {
             let why = "the packing has no strain since the first step; begin the run anew";
             return Err(ExperimentError::Resume(why.into()));

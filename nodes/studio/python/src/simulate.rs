@@ -58,13 +58,13 @@ impl PySimulation {
         loop {
             let step = || {
                 let mut run = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-                let found = run.advance(SIGNAL_PERIOD).map(|packing| packing.map(|p| (p, run.run_state())));
+                let found = run.advance(SIGNAL_PERIOD);
                 (found, run.finished(), format!("simulation of {}, step {}", run.name(), run.steps()))
             };
             let (found, done, source) = py.detach(step);
             match found.map_err(error::of)? {
-                Some((packing, run_state)) => {
-                    return Ok(Some(PyPacking::new(packing, source, Vec::new()).at(&run_state)));
+                Some(state) => {
+                    return Ok(Some(PyPacking::new(state.packing, source, state.notes).at(&state.run_state)));
                 }
                 None if done => return Ok(None),
                 None => py.check_signals()?,

@@ -10,6 +10,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Grains that are worth a thread of their own.
 const GRAINS_PER_THREAD: usize = 2000;
 
+/// Most threads: no machine has more processors, and as many stacks fit into its memory.
+const MOST_THREADS: usize = 1024;
+
 /// Instruction set and threads.
 #[derive(Clone, Debug)]
 pub struct Compute {
@@ -47,7 +50,7 @@ impl Default for Compute {
 }
 
 impl Compute {
-    /// `threads` from 1. Several threads divide the chunks of grains among themselves.
+    /// `threads` from 1 to 1024. Several threads divide the chunks of grains among themselves.
     pub fn new(simd: Simd, threads: usize) -> Result<Self, ComputeError> {
         if !simd.is_available() {
             return Err(ComputeError::Simd(simd));
@@ -56,6 +59,7 @@ impl Compute {
         let pool = match threads {
             0 => return Err(error("at least one is needed".into())),
             1 => None,
+            n if n > MOST_THREADS => return Err(error(format!("at most {MOST_THREADS} are allowed"))),
             n => {
                 let built = rayon::ThreadPoolBuilder::new().num_threads(n).build();
                 Some(Arc::new(built.map_err(|e| error(e.to_string()))?))

@@ -27,6 +27,11 @@ fn an_engine_with_a_fault_breaks_the_claim_about_it() {
         (Fault::Forgetful, "an_engine_that_starts_from_a_packing_continues_the_run"),
         (Fault::Careless, "invalid_input_is_refused_and_changes_nothing"),
         (Fault::NoDrag, "drag_slows_grains_down"),
+        (Fault::Heavy, "a_grain_is_accelerated_along_the_net_force_on_it"),
+        (Fault::Rigid, "grains_follow_the_strain_of_the_cell"),
+        (Fault::Hasty, "grains_follow_the_strain_of_the_cell"),
+        (Fault::Wishful, "friction_and_damping_act_or_are_refused"),
+        (Fault::Skewed, "the_observables_are_those_of_the_packing"),
     ] {
         let broken = broken(&Toys(fault));
         assert!(broken.iter().any(|b| b.starts_with(claim)), "{fault:?}: {broken:?}");

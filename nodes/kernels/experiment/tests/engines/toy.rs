@@ -15,6 +15,11 @@ pub(crate) enum Fault {
     Forgetful,
     Careless,
     NoDrag,
+    Heavy,
+    Rigid,
+    Hasty,
+    Wishful,
+    Skewed,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,7 +64,10 @@ impl Toy {
         if self.fault != Fault::Careless && (s.drag.is_nan() || s.drag < 0.0) {
             return refused("drag must be 0 or more");
         }
-        if s.friction != 0.0 || s.damping != 0.0 || s.thermostat_speed.is_some() {
+        if self.fault != Fault::Wishful && s.friction != 0.0
+            || s.damping != 0.0
+            || s.thermostat_speed.is_some()
+        {
             return refused("friction, damping and thermostats are not supported");
         }
         Ok(())
@@ -140,13 +148,16 @@ impl ParticleEngine for Toy {
         let rate = SymTensor::from_voigt(self.rate).matrix() * dt;
         let step = Mat3::identity() + rate + 0.5 * rate * rate;
         let drag = if self.fault == Fault::NoDrag { 0.0 } else { self.settings.drag };
+        let steps = if self.fault == Fault::Hasty { steps.max(1) } else { steps };
         for _ in 0..steps {
             let forces = self.forces();
             let p = &mut self.grains;
             for (n, force) in forces.iter().enumerate() {
-                let mass = p.material.density * 4.0 / 3.0 * std::f64::consts::PI * p.radii[n].powi(3);
+                let heavy = if self.fault == Fault::Heavy { 10.0 } else { 1.0 };
+                let mass = heavy * p.material.sphere_mass(p.radii[n]);
                 p.velocities[n] = (p.velocities[n] + force * (dt / mass)) * (-drag * dt).exp();
-                p.positions[n] = step * p.positions[n] + p.velocities[n] * dt;
+                let affine = if self.fault == Fault::Rigid { Mat3::identity() } else { step };
+                p.positions[n] = affine * p.positions[n] + p.velocities[n] * dt;
             }
             let Some(cell) = p.cell.deformed(&step) else { return refused("the cell lost its volume") };
             p.cell = cell;
@@ -174,8 +185,10 @@ impl ParticleEngine for Toy {
         let net: f64 = self.forces().iter().map(|f| f.norm()).sum::<f64>() / p.radii.len() as f64;
         let mean: f64 = p.contacts.iter().map(|c| c.normal_force).sum::<f64>() / p.contacts.len() as f64;
         let squares: f64 = p.velocities.iter().map(|v| v.norm_squared()).sum();
+        let mut stress = stress(p);
+        stress.tensor.xy *= if self.fault == Fault::Skewed { -1.0 } else { 1.0 };
         Ok(Observables {
-            stress: stress(p),
+            stress,
             cell: p.cell,
             unbalanced: if p.contacts.is_empty() { 1.0 } else { net / mean },
             speed: (squares / p.radii.len() as f64).sqrt(),
