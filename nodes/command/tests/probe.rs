@@ -142,39 +142,3 @@ fn invalid_flags_are_refused_by_name() {
     let err = String::from_utf8_lossy(&out.stderr).into_owned();
     assert!(out.status.code() == Some(2) && err.contains("demo, acoustic"), "{err}");
 }
-
-#[test]
-fn attenuation_has_an_array_for_each_mode_and_grows_with_the_damping_asked_for() {
-    let flags = ["--survey", "three", "--modes", "compression", "--attenuation"];
-    let of = |more: &[&str]| probed(&[&flags, more].concat())["acoustic"].clone();
-    let weak = of(&["--attenuation-wavelengths", "8,120", "--contact-damping", "0.05"]);
-    let strong = of(&["--attenuation-wavelengths", "8,120", "--contact-damping", "0.1"]);
-    assert_eq!(weak["attenuation"]["contact_damping"], 0.05);
-    let waves = |acoustic: &Value| acoustic["attenuation"]["waves"].as_array().unwrap().clone();
-    assert_eq!((waves(&weak).len(), weak["modes"].as_array().unwrap().len()), (3, 3));
-    for (weak, strong) in waves(&weak).iter().zip(&waves(&strong)) {
-        // The longest wave first.
-        assert!((number(&weak["wavelength_diameters"][0]) - 120.0).abs() < 1e-9, "{weak}");
-        let ratio = number(&strong["contact_inverse_q"][0]) / number(&weak["contact_inverse_q"][0]);
-        assert!((ratio - 2.0).abs() < 1e-3, "{ratio}");
-        assert!(weak["contact_inverse_q"][1].is_null() && weak["scattering_inverse_q"][0].is_null());
-        // Dashpots do not change what is scattered.
-        assert_eq!(weak["scattering_inverse_q"], strong["scattering_inverse_q"]);
-        assert!(number(&weak["scattering_least_inverse_q"][1]) > 0.0, "{weak}");
-    }
-    assert!(probed(&["--survey", "three"])["acoustic"]["attenuation"].is_null());
-}
-
-#[test]
-fn flags_of_attenuation_need_it() {
-    let file = reference();
-    for (flags, word) in [
-        (&["--contact-damping", "0.1"][..], "--attenuation"),
-        (&["--attenuation", "--contact-damping", "2"], "contact damping"),
-        (&["--attenuation", "--attenuation-wavelengths", "1"], "wavelength"),
-    ] {
-        let out = grainlab(&[&["probe", file.to_str().unwrap()], flags].concat());
-        let err = String::from_utf8_lossy(&out.stderr).into_owned();
-        assert!(out.status.code() == Some(2) && err.contains(word), "{flags:?}: {err}");
-    }
-}

@@ -1,9 +1,8 @@
 //! `grainlab probe`: sends waves through packings from files, without DDS.
 //!
-//! - [`flags`]: the parameters of the node acoustic_probe as flags; [`attenuation`]: flags that the node does not have
+//! - [`flags`]: the parameters of the node acoustic_probe as flags
 //! - [`measure`]: one packing; [`outlet`]: results to stdout and into a recording
 
-mod attenuation;
 mod flags;
 mod measure;
 mod outlet;
@@ -28,8 +27,6 @@ Examples:
     grainlab probe packing.data --shear-modulus 29e9 --poisson 0.2 --friction 0.3 --speed-noise 0.003
   Bursts through the packing, with picked arrivals and recorded traces:
     grainlab probe packing.csv --method cross_correlation --signal-to-noise 20 --shots 64 --record traces
-  Attenuation of the waves against frequency, by dashpots of 5 % of critical damping and by scattering:
-    grainlab probe recordings/runs/demo-1-1 --survey three --attenuation --contact-damping 0.05 --format json
   The inversion of the speeds, compared with the counted structure:
     grainlab probe recordings/runs/* --format csv | grainlab invert --table - --judge --model relaxed";
 
@@ -57,8 +54,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     columns: Vec<String>,
     #[command(flatten)]
-    attenuation: attenuation::Args,
-    #[command(flatten)]
     flags: Flags,
 }
 
@@ -67,14 +62,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     args.import.topic_has_use(&args.files)?;
     let options = args.import.options()?;
     let settings = args.flags.settings()?;
-    let attenuation = args.attenuation.settings()?;
-    if attenuation.is_some() && args.format == Format::Csv {
-        return Err(Failure::usage(
-            "--attenuation has arrays, which --format csv has no columns for: use json or table",
-        ));
-    }
     let printer = Printer::new(args.format, args.columns.clone())?;
     let recorded = [topics::WAVE_SPEEDS, topics::WAVEFORM];
     let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "probe")).transpose()?;
-    files::run(&args.files, &options, &Probe { settings, attenuation }, Outlet::new(printer, tape))
+    files::run(&args.files, &options, &Probe { settings }, Outlet::new(printer, tape))
 }

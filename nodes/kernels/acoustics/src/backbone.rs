@@ -62,20 +62,6 @@ impl Backbone {
         Ok(Self { network, mass, inertia, clusters, volume: packing.cell.volume(), bulk, rattlers })
     }
 
-    /// Volume of the cell, m³.
-    pub(crate) fn volume(&self) -> f64 {
-        self.volume
-    }
-
-    /// Speed of long waves if every grain moved with the mean deformation, m/s: above the real one.
-    pub(crate) fn affine_speed(&self, direction: &Vec3, polarization: &Vec3) -> f64 {
-        let modulus = self.network.contact_springs().map(|c| {
-            let along = Vec3::from(c.normal).dot(polarization).powi(2);
-            Vec3::from(c.branch).dot(direction).powi(2) * (c.tangential + c.kn_minus_kt * along)
-        });
-        (modulus.sum::<f64>() / self.mass.iter().sum::<f64>()).sqrt()
-    }
-
     /// The effective density for waves of the angular frequency `frequency`, rad/s, 0 or more.
     pub(crate) fn effective_density(&self, frequency: f64) -> EffectiveDensity {
         let mut tensor = Mat3::identity() * self.mass.iter().sum::<f64>();

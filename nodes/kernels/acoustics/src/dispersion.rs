@@ -3,33 +3,23 @@
 //! The packing is repeated to infinity, so that waves of any length and direction fit. At each wave vector q the three
 //! acoustic modes are computed; ω²/q² is proportional to 1 − b q² and extrapolated to long waves
 //! ([`crate::DispersionCurve::fit`]). Amplitudes are infinitesimal: contacts neither open nor slide.
-//!
-//! [`attenuation`](fn@attenuation): 1/Q of the same waves by the dashpots of the contacts, and by scattering.
 
 mod acoustic_tensor;
 mod alignment;
-mod attenuation;
 mod bloch;
 mod christoffel_modes;
-mod coherence;
-mod damped_modes;
-mod dashpots;
 mod error;
 mod extrapolation;
-mod joint_diagonal;
 #[cfg(test)]
 mod lattice_sample;
 mod mean_diameter;
 mod modes;
-mod scattering;
 mod settings;
 mod solve;
 mod subspace;
 mod waves;
 
 pub(crate) use alignment::Alignment;
-pub use attenuation::{AttenuationSettings, attenuation};
-pub use grainlab_core::results::{Attenuation, AttenuationPoint, ContactLoss, RESOLVED, Scattering};
 pub(crate) use mean_diameter::mean_diameter;
 pub use settings::Settings;
 

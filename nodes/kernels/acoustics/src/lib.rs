@@ -12,7 +12,6 @@
 //! repeated along a path). `wave_path` runs the two methods with moving grains for all polarizations of all rays.
 //!
 //! [`measure`](fn@measure) applies a method to a set of rays (`survey`), through an `instrument` with noise.
-//! [`measure_attenuation`](fn@measure_attenuation) computes 1/Q along them.
 
 mod backbone;
 mod contact_changes;
@@ -22,7 +21,6 @@ mod effective_density;
 mod error;
 mod instrument;
 mod measure;
-mod measure_attenuation;
 mod noise;
 mod nonlinearity;
 mod ray;
@@ -41,7 +39,6 @@ pub use effective_density::EffectiveDensity;
 pub use error::AcousticsError;
 pub use instrument::{Instrument, ReceiverSignals, SamplingWindow};
 pub use measure::{Measurement, measure, with_speed_noise};
-pub use measure_attenuation::measure_attenuation;
 pub use ray::Ray;
 pub use settings::{MethodSettings, Settings};
 pub use supercell::{Supercell, supercell};

@@ -13,7 +13,7 @@
 mod free_vibration;
 mod measurement;
 mod settings;
-pub(crate) mod tone;
+mod tone;
 
 pub use settings::{MIN_COPIES, Settings};
 

@@ -1,6 +1,5 @@
 //! Wave speeds of one packing, and the moduli of the medium with these speeds.
 
-use crate::attenuation::AttenuationReport;
 use crate::measurements::Measurement;
 use crate::quantities::entries;
 use grainlab_core::MeasuredWave;
@@ -24,8 +23,6 @@ pub struct AcousticReport {
     pub medium: WaveModuli,
     /// The speeds of the packing's own modes along the same rays; empty where they are not measured.
     pub modes: Vec<MeasuredWave>,
-    /// Attenuation, if it was computed.
-    pub attenuation: Option<AttenuationReport>,
 }
 
 /// Every quantity of an [`AcousticReport`]. Moduli that the speeds do not determine are null.
@@ -74,7 +71,7 @@ impl AcousticReport {
             conditions,
             Some(f64::from(grains)),
         );
-        Self { measurement: None, reading, bulk_density, medium, modes: Vec::new(), attenuation: None }
+        Self { measurement: None, reading, bulk_density, medium, modes: Vec::new() }
     }
 
     /// Largest relative difference between the speed of a mode and that along its polarization in a medium isotropic about
@@ -146,7 +143,6 @@ impl Serialize for AcousticReport {
         map.serialize_entry("speeds", &speeds)?;
         let modes: Vec<SpeedView> = self.modes.iter().map(SpeedView::from).collect();
         map.serialize_entry("modes", &modes)?;
-        map.serialize_entry("attenuation", &self.attenuation)?;
         map.serialize_entry("warnings", &self.warnings())?;
         map.end()
     }

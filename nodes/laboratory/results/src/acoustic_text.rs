@@ -38,9 +38,6 @@ pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
             percent(shift)
         );
     }
-    if let Some(attenuation) = &a.attenuation {
-        text += &indented(&attenuation.text());
-    }
     a.warnings().iter().for_each(|w| text += &format!("  note: {w}\n"));
     text
 }

@@ -1,7 +1,7 @@
 //! Results of a run as text, JSON and CSV: what `launch`, `analyze`, `probe`, `invert`, `campaign` and `reproduce` print.
 //!
 //! - [`quantities`]: values, columns and help from the tables of quantities; [`ORIGIN`], [`ACOUSTIC`]: two of the tables
-//! - [`MeasuredPacking`], [`AcousticReport`], [`AttenuationReport`], [`Probed`], [`Inference`]: one packing, its waves, and what a model infers
+//! - [`MeasuredPacking`], [`AcousticReport`], [`Probed`], [`Inference`]: one packing, its waves, and what a model infers
 //! - [`Measurement`]: which of several measurements of a packing
 //! - [`state_warnings()`]: warnings about a packing; [`ProbeView`], [`ScanView`]: details of a strain probe
 //! - [`Printed`], [`Printer`]: results one after the other; [`inference_text`]: results of models as text
@@ -11,7 +11,6 @@
 
 mod acoustic;
 mod acoustic_text;
-mod attenuation;
 pub mod brief;
 pub mod continuity;
 mod inference;
@@ -30,7 +29,6 @@ mod summary;
 pub mod summary_text;
 
 pub use acoustic::{ACOUSTIC, AcousticReport};
-pub use attenuation::AttenuationReport;
 pub use inference::{Inference, Origin, by_origin};
 pub use measured_packing::{MeasuredPacking, ORIGIN};
 pub use measurements::Measurement;

@@ -2,20 +2,17 @@
 
 use crate::commands::packings::Measure;
 use grainlab_acoustic_probe::{Measured, Settings, messages};
-use grainlab_acoustics::dispersion::AttenuationSettings;
-use grainlab_acoustics::{AcousticsError, measure_attenuation};
+use grainlab_acoustics::AcousticsError;
 use grainlab_core::Vec3;
 use grainlab_micromechanics::analyze;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_recordings::import::Imported;
-use grainlab_results::{AcousticReport, AttenuationReport, MeasuredPacking, Probed, state_warnings};
+use grainlab_results::{AcousticReport, MeasuredPacking, Probed, state_warnings};
 
 /// Settings of the measurement.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
     pub(super) settings: Settings,
-    /// Settings of the attenuation, if it is computed.
-    pub(super) attenuation: Option<AttenuationSettings>,
 }
 
 /// The result for one packing.
@@ -55,10 +52,6 @@ impl Measure for Probe {
         let density = packing.solid_fraction() * packing.material.density;
         let mut acoustic = AcousticReport::new(packing.grains() as u32, density, reading);
         acoustic.modes = found.modes;
-        if let Some(settings) = &self.attenuation {
-            let curves = measure_attenuation(packing, &self.settings.0, settings).map_err(|e| named(&e))?;
-            acoustic.attenuation = Some(AttenuationReport::new(packing, settings.damping, curves));
-        }
         // The axis of the rays, or the one inferred from the speeds.
         let measured = measured(acoustic.medium.axis)?;
         let acoustic = Some(acoustic);

@@ -27,7 +27,7 @@ struct BlochContact {
     sin: f64,
 }
 
-/// The operator K(q), with the inverses of its diagonal blocks; or that of dashpots, without them.
+/// The operator K(q), with the inverses of its diagonal blocks.
 #[derive(Debug)]
 pub(crate) struct Bloch<'a> {
     pub(crate) backbone: &'a Backbone,
@@ -38,9 +38,17 @@ pub(crate) struct Bloch<'a> {
 
 impl<'a> Bloch<'a> {
     pub(crate) fn new(backbone: &'a Backbone, q: &Vec3) -> Self {
-        let mut operator = Self::with(backbone, q, |l| l);
+        let contact = |l: ContactSpring| {
+            let half = 0.5 * q.dot(&Vec3::from(l.branch));
+            let ContactSpring { i, j, normal, levers, tangential, kn_minus_kt, .. } = l;
+            let lever = 0.5 * (levers[0] + levers[1]);
+            let share = levers.map(|own| own / lever);
+            let (sin, cos) = (half.sin(), half.cos());
+            BlochContact { i, j, normal, lever, share, tangential, kn_minus_kt, cos, sin }
+        };
+        let contacts: Vec<BlochContact> = backbone.network.contact_springs().map(contact).collect();
         let mut blocks = vec![[[0.0; 6]; 6]; backbone.mass.len()];
-        for contact in &operator.contacts {
+        for contact in &contacts {
             for (grain, block) in contact.blocks() {
                 let sum = &mut blocks[grain as usize];
                 for row in 0..6 {
@@ -50,35 +58,8 @@ impl<'a> Bloch<'a> {
                 }
             }
         }
-        operator.inverses = blocks.iter().map(generalised_inverse).collect();
-        operator
-    }
-
-    /// The same kinematics with other constants of the contacts, without the inverses.
-    pub(crate) fn with(
-        backbone: &'a Backbone,
-        q: &Vec3,
-        constants: impl Fn(ContactSpring) -> ContactSpring,
-    ) -> Self {
-        let contact = |l: ContactSpring| {
-            let half = 0.5 * q.dot(&Vec3::from(l.branch));
-            let ContactSpring { i, j, normal, levers, tangential, kn_minus_kt, .. } = constants(l);
-            let lever = 0.5 * (levers[0] + levers[1]);
-            let share = levers.map(|own| own / lever);
-            BlochContact {
-                i,
-                j,
-                normal,
-                lever,
-                share,
-                tangential,
-                kn_minus_kt,
-                cos: half.cos(),
-                sin: half.sin(),
-            }
-        };
-        let contacts = backbone.network.contact_springs().map(contact).collect();
-        Self { backbone, q: *q, contacts, inverses: Vec::new() }
+        let inverses = blocks.iter().map(generalised_inverse).collect();
+        Self { backbone, q: *q, contacts, inverses }
     }
 
     /// y = K x.

@@ -24,8 +24,6 @@ pub(crate) struct Modes {
     /// Σ ω² p p* over the modes with their polarizations p, 1/s²: the acoustic tensor over the density, times q². Zero
     /// for polarizations that were not given.
     pub(crate) acoustic_tensor: Mat3,
-    /// Unit polarization of each mode, the softest first.
-    pub(crate) motions: Vec<Vec3>,
     /// Largest relative change of ω² in the last round.
     pub(crate) change: f64,
     /// The modes, and softer ones that had to be separated.
@@ -75,20 +73,15 @@ pub(crate) fn modes(
         change = (0..count).map(moved).fold(0.0, f64::max);
         if change <= tolerance {
             let acoustic_tensor = acoustic_tensor(&ritz.squares, &ritz.overlaps, polarizations);
-            let motion = |k: usize| {
-                let shares = ritz.overlaps.in_phase(k);
-                polarizations.iter().zip(shares).map(|(p, share)| *p * share).sum::<Vec3>().normalize()
-            };
-            let motions = (0..count).map(motion).collect();
             let found = std::iter::once(ritz.waves).chain(ritz.softer).collect();
-            return Ok(Modes { acoustic_tensor, motions, change, found });
+            return Ok(Modes { acoustic_tensor, change, found });
         }
     }
     Err(SolveError::Unsettled { change, rounds: ROUNDS })
 }
 
 /// Uniform motions of all grains of the backbone, without floppy modes.
-pub(super) fn plane_waves(bloch: &Bloch<'_>, polarizations: &[Vec3]) -> Block {
+fn plane_waves(bloch: &Bloch<'_>, polarizations: &[Vec3]) -> Block {
     let mut plane = vec![Amplitude::STILL; bloch.backbone.mass.len()];
     for (amplitude, mass) in plane.iter_mut().zip(&bloch.backbone.mass) {
         if *mass > 0.0 {

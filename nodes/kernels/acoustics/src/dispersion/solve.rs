@@ -9,15 +9,15 @@ use pulp::WithSimd;
 /// Solves K y = f for each wave: conjugate gradients with a block Jacobi preconditioner.
 #[derive(Debug)]
 pub(crate) struct Solve<'a> {
-    pub(crate) bloch: &'a Bloch<'a>,
+    bloch: &'a Bloch<'a>,
     /// f.
-    pub(crate) load: Block,
+    load: Block,
     /// The first y.
-    pub(crate) start: Block,
+    start: Block,
     /// Residual over the load.
-    pub(crate) tolerance: f64,
+    tolerance: f64,
     /// Iterations left.
-    pub(crate) budget: &'a mut u32,
+    budget: &'a mut u32,
 }
 
 impl WithSimd for Solve<'_> {

@@ -46,14 +46,6 @@ pub(crate) struct Ritz {
 pub(crate) struct Complex3(Matrix3<C>);
 
 impl Complex3 {
-    /// Column `k`, with the phase that makes its largest entry real; real parts.
-    pub(crate) fn in_phase(&self, k: usize) -> [f64; 3] {
-        let column = self.0.column(k);
-        let largest =
-            column.iter().copied().fold(C::from(0.0), |a, b| if b.norm() > a.norm() { b } else { a });
-        [0, 1, 2].map(|row| (column[row] * largest.conj()).re)
-    }
-
     /// Real part of Σ ω² p p* over the first `count` modes, with their polarizations p orthogonalised.
     pub(crate) fn acoustic_tensor(&self, squares: &[f64; WAVES], count: usize) -> Matrix3<f64> {
         let w = self.0.view((0, 0), (count, count)).into_owned();
@@ -144,35 +136,25 @@ impl Subspace {
         Some(Ritz { squares, waves: combine(&order), overlaps: Complex3(overlaps), softer })
     }
 
+    /// The waves given by the `chosen` columns of `combinations`, with a row for each wave of each block.
     fn combine(&self, combinations: &DMatrix<C>, chosen: &[usize]) -> Block {
-        let blocks: Vec<&Block> = self.blocks.iter().map(|held| &held.x).collect();
-        combined(&blocks, self.waves, combinations, chosen)
-    }
-}
-
-/// The waves given by the `chosen` columns of `combinations`, with a row for each of the `waves` of each block.
-pub(crate) fn combined(
-    blocks: &[&Block],
-    waves: usize,
-    combinations: &DMatrix<C>,
-    chosen: &[usize],
-) -> Block {
-    let mut x = vec![Amplitude::STILL; blocks[0].len()];
-    for (wave, k) in chosen.iter().enumerate() {
-        for (held, block) in blocks.iter().enumerate() {
-            for from in 0..waves {
-                let share = combinations[(held * waves + from, *k)];
-                for (sum, x) in x.iter_mut().zip(*block) {
-                    for row in 0..6 {
-                        let value = share * C::new(x.re[row].0[from], x.im[row].0[from]);
-                        sum.re[row].0[wave] += value.re;
-                        sum.im[row].0[wave] += value.im;
+        let mut x = vec![Amplitude::STILL; self.blocks[0].x.len()];
+        for (wave, k) in chosen.iter().enumerate() {
+            for (at, held) in self.blocks.iter().enumerate() {
+                for from in 0..self.waves {
+                    let share = combinations[(at * self.waves + from, *k)];
+                    for (sum, x) in x.iter_mut().zip(&held.x) {
+                        for row in 0..6 {
+                            let value = share * C::new(x.re[row].0[from], x.im[row].0[from]);
+                            sum.re[row].0[wave] += value.re;
+                            sum.im[row].0[wave] += value.im;
+                        }
                     }
                 }
             }
         }
+        x
     }
-    x
 }
 
 /// x* y of wave `a` of x and wave `b` of y.

@@ -255,5 +255,5 @@ fn tone(samples: &[f64], start: f64, interval: f64, periods: f64, range: [f64; 2
     let tone = within(rough, LEFT_OUT, periods)?;
     let half = within(rough, LEFT_OUT, LEFT_OUT + 0.5 * (periods - LEFT_OUT))?;
     let apart = (tone.omega - half.omega).abs();
-    Some(Tone { stddev: tone.stddev.hypot(apart).max(ROUNDING * tone.omega), ..tone })
+    Some(Tone { omega: tone.omega, stddev: tone.stddev.hypot(apart).max(ROUNDING * tone.omega) })
 }

@@ -20,10 +20,6 @@ pub(crate) struct Tone {
     pub(crate) omega: f64,
     /// Its standard deviation with correlated residuals, rad/s.
     pub(crate) stddev: f64,
-    /// γ, 1/s.
-    pub(crate) decay: f64,
-    /// Its standard deviation with correlated residuals, 1/s.
-    pub(crate) decay_stddev: f64,
 }
 
 impl Tone {
@@ -141,8 +137,7 @@ impl Fit {
         let left: Vec<f64> = samples.iter().zip(times).map(|(y, t)| y - self.at(*t)).collect();
         let freedom = (samples.len() as f64 - 4.0).max(1.0);
         let noise = self.error / freedom * correlation_factor(&left);
-        let stddev = |k: usize| self.omega * (covariance[(k, k)] * noise).sqrt();
-        let tone = Tone { omega: self.omega, stddev: stddev(0), decay: self.decay, decay_stddev: stddev(1) };
+        let tone = Tone { omega: self.omega, stddev: self.omega * (covariance[(0, 0)] * noise).sqrt() };
         tone.stddev.is_finite().then_some(tone)
     }
 }
@@ -181,7 +176,7 @@ mod tests {
     #[test]
     fn a_clean_tone_is_found_to_rounding() {
         let tone = found(&samples(0.0, 1)).unwrap();
-        assert!((tone.omega / OMEGA - 1.0).abs() < 1e-10 && (tone.decay - 300.0).abs() < 1e-4, "{tone:?}");
+        assert!((tone.omega / OMEGA - 1.0).abs() < 1e-10, "{tone:?}");
         assert!(tone.stddev < 1e-9 * OMEGA);
     }
 

@@ -1,7 +1,5 @@
 //! Tests of the virtual acoustic measurement.
 
-mod attenuation;
-mod attenuation_in_the_engine;
 mod chain;
 mod crystals;
 mod dispersion;

@@ -7,13 +7,11 @@
 //! - [`ElasticStiffness`]: the stiffness, its bounds, and how it was found
 //! - [`PackingReport`]: all of it for one packing
 //! - [`Microstructure`]: what an inversion infers
-//! - [`Attenuation`]: 1/Q of waves
 //!
 //! Tensors are in the frame of the cell. h is the reference axis ([`Fabric::reference_axis`]), n a contact normal and
 //! x = |n·h|. What is undefined (no contacts, no forces, no Coulomb limit) is `None`; tensors whose weights sum to nothing
 //! are zero.
 
-mod attenuation;
 mod contact_statistics;
 mod elastic_stiffness;
 mod fabric;
@@ -24,7 +22,6 @@ mod spring_notes;
 mod strain_ratios;
 mod stress_decomposition;
 
-pub use attenuation::{Attenuation, AttenuationPoint, ContactLoss, RESOLVED, Scattering};
 pub use contact_statistics::{
     ContactStatistics, FORCE_BIN_WIDTH, FORCE_BINS, ForceStatistics, MOBILISATION_BINS, MobilisedFriction,
 };
