@@ -8,9 +8,9 @@ use syn::{Item, UseTree, Visibility};
 
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
-const LABORATORY: usize = 55_522;
-const STUDIO_AND_COMMAND: usize = 29_059;
-const TESTS: usize = 45_517;
+const LABORATORY: usize = 55_715;
+const STUDIO_AND_COMMAND: usize = 24_840;
+const TESTS: usize = 45_600;
 
 /// Most comments that begin with a word that names nothing.
 const HEADLESS: usize = 1_081;

@@ -2,14 +2,13 @@
 //!
 //! - [`live`]: a topic; files are read by [`super::packings`]
 //! - [`measure`]: one packing
-//! - [`outlet`]: results to stdout and into a recording
 
 mod live;
 mod measure;
-mod outlet;
 
 use super::packings::files;
 use super::packings::import::{self, in_range};
+use super::packings::outlet::Outlet;
 use crate::tape::Tape;
 use grainlab_console::{Failure, Format, print};
 use grainlab_core::Vec3;
@@ -22,7 +21,6 @@ use grainlab_recordings::import::yade;
 use grainlab_results::Printer;
 use grainlab_results::quantities::help;
 use measure::Analysis;
-use outlet::Outlet;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

@@ -2,35 +2,41 @@
 //!
 //! - [`import`]: flags for data that files lack
 //! - [`files`]: many files at once
-//! - [`sink`]: results in order
+//! - [`sink`]: results in order; [`outlet`]: to stdout and into a recording
 
 pub(crate) mod bar;
 pub(crate) mod files;
 pub(crate) mod import;
+pub(crate) mod outlet;
 pub(crate) mod sink;
 
+use crate::tape::Tape;
 use bar::Bar;
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::Imported;
+use grainlab_results::Printed;
 
 /// The measurement of one packing.
 pub(crate) trait Measure: Sync {
     /// Its result.
-    type Found: Send;
+    type Found: Found;
 
     /// Measures one packing of `source`; the error names both.
     fn measure(&self, source: &str, imported: &Imported) -> Result<Self::Found, String>;
 }
 
-/// The destination of results.
-pub(crate) trait Outlet: Send {
-    /// The result of one packing.
-    type Found: Send;
+/// The result of one packing.
+pub(crate) trait Found: Send {
+    /// The printed part.
+    type Shown: Printed;
 
-    /// Takes the next result. `bar` is hidden while lines are printed.
-    fn emit(&mut self, found: Self::Found, bar: &Bar) -> Result<Exit, Failure>;
+    /// The printed part.
+    fn shown(&self) -> &Self::Shown;
 
-    /// Completes the output after the last result.
-    fn finish(self) -> Result<Exit, Failure>;
+    /// Whether the packing lacks what was sought.
+    fn is_without(&self) -> bool;
+
+    /// Writes the messages into a recording.
+    fn record(&self, tape: &mut Tape, bar: &Bar) -> Result<Exit, Failure>;
 }

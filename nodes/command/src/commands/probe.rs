@@ -1,12 +1,11 @@
 //! `grainlab probe`: sends waves through packings from files, without DDS.
 //!
-//! - [`flags`]: the parameters of the node acoustic_probe as flags
-//! - [`measure`]: one packing; [`outlet`]: results to stdout and into a recording
+//! - [`flags`]: the parameters of the node acoustic_probe as flags; [`measure`]: one packing
 
 mod flags;
 mod measure;
-mod outlet;
 
+use super::packings::outlet::Outlet;
 use super::packings::{files, import};
 use crate::tape::Tape;
 use flags::Flags;
@@ -16,7 +15,6 @@ use grainlab_node_kit::Exit;
 use grainlab_results::quantities::help;
 use grainlab_results::{ACOUSTIC, Printer};
 use measure::Probe;
-use outlet::Outlet;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

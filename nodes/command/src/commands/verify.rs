@@ -4,7 +4,7 @@ mod embedded;
 mod suites;
 mod table;
 
-use grainlab_console::{Failure, Format, json, print, say};
+use grainlab_console::{Failure, Format, say};
 use grainlab_node_kit::Exit;
 use grainlab_verification::{Row, Verdict};
 use suites::{SUITES, Suite};
@@ -44,11 +44,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         }
         rows.extend((suite.rows)()?);
     }
-    print(&match args.format {
-        Format::Table => table::text(&rows),
-        Format::Csv => table::csv(&rows),
-        Format::Json => json(&rows.iter().map(table::Judged::new).collect::<Vec<_>>())?,
-    })?;
+    let judged: Vec<_> = rows.iter().map(table::Judged::new).collect();
+    args.format.print(&judged, || table::csv(&rows), || table::text(&rows))?;
     Ok(exit(&rows))
 }
 

@@ -17,6 +17,25 @@ pub enum Format {
     Csv,
 }
 
+impl Format {
+    /// Prints a result: `value` as JSON, or its CSV, or its text.
+    ///
+    /// # Errors
+    /// If `value` cannot be JSON, or stdout cannot be written.
+    pub fn print<T: Serialize + ?Sized>(
+        self,
+        value: &T,
+        csv: impl FnOnce() -> String,
+        text: impl FnOnce() -> String,
+    ) -> Result<(), Failure> {
+        print(&match self {
+            Self::Json => json(value)?,
+            Self::Csv => csv(),
+            Self::Table => text(),
+        })
+    }
+}
+
 /// `eprintln!` that ignores a closed stderr: `2>&1 | head` must not end a run. The line comes above a live line.
 #[macro_export]
 macro_rules! say {

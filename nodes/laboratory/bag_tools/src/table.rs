@@ -2,14 +2,12 @@
 //!
 //! - `shape`: fields and the greatest length of each array, from a schema and the messages
 //! - `columns`: the columns of a shape, and the cells of a message
-//! - `csv`, `parquet`: the files
+//! - `csv`: the file
 
 mod columns;
 mod csv;
-mod parquet;
 mod shape;
 
 pub(crate) use columns::Columns;
 pub(crate) use csv::CsvTable;
-pub(crate) use parquet::ParquetTable;
 pub(crate) use shape::{MOST_COLUMNS, Shape};

@@ -2,9 +2,10 @@
 
 use crate::cat;
 use crate::decoders::{Decoders, schema_of};
-use crate::table::{Columns, CsvTable, MOST_COLUMNS, ParquetTable, Shape};
+use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape};
 use grainlab_any_message::Shown;
 use grainlab_console::Failure;
+use grainlab_parquet::ParquetTable;
 use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -47,7 +48,7 @@ struct Table {
 enum TableFile {
     Json(BufWriter<File>),
     Csv(Columns, Box<CsvTable>),
-    Parquet(Columns, Box<ParquetTable>),
+    Parquet(Columns, Box<ParquetTable<File>>),
 }
 
 /// A failure of the file system or of a library.
@@ -154,8 +155,9 @@ impl<'a> Tables<'a> {
                 }
                 TableFormat::Parquet => {
                     let columns = columns()?;
-                    let file =
-                        ParquetTable::create(&path("parquet"), &columns.list).map_err(|e| wrong(&e))?;
+                    let file = File::create_new(path("parquet")).map_err(Into::into);
+                    let file = file.and_then(|file| ParquetTable::new(file, "messages", &columns.list));
+                    let file = file.map_err(|e| wrong(&e))?;
                     TableFile::Parquet(columns, Box::new(file))
                 }
             });

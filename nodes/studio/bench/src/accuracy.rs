@@ -14,7 +14,7 @@ mod verdict;
 
 use super::folder;
 use clap::ValueEnum;
-use grainlab_console::{Failure, Format, json, print, say};
+use grainlab_console::{Failure, Format, json, say};
 use grainlab_node_kit::Exit;
 use grainlab_page::plot::Theme;
 use grainlab_scene::Scene;
@@ -95,11 +95,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         folder::write(folder, "accuracy.json", &json(&report)?)?;
         folder::write(folder, "accuracy.svg", &plot::figure(&report).svg(Theme::Light))?;
     }
-    print(&match args.format {
-        Format::Json => json(&report)?,
-        Format::Csv => table::csv(&report),
-        Format::Table => table::text(&report),
-    })?;
+    args.format.print(&report, || table::csv(&report), || table::text(&report))?;
     Ok(Exit::Done)
 }
 

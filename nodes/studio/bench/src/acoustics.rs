@@ -13,7 +13,7 @@ pub(crate) use report::Row;
 
 use super::folder;
 use super::packing::load;
-use grainlab_console::{Failure, Format, json, print};
+use grainlab_console::{Failure, json};
 use grainlab_core::Packing;
 use grainlab_node_kit::Exit;
 use grainlab_page::plot::Theme;
@@ -40,11 +40,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         folder::write(folder, "acoustics.svg", &plot::figure(&report).svg(Theme::Light))?;
         folder::write(folder, "dispersion.svg", &curves::svg(&packings[0])?)?;
     }
-    print(&match args.format {
-        Format::Json => json(&report)?,
-        Format::Csv => report::csv(&report),
-        Format::Table => report::text(&report),
-    })?;
+    args.format.print(&report, || report::csv(&report), || report::text(&report))?;
     Ok(Exit::Done)
 }
 

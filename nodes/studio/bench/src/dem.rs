@@ -7,7 +7,7 @@ mod stepping;
 use super::numbers::{median, rounded};
 use super::packing;
 use clap::ValueEnum;
-use grainlab_console::{Failure, Format, Table, count, exact, json, print, say};
+use grainlab_console::{Failure, Format, Table, count, exact, say};
 use grainlab_core::Packing;
 use grainlab_dem::Simd;
 use grainlab_node_kit::Exit;
@@ -142,15 +142,12 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let rows = cases.iter().zip(&loops).map(|(case, loops)| row(&packing, case, loops, &machine)).collect();
     let report = Report { machine, rows };
-    print(&match args.format {
-        Format::Json => json(&report)?,
-        Format::Csv => table(&report.rows, exact).csv(),
-        Format::Table => {
-            let table = report.machine.to_string() + &table(&report.rows, rounded).text();
-            // One case is no series.
-            if report.rows.len() > 1 { table + "\n" + &bars(&report.rows).text() } else { table }
-        }
-    })?;
+    let text = || {
+        let table = report.machine.to_string() + &table(&report.rows, rounded).text();
+        // One case is no series.
+        if report.rows.len() > 1 { table + "\n" + &bars(&report.rows).text() } else { table }
+    };
+    args.format.print(&report, || table(&report.rows, exact).csv(), text)?;
     Ok(Exit::Done)
 }
 

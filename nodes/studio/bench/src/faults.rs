@@ -16,7 +16,7 @@ mod process;
 mod recorder;
 mod stranger;
 
-use grainlab_console::{Failure, Format, Table, json, print};
+use grainlab_console::{Failure, Format, Table};
 use grainlab_node_kit::Exit;
 use grainlab_scene::Scene;
 use laboratory::{Outcome, run_with};
@@ -113,11 +113,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             Outcome::Stuck(what) => fail(format!("the run does not end: {what}")),
         }
     }
-    print(&match args.format {
-        Format::Json => json(&report)?,
-        Format::Csv => table(&report).csv(),
-        Format::Table => table(&report).text(),
-    })?;
+    args.format.print(&report, || table(&report).csv(), || table(&report).text())?;
     Ok(if report.failures.is_empty() { Exit::Done } else { Exit::Failure })
 }
 

@@ -3,7 +3,7 @@
 mod role;
 mod round;
 
-use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
+use grainlab_console::{Failure, Format, Table, exact, fixed};
 use grainlab_node_kit::Exit;
 use role::Role;
 use serde::Serialize;
@@ -91,11 +91,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     rows.push(row(None, [&ours, &alone, &bare], lost));
     let report = Report { rows };
-    print(&match args.format {
-        Format::Json => json(&report)?,
-        Format::Csv => table(&report.rows, exact).csv(),
-        Format::Table => table(&report.rows, |v| fixed(v, 1)).text(),
-    })?;
+    args.format.print(
+        &report,
+        || table(&report.rows, exact).csv(),
+        || table(&report.rows, |v| fixed(v, 1)).text(),
+    )?;
     Ok(if lost > 0 { Exit::DataLoss } else { Exit::Done })
 }
 

@@ -9,7 +9,7 @@ mod row;
 mod waves;
 
 use super::folder;
-use grainlab_console::{Failure, Format, json, print, say};
+use grainlab_console::{Failure, Format, json, say};
 use grainlab_node_kit::Exit;
 use grainlab_page::plot::Theme;
 use std::path::PathBuf;
@@ -68,10 +68,6 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if args.front {
         report.rows.retain(|row| row.on_front);
     }
-    print(&match args.format {
-        Format::Json => json(&report)?,
-        Format::Csv => report::csv(&report),
-        Format::Table => report::text(&report),
-    })?;
+    args.format.print(&report, || report::csv(&report), || report::text(&report))?;
     Ok(Exit::Done)
 }

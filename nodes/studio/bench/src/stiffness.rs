@@ -10,7 +10,7 @@ pub(crate) use report::Row;
 
 use super::folder;
 use super::packing::{copies, load, repeated};
-use grainlab_console::{Failure, Format, json, print};
+use grainlab_console::{Failure, json};
 use grainlab_core::{Mat3, Packing};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 use grainlab_node_kit::Exit;
@@ -36,11 +36,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         folder::write(folder, "stiffness.json", &json(&report)?)?;
         folder::write(folder, "stiffness.svg", &plot::figure(&report).svg(Theme::Light))?;
     }
-    print(&match args.format {
-        Format::Json => json(&report)?,
-        Format::Csv => report::csv(&report),
-        Format::Table => report::text(&report),
-    })?;
+    args.format.print(&report, || report::csv(&report), || report::text(&report))?;
     Ok(Exit::Done)
 }
 

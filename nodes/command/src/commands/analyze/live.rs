@@ -1,8 +1,8 @@
 //! Packings from a live topic.
 
-use super::measure::Analysis;
-use super::outlet::Outlet;
+use super::measure::{Analysis, Found};
 use crate::commands::packings::Measure;
+use crate::commands::packings::outlet::Outlet;
 use crate::commands::packings::sink::{Ending, Sink};
 use grainlab_console::{Failure, worse};
 use grainlab_core::Packing;
@@ -23,7 +23,7 @@ pub(super) fn run(
     topic: &str,
     count: Option<u64>,
     measure: &Analysis,
-    outlet: Outlet,
+    outlet: Outlet<Found>,
 ) -> Result<Exit, Failure> {
     let mut sink = Sink::new(outlet);
     let mut source = Source::subscribe(topic)?;

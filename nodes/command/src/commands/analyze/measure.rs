@@ -1,15 +1,19 @@
 //! One packing measured: its state, and the messages that a node would publish.
 
-use crate::commands::packings::Measure;
+use crate::commands::packings::bar::Bar;
+use crate::commands::packings::{self, Measure};
+use crate::tape::Tape;
+use grainlab_console::Failure;
 use grainlab_core::{Packing, Stiffness};
 use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
 use grainlab_micromechanics::probe::{StrainProbe, StrainProbeResult, amplitude_sweep};
 use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
 use grainlab_msgs::boundary::packing_report_message;
-use grainlab_msgs::msg;
+use grainlab_msgs::{msg, topics};
+use grainlab_node_kit::Exit;
 use grainlab_recordings::import::Imported;
-use grainlab_results::{MeasuredPacking, ProbeView, ScanView, ScannedView, state_warnings};
+use grainlab_results::{MeasuredPacking, ProbeView, ScanView, ScannedView, state_warnings, yields};
 use std::time::Instant;
 
 /// Relative difference of the forward and the backward stiffness of a probe without a warning: half of it is
@@ -34,6 +38,32 @@ pub(super) struct Found {
     pub(super) packing: MeasuredPacking,
     /// The message that the node `fabric_analyzer` would publish, or the reason why it would not.
     pub(super) message: Result<msg::PackingReport, String>,
+}
+
+impl packings::Found for Found {
+    type Shown = MeasuredPacking;
+
+    fn shown(&self) -> &MeasuredPacking {
+        &self.packing
+    }
+
+    /// Without a stiffness, or with one that some strain does not load: no wave passes it.
+    fn is_without(&self) -> bool {
+        self.packing.report.stiffness().is_none() || yields(&self.packing.report)
+    }
+
+    fn record(&self, tape: &mut Tape, bar: &Bar) -> Result<Exit, Failure> {
+        match &self.message {
+            Ok(report) => {
+                tape.put(&topics::PACKING_REPORT, &report.header, report)?;
+                Ok(Exit::Done)
+            }
+            Err(message) => {
+                bar.say(&format!("grainlab: {message}"));
+                Ok(Exit::PhysicsInvalid)
+            }
+        }
+    }
 }
 
 impl Measure for Analysis {

@@ -1,6 +1,6 @@
 //! `grainlab bag check`.
 
-use grainlab_console::{Failure, Format, Table, count, json, print, say};
+use grainlab_console::{Failure, Format, Table, count, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::{Check, Recording, SeveralRuns, strangers};
 use serde::Serialize;
@@ -42,11 +42,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         && check.unaccounted.is_empty()
         && !check.refused
         && check.lost.unwrap_or(0) == 0;
-    print(&match args.format {
-        Format::Table => text(&view),
-        Format::Json => json(&view)?,
-        Format::Csv => csv(check),
-    })?;
+    args.format.print(&view, || csv(check), || text(&view))?;
     if args.format != Format::Table {
         check.warnings.iter().for_each(|w| say!("grainlab: {w}"));
         check

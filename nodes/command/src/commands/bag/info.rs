@@ -1,6 +1,6 @@
 //! `grainlab bag info`.
 
-use grainlab_console::{Failure, Format, Table, json, print};
+use grainlab_console::{Failure, Format, Table};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::strangers::{self, StrangerView};
 use grainlab_recordings::{Info, METADATA_RECORD, Recording, SeveralRuns};
@@ -29,12 +29,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         several_runs: SeveralRuns::of_scenes(&recording).map(|s| s.to_string()),
         unaccounted: recording.unaccounted(),
     };
-    let text = match args.format {
-        Format::Table => table(&view),
-        Format::Json => json(&view)?,
-        Format::Csv => csv(&view.info),
-    };
-    print(&text)?;
+    args.format.print(&view, || csv(&view.info), || table(&view))?;
     if args.format == Format::Csv {
         notes(&view).iter().for_each(|line| grainlab_console::say!("grainlab: {line}"));
     }

@@ -12,7 +12,7 @@ use super::rows::Rows;
 use super::state::State;
 use super::table::Tally;
 use super::way::Way;
-use grainlab_console::{Failure, Format, Table, count, exact, fixed, json, print, say};
+use grainlab_console::{Failure, Format, Table, count, exact, fixed, say};
 use grainlab_core::results::InferredQuantity;
 use grainlab_node_kit::Exit;
 use score::Score;
@@ -95,11 +95,7 @@ pub(super) fn run(
         }
     }
     let judged = board.judged(ways);
-    print(&match format {
-        Format::Json => json(&judged)?,
-        Format::Csv => csv(&judged, by),
-        Format::Table => people(&judged, by),
-    })?;
+    format.print(&judged, || csv(&judged, by), || people(&judged, by))?;
     if let Some(path) = plot.filter(|_| points.iter().all(Vec::is_empty)) {
         tally.end(&rows)?;
         return Err(Failure::usage(format!(

@@ -2,7 +2,7 @@
 
 use super::state::State;
 use super::way::Way;
-use grainlab_console::{Failure, Format, Table, fixed, json, print, say};
+use grainlab_console::{Failure, Format, Table, fixed, say};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{EmtError, RankHistogram, SimulatedRanks, SimulationSettings, simulated_ranks};
 use grainlab_node_kit::Exit;
@@ -83,14 +83,8 @@ pub(super) fn run(
             }
         })
         .collect();
-    print(&match format {
-        Format::Json => json(&ranked)?,
-        Format::Csv => table(&ranked).csv(),
-        Format::Table => {
-            table(&ranked).text()
-                + "  p: probability of ranks as uneven as these where the posterior is right\n"
-        }
-    })?;
+    let note = "  p: probability of ranks as uneven as these where the posterior is right\n";
+    format.print(&ranked, || table(&ranked).csv(), || table(&ranked).text() + note)?;
     Ok(Exit::Done)
 }
 

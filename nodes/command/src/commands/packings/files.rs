@@ -1,8 +1,9 @@
 //! Many files at once, with a few packings of them in memory.
 
+use super::Measure;
 use super::bar::Bar;
+use super::outlet::Outlet;
 use super::sink::{Ending, Place, Sink};
-use super::{Measure, Outlet};
 use grainlab_console::{Failure, Signals, count, worse};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
@@ -15,16 +16,12 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// Measures every packing of every file on all cores. A worker without a packing reads the next file. A
 /// reader measures the packings that it reads once two per core are queued, which limits the memory.
-pub(crate) fn run<M, O>(
+pub(crate) fn run<M: Measure>(
     files: &[PathBuf],
     options: &ImportOptions,
     measure: &M,
-    outlet: O,
-) -> Result<Exit, Failure>
-where
-    M: Measure,
-    O: Outlet<Found = M::Found>,
-{
+    outlet: Outlet<M::Found>,
+) -> Result<Exit, Failure> {
     let mut sink = Sink::new(outlet);
     let signals = Signals::install().map_err(Failure::failed)?;
     let stop = signals.flag();
@@ -87,7 +84,7 @@ enum Task {
     Read(usize),
 }
 
-struct Shop<'a, M, O: Outlet> {
+struct Shop<'a, M: Measure> {
     files: &'a [PathBuf],
     options: &'a ImportOptions,
     measure: &'a M,
@@ -97,11 +94,11 @@ struct Shop<'a, M, O: Outlet> {
     room: usize,
     desk: Mutex<Desk>,
     news: Condvar,
-    sink: Mutex<Sink<O>>,
+    sink: Mutex<Sink<M::Found>>,
     failure: Mutex<Option<Failure>>,
 }
 
-impl<M: Measure, O: Outlet<Found = M::Found>> Shop<'_, M, O> {
+impl<M: Measure> Shop<'_, M> {
     fn work(&self) {
         while let Some(task) = self.task() {
             match task {

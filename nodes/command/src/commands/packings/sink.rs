@@ -1,7 +1,8 @@
 //! Results in order: each one is passed on as soon as all before it have been.
 
-use super::Outlet;
+use super::Found;
 use super::bar::Bar;
+use super::outlet::Outlet;
 use grainlab_console::{Failure, worse};
 use grainlab_node_kit::Exit;
 use std::collections::BTreeMap;
@@ -19,11 +20,11 @@ pub(crate) struct Ending {
 }
 
 /// Passes results on. Early ones are stored; a result is small.
-pub(crate) struct Sink<O: Outlet> {
-    outlet: O,
+pub(crate) struct Sink<F: Found> {
+    outlet: Outlet<F>,
     /// The first one that has not been passed on.
     next: Place,
-    waiting: BTreeMap<Place, Result<O::Found, String>>,
+    waiting: BTreeMap<Place, Result<F, String>>,
     endings: BTreeMap<usize, Ending>,
     exit: Exit,
     measured: usize,
@@ -31,9 +32,9 @@ pub(crate) struct Sink<O: Outlet> {
     pub(super) bar: Bar,
 }
 
-impl<O: Outlet> Sink<O> {
+impl<F: Found> Sink<F> {
     /// Without results.
-    pub(crate) fn new(outlet: O) -> Self {
+    pub(crate) fn new(outlet: Outlet<F>) -> Self {
         Self {
             outlet,
             next: (0, 0),
@@ -46,7 +47,7 @@ impl<O: Outlet> Sink<O> {
     }
 
     /// Takes the result of one packing.
-    pub(crate) fn put(&mut self, place: Place, found: Result<O::Found, String>) -> Result<(), Failure> {
+    pub(crate) fn put(&mut self, place: Place, found: Result<F, String>) -> Result<(), Failure> {
         self.waiting.insert(place, found);
         self.measured += 1;
         self.advance()
@@ -93,9 +94,9 @@ impl<O: Outlet> Sink<O> {
         self.exit = worse(self.exit, ending.exit);
     }
 
-    fn emit(&mut self, found: Result<O::Found, String>) -> Result<(), Failure> {
+    fn emit(&mut self, found: Result<F, String>) -> Result<(), Failure> {
         let exit = match found {
-            Ok(found) => self.outlet.emit(found, &self.bar)?,
+            Ok(found) => self.outlet.emit(&found, &self.bar)?,
             Err(message) => {
                 self.bar.say(&format!("grainlab: {message}"));
                 Exit::PhysicsInvalid

@@ -1,11 +1,16 @@
 //! One packing: its structure and stiffness, its wave speeds, and the messages that the node would publish.
 
-use crate::commands::packings::Measure;
+use crate::commands::packings::bar::Bar;
+use crate::commands::packings::{self, Measure};
+use crate::tape::Tape;
 use grainlab_acoustic_probe::{Measured, Settings, messages};
 use grainlab_acoustics::AcousticsError;
+use grainlab_console::Failure;
 use grainlab_core::Vec3;
 use grainlab_micromechanics::analyze;
 use grainlab_msgs::boundary::WaveSpeedsReading;
+use grainlab_msgs::topics;
+use grainlab_node_kit::Exit;
 use grainlab_recordings::import::Imported;
 use grainlab_results::{AcousticReport, MeasuredPacking, Probed, state_warnings};
 
@@ -21,6 +26,28 @@ pub(super) struct Found {
     pub(super) probed: Probed,
     /// The messages that the node acoustic_probe would publish; `None` if no wave propagates.
     pub(super) messages: Option<Measured>,
+}
+
+impl packings::Found for Found {
+    type Shown = Probed;
+
+    fn shown(&self) -> &Probed {
+        &self.probed
+    }
+
+    fn is_without(&self) -> bool {
+        self.messages.is_none()
+    }
+
+    fn record(&self, tape: &mut Tape, _: &Bar) -> Result<Exit, Failure> {
+        let Some(messages) = &self.messages else { return Ok(Exit::Done) };
+        for waveform in &messages.waveforms {
+            tape.put(&topics::WAVEFORM, &waveform.header, waveform)?;
+        }
+        let speeds = &messages.wave_speeds;
+        tape.put(&topics::WAVE_SPEEDS, &speeds.header, speeds)?;
+        Ok(Exit::Done)
+    }
 }
 
 impl Measure for Probe {

@@ -1,36 +1,8 @@
 //! Columns of a shape, and the cells of a message.
 
 use super::shape::{MOST_COLUMNS, Shape};
-use grainlab_any_message::{Array, Message, Primitive, Value};
-
-/// What a column holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// ns since 1970.
-    Time,
-    One(Primitive),
-    Text,
-}
-
-/// A column.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Column {
-    pub(crate) name: String,
-    pub(crate) kind: Kind,
-}
-
-/// A value of a row.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Cell {
-    /// The array is shorter in this message.
-    Missing,
-    Bool(bool),
-    Signed(i64),
-    Unsigned(u64),
-    Single(f32),
-    Double(f64),
-    Text(String),
-}
+use grainlab_any_message::{Array, Message, Value};
+use grainlab_parquet::{Cell, Column, Kind};
 
 /// The columns of a table, and how a message fills them.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! CSV files.
 
-use super::columns::{Cell, Column};
+use grainlab_parquet::{Cell, Column};
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;

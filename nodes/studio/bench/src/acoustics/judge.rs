@@ -5,7 +5,7 @@ use super::measure::stiffness;
 use crate::packing::load_all;
 use grainlab_acoustics::time_of_flight::{self, ArrivalPick};
 use grainlab_acoustics::{MethodSettings, Settings, measure};
-use grainlab_console::{Failure, Format, Table, exact, fixed, json, print, say};
+use grainlab_console::{Failure, Table, exact, fixed, say};
 use grainlab_core::{Packing, WaveSpeed};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
@@ -56,11 +56,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         }
         rows.push(row(*method, packings.len(), failed, &all));
     }
-    print(&match args.format {
-        Format::Json => json(&rows)?,
-        Format::Csv => table(&rows, exact).csv(),
-        Format::Table => format!("{}\n{NOTE}\n", table(&rows, |v| fixed(v, 2)).text()),
-    })?;
+    args.format.print(
+        &rows,
+        || table(&rows, exact).csv(),
+        || format!("{}\n{NOTE}\n", table(&rows, |v| fixed(v, 2)).text()),
+    )?;
     Ok(Exit::Done)
 }
 

@@ -4,7 +4,7 @@
 use super::args::Args;
 use crate::packing::load_all;
 use grainlab_acoustics::{Measurement, with_speed_noise};
-use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
+use grainlab_console::{Failure, Table, exact, fixed};
 use grainlab_core::Packing;
 use grainlab_core::results::InferredQuantity;
 use grainlab_core::results::PackingReport;
@@ -56,11 +56,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             row(level.checked_sub(1).map(|k| args.noise[k]), packings.len(), &errors)
         })
         .collect();
-    print(&match args.format {
-        Format::Json => json(&rows)?,
-        Format::Csv => table(&rows, exact).csv(),
-        Format::Table => table(&rows, |v| fixed(v, 4)).text() + "\n" + &bars(&rows).text(),
-    })?;
+    args.format.print(
+        &rows,
+        || table(&rows, exact).csv(),
+        || table(&rows, |v| fixed(v, 4)).text() + "\n" + &bars(&rows).text(),
+    )?;
     Ok(Exit::Done)
 }
 

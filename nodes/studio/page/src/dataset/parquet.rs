@@ -1,111 +1,46 @@
 //! Apache Parquet.
 
+use grainlab_any_message::Primitive;
 use grainlab_console::{Cell, Failure};
-use parquet::basic::{LogicalType, Repetition, Type as PhysicalType};
-use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
-use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
-use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
-use parquet::schema::types::Type;
-use std::sync::Arc;
-
-/// Type of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Number,
-    Count,
-    Flag,
-    Text,
-}
-
-impl Kind {
-    fn of(cell: &Cell) -> Option<Self> {
-        match cell {
-            Cell::Unknown => None,
-            Cell::Number(_) => Some(Self::Number),
-            Cell::Count(_) => Some(Self::Count),
-            Cell::Flag(_) => Some(Self::Flag),
-            Cell::Text(_) => Some(Self::Text),
-        }
-    }
-
-    fn physical(self) -> PhysicalType {
-        match self {
-            Self::Number => PhysicalType::DOUBLE,
-            Self::Count => PhysicalType::INT64,
-            Self::Flag => PhysicalType::BOOLEAN,
-            Self::Text => PhysicalType::BYTE_ARRAY,
-        }
-    }
-}
+use grainlab_parquet::{Cell as Value, Column, Kind, ParquetTable};
 
 /// The bytes of a file.
 pub(super) fn write(names: &[String], rows: &[Vec<Cell>]) -> Result<Vec<u8>, Failure> {
-    let kinds = (0..names.len()).map(|c| kind(&names[c], c, rows)).collect::<Result<Vec<_>, _>>()?;
-    encode(names, &kinds, rows).map_err(|e| Failure::failed(format!("Parquet: {e}")))
+    let columns =
+        names.iter().enumerate().map(|(c, name)| column(name, c, rows)).collect::<Result<Vec<_>, _>>()?;
+    let value = |cell| typed(cell).map_or(Value::Missing, |(_, value)| value);
+    let mut file = Vec::new();
+    let written = ParquetTable::new(&mut file, "states", &columns).and_then(|mut table| {
+        rows.iter().try_for_each(|row| table.push(row.iter().map(&value).collect()))?;
+        table.write_group()?;
+        table.finish()
+    });
+    written.map_err(|e| Failure::failed(format!("Parquet: {e}")))?;
+    Ok(file)
 }
 
-/// The kind of a column; of numbers if nothing in it is known.
-fn kind(name: &str, column: usize, rows: &[Vec<Cell>]) -> Result<Kind, Failure> {
-    let mut kinds = rows.iter().filter_map(|row| Kind::of(&row[column]));
-    let first = kinds.next().unwrap_or(Kind::Number);
+/// A column with the type of its values; of numbers if nothing in it is known.
+fn column(name: &str, column: usize, rows: &[Vec<Cell>]) -> Result<Column, Failure> {
+    let mut kinds = rows.iter().filter_map(|row| Some(typed(&row[column])?.0));
+    let first = kinds.next().unwrap_or(Kind::One(Primitive::F64));
     if kinds.all(|kind| kind == first) {
-        return Ok(first);
+        return Ok(Column { name: name.to_owned(), kind: first });
     }
     Err(Failure::failed(format!("Parquet: column {name} has values of several types")))
 }
 
-fn encode(names: &[String], kinds: &[Kind], rows: &[Vec<Cell>]) -> Result<Vec<u8>, ParquetError> {
-    let field = |(name, kind): (&String, &Kind)| {
-        let text = (*kind == Kind::Text).then_some(LogicalType::String);
-        let built = Type::primitive_type_builder(name, kind.physical())
-            .with_repetition(Repetition::OPTIONAL)
-            .with_logical_type(text)
-            .build();
-        built.map(Arc::new)
-    };
-    let fields = names.iter().zip(kinds).map(field).collect::<Result<Vec<_>, _>>()?;
-    let schema = Arc::new(Type::group_type_builder("states").with_fields(fields).build()?);
-    let properties = WriterProperties::builder().set_created_by("grainlab".into()).build();
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties))?;
-    let mut group = writer.next_row_group()?;
-    for (c, kind) in kinds.iter().enumerate() {
-        let Some(mut column) = group.next_column()? else { break };
-        let cells = || rows.iter().map(|row| &row[c]);
-        match kind {
-            Kind::Number => put::<DoubleType>(&mut column, cells(), |cell| match cell {
-                Cell::Number(v) => Some(*v).filter(|v| v.is_finite()),
-                _ => None,
-            }),
-            Kind::Count => put::<Int64Type>(&mut column, cells(), |cell| match cell {
-                Cell::Count(n) => i64::try_from(*n).ok(),
-                _ => None,
-            }),
-            Kind::Flag => put::<BoolType>(&mut column, cells(), |cell| match cell {
-                Cell::Flag(flag) => Some(*flag),
-                _ => None,
-            }),
-            Kind::Text => put::<ByteArrayType>(&mut column, cells(), |cell| match cell {
-                Cell::Text(text) => Some(ByteArray::from(text.as_str())),
-                _ => None,
-            }),
-        }?;
-        column.close()?;
-    }
-    group.close()?;
-    writer.into_inner()
-}
-
-/// Writes one column; what is unknown has definition level 0.
-fn put<'a, T: DataType>(
-    column: &mut SerializedColumnWriter<'_>,
-    cells: impl Iterator<Item = &'a Cell>,
-    value: impl Fn(&Cell) -> Option<T::T>,
-) -> Result<(), ParquetError> {
-    let values: Vec<Option<T::T>> = cells.map(value).collect();
-    let levels: Vec<i16> = values.iter().map(|v| i16::from(v.is_some())).collect();
-    let known: Vec<T::T> = values.into_iter().flatten().collect();
-    column.typed::<T>().write_batch(&known, Some(&levels), None).map(|_| ())
+/// Type and value of a cell; `None` if it is unknown.
+fn typed(cell: &Cell) -> Option<(Kind, Value)> {
+    Some(match cell {
+        Cell::Unknown => return None,
+        Cell::Number(v) if !v.is_finite() => (Kind::One(Primitive::F64), Value::Missing),
+        Cell::Number(v) => (Kind::One(Primitive::F64), Value::Double(*v)),
+        Cell::Count(n) => {
+            (Kind::One(Primitive::I64), i64::try_from(*n).map_or(Value::Missing, Value::Signed))
+        }
+        Cell::Flag(flag) => (Kind::One(Primitive::Bool), Value::Bool(*flag)),
+        Cell::Text(text) => (Kind::Text, Value::Text(text.clone())),
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
-//! Parquet files.
+//! Tables of typed columns as Parquet.
 
-use super::columns::{Cell, Column, Kind};
 use grainlab_any_message::Primitive;
 use parquet::basic::{LogicalType, Repetition, TimeUnit, Type as PhysicalType};
 use parquet::data_type::{
@@ -10,8 +9,7 @@ use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
-use std::fs::File;
-use std::path::Path;
+use std::io::Write;
 use std::sync::Arc;
 
 /// Rows and cells of a row group, whichever is reached first.
@@ -20,9 +18,48 @@ const CELLS: usize = 1 << 21;
 /// Bytes of texts of a row group.
 const TEXT: usize = 64 << 20;
 
+/// Type of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// ns since 1970.
+    Time,
+    /// Numbers, or yes and no.
+    One(Primitive),
+    /// Texts.
+    Text,
+}
+
+/// A column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// In the header.
+    pub name: String,
+    /// Type of its values.
+    pub kind: Kind,
+}
+
+/// A value of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// Not known: null.
+    Missing,
+    /// Yes or no.
+    Bool(bool),
+    /// A signed integer.
+    Signed(i64),
+    /// An unsigned integer, or a time.
+    Unsigned(u64),
+    /// A number of 32 bits.
+    Single(f32),
+    /// A number of 64 bits.
+    Double(f64),
+    /// A text.
+    Text(String),
+}
+
 /// A Parquet file, written in row groups, not compressed. Every column is optional.
-pub(crate) struct ParquetTable {
-    writer: SerializedFileWriter<File>,
+pub struct ParquetTable<W: Write + Send> {
+    writer: SerializedFileWriter<W>,
     kinds: Vec<Kind>,
     /// The rows of the next row group, column by column.
     cells: Vec<Vec<Cell>>,
@@ -30,17 +67,37 @@ pub(crate) struct ParquetTable {
     text: usize,
 }
 
-impl ParquetTable {
-    pub(crate) fn create(path: &Path, columns: &[Column]) -> Result<Self, ParquetError> {
+impl<W: Write + Send> ParquetTable<W> {
+    /// An empty table of this name, written to `file`.
+    ///
+    /// # Errors
+    /// If a column cannot be one, or `file` cannot be written.
+    pub fn new(file: W, name: &str, columns: &[Column]) -> Result<Self, ParquetError> {
         let fields = columns.iter().map(|c| field(c).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
-        let schema = Arc::new(Type::group_type_builder("messages").with_fields(fields).build()?);
+        let schema = Arc::new(Type::group_type_builder(name).with_fields(fields).build()?);
         let properties = WriterProperties::builder().set_created_by("grainlab".into()).build();
-        let writer = SerializedFileWriter::new(File::create_new(path)?, schema, Arc::new(properties))?;
+        let writer = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
         let kinds: Vec<Kind> = columns.iter().map(|c| c.kind).collect();
         Ok(Self { writer, cells: vec![Vec::new(); kinds.len()], kinds, rows: 0, text: 0 })
     }
 
-    pub(crate) fn row(&mut self, row: Vec<Cell>) -> Result<(), ParquetError> {
+    /// Adds a row, and writes the row group if it is large.
+    ///
+    /// # Errors
+    /// If a time is too late for Parquet, or the file cannot be written.
+    pub fn row(&mut self, row: Vec<Cell>) -> Result<(), ParquetError> {
+        self.push(row)?;
+        if self.rows >= ROWS || self.rows * self.kinds.len() >= CELLS || self.text >= TEXT {
+            self.write_group()?;
+        }
+        Ok(())
+    }
+
+    /// Adds a row to the row group.
+    ///
+    /// # Errors
+    /// If a time is too late for Parquet.
+    pub fn push(&mut self, row: Vec<Cell>) -> Result<(), ParquetError> {
         for ((column, kind), cell) in self.cells.iter_mut().zip(&self.kinds).zip(row) {
             if *kind == Kind::Time && matches!(cell, Cell::Unsigned(ns) if i64::try_from(ns).is_err()) {
                 let why = "a time is after the year 2262, which a Parquet timestamp cannot hold: convert to csv or json";
@@ -52,20 +109,25 @@ impl ParquetTable {
             column.push(cell);
         }
         self.rows += 1;
-        if self.rows >= ROWS || self.rows * self.kinds.len() >= CELLS || self.text >= TEXT {
-            self.write_group()?;
-        }
         Ok(())
     }
 
-    pub(crate) fn finish(mut self) -> Result<(), ParquetError> {
+    /// Writes what is left.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn finish(mut self) -> Result<(), ParquetError> {
         if self.rows > 0 {
             self.write_group()?;
         }
         self.writer.close().map(drop)
     }
 
-    fn write_group(&mut self) -> Result<(), ParquetError> {
+    /// Writes the rows that were added as one row group.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_group(&mut self) -> Result<(), ParquetError> {
         let mut group = self.writer.next_row_group()?;
         for (kind, cells) in self.kinds.iter().zip(&mut self.cells) {
             let Some(mut column) = group.next_column()? else { break };
@@ -155,13 +217,12 @@ fn put<T: DataType>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bytes::Bytes;
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
 
     #[test]
     fn values_of_every_type_are_read_back_and_what_is_missing_is_null() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("t.parquet");
         let column = |name: &str, kind| Column { name: name.into(), kind };
         let columns = [
             column("log_time", Kind::Time),
@@ -172,7 +233,8 @@ mod tests {
             column("f64", Kind::One(Primitive::F64)),
             column("text", Kind::Text),
         ];
-        let mut table = ParquetTable::create(&path, &columns).unwrap();
+        let mut file = Vec::new();
+        let mut table = ParquetTable::new(&mut file, "rows", &columns).unwrap();
         let row = vec![
             Cell::Unsigned(1_700_000_000_000_000_001),
             Cell::Bool(true),
@@ -190,7 +252,7 @@ mod tests {
         (1..count).for_each(|_| table.row(row.clone()).unwrap());
         table.row(vec![Cell::Missing; columns.len()]).unwrap();
         table.finish().unwrap();
-        let reader = SerializedFileReader::new(File::open(&path).unwrap()).unwrap();
+        let reader = SerializedFileReader::new(Bytes::from(file)).unwrap();
         assert!(reader.num_row_groups() > 1);
         let rows: Vec<_> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
         assert_eq!(rows.len(), count);
