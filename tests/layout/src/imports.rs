@@ -3,6 +3,7 @@
 
 use crate::modules::{Module, ModulePath};
 use std::collections::{BTreeMap, BTreeSet};
+use syn::punctuated::Punctuated;
 use syn::visit::Visit;
 use syn::{Item, UseTree};
 
@@ -81,6 +82,14 @@ impl<'ast> Visit<'ast> for Paths<'_> {
             self.found.extend(absolute(self.module, &segments, self.modules));
         }
         syn::visit::visit_path(self, path);
+    }
+
+    // The arguments of `format!`, `assert!` and their kind.
+    fn visit_macro(&mut self, called: &'ast syn::Macro) {
+        let arguments = Punctuated::<syn::Expr, syn::Token![,]>::parse_terminated;
+        let mut inner = Paths { module: self.module, modules: self.modules, found: Vec::new() };
+        called.parse_body_with(arguments).iter().flatten().for_each(|argument| inner.visit_expr(argument));
+        self.found.extend(inner.found);
     }
 
     // In an inline module `super` means another module; inline modules contain tests and constants.

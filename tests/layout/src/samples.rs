@@ -34,6 +34,16 @@ fn two_files_that_use_each_other_are_a_circle() {
 }
 
 #[test]
+fn what_the_argument_of_a_macro_uses_counts() {
+    let sample = Sample::new(&[
+        ("lib.rs", "mod a; mod b;"),
+        ("a.rs", "use crate::b::B; pub struct A(B);"),
+        ("b.rs", "pub struct B; fn f() { format!(\"{}\", super::a::A(B)); }"),
+    ]);
+    assert_eq!(circles(&modules(&sample.root())), ["a -> b, b -> a"]);
+}
+
+#[test]
 fn a_parent_and_a_child_that_use_each_other_are_a_circle() {
     let sample = Sample::new(&[
         ("lib.rs", "mod a;"),

@@ -40,7 +40,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         folder::write(folder, "acoustics.svg", &plot::figure(&report).svg(Theme::Light))?;
         folder::write(folder, "dispersion.svg", &curves::svg(&packings[0])?)?;
     }
-    args.format.print(&report, || report::csv(&report), || report::text(&report))?;
+    args.format.print(&report, || report::csv(&report), || report::text(&report, &plot::figure(&report)))?;
     Ok(Exit::Done)
 }
 

@@ -36,7 +36,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         folder::write(folder, "stiffness.json", &json(&report)?)?;
         folder::write(folder, "stiffness.svg", &plot::figure(&report).svg(Theme::Light))?;
     }
-    args.format.print(&report, || report::csv(&report), || report::text(&report))?;
+    args.format.print(&report, || report::csv(&report), || report::text(&report, &plot::figure(&report)))?;
     Ok(Exit::Done)
 }
 

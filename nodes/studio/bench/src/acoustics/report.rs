@@ -3,6 +3,7 @@
 use super::args::Method;
 use crate::numbers::rounded;
 use grainlab_console::{Table, exact};
+use grainlab_page::plot::Figure;
 use serde::Serialize;
 
 /// The whole result.
@@ -52,14 +53,14 @@ pub(super) fn report(rows: Vec<Row>) -> Report {
 }
 
 /// As a text table.
-pub(super) fn text(report: &Report) -> String {
+pub(super) fn text(report: &Report, figure: &Figure) -> String {
     let mut text = table(&report.rows, rounded).text();
     for row in &report.rows {
         if let Some(failure) = &row.failure {
             text += &format!("{} {}: {failure}\n", row.method.name(), setting(row.value));
         }
     }
-    text += &format!("\n{}\n", super::plot::figure(report).text("the error that the method states"));
+    text += &format!("\n{}\n", figure.text("the error that the method states"));
     report.notes.iter().for_each(|note| text += &format!("{note}\n"));
     text
 }
@@ -125,7 +126,7 @@ mod tests {
             failure: Some("no arrival".to_owned()),
         };
         let report = report(vec![row]);
-        assert!(text(&report).contains("peak -: no arrival"));
+        assert!(text(&report, &crate::acoustics::plot::figure(&report)).contains("peak -: no arrival"));
         assert_eq!(csv(&report).lines().nth(1), Some("peak,-,500,0,0.5,0.5,-,-,-,-,-"));
     }
 }

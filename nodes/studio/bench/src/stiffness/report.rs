@@ -3,6 +3,7 @@
 use super::args::Method;
 use crate::numbers::rounded;
 use grainlab_console::{Table, exact, fixed};
+use grainlab_page::plot::Figure;
 use serde::Serialize;
 
 /// The whole result.
@@ -94,7 +95,7 @@ fn slope(points: &[(f64, f64)]) -> Option<f64> {
 }
 
 /// As text: rows, exponents, notes.
-pub(super) fn text(report: &Report) -> String {
+pub(super) fn text(report: &Report, figure: &Figure) -> String {
     let mut text = table(&report.rows, rounded).text();
     for row in &report.rows {
         if let Some(failure) = &row.failure {
@@ -111,7 +112,7 @@ pub(super) fn text(report: &Report) -> String {
         }
         text += &format!("\n{}", t.text());
     }
-    text += &format!("\n{}\n", super::plot::figure(report).text("copies of a packing"));
+    text += &format!("\n{}\n", figure.text("copies of a packing"));
     for note in report.notes {
         text += &format!("{note}\n");
     }
