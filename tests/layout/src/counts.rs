@@ -9,7 +9,7 @@ use syn::{Item, UseTree, Visibility};
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
 const LABORATORY: usize = 55_715;
-const STUDIO_AND_COMMAND: usize = 24_840;
+const STUDIO_AND_COMMAND: usize = 24_842;
 const TESTS: usize = 45_600;
 
 /// Most comments that begin with a word that names nothing.
