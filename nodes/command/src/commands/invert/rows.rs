@@ -64,7 +64,7 @@ impl Rows {
         Ok(Some(worked.into_iter().flatten().collect()))
     }
 
-    /// Lines below the header that were left out as comments, as words after a number of rows; empty if there are none.
+    /// Text on the comment lines below the header, to follow a number of rows; empty without such lines.
     pub(super) fn left_out(&self) -> String {
         match self.comments {
             0 => String::new(),
