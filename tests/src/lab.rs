@@ -96,11 +96,21 @@ impl Default for Lab {
     }
 }
 
+/// The path of a built program in or above the folder of the running test.
+fn built(name: &str) -> PathBuf {
+    let test = std::env::current_exe().unwrap_or_else(|e| panic!("no path of this test: {e}"));
+    let found = test.ancestors().skip(1).take(2).map(|d| d.join(name)).find(|p| p.is_file());
+    found.unwrap_or_else(|| panic!("no {name} beside {}: build the whole workspace", test.display()))
+}
+
 /// The binary, in the target folder of the running test.
 pub fn grainlab() -> PathBuf {
-    let test = std::env::current_exe().unwrap_or_else(|e| panic!("no path of this test: {e}"));
-    let found = test.ancestors().skip(1).take(2).map(|d| d.join("grainlab")).find(|p| p.is_file());
-    found.unwrap_or_else(|| panic!("no grainlab binary beside {}: build the whole workspace", test.display()))
+    built("grainlab")
+}
+
+/// A program of `tests/examples`, in the target folder of the running test.
+pub fn example(name: &str) -> PathBuf {
+    built(&format!("examples/{name}"))
 }
 
 /// A file under `tests/golden`.

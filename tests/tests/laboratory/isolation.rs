@@ -1,14 +1,12 @@
 //! The laboratory needs only loopback, sends only to loopback, and receives only from loopback.
 
-use std::net::UdpSocket;
 use std::process::Command;
-use std::time::Duration;
 use system_tests::hosts;
-use system_tests::lab::{LIMIT, Lab, golden, grainlab};
+use system_tests::lab::{LIMIT, Lab, example, golden, grainlab};
 use system_tests::process::{Ended, Process};
 
 /// Runs a shell script in a separate network namespace, with the binary as `$0`, the small scene as `$1` and
-/// this test executable as `$2`; `None`, with a message, without the right to create one.
+/// the sender of [`SPRAYS`] datagrams as `$2`; `None`, with a message, without the right to create one.
 fn in_namespace(lab: &Lab, script: &str) -> Option<Ended> {
     if !hosts::can_isolate() {
         return None;
@@ -18,7 +16,8 @@ fn in_namespace(lab: &Lab, script: &str) -> Option<Ended> {
         .args(["-n", "sh", "-ec", script])
         .arg(grainlab())
         .arg(golden("scenes/tiny.toml"))
-        .arg(std::env::current_exe().unwrap_or_default())
+        .arg(example("spray"))
+        .arg(SPRAYS.to_string())
         .current_dir(lab.folder())
         .env("NO_COLOR", "1");
     Some(Process::start(&mut command).ended(LIMIT))
@@ -74,7 +73,7 @@ const SPRAYED: &str = "
     sleep 2
     count() { grep '^Udp: [0-9]' /proc/net/snmp; grep VmRSS /proc/$node/status; }
     count
-    nsenter -t $peer -n \"$2\" --exact spray --ignored >&2
+    nsenter -t $peer -n \"$2\" \"$3\" >&2
     sleep 1
     count
     kill -0 $node";
@@ -116,57 +115,3 @@ fn a_flood_from_another_host_does_not_exhaust_the_memory_of_a_node_that_receives
 
 /// Datagrams that are sent to the ports of a domain.
 const SPRAYS: u64 = 50_000;
-
-/// The other host. Announcements of participants that do not exist, samples, fragments of samples of 2 GB, and garbage.
-#[test]
-#[ignore = "the sender, started by other tests in a namespace"]
-fn spray() {
-    let Ok(socket) = UdpSocket::bind("192.0.2.2:0") else { return };
-    let packets = |i: u64| {
-        let prefix = [&i.to_le_bytes()[..], &[9; 4]].concat();
-        let start = [&b"RTPS\x02\x04\x01\x12"[..], &prefix].concat();
-        let submessage = |kind: u8, flags: u8, body: &[u8]| {
-            [&start[..], &[kind, flags], &(body.len() as u16).to_le_bytes(), body].concat()
-        };
-        let announcement = {
-            let parameter = |id: u8, value: &[u8]| [&[id, 0, value.len() as u8, 0][..], value].concat();
-            let guid = [&prefix[..], &[0, 0, 1, 0xc1]].concat();
-            let payload = [
-                &[0, 3, 0, 0][..],
-                &parameter(0x15, &[2, 4, 0, 0]),
-                &parameter(0x16, &[1, 0x12, 0, 0]),
-                &parameter(0x50, &guid),
-                &parameter(0x02, &[0xff, 0xff, 0xff, 0x7f, 0, 0, 0, 0]),
-                &parameter(0x58, &[0x3f, 0x0c, 0, 0]),
-                &[1, 0, 0, 0],
-            ]
-            .concat();
-            let ids = [0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 1, 0, 0, 0];
-            submessage(0x15, 5, &[&ids[..], &payload].concat())
-        };
-        let sample = {
-            let ids = [0, 0, 16, 0, 0, 0, 0, 0, 0, 0, 1, 0xc3, 0, 0, 0, 0, 1, 0, 0, 0];
-            submessage(0x15, 5, &[&ids[..], &[0, 1, 0, 0, 1, 2, 3, 4]].concat())
-        };
-        let fragment = {
-            let ids = [0, 0, 28, 0, 0, 0, 0, 0, 0, 0, 1, 0xc3, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0];
-            let sizes = [1, 0, 0, 1, 0, 0, 0, 0x80];
-            submessage(0x16, 1, &[&ids[..], &sizes, &[0; 256]].concat())
-        };
-        [announcement, sample, fragment, vec![0x5a; 200]]
-    };
-    for i in 0..SPRAYS / 8 {
-        // The well-known ports more often than the others.
-        let port =
-            if i % 2 == 0 { 7400 + [0, 1, 10, 11][i as usize / 2 % 4] } else { 7400 + (i / 2 % 250) as u16 };
-        for packet in packets(i) {
-            for host in ["192.0.2.1", "239.255.0.1"] {
-                // Errors of earlier sends are reported here.
-                let _ = socket.send_to(&packet, (host, port));
-            }
-        }
-        if i % 20 == 0 {
-            std::thread::sleep(Duration::from_millis(2));
-        }
-    }
-}

@@ -1,0 +1,30 @@
+//! Claims about the whole laboratory, in one binary: each module has a subject.
+
+mod acoustic;
+mod bad_input;
+mod bag_tools;
+mod campaigns;
+mod crashes;
+mod exports;
+mod foxglove;
+mod graph;
+mod hosts;
+mod instrument;
+mod interrupted;
+mod isolation;
+mod large_packings;
+mod live;
+mod main_job;
+mod messages;
+mod namespaces;
+mod other_dds;
+mod paper;
+mod posterior_draws;
+mod python_module;
+mod recovery;
+mod repeatable;
+mod replay;
+mod report;
+mod ros_launch;
+mod stopped;
+mod strangers;
