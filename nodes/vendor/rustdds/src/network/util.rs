@@ -16,10 +16,10 @@ use crate::{
 
 /// Platform-neutral view of one network-interface address.
 ///
-/// [`netdev`] gives us a single cross-platform enumeration; we normalize its
-/// per-interface data into this small struct (one entry per assigned IP). The
-/// inner helper functions then operate on `IfAddr` alone, which keeps them free
-/// of any enumeration dependency and makes them trivially unit-testable.
+/// `getifaddrs` gives one entry per assigned IP; we normalize it into this small
+/// struct. The inner helper functions then operate on `IfAddr` alone, which
+/// keeps them free of any enumeration dependency and makes them trivially
+/// unit-testable.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct IfAddr {
   /// An IP address bound to the interface.
@@ -38,51 +38,43 @@ pub(crate) struct IfAddr {
 }
 
 // ---------------------------------------------------------------------------
-// Interface enumeration (cross-platform, via netdev)
+// Interface enumeration (Unix, via getifaddrs)
 // ---------------------------------------------------------------------------
 
-/// Enumerate all interface addresses across platforms using [`netdev`].
-///
-/// `netdev::get_interfaces()` yields one [`netdev::Interface`] per interface
-/// with its index, MTU, loopback/multicast flags and the list of assigned
-/// IPv4/IPv6 prefixes. We flatten this into one [`IfAddr`] per assigned IP so
-/// the existing locator/multicast/ifindex helpers keep working unchanged, while
-/// the new fields (`netmask`, `mtu`) enable per-peer path-MTU resolution.
-///
-/// This is infallible in practice (netdev returns an empty list rather than an
-/// error), but the signature is kept as `io::Result` for API compatibility with
-/// the previous per-platform implementations.
+/// Enumerate all interface addresses by `getifaddrs`, in the order of the
+/// interfaces, IPv4 before IPv6. The MTU is that of `/sys/class/net`, so it is
+/// known on Linux only; elsewhere the default budget is used.
 fn enumerate_interfaces() -> io::Result<Vec<IfAddr>> {
+  use nix::{
+    ifaddrs::getifaddrs,
+    net::if_::{if_nametoindex, InterfaceFlags},
+  };
+
   let mut result = Vec::new();
-
-  for iface in netdev::get_interfaces() {
-    let index = iface.index;
-    let is_loopback = iface.is_loopback();
-    let is_multicast = iface.is_multicast();
-    let mtu = iface.mtu;
-
-    for net in &iface.ipv4 {
-      result.push(IfAddr {
-        ip: IpAddr::V4(net.addr()),
-        index,
-        is_loopback,
-        is_multicast,
-        netmask: Some(net.netmask()),
-        mtu,
-      });
-    }
-    for net in &iface.ipv6 {
-      result.push(IfAddr {
-        ip: IpAddr::V6(net.addr()),
-        index,
-        is_loopback,
-        is_multicast,
-        // IPv4-only subnet matching for now; IPv6 peers fall back to default.
-        netmask: None,
-        mtu,
-      });
-    }
+  for entry in getifaddrs()? {
+    let Some(address) = entry.address else { continue };
+    let ip = if let Some(v4) = address.as_sockaddr_in() {
+      IpAddr::V4(v4.ip())
+    } else if let Some(v6) = address.as_sockaddr_in6() {
+      IpAddr::V6(v6.ip())
+    } else {
+      continue;
+    };
+    let name = entry.interface_name.as_str();
+    // IPv4-only subnet matching for now; IPv6 peers fall back to default.
+    let netmask = entry.netmask.filter(|_| ip.is_ipv4());
+    result.push(IfAddr {
+      ip,
+      index: if_nametoindex(name).unwrap_or(0),
+      is_loopback: entry.flags.contains(InterfaceFlags::IFF_LOOPBACK),
+      is_multicast: entry.flags.contains(InterfaceFlags::IFF_MULTICAST),
+      netmask: netmask.and_then(|mask| mask.as_sockaddr_in().map(|mask| mask.ip())),
+      mtu: std::fs::read_to_string(format!("/sys/class/net/{name}/mtu"))
+        .ok()
+        .and_then(|text| text.trim().parse().ok()),
+    });
   }
+  result.sort_by_key(|address| (address.index, address.ip.is_ipv6()));
 
   Ok(result)
 }
