@@ -1,6 +1,8 @@
 //! The `grainlab` binary under test, in a separate folder and DDS domain.
 
-use crate::process::{Ended, Process};
+use crate::process::{Ended, Process, children};
+use grainlab_msgs::Topic;
+use grainlab_node_kit::{Bus, DdsBus, Names, Network};
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,6 +12,21 @@ use tempfile::TempDir;
 
 /// Time limit of any command of a test.
 pub const LIMIT: Duration = Duration::from_secs(120);
+
+/// Waits until `holds`; the test fails with `what` after [`LIMIT`].
+pub fn until(what: &str, mut holds: impl FnMut() -> bool) {
+    let begin = Instant::now();
+    while !holds() {
+        assert!(begin.elapsed() < LIMIT, "within {LIMIT:?}: {what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// The pid of the child of `launcher` with these words in its command line, once there is one.
+pub fn appeared(launcher: &Process, words: &str) -> u32 {
+    until(words, || children(launcher.pid(), words).len() == 1);
+    children(launcher.pid(), words)[0]
+}
 
 /// A laboratory: working folder and domain.
 #[derive(Debug)]
@@ -74,11 +91,17 @@ impl Lab {
             let recording = grainlab_recordings::Recording::open(&run).ok()?;
             Some(recording.messages(&grainlab_recordings::Selection::topics(["/stress"])).ok()?.count())
         };
-        let begin = Instant::now();
-        while recorded().unwrap_or(0) < messages {
-            assert!(begin.elapsed() < LIMIT, "no {messages} messages of /stress within {LIMIT:?}");
-            std::thread::sleep(Duration::from_millis(100));
-        }
+        until("messages of /stress", || recorded().unwrap_or(0) >= messages);
+    }
+
+    /// Waits until a process that was started by hand has announced a writer of `topic`.
+    pub fn until_announced(&self, topic: &Topic) {
+        let names = Names::new("observer").unwrap_or_else(|e| panic!("{e}"));
+        let mut bus = DdsBus::open(Network::localhost(self.domain), names).unwrap_or_else(|e| panic!("{e}"));
+        until(topic.name, || {
+            bus.wait(Duration::from_millis(50));
+            !bus.foreign_writers(topic).is_empty()
+        });
     }
 
     /// The newest run in the folder.

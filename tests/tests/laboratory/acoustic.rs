@@ -3,10 +3,9 @@
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
-use std::time::{Duration, Instant};
 use system_tests::bodies::distinct;
-use system_tests::lab::{LIMIT, Lab, golden};
-use system_tests::process::{children, send};
+use system_tests::lab::{LIMIT, Lab, appeared, golden, until};
+use system_tests::process::send;
 
 /// One run with a probe whose speeds have an error of 0.3 %, as in `grainlab launch acoustic`.
 static RUN: LazyLock<(Lab, PathBuf)> = LazyLock::new(|| {
@@ -84,11 +83,7 @@ fn recorded_wave_speeds_played_into_a_fresh_inversion_give_the_recorded_bytes() 
     let run = run.to_string_lossy();
     let played = replay.run(&["bag", "play", &run, "--topics", "wave_speeds", "--min-subscribers", "2"]);
     assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
-    let begin = Instant::now();
-    while distinct(&out, "/microstructure").len() < 2 {
-        assert!(begin.elapsed() < LIMIT, "the last speeds were not inverted");
-        std::thread::sleep(Duration::from_millis(100));
-    }
+    until("the last speeds are inverted", || distinct(&out, "/microstructure").len() >= 2);
     for node in [inversion, recorder] {
         node.signal(libc::SIGINT);
         let ended = node.ended(LIMIT);
@@ -107,16 +102,9 @@ fn killing_the_probe_changes_no_byte() {
     let lab = Lab::new();
     let scene = golden("scenes/tiny.toml");
     let launcher = lab.start(&["launch", "acoustic", "--scene", &scene.to_string_lossy()]);
-    let begin = Instant::now();
     // After the start of the run, and before its first packing.
     lab.until_recorded(20);
-    let probe = loop {
-        if let [probe] = children(launcher.pid(), "run acoustic_probe").as_slice() {
-            break *probe;
-        }
-        assert!(begin.elapsed() < LIMIT, "the probe never appeared");
-        std::thread::sleep(Duration::from_millis(10));
-    };
+    let probe = appeared(&launcher, "run acoustic_probe");
     send(probe, libc::SIGKILL);
     let ended = launcher.ended(LIMIT);
     assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);

@@ -1,6 +1,6 @@
 //! Invalid input of every kind: a clear message, the right exit code, no panic, no loss.
 
-use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::lab::{LIMIT, Lab, golden, until};
 use system_tests::process::Ended;
 
 fn refused(lab: &Lab, arguments: &[&str], code: i32, words: &[&str]) -> Ended {
@@ -93,11 +93,7 @@ fn by_hand_a_second_simulator_on_the_same_topic_is_refused() {
     let by_hand = ["run", "dem_simulator", "--ros-args", "-p", &parameter];
     // Both wait for a servo: the one with the larger GUID ends.
     let (mut first, mut second) = (lab.start(&by_hand), lab.start(&by_hand));
-    let begin = std::time::Instant::now();
-    while first.runs() && second.runs() {
-        assert!(begin.elapsed() < LIMIT, "neither gave way");
-        std::thread::sleep(std::time::Duration::from_millis(50));
-    }
+    until("one gives way", || !first.runs() || !second.runs());
     let (gone, stays) = if first.runs() { (second, first) } else { (first, second) };
     let ended = gone.ended(LIMIT);
     assert_eq!(ended.code, Some(1), "{}", ended.stderr);
@@ -114,7 +110,7 @@ fn a_refused_launch_leaves_no_folder() {
         std::fs::write(&path, text).unwrap();
         path.to_string_lossy().into_owned()
     };
-    let built_in = include_str!("../../nodes/launch/demo.launch.yaml");
+    let built_in = include_str!("../../../nodes/launch/demo.launch.yaml");
     let large = "#".repeat(2 << 20);
     for (name, text, code, word) in [
         ("empty.launch.yaml", "launch: []", 2, "does not declare the arg"),

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde_json::Value;
-use system_tests::lab::{Lab, golden, grainlab};
+use system_tests::lab::{Lab, golden, grainlab, until};
 use system_tests::process::{Process, children, send};
 use system_tests::python;
 
@@ -37,12 +37,9 @@ fn kill_tree(pid: u32) {
 
 /// Waits until a member of the campaign has begun.
 fn until_begun(folder: &Path) {
-    let begin = Instant::now();
     let has_begun = |e: std::fs::DirEntry| e.path().join("launch.json").exists();
-    while !std::fs::read_dir(folder.join("members")).is_ok_and(|runs| runs.flatten().any(has_begun)) {
-        assert!(begin.elapsed() < LIMIT, "no member began");
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    let runs = || std::fs::read_dir(folder.join("members"));
+    until("a member begins", || runs().is_ok_and(|runs| runs.flatten().any(has_begun)));
 }
 
 #[test]

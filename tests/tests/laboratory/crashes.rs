@@ -2,21 +2,15 @@
 
 use std::path::Path;
 use std::time::{Duration, Instant};
-use system_tests::lab::{LIMIT, Lab, golden};
-use system_tests::process::{Process, children, send};
+use system_tests::lab::{LIMIT, Lab, appeared, golden, until};
+use system_tests::process::{Process, children, runs, send};
 
 /// A run that does not end by itself, after some seconds; the launcher and the pid of `node`.
 fn under_way(lab: &Lab, node: &str) -> (Process, u32) {
     let launcher = lab.start(&["launch", "--scene", &golden("scenes/endless.toml").to_string_lossy()]);
-    let begin = Instant::now();
-    loop {
-        if let [pid] = children(launcher.pid(), &format!("run {node}")).as_slice() {
-            lab.until_recorded(200);
-            return (launcher, *pid);
-        }
-        assert!(begin.elapsed() < LIMIT, "{node} never appeared");
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    let pid = appeared(&launcher, &format!("run {node}"));
+    lab.until_recorded(200);
+    (launcher, pid)
 }
 
 fn messages(run: &Path) -> usize {
@@ -68,12 +62,7 @@ fn a_killed_launcher_ends_every_process_and_finishes_the_recording() {
     let all = children(launcher.pid(), "run ");
     assert_eq!(all.len(), 5);
     launcher.signal(libc::SIGKILL);
-    let begin = Instant::now();
-    let runs = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
-    while all.iter().any(runs) {
-        assert!(begin.elapsed() < Duration::from_secs(20), "processes outlive their launcher");
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    until("processes end with their launcher", || !all.iter().any(|pid| runs(*pid)));
     let recording = grainlab_recordings::Recording::open(&lab.last_run()).unwrap();
     assert_eq!(recording.warnings().len(), 0, "{:?}", recording.warnings());
 }

@@ -42,7 +42,7 @@ fn the_rate_of_a_fast_topic_is_right_to_a_hundredth() {
     let lab = Lab::new();
     let mut talker = bus(&lab, "talker");
     let publishing = std::thread::spawn(move || publish_at(&mut talker, 5000.0, 8.0));
-    std::thread::sleep(Duration::from_millis(500));
+    lab.until_announced(&topics::STRAIN_RATE);
     let measured = lab.run(&["topic", "hz", "/strain_rate", "-d", "4", "--format", "json"]);
     let truth = publishing.join().unwrap();
     let rate = json(&measured)["rate_hz"].as_f64().unwrap();
@@ -143,7 +143,7 @@ fn the_doctor_finds_every_fault_planted_in_a_domain() {
     }
     // A node whose process is stopped.
     let stopped = lab.start(&["run", "fabric_analyzer"]);
-    std::thread::sleep(Duration::from_secs(2));
+    lab.until_announced(&topics::PACKING_REPORT);
     stopped.signal(libc::SIGSTOP);
     // A node that waits for a clock.
     let waiting = lab.start(&["run", "emt_inversion", "--ros-args", "-p", "use_sim_time:=true"]);

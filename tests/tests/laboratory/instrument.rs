@@ -74,7 +74,8 @@ fn an_instrument_of_another_vendor_that_a_launch_file_lists_is_of_the_run_and_re
     let program = format!("{} {} --json", python.display(), here("../nodes/launch/instrument.py").display());
     let listed = format!("- executable:\n    cmd: {program}\n    name: instrument\n    output: screen\n");
     let file = lab.folder().join("plugged.launch.yaml");
-    std::fs::write(&file, include_str!("../../nodes/launch/demo.launch.yaml").to_owned() + &listed).unwrap();
+    std::fs::write(&file, include_str!("../../../nodes/launch/demo.launch.yaml").to_owned() + &listed)
+        .unwrap();
     let scene = golden("scenes/tiny.toml");
     let run = lab.run(&["launch", &file.to_string_lossy(), "--scene", &scene.to_string_lossy()]);
     assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);

@@ -4,8 +4,8 @@ use grainlab_msgs::{from_cdr, msg};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use system_tests::bodies::distinct;
-use system_tests::lab::{LIMIT, Lab, golden};
-use system_tests::process::{Ended, Process, children, send};
+use system_tests::lab::{LIMIT, Lab, golden, until};
+use system_tests::process::{Ended, Process, children, runs, send};
 
 /// The small scene with more grains and a gas that takes some seconds.
 fn slow_gas(lab: &Lab) -> PathBuf {
@@ -103,14 +103,10 @@ fn a_second_interrupt_ends_every_process_at_once_and_the_recording_is_whole() {
     // It saves nothing, and the launcher would wait for it.
     send(simulator, libc::SIGSTOP);
     launcher.signal(libc::SIGINT);
-    let begin = Instant::now();
-    while !children(launcher.pid(), "run emt_inversion").is_empty() {
-        assert!(begin.elapsed() < LIMIT, "the end has not begun");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    until("the end begins", || children(launcher.pid(), "run emt_inversion").is_empty());
     launcher.signal(libc::SIGINT);
     assert_eq!(says_what_is_saved(&launcher.ended(LIMIT), &run), None);
-    assert!(nodes.iter().all(|pid| !Path::new(&format!("/proc/{pid}/exe")).exists()), "a process is left");
+    assert!(nodes.iter().all(|pid| !runs(*pid)), "a process is left");
     let recording = grainlab_recordings::Recording::open(&run).unwrap();
     assert!(recording.verify().is_empty() && recording.unaccounted().is_empty());
 }
@@ -123,15 +119,11 @@ fn a_run_interrupted_before_it_has_a_state_says_that_nothing_was_saved_and_begin
     let launcher = lab.start(&["launch", "--scene", &scene, "--run", "mine"]);
     let run = lab.folder().join("mine");
     // As soon as the recording exists.
-    let begin = Instant::now();
     let recorded = || {
         std::fs::read_dir(&run)
             .is_ok_and(|mut d| d.any(|e| e.is_ok_and(|e| e.path().extension().is_some_and(|x| x == "mcap"))))
     };
-    while !recorded() {
-        assert!(begin.elapsed() < LIMIT, "no recording");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    until("a recording", recorded);
     launcher.signal(libc::SIGINT);
     says_what_is_saved(&launcher.ended(LIMIT), &run);
     let resumed = lab.run(&["launch", "--resume", &run.to_string_lossy()]);
@@ -146,12 +138,8 @@ fn a_run_that_lacks_a_measurement_of_its_last_packing_makes_it_when_it_is_resume
     let mut launcher = lab.start(&["launch", "acoustic", "--scene", &scene.to_string_lossy()]);
     lab.until_recorded(20);
     let run = lab.last_run();
-    let begin = Instant::now();
     // The inversion of the moduli is the first answer, that of the slower waves the second.
-    while distinct(&run, "/microstructure").len() < 3 && launcher.runs() {
-        assert!(begin.elapsed() < LIMIT);
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    until("three inversions", || distinct(&run, "/microstructure").len() >= 3 || !launcher.runs());
     send(launcher.pid(), libc::SIGINT);
     let ended = launcher.ended(LIMIT);
     let resumed = lab.run(&["launch", "--resume", &run.to_string_lossy()]);

@@ -4,8 +4,7 @@ use grainlab_msgs::msg::PackingReport;
 use grainlab_msgs::{Guid, from_cdr, to_cdr, topics};
 use grainlab_recordings::{Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
 use std::path::Path;
-use std::time::{Duration, Instant};
-use system_tests::lab::{LIMIT, Lab};
+use system_tests::lab::{LIMIT, Lab, until};
 use system_tests::lattice::lattice;
 
 const PACKINGS: u64 = 30;
@@ -51,11 +50,7 @@ fn thirty_of_thirty_packings_of_sixteen_thousand_grains_are_analysed_and_recorde
         lab.run(&["bag", "play", &source.to_string_lossy(), "--rate", "inf", "--min-subscribers", "2"]);
     assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
     assert!(played.stderr.contains("30 messages sent"), "{}", played.stderr);
-    let begin = Instant::now();
-    while recorded(&out, "/packing_report").len() < PACKINGS as usize {
-        assert!(begin.elapsed() < LIMIT, "the last packing was not analysed");
-        std::thread::sleep(Duration::from_millis(200));
-    }
+    until("every packing is analyzed", || recorded(&out, "/packing_report").len() >= PACKINGS as usize);
     for node in [analyzer, recorder] {
         node.signal(libc::SIGINT);
         let ended = node.ended(LIMIT);
@@ -81,25 +76,14 @@ fn a_restarted_analyzer_gets_the_latest_large_packing_and_makes_the_same_bytes()
     let killed = lab.start(&["run", "fabric_analyzer"]);
     // One packing every tenth of a second; the second analyzer joins while the player is still running.
     let player = lab.start(&["bag", "play", &source.to_string_lossy(), "--min-subscribers", "2"]);
-    let until = |count: usize| {
-        let begin = Instant::now();
-        while recorded(&out, "/packing_report").len() < count {
-            assert!(begin.elapsed() < LIMIT, "{count} packings analysed");
-            std::thread::sleep(Duration::from_millis(20));
-        }
-    };
-    until(3);
+    until("three packings are analyzed", || recorded(&out, "/packing_report").len() >= 3);
     killed.signal(libc::SIGKILL);
     let analyzer = lab.start(&["run", "fabric_analyzer"]);
     let played = player.ended(LIMIT);
     assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
     let report = |body: &Vec<u8>| from_cdr::<PackingReport>(body).unwrap();
     let last = || recorded(&out, "/packing_report").last().map(report);
-    let begin = Instant::now();
-    while last().is_none_or(|report| report.source_step < PACKINGS) {
-        assert!(begin.elapsed() < LIMIT, "the last packing was not analysed");
-        std::thread::sleep(Duration::from_millis(200));
-    }
+    until("the last packing is analyzed", || last().is_some_and(|report| report.source_step >= PACKINGS));
     for node in [analyzer, recorder] {
         node.signal(libc::SIGINT);
         let ended = node.ended(LIMIT);

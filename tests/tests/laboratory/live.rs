@@ -6,9 +6,8 @@ use serde_json::Value;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::sync::mpsc::{Receiver, channel};
-use std::time::{Duration, Instant};
 use system_tests::bodies::{assert_same, distinct};
-use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::lab::{LIMIT, Lab, golden, until};
 use system_tests::process::Process;
 
 /// A running `grainlab view --live`.
@@ -24,11 +23,7 @@ impl Page {
         drop(free);
         let process = lab.start(&["view", "--live", "--port", &port.to_string()]);
         let page = Self { process, port };
-        let begin = Instant::now();
-        while TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_err() {
-            assert!(begin.elapsed() < LIMIT, "the page is not served");
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        until("the page is served", || TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_ok());
         page
     }
 

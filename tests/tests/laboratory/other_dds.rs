@@ -2,13 +2,14 @@
 
 use grainlab_any_message::{Schema, Shown};
 use grainlab_msgs::{TypeInfo, topics};
+use grainlab_node_kit::{Bus, DdsBus, Names, Network};
 use grainlab_recordings::{Recording, Selection};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
-use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::lab::{LIMIT, Lab, golden, until};
 use system_tests::process::{Ended, Process};
 use system_tests::python;
 
@@ -56,7 +57,13 @@ fn another_dds_lists_the_nodes_and_reads_every_topic_field_by_field() {
     let mut arguments = vec!["listen", "12"];
     arguments.extend(wanted.iter().map(String::as_str));
     let peer = tool(&lab, &python, "cyclone_peer.py", &arguments);
-    std::thread::sleep(Duration::from_secs(2));
+    let mut bus = DdsBus::open(Network::localhost(lab.domain), Names::new("early").unwrap()).unwrap();
+    let stress = bus.advertise(&topics::STRESS).unwrap();
+    until("the listener listens", || {
+        bus.wait(Duration::from_millis(50));
+        bus.readers(stress) > 0
+    });
+    drop(bus);
     let run = lab.launch(&golden("scenes/tiny.toml"), &[]);
     let heard = json(&peer.ended(LIMIT));
 

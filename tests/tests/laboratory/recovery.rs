@@ -4,8 +4,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use grainlab_recordings::{Recording, Selection};
-use system_tests::lab::{LIMIT, Lab, golden};
-use system_tests::process::{children, send};
+use system_tests::lab::{LIMIT, Lab, appeared, golden};
+use system_tests::process::send;
 use system_tests::python;
 
 type Said = (String, u32, u64, u64, Vec<u8>);
@@ -22,12 +22,7 @@ fn said(run: &Path) -> Vec<Said> {
 fn killed_after(lab: &Lab, delay: Duration) -> bool {
     let scene = golden("scenes/endless.toml");
     let launcher = lab.start(&["launch", "--scene", &scene.to_string_lossy()]);
-    let recorder = loop {
-        if let Some(pid) = children(launcher.pid(), "run recorder").first() {
-            break *pid;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    };
+    let recorder = appeared(&launcher, "run recorder");
     std::thread::sleep(delay);
     send(recorder, libc::SIGKILL);
     let ended = launcher.ended(LIMIT);

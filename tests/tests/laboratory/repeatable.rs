@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 use system_tests::bodies::{assert_same, distinct};
-use system_tests::lab::{LIMIT, Lab, golden};
-use system_tests::process::{children, send};
+use system_tests::lab::{LIMIT, Lab, golden, until};
+use system_tests::process::{children, runs, send};
 
 /// The small scene with more grains and a slower start, by the contact law: long enough for five crashes.
 fn longer_scene(lab: &Lab) -> std::path::PathBuf {
@@ -73,11 +73,8 @@ fn a_run_that_was_interrupted_is_resumed_to_the_same_bytes() {
         let launcher = broken.start(&["launch", "--scene", &scene.to_string_lossy(), "--out", &out]);
         // Named after scene, seed and number.
         let run = broken.folder().join(&out).join("tiny-3-1");
-        let begin = Instant::now();
-        while recorded(&run) < 300 {
-            assert!(begin.elapsed() < LIMIT, "{node}: nothing is recorded");
-            std::thread::sleep(Duration::from_millis(50));
-        }
+        until(node, || recorded(&run) >= 300);
+        let nodes = children(launcher.pid(), "run ");
         match node {
             "launch" => launcher.signal(signal),
             _ => children(launcher.pid(), node).iter().for_each(|pid| send(*pid, signal)),
@@ -89,7 +86,7 @@ fn a_run_that_was_interrupted_is_resumed_to_the_same_bytes() {
         } else {
             assert_ne!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
             // Processes whose launcher was killed end by themselves.
-            std::thread::sleep(Duration::from_secs(3));
+            until("every process ends", || !nodes.iter().any(|pid| runs(*pid)));
             let resumed = broken.run(&["launch", "--resume", &run.to_string_lossy()]);
             assert_eq!(resumed.code, Some(0), "{node}\n{}\n{}", resumed.stdout, resumed.stderr);
         }

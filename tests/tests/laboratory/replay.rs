@@ -1,10 +1,11 @@
 //! A recording played into fresh nodes, and one read without nodes, have the results of the live run.
 
+use grainlab_msgs::topics;
 use serde_json::Value;
 use std::path::Path;
-use std::time::{Duration, Instant};
 use system_tests::bodies::distinct;
-use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::lab::{LIMIT, Lab, golden, until};
+use system_tests::process::handles;
 
 #[test]
 fn a_recording_played_into_fresh_nodes_gives_the_recorded_bytes() {
@@ -27,11 +28,7 @@ fn a_recording_played_into_fresh_nodes_gives_the_recorded_bytes() {
     ]);
     assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
     // Results are written to the file at once, so that it can be read while it grows.
-    let begin = Instant::now();
-    while distinct(&out, "/microstructure").len() < 2 {
-        assert!(begin.elapsed() < LIMIT, "the last packing was not inverted");
-        std::thread::sleep(Duration::from_millis(100));
-    }
+    until("the last packing is inverted", || distinct(&out, "/microstructure").len() >= 2);
     for node in [analyzer, inversion, recorder] {
         node.signal(libc::SIGINT);
         let ended = node.ended(LIMIT);
@@ -109,7 +106,7 @@ fn a_live_analysis_ends_with_a_signal_and_what_it_measured() {
     {
         let analyze = lab.start(&[arguments, &["--format", "json"]].concat());
         // Before the handlers are installed, a signal has its default action.
-        std::thread::sleep(Duration::from_secs(2));
+        until("handlers", || handles(analyze.pid(), libc::SIGINT));
         analyze.signal(libc::SIGINT);
         let ended = analyze.ended(LIMIT);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(code), "[]\n"), "{}", ended.stderr);
@@ -151,9 +148,7 @@ fn play_skips_and_names_what_a_live_node_publishes() {
     let live = lab.launch(&golden("scenes/tiny.toml"), &[]);
     let other = Lab::new();
     let analyzer = other.start(&["run", "fabric_analyzer"]);
-    // The advertisement of the analyzer is not visible from outside; discovery takes 0.2 s on an idle
-    // machine.
-    std::thread::sleep(Duration::from_secs(3));
+    other.until_announced(&topics::PACKING_REPORT);
     let played = other.run(&[
         "bag",
         "play",

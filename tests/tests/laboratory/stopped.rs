@@ -1,9 +1,9 @@
 //! Processes that are stopped by a signal for a while: Ctrl-Z and fg, a debugger.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use system_tests::bodies::assert_same;
-use system_tests::lab::{LIMIT, Lab, golden};
-use system_tests::process::{children, send};
+use system_tests::lab::{LIMIT, Lab, appeared, golden, until};
+use system_tests::process::send;
 
 const NODES: [&str; 5] =
     ["dem_simulator", "servo_controller", "fabric_analyzer", "emt_inversion", "recorder"];
@@ -16,14 +16,7 @@ fn a_process_that_is_stopped_for_a_while_changes_no_byte_and_is_named() {
     for (number, node) in NODES.iter().enumerate() {
         let lab = Lab::new();
         let launcher = lab.start(&["launch", "--scene", &scene.to_string_lossy()]);
-        let begin = Instant::now();
-        let pid = loop {
-            if let [pid] = children(launcher.pid(), &format!("run {node}")).as_slice() {
-                break *pid;
-            }
-            assert!(begin.elapsed() < LIMIT, "{node} never appeared");
-            std::thread::sleep(Duration::from_millis(5));
-        };
+        let pid = appeared(&launcher, &format!("run {node}"));
         // Some during their start, some during the run.
         std::thread::sleep(Duration::from_millis(100 * number as u64));
         send(pid, libc::SIGSTOP);
@@ -43,7 +36,7 @@ fn a_launcher_that_is_stopped_for_a_while_reports_the_run_all_the_same() {
     let expected = quiet.launch(&scene, &[]);
     let lab = Lab::new();
     let launcher = lab.start(&["launch", "--scene", &scene.to_string_lossy()]);
-    std::thread::sleep(Duration::from_millis(400));
+    lab.until_recorded(20);
     launcher.signal(libc::SIGSTOP);
     std::thread::sleep(Duration::from_secs(3));
     launcher.signal(libc::SIGCONT);
@@ -60,9 +53,9 @@ fn a_stopped_listener_that_is_not_of_the_run_does_not_hold_it_up() {
     let expected = quiet.launch(&scene, &[]);
     let lab = Lab::new();
     let listener = lab.start(&["bag", "record", "-a", "-o", "listened"]);
-    std::thread::sleep(Duration::from_secs(1));
+    until("the listener records", || lab.folder().join("listened").exists());
     let launcher = lab.start(&["launch", "--scene", &scene.to_string_lossy()]);
-    std::thread::sleep(Duration::from_millis(500));
+    lab.until_recorded(20);
     listener.signal(libc::SIGSTOP);
     // Well below the lease after which DDS drops a participant.
     let ended = launcher.ended(Duration::from_secs(30));

@@ -1,14 +1,13 @@
 //! Processes outside a run change none of its bytes and no exit code, and are named.
 
+use grainlab_msgs::topics;
+use grainlab_recordings::{Recording, Selection};
 use serde_json::Value;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use system_tests::bodies::assert_same;
 use system_tests::forger::{FORGERIES, Forger, Forgery};
-use system_tests::lab::{LIMIT, Lab, golden};
-
-/// Time in which a starting process discovers the running ones.
-const DISCOVERY: Duration = Duration::from_millis(600);
+use system_tests::lab::{LIMIT, Lab, golden, until};
 
 fn strangers(run: &Path) -> Vec<Value> {
     let text = std::fs::read_to_string(run.join("summary.json")).unwrap();
@@ -33,7 +32,6 @@ fn a_launched_run_gives_the_same_bytes_under_forged_messages_and_names_the_stran
     for forgery in FORGERIES {
         let lab = Lab::new();
         let forger = Forger::start(lab.domain, forgery);
-        std::thread::sleep(DISCOVERY);
         let scene = scene.to_string_lossy();
         let ended = lab.run(&["launch", "--scene", &scene]);
         assert_eq!(ended.code, Some(0), "{forgery:?}\n{}\n{}", ended.stdout, ended.stderr);
@@ -52,13 +50,11 @@ fn an_old_result_that_is_latched_does_not_end_a_run_early() {
     let scene = golden("scenes/tiny.toml");
     let quiet = Lab::new();
     let expected = quiet.launch(&scene, &[]);
-    let last = grainlab_recordings::Recording::open(&expected).unwrap();
-    let last =
-        last.messages(&grainlab_recordings::Selection::topics(["/microstructure"])).unwrap().last().unwrap();
+    let last = Recording::open(&expected).unwrap();
+    let last = last.messages(&Selection::topics(["/microstructure"])).unwrap().last().unwrap();
     let last: grainlab_msgs::msg::Microstructure = grainlab_msgs::from_cdr(&last.payload).unwrap();
     let lab = Lab::new();
     let _forger = Forger::start(lab.domain, Forgery::OldMicrostructure { step: last.source_step });
-    std::thread::sleep(DISCOVERY);
     assert_same(&expected, &lab.launch(&scene, &[]));
 }
 
@@ -76,7 +72,7 @@ fn an_inversion_started_before_the_run_changes_nothing() {
         "-p",
         "gamma_over_delta:=zero",
     ]);
-    std::thread::sleep(Duration::from_secs(3));
+    lab.until_announced(&topics::MICROSTRUCTURE);
     for _ in 0..2 {
         let run = lab.launch(&scene, &[]);
         assert_same(&expected, &run);
@@ -113,7 +109,9 @@ fn by_hand_a_second_inversion_is_an_error_that_names_it_and_a_forged_result_is_l
         [(Some(Forgery::EarlyAnswer), false), (Some(Forgery::Packing), false), (None, true)]
     {
         let lab = Lab::new();
-        let output = format!("output:={}", lab.folder().join("run").display());
+        let folder = lab.folder().join("run");
+        let output = format!("output:={}", folder.display());
+        let stress = Selection::topics(["/stress"]);
         let scene = format!("scene:={path}");
         let mut others = vec![lab.start(&["run", "emt_inversion"]), lab.start(&["run", "fabric_analyzer"])];
         if second {
@@ -145,7 +143,9 @@ fn by_hand_a_second_inversion_is_an_error_that_names_it_and_a_forged_result_is_l
         ];
         let simulator = lab.start(&simulator);
         // After the start of the run, like the forger of answers: before it, two servos are an error.
-        std::thread::sleep(DISCOVERY);
+        until("the run begins", || {
+            Recording::open(&folder).is_ok_and(|r| r.messages(&stress).is_ok_and(|m| m.count() > 0))
+        });
         let forger = forgery.map(|f| Forger::start(lab.domain, f));
         let ended = simulator.ended(LIMIT);
         let begin = Instant::now();
