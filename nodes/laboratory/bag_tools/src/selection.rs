@@ -2,10 +2,10 @@
 
 use grainlab_console::Failure;
 use grainlab_recordings::{ChannelInfo, Recording};
-use regex::Regex;
+use regex_lite::Regex;
 
 /// An expression that matches whole names only: the longest match may be another alternative than the first one.
-fn whole(text: &str) -> Result<Regex, regex::Error> {
+fn whole(text: &str) -> Result<Regex, regex_lite::Error> {
     Regex::new(&format!("^(?:{text})$"))
 }
 

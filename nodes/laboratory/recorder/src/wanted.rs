@@ -1,6 +1,6 @@
 //! Which topics are recorded.
 
-use regex::Regex;
+use regex_lite::Regex;
 
 /// Topics that carry the parameters of nodes, not data.
 const OF_PARAMETERS: &str = "/parameter_events";
@@ -32,7 +32,7 @@ impl Wanted {
         exclude_regex: Option<&str>,
         exclude: &[String],
         hidden: bool,
-    ) -> Result<Self, regex::Error> {
+    ) -> Result<Self, regex_lite::Error> {
         // The longest match may be another alternative than the first one.
         let whole = |text: &str| Regex::new(&format!("^(?:{text})$"));
         Ok(Self {
