@@ -71,7 +71,7 @@ pub enum AcousticsError {
         /// The reason.
         reason: String,
     },
-    /// No arrival or standing wave was found.
+    /// No arrival or long wave was found.
     #[error(
         "no {what} along {}, polarization {}: {reason}",
         in_brackets(direction),

@@ -11,7 +11,7 @@ use crate::settings::{MethodSettings, Settings};
 use crate::survey::Survey;
 use crate::trace::Trace;
 use crate::warning::Warning;
-use crate::{dispersion, standing_wave, time_of_flight};
+use crate::{dispersion, time_of_flight};
 use grainlab_core::results::{SpringNote, StiffnessMethod};
 use grainlab_core::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
 
@@ -54,7 +54,7 @@ pub struct Measurement {
 
 /// Measures the wave speeds of `packing`. The result is the same to the last bit for any number of threads.
 ///
-/// Dispersion uses the frozen network. In the other two methods grains move. A wave without a speed is left
+/// Dispersion uses the frozen network; in time of flight grains move. A wave without a speed is left
 /// out with a warning. If no speed is left, that is an error.
 pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, AcousticsError> {
     settings.check()?;
@@ -65,8 +65,7 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     // Noise differs between packings.
     let seed = seed_at(settings.instrument.seed, &[packing.step]);
     let instrument = &Instrument { seed, ..settings.instrument };
-    let lattice = || survey.lattice_rays(&packing.cell, &about, settings.modes);
-    let (curves, modes, traces, mut warnings) = match &settings.method {
+    let (mut curves, modes, traces, mut warnings) = match &settings.method {
         MethodSettings::Dispersion(of) => {
             of.validated()?;
             let rays = survey.rays(&about, settings.modes);
@@ -75,40 +74,29 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
             let (found, warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
             (found.curves, found.modes, Vec::new(), warnings)
         }
-        MethodSettings::StandingWave(of) => {
-            let (curves, traces, warnings) = standing_wave::curves(packing, &lattice(), of, instrument)?;
-            (curves, Vec::new(), traces, warnings)
-        }
         MethodSettings::TimeOfFlight(of) => {
-            let (curves, traces, warnings) = time_of_flight::curves(packing, &lattice(), of, instrument)?;
+            let rays = survey.lattice_rays(&packing.cell, &about, settings.modes);
+            let (curves, traces, warnings) = time_of_flight::curves(packing, &rays, of, instrument)?;
             (curves, Vec::new(), traces, warnings)
         }
     };
-    let (of_network, friction) = match &settings.method {
-        MethodSettings::Dispersion(_) => (StiffnessMethod::FrozenNetwork, None),
-        MethodSettings::StandingWave(of) => (StiffnessMethod::StrainProbe, of.friction),
-        MethodSettings::TimeOfFlight(of) => (StiffnessMethod::StrainProbe, of.friction),
+    let (of_network, friction, method, strain_amplitude) = match &settings.method {
+        MethodSettings::Dispersion(_) => (StiffnessMethod::FrozenNetwork, None, WaveMethod::Dispersion, 0.0),
+        MethodSettings::TimeOfFlight(of) => {
+            (StiffnessMethod::StrainProbe, of.friction, of.pick.method(), of.amplitude)
+        }
     };
     let smooth = friction.map_or_else(|| backbone.network.smooth(), |friction| friction == 0.0);
     let mut notes = SpringNote::of(packing, of_network, smooth);
     // Grains that move slide by themselves.
-    notes.retain(|n| {
-        matches!(settings.method, MethodSettings::Dispersion(_))
-            || !matches!(n, SpringNote::SlidingStuck { .. })
-    });
+    notes.retain(|n| method == WaveMethod::Dispersion || !matches!(n, SpringNote::SlidingStuck { .. }));
     warnings.extend(notes.into_iter().map(Warning::Springs));
-    let mut curves = curves;
     let [least, most] = frequencies(&curves);
     let effective_density = backbone.effective_density(least);
     for curve in &mut curves {
         let drift = drift(curve, &backbone, &effective_density);
         curve.stddev = curve.stddev.hypot(0.5 * drift * curve.speed);
     }
-    let (method, amplitude) = match &settings.method {
-        MethodSettings::Dispersion(_) => (WaveMethod::Dispersion, 0.0),
-        MethodSettings::StandingWave(of) => (WaveMethod::StandingWave, of.amplitude),
-        MethodSettings::TimeOfFlight(of) => (of.pick.method(), of.amplitude),
-    };
     let wave = |curve: &DispersionCurve| MeasuredWave {
         wave: WaveSpeed {
             direction: curve.direction,
@@ -119,7 +107,7 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
         method,
         // The speed is extrapolated to long waves.
         frequency: None,
-        strain_amplitude: amplitude,
+        strain_amplitude,
     };
     let waves: Vec<MeasuredWave> = curves.iter().map(wave).collect();
     let mut waves = with_speed_noise(&waves, instrument.speed_noise, instrument.seed);

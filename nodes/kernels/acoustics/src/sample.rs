@@ -116,12 +116,6 @@ impl Sample {
         (modulus / self.mass()).sqrt()
     }
 
-    /// Mass of each grain, kg; 0 if it carries no force.
-    pub(crate) fn masses(&self) -> Vec<f64> {
-        let mass = |r: &f64| self.packing.material.sphere_mass(*r);
-        self.packing.radii.iter().zip(&self.present).map(|(r, p)| if *p { mass(r) } else { 0.0 }).collect()
-    }
-
     /// Density of the grains that carry force, kg/m³.
     pub(crate) fn density(&self) -> f64 {
         self.mass() / self.packing.cell.volume()
@@ -134,6 +128,7 @@ impl Sample {
 
     /// Mass of the grains that carry force, kg.
     fn mass(&self) -> f64 {
-        self.masses().iter().sum()
+        let carried = self.packing.radii.iter().zip(&self.present).filter(|(_, present)| **present);
+        carried.map(|(radius, _)| self.packing.material.sphere_mass(*radius)).sum()
     }
 }

@@ -3,7 +3,7 @@
 use crate::error::AcousticsError;
 use crate::instrument::Instrument;
 use crate::survey::{Modes, Survey};
-use crate::{dispersion, standing_wave, time_of_flight};
+use crate::{dispersion, time_of_flight};
 use grainlab_core::Vec3;
 
 /// A method of measuring speeds, with its settings.
@@ -11,8 +11,6 @@ use grainlab_core::Vec3;
 pub enum MethodSettings {
     /// See [`dispersion`].
     Dispersion(dispersion::Settings),
-    /// See [`standing_wave`].
-    StandingWave(standing_wave::Settings),
     /// See [`time_of_flight`].
     TimeOfFlight(time_of_flight::Settings),
 }

@@ -33,13 +33,6 @@ pub struct Supercell {
     pub along: Vec<f64>,
 }
 
-impl Supercell {
-    /// Wave number of the wave with `waves` periods in the path, rad/m.
-    pub fn wavenumber(&self, waves: u32) -> f64 {
-        std::f64::consts::TAU * f64::from(waves) / self.path
-    }
-}
-
 /// Repeats `packing` `copies` times (1 or more) along the normal of its lattice planes (h k l), divided by their common
 /// divisor: see [`crate::Ray::normal`].
 ///

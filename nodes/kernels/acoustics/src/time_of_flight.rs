@@ -20,6 +20,7 @@ mod pick;
 mod settings;
 mod slab;
 mod spectrum;
+mod wave_path;
 
 pub use arrival::Arrivals;
 pub use settings::{ArrivalPick, Settings};
@@ -31,8 +32,8 @@ use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::trace::Trace;
 use crate::warning::Warning;
-use crate::wave_path::{measure_all, paths};
 use grainlab_core::Packing;
+use wave_path::{measure_all, paths};
 
 /// The curves of all polarizations of all rays, in that order, and their traces.
 ///

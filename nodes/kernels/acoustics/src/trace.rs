@@ -2,7 +2,7 @@
 
 use grainlab_core::{Vec3, WaveMethod};
 
-/// Traces of one wave: particle velocity at several receivers, or the amplitude of a standing wave.
+/// Traces of one wave: particle velocity at several receivers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// Unit direction of propagation.
@@ -24,7 +24,7 @@ pub struct Trace {
 /// One receiver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Distance from the source along the ray, m; the wavelength of a standing wave.
+    /// Distance from the source along the ray, m.
     pub distance: f64,
     /// Particle velocity along the polarization, m/s.
     pub samples: Vec<f64>,

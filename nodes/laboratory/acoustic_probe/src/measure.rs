@@ -3,7 +3,7 @@
 use crate::Settings;
 use grainlab_acoustics::{AcousticsError, Measurement, Trace};
 use grainlab_core::results::NotJammed;
-use grainlab_core::{Packing, Vec3, WaveMethod, stress};
+use grainlab_core::{Packing, Vec3, stress};
 use grainlab_msgs::boundary::{
     BoundaryError, TraceReading, WaveSpeedsReading, WaveformReading, wave_speeds_message, waveform_message,
 };
@@ -114,13 +114,9 @@ fn waveform(
     source_step: Option<u64>,
     trace: &Trace,
 ) -> Result<msg::Waveform, BoundaryError> {
-    let word = match trace.method {
-        WaveMethod::StandingWave => "standing wave",
-        _ => "receiver",
-    };
     // Single precision is that of a good digitiser, and far finer than any noise.
     let channels = (1..).zip(&trace.channels).map(|(n, c)| TraceReading {
-        name: format!("{word} {n}"),
+        name: format!("receiver {n}"),
         distance: c.distance,
         samples: c.samples.iter().map(|s| *s as f32).collect(),
     });

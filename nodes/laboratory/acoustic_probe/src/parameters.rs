@@ -11,18 +11,15 @@ pub fn parameters() -> Vec<ParameterSpec> {
     all
 }
 
-/// The methods that move the grains, and of these the ones that time a burst.
-const MOVING: &[&str] = &["standing_wave", "first_arrival", "cross_correlation", "peak"];
+/// The methods that time a burst.
 const OF_BURSTS: &[&str] = &["first_arrival", "cross_correlation", "peak"];
 
 /// The methods on which a parameter acts; `None`: all of them.
 pub fn methods_with(parameter: &str) -> Option<&'static [&'static str]> {
     match parameter {
         "wavelengths" | "tolerance" | "max_iterations" => Some(&["dispersion"]),
-        "frequencies" | "cycles" => Some(OF_BURSTS),
-        "copies" | "amplitude" | "wave_friction" | "sample_rate" | "signal_to_noise" | "jitter" | "shots" => {
-            Some(MOVING)
-        }
+        "frequencies" | "cycles" | "copies" | "amplitude" | "wave_friction" | "sample_rate"
+        | "signal_to_noise" | "jitter" | "shots" => Some(OF_BURSTS),
         _ => None,
     }
 }
@@ -33,16 +30,10 @@ fn rays() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "method",
             "dispersion",
-            "how speeds are measured: dispersion (frequencies of long waves in the frozen contact network), standing_wave (the \
-             packing vibrates freely), or time of flight by first_arrival, cross_correlation or peak",
+            "how speeds are measured: dispersion (frequencies of long waves in the frozen contact network), or \
+             time of flight by first_arrival, cross_correlation or peak",
         )
-        .within(Range::Choice(&[
-            "dispersion",
-            "standing_wave",
-            "first_arrival",
-            "cross_correlation",
-            "peak",
-        ])),
+        .within(Range::Choice(&["dispersion", "first_arrival", "cross_correlation", "peak"])),
         ParameterSpec::new(
             "axis",
             "e3",
@@ -84,8 +75,7 @@ fn ways() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "copies",
             0_i64,
-            "repetitions of the packing along the path, 0 for 8 (standing_wave, which needs 5) or as many as are needed \
-             (time of flight)",
+            "repetitions of the packing along the path of time of flight, 0 for as many as are needed",
         )
         .within(Range::Integer { min: 0, max: 256 }),
         ParameterSpec::new(
@@ -100,7 +90,7 @@ fn ways() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "amplitude",
             0.0,
-            "peak strain of the waves, 1; 0 for 1e-9 (standing_wave) or 1e-8 (time of flight)",
+            "peak strain of the waves of time of flight, 1; 0 for 1e-8",
         )
         .within(strain),
         ParameterSpec::new(

@@ -6,16 +6,15 @@ use super::burst_run::{BurstResponse, BurstRun};
 use super::path_plan::PathPlan;
 use super::phase_velocity;
 use super::settings::{ArrivalPick, Settings};
+use super::wave_path::{PathResult, WavePath};
 use crate::curve::DispersionCurve;
 use crate::error::AcousticsError;
 use crate::instrument::{Instrument, ReceiverSignals, SamplingWindow, burst_level};
 use crate::noise::seed_at;
-use crate::nonlinearity::{TO_ZERO, relative_change};
 use crate::sample::Sample;
 use crate::supercell::supercell;
 use crate::trace::{Channel, Trace};
 use crate::warning::Warning;
-use crate::wave_path::{PathResult, WavePath};
 use grainlab_core::Vec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -35,6 +34,10 @@ const FASTEST: f64 = 2.0;
 
 /// Relative change of the trace at half the amplitude above which the response is nonlinear.
 const NONLINEAR: f64 = 1e-2;
+
+/// Ratio of the changes of a speed: from half the amplitude to zero over from the full amplitude to half. The change is
+/// proportional to a power of one half or more of the amplitude.
+const TO_ZERO: f64 = 3.0;
 
 /// Sends bursts of all frequencies along `path`, picks arrivals, and extrapolates to long waves.
 pub(super) fn measure(
@@ -93,7 +96,7 @@ impl TimeOfFlight<'_> {
         let modulus = self.sample.density() * curve.speed.powi(2);
         curve.stddev = curve.stddev.hypot(0.5 * self.sample.pressure() / modulus * curve.speed);
         let warnings = self.nonlinearity(settings, speed, &bursts, &responses, &mut curve)?;
-        Ok(PathResult { curve, traces, warnings, scatter: 0.0 })
+        Ok(PathResult { curve, traces, warnings })
     }
 
     /// The speed of a first burst, m/s, from which frequencies and receivers follow.
@@ -216,6 +219,16 @@ impl TimeOfFlight<'_> {
         };
         Ok(if change > NONLINEAR { vec![warning] } else { Vec::new() })
     }
+}
+
+/// Root mean square of full − 2 × half over that of the full signal, for pairs of samples (full, half).
+fn relative_change<'a>(pairs: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
+    let (mut difference, mut square) = (0.0, 0.0);
+    for (full, half) in pairs {
+        difference += (full - 2.0 * half).powi(2);
+        square += full * full;
+    }
+    (difference / square).sqrt()
 }
 
 fn copies_needed(error: &AcousticsError) -> u32 {

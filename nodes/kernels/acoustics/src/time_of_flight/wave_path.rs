@@ -28,14 +28,7 @@ pub(crate) struct PathResult {
     pub(crate) curve: DispersionCurve,
     pub(crate) traces: Vec<Trace>,
     pub(crate) warnings: Vec<Warning>,
-    /// Relative standard deviation of the speed from the scatter of the measurement alone, in which it takes part in the
-    /// mean of all paths; 0 if it does not.
-    pub(crate) scatter: f64,
 }
-
-/// Part of the mean scatter of all paths that is added to the error of each: the scatter of few points about a line is
-/// small by chance on some of them.
-const SHARED: f64 = 0.5;
 
 impl WavePath {
     /// The error that there is no `what` on this path.
@@ -81,12 +74,9 @@ pub(crate) fn measure_all(
     let mut warnings: Vec<Warning> =
         sample.unbalanced.map(|unbalanced| Warning::NotAtRest { unbalanced }).into_iter().collect();
     let mut first_error = None;
-    let scatters = results.iter().flatten().map(|r| r.scatter.powi(2));
-    let shared = SHARED * (scatters.clone().sum::<f64>() / scatters.count().max(1) as f64).sqrt();
     for result in results {
         match result {
             Ok(mut result) => {
-                result.curve.stddev = result.curve.stddev.hypot(shared * result.curve.speed);
                 curves.push(result.curve);
                 traces.append(&mut result.traces);
                 warnings.append(&mut result.warnings);
