@@ -33,8 +33,6 @@ pub struct Domain {
     pub fitted: [Option<Fitted>; InferredQuantity::COUNT],
     /// Range of g = γ/Δ.
     pub gamma: Range,
-    /// Range of the Poisson ratio of the grains.
-    pub poisson_ratio: Range,
     /// Range of p/E*.
     pub reduced_pressure: Range,
     /// Range of (σ_33 − (σ_11 + σ_22)/2)/p.
@@ -55,7 +53,6 @@ impl Domain {
             structure,
             fitted: [None; InferredQuantity::COUNT],
             gamma: [-1.0, 1.0],
-            poisson_ratio: [0.0, 0.5],
             reduced_pressure: [0.0, f64::INFINITY],
             stress_ratio: [-1.5, 3.0],
             size_spread: [0.0, f64::INFINITY],
@@ -85,9 +82,6 @@ impl Domain {
             self.within(quantity.name(), values[i], range)?;
         }
         self.within("gamma/Delta", conditions.gamma.value, self.gamma)?;
-        if let Some(material) = &conditions.material {
-            self.within("the Poisson ratio of the grains", material.poisson_ratio, self.poisson_ratio)?;
-        }
         if let Some(ratio) = conditions.stress_ratio {
             self.within("q/p", ratio.value, self.stress_ratio)?;
         }

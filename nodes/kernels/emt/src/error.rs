@@ -129,18 +129,14 @@ pub enum EmtError {
         /// Name of the calibration.
         calibration: String,
     },
-    /// The strain ratio opens contacts, or makes their stiffness negative.
+    /// The strain ratio makes the stiffness of contacts negative.
     #[error(
-        "gamma/Delta = {g} is outside {range}, where {law} gives every contact a positive stiffness; give the elastic or \
+        "gamma/Delta = {g} is outside (-1, 1/2), where Eq. 10 gives every contact a positive stiffness; give the elastic or \
          the contact-fitted ratio, or 0"
     )]
     GammaOutOfRange {
         /// g = γ/Δ.
         g: f64,
-        /// The valid range.
-        range: &'static str,
-        /// The overlap law with this range.
-        law: &'static str,
     },
     /// No contact distribution has this shear ratio.
     #[error(

@@ -57,7 +57,7 @@ impl Random {
         let structure = domain.structure.map(|range| range.map(|r| self.with_ends(r)));
         let other = Material {
             shear_modulus: 10f64.powf(self.within([9.0, 11.5])),
-            poisson_ratio: self.with_ends(domain.poisson_ratio),
+            poisson_ratio: self.with_ends([0.0, 0.5]),
             density: 2500.0,
         };
         let material = (self.0.next_u64() >> 63 == 0).then_some(other);

@@ -6,7 +6,7 @@
 
 use crate::csv;
 use crate::least_squares::{Fit, Point, within_packings};
-use grainlab_core::results::{InferredQuantity, Microstructure};
+use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, CalibrationSample, Moduli, Modulus, StrainRatioSource};
 
 /// A number of a packing.
@@ -265,38 +265,4 @@ fn speeds_separate_contacts_from_stress_only_if_the_stress_is_known() {
     eprintln!("eps {:.4} {:.4}, eps_k {:.4} {:.4}", eps[0], eps[1], eps_k[0], eps_k[1]);
     assert!(eps[0] < 0.01 && eps[1] > 3.0 * eps[0], "{eps:?}");
     assert!(eps_k[0] < 0.005 && eps_k[1] < 1.5 * eps_k[0], "{eps_k:?}");
-}
-
-/// The models in which anisotropy comes from stress alone, against packings under stress.
-#[test]
-fn stress_alone_predicts_its_own_part_of_the_anisotropy_and_not_the_rest() {
-    let [(_, wide), ..] = sets();
-    let stressed = of(&wide, |s| s.stress_ratio.abs() > 0.02);
-    let rms = |of: &dyn Fn(&CalibrationSample) -> f64| {
-        (stressed.iter().map(|s| of(s).powi(2)).sum::<f64>() / stressed.len() as f64).sqrt()
-    };
-    eprintln!(
-        "\n{} states of wide.csv under q/p: measured b, and slope and rms error of the models",
-        stressed.len()
-    );
-    for (wave, value) in WAVES {
-        let [measured, error] = coefficient(&fit(&wide, value, &[EPS, STRESS]), 1);
-        {
-            let name = "johnson";
-            let model = grainlab_emt::model(name).unwrap();
-            let predict = |s: &CalibrationSample, stress_ratio: f64| {
-                let state = CalibrationSample { stress_ratio, ..s.clone() };
-                let conditions = state.observation(StrainRatioSource::Zero).conditions;
-                let structure = Microstructure::default().with(InferredQuantity::K, s.k);
-                let moduli = model.predict(&structure, &conditions, &Calibration::PAPER).unwrap();
-                value(&CalibrationSample { moduli, ..state })
-            };
-            let slope = stressed.iter().map(|s| predict(s, 0.01) - predict(s, -0.01)).sum::<f64>()
-                / (0.02 * stressed.len() as f64);
-            let (off, size) = (rms(&|s| predict(s, s.stress_ratio) - value(s)), rms(&|s| value(s)));
-            eprintln!(
-                "{wave}  {name:12} b {measured:.3} +-{error:.3}, slope {slope:.3}; rms {off:.3} of {size:.3}"
-            );
-        }
-    }
 }
