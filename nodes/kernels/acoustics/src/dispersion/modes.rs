@@ -7,7 +7,7 @@
 
 use crate::dispersion::bloch::Bloch;
 use crate::dispersion::error::SolveError;
-use crate::dispersion::solve::Solve;
+use crate::dispersion::solve::inverse_iteration;
 use crate::dispersion::subspace::{Complex3, Subspace};
 use crate::dispersion::waves::{Amplitude, Block, Row, WAVES};
 use grainlab_core::{Mat3, Vec3};
@@ -52,8 +52,8 @@ pub(crate) fn modes(
     let mut change = f64::INFINITY;
     for _ in 0..ROUNDS {
         let residual = RESIDUAL * tolerance.sqrt();
-        let solve = Solve::inverse_iteration(bloch, &ritz.waves, &ritz.squares, residual, &mut budget);
-        let solved = pulp::Arch::new().dispatch(solve)?;
+        let solved = pulp::Arch::new()
+            .dispatch(|| inverse_iteration(bloch, &ritz.waves, &ritz.squares, residual, &mut budget))?;
         let before = ritz.squares;
         let mut subspace = Subspace::new(count);
         // The change in this round, not its result, which is nearly parallel to the previous one.
