@@ -34,17 +34,23 @@ pub(crate) struct Backbone {
     rattlers: u32,
 }
 
+/// For each grain, whether it carries force; an error if none does.
+pub(crate) fn carrying(packing: &Packing) -> Result<Vec<bool>, NotJammed> {
+    let grains = packing.grains();
+    if packing.contacts.is_empty() {
+        return Err(NotJammed::NoContacts { grains });
+    }
+    let carries = non_rattlers(packing);
+    if carries.iter().all(|carries| !carries) {
+        return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
+    }
+    Ok(carries)
+}
+
 impl Backbone {
     pub(crate) fn new(packing: &Packing) -> Result<Self, AcousticsError> {
         packing.check().map_err(MicroError::from)?;
-        let grains = packing.grains();
-        if packing.contacts.is_empty() {
-            return Err(NotJammed::NoContacts { grains }.into());
-        }
-        let carries = non_rattlers(packing);
-        if carries.iter().all(|c| !c) {
-            return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) }.into());
-        }
+        let carries = carrying(packing)?;
         let held = |g: u32| carries[g as usize];
         let mut carrying = packing.clone();
         carrying.contacts.retain(|c| held(c.i) && held(c.j));
@@ -54,8 +60,9 @@ impl Backbone {
         let mass: Vec<f64> = packing.radii.iter().map(|r| packing.material.sphere_mass(*r)).collect();
         let bulk = mass.iter().sum::<f64>() / packing.cell.volume();
         let of = |g: usize, value: f64| if carries[g] { value } else { 0.0 };
-        let inertia =
-            (0..grains).map(|g| of(g, 0.4 * mass[g] * (packing.radii[g] / a).powi(2))).collect::<Vec<_>>();
+        let inertia = (0..packing.grains())
+            .map(|g| of(g, 0.4 * mass[g] * (packing.radii[g] / a).powi(2)))
+            .collect::<Vec<_>>();
         let mass: Vec<f64> = mass.iter().enumerate().map(|(g, m)| of(g, *m)).collect();
         let clusters = clusters(&network, &mass, &inertia);
         let rattlers = carries.iter().filter(|c| !**c).count() as u32;

@@ -27,7 +27,7 @@ use crate::backbone::Backbone;
 use crate::curve::{DispersionCurve, DispersionPoint};
 use crate::error::AcousticsError;
 use crate::ray::Ray;
-use crate::warning::Warning;
+use crate::warning::{Warning, keep};
 use acoustic_tensor::AcousticTensor;
 use alignment::{aligned, completed, nearest_of};
 use bloch::Bloch;
@@ -77,7 +77,12 @@ pub fn curves(
 ) -> Result<Vec<DispersionCurve>, AcousticsError> {
     settings.validated()?;
     let backbone = Backbone::new(packing)?;
-    Ok(curves_of(&backbone, mean_diameter(packing), rays, Alignment::InPlane, settings)?.curves)
+    let (found, warnings) =
+        all_curves(&backbone, mean_diameter(packing), rays, Alignment::InPlane, settings)?;
+    match warnings.into_iter().find(|warning| matches!(warning, Warning::LeftOut(_))) {
+        Some(Warning::LeftOut(error)) => Err(error),
+        _ => Ok(found.curves),
+    }
 }
 
 /// Curves of rays, along given polarizations and of the modes.
@@ -100,45 +105,13 @@ pub(crate) fn all_curves(
 ) -> Result<(RayCurves, Vec<Warning>), AcousticsError> {
     let found: Vec<_> =
         rays.par_iter().map(|ray| curves_along(backbone, diameter, ray, alignment, settings)).collect();
-    let (mut all, mut warnings, mut first_error) = (RayCurves::default(), Vec::new(), None);
-    for found in found {
-        match found {
-            Ok((found, warning)) => {
-                all.extend(found);
-                warnings.extend(warning);
-            }
-            Err(error @ (AcousticsError::NotConverged { .. } | AcousticsError::NoSignal { .. })) => {
-                first_error = first_error.or_else(|| Some(error.clone()));
-                warnings.push(Warning::LeftOut(error));
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    match first_error {
-        Some(error) if all.curves.is_empty() => Err(error),
-        _ => Ok((all, warnings)),
-    }
-}
-
-impl RayCurves {
-    fn extend(&mut self, other: Self) {
-        self.curves.extend(other.curves);
-        self.modes.extend(other.modes);
-    }
-}
-
-fn curves_of(
-    backbone: &Backbone,
-    diameter: f64,
-    rays: &[Ray],
-    alignment: Alignment,
-    settings: &Settings,
-) -> Result<RayCurves, AcousticsError> {
-    let curves: Result<Vec<_>, _> =
-        rays.par_iter().map(|ray| curves_along(backbone, diameter, ray, alignment, settings)).collect();
-    let mut all = RayCurves::default();
-    curves?.into_iter().for_each(|(curves, _)| all.extend(curves));
-    Ok(all)
+    let (mut all, mut warnings) = (RayCurves::default(), Vec::new());
+    keep(found, &mut warnings, |(found, warning), warnings| {
+        all.curves.extend(found.curves);
+        all.modes.extend(found.modes);
+        warnings.extend(warning);
+    })?;
+    Ok((all, warnings))
 }
 
 fn curves_along(

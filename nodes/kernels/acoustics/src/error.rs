@@ -34,8 +34,8 @@ pub enum AcousticsError {
     },
     /// The sample is too short for the wave.
     #[error(
-        "{copies} repetitions of the packing are a path of {path:.4e} m, and {needed:.4e} m are needed: {why}; use {enough} \
-         repetitions or a shorter wave"
+        "{copies} repetitions of the packing are a path of {path:.4e} m, and {needed:.4e} m are needed: the wave in the opposite \
+         direction must not reach the furthest receiver during the recording; use {enough} repetitions or a shorter wave"
     )]
     PathTooShort {
         /// Number of repetitions.
@@ -44,8 +44,6 @@ pub enum AcousticsError {
         path: f64,
         /// Length needed, m.
         needed: f64,
-        /// Why it is needed.
-        why: &'static str,
         /// Number of repetitions that suffices.
         enough: u32,
     },

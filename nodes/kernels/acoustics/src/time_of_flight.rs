@@ -31,9 +31,10 @@ use crate::instrument::Instrument;
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::trace::Trace;
-use crate::warning::Warning;
+use crate::warning::{Warning, keep};
 use grainlab_core::Packing;
-use wave_path::{measure_all, paths};
+use rayon::prelude::*;
+use wave_path::paths;
 
 /// The curves of all polarizations of all rays, in that order, and their traces.
 ///
@@ -50,8 +51,16 @@ pub fn curves(
     settings.validated()?;
     instrument.validated()?;
     let paths = paths(packing, rays)?;
-    let sample = Sample::new(packing, settings.friction, settings.tangential)?;
-    measure_all(&paths, &sample, |path| measurement::measure(path, &sample, settings, instrument))
+    let sample = Sample::new(packing, settings.friction)?;
+    let measured = |path| measurement::measure(path, &sample, settings, instrument);
+    let (mut curves, mut traces) = (Vec::new(), Vec::new());
+    let mut warnings = Vec::from_iter(sample.unbalanced.map(|unbalanced| Warning::NotAtRest { unbalanced }));
+    keep(paths.par_iter().map(measured).collect(), &mut warnings, |mut found, warnings| {
+        curves.push(found.curve);
+        traces.append(&mut found.traces);
+        warnings.append(&mut found.warnings);
+    })?;
+    Ok((curves, traces, warnings))
 }
 
 /// The curve of one mode from its traces, for bursts of `cycles` periods at one or more frequencies. `seed`

@@ -94,7 +94,6 @@ fn method(parameters: &Parameters) -> Result<MethodSettings, SettingsError> {
         amplitude: Some(parameters.get("amplitude")).filter(|a| *a > 0.0).unwrap_or(default.amplitude),
         friction,
         pick,
-        ..default
     }))
 }
 

@@ -3,7 +3,7 @@
 use super::arrival::Arrivals;
 use super::burst::Burst;
 use super::burst_run::{BurstResponse, BurstRun};
-use super::path_plan::PathPlan;
+use super::path_plan::{PathPlan, RECEIVERS};
 use super::phase_velocity;
 use super::settings::{ArrivalPick, Settings};
 use super::wave_path::{PathResult, WavePath};
@@ -21,6 +21,9 @@ use std::f64::consts::PI;
 
 /// Wavelengths of the default frequencies, mean diameters.
 const WAVELENGTHS: [f64; 3] = [20.0, 28.0, 40.0];
+
+/// Thickness of source and receivers along the ray, mean diameters.
+const THICKNESS: f64 = 2.0;
 
 /// The first burst, which gives the speed to a few per cent: its wavelength in mean diameters for a typical speed over
 /// the affine one; and number, first and last distance of its receivers, wavelengths.
@@ -69,11 +72,13 @@ impl TimeOfFlight<'_> {
             frequencies.iter().map(|f| Burst { frequency: *f, cycles: settings.cycles }).collect();
         // A path that is too short is refused before a burst is sent, with the length that the longest wave
         // needs.
-        let short = bursts.iter().filter_map(|b| self.plan(settings, b, speed).err());
-        if let Some(worst) = short.max_by_key(copies_needed) {
+        let plan = |burst: &Burst| self.plan(RECEIVERS, settings.copies, burst, speed);
+        if let Some(worst) = bursts.iter().filter_map(|b| plan(b).err()).max_by_key(copies_needed) {
             return Err(worst);
         }
-        let send = |burst: &Burst| self.send(settings, burst, speed, instrument.rate(burst.frequency)?);
+        let send = |burst: &Burst| {
+            self.send(plan(burst)?, settings.amplitude, burst, speed, instrument.rate(burst.frequency)?)
+        };
         let responses: Vec<Result<BurstResponse, AcousticsError>> = bursts.par_iter().map(send).collect();
         let responses = responses.into_iter().collect::<Result<Vec<_>, _>>()?;
         let mut traces = Vec::with_capacity(bursts.len());
@@ -105,35 +110,40 @@ impl TimeOfFlight<'_> {
         if guess.is_nan() || guess <= 0.0 {
             return Err(self.path.no_signal("wave", "the contacts have no stiffness for this polarization"));
         }
-        let (receivers, nearest, furthest) = FIRST_RECEIVERS;
-        let settings = Settings { receivers, nearest, furthest, copies: None, ..settings.clone() };
         let frequency = guess / (FIRST_WAVELENGTH * self.sample.diameter);
         let burst = Burst { frequency, cycles: settings.cycles };
         let instrument = Instrument::default();
         let pick = ArrivalPick::CrossCorrelation;
-        let response = self.send(&settings, &burst, guess, instrument.rate(frequency)?)?;
+        let plan = self.plan(FIRST_RECEIVERS, None, &burst, guess)?;
+        let response = self.send(plan, settings.amplitude, &burst, guess, instrument.rate(frequency)?)?;
         let trace = self.trace(&burst, &response, &instrument, pick, &self.path.place)?;
         let arrivals = Arrivals::pick(&trace, burst.cycles, pick, instrument.seed)?;
         Ok(1.0 / arrivals.slowness)
     }
 
-    fn plan(&self, settings: &Settings, burst: &Burst, speed: f64) -> Result<PathPlan, AcousticsError> {
+    fn plan(
+        &self,
+        receivers: (u32, f64, f64),
+        copies: Option<u32>,
+        burst: &Burst,
+        speed: f64,
+    ) -> Result<PathPlan, AcousticsError> {
         let indices = self.path.indices;
         let planes = self.sample.packing.cell.inverse().transpose() * Vec3::from(indices.map(f64::from));
         // Planes (2 0 0) are every second plane of (1 0 0).
         let divisor = indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
         let period = f64::from(divisor) / planes.norm();
-        PathPlan::new(settings, burst, speed, self.sample.diameter, period)
+        PathPlan::new(receivers, copies, burst, speed, self.sample.diameter, period)
     }
 
     fn send(
         &self,
-        settings: &Settings,
+        plan: PathPlan,
+        amplitude: f64,
         burst: &Burst,
         speed: f64,
         rate: f64,
     ) -> Result<BurstResponse, AcousticsError> {
-        let plan = self.plan(settings, burst, speed)?;
         let supercell = supercell(&self.sample.packing, self.path.indices, plan.copies)?;
         let run = BurstRun {
             supercell: &supercell,
@@ -141,9 +151,9 @@ impl TimeOfFlight<'_> {
             setting: self.sample.setting,
             polarization: self.path.polarization,
             burst: *burst,
-            amplitude: settings.amplitude,
+            amplitude,
             speed,
-            thickness: settings.thickness * self.sample.diameter,
+            thickness: THICKNESS * self.sample.diameter,
             receivers: &plan.receivers,
             duration: plan.duration,
             rate,
@@ -197,8 +207,8 @@ impl TimeOfFlight<'_> {
         let shortest = bursts.iter().zip(responses).max_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
         let Some((burst, full)) = shortest.filter(|_| opened + closed > 0) else { return Ok(Vec::new()) };
         let instrument = Instrument::default();
-        let settings = Settings { amplitude: 0.5 * settings.amplitude, ..settings.clone() };
-        let half = self.send(&settings, burst, speed, instrument.rate(burst.frequency)?)?;
+        let (plan, amplitude) = (self.plan(RECEIVERS, settings.copies, burst, speed)?, settings.amplitude);
+        let half = self.send(plan, 0.5 * amplitude, burst, speed, instrument.rate(burst.frequency)?)?;
         let slowness = |response: &BurstResponse| {
             let trace = self.trace(burst, response, &instrument, settings.pick, &self.path.place)?;
             Ok::<f64, AcousticsError>(Arrivals::pick(&trace, burst.cycles, settings.pick, 1)?.slowness)
@@ -212,7 +222,7 @@ impl TimeOfFlight<'_> {
         let warning = Warning::Nonlinear {
             direction: self.path.direction.into(),
             polarization: self.path.polarization.into(),
-            amplitude: 2.0 * settings.amplitude,
+            amplitude,
             opened,
             closed,
             change,

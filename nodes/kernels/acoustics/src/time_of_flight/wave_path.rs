@@ -1,13 +1,11 @@
-//! Measurements with moving grains, for every polarization of every ray.
+//! The paths of a burst: every polarization of every ray.
 
 use crate::curve::DispersionCurve;
 use crate::error::AcousticsError;
 use crate::ray::Ray;
-use crate::sample::Sample;
 use crate::trace::Trace;
 use crate::warning::Warning;
 use grainlab_core::{Packing, Vec3};
-use rayon::prelude::*;
 
 /// One polarization along one ray.
 #[derive(Clone, Copy, Debug)]
@@ -58,40 +56,6 @@ pub(crate) fn paths(packing: &Packing, rays: &[Ray]) -> Result<Vec<WavePath>, Ac
         }
     }
     Ok(paths)
-}
-
-/// Measures every path in parallel; the results are in the order of the paths and the same for any number of threads.
-///
-/// A path without a signal is left out with a [`Warning::LeftOut`]; if all are, the first such error is returned.
-#[allow(clippy::type_complexity)]
-pub(crate) fn measure_all(
-    paths: &[WavePath],
-    sample: &Sample,
-    measure: impl Fn(&WavePath) -> Result<PathResult, AcousticsError> + Send + Sync,
-) -> Result<(Vec<DispersionCurve>, Vec<Trace>, Vec<Warning>), AcousticsError> {
-    let results: Vec<_> = paths.par_iter().map(measure).collect();
-    let (mut curves, mut traces) = (Vec::new(), Vec::new());
-    let mut warnings: Vec<Warning> =
-        sample.unbalanced.map(|unbalanced| Warning::NotAtRest { unbalanced }).into_iter().collect();
-    let mut first_error = None;
-    for result in results {
-        match result {
-            Ok(mut result) => {
-                curves.push(result.curve);
-                traces.append(&mut result.traces);
-                warnings.append(&mut result.warnings);
-            }
-            Err(error @ AcousticsError::NoSignal { .. }) => {
-                first_error = first_error.or_else(|| Some(error.clone()));
-                warnings.push(Warning::LeftOut(error));
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    match first_error {
-        Some(error) if curves.is_empty() => Err(error),
-        _ => Ok((curves, traces, warnings)),
-    }
 }
 
 /// The lattice planes normal to a ray.
