@@ -2,7 +2,7 @@
 
 use super::arrival::Arrivals;
 use super::burst::Burst;
-use super::burst_run::{BurstResponse, BurstRun};
+use super::burst_run::{BurstResponse, send};
 use super::path_plan::{PathPlan, RECEIVERS};
 use super::phase_velocity;
 use super::settings::{ArrivalPick, Settings};
@@ -12,18 +12,13 @@ use crate::error::AcousticsError;
 use crate::instrument::{Instrument, ReceiverSignals, SamplingWindow, burst_level};
 use crate::noise::seed_at;
 use crate::sample::Sample;
-use crate::supercell::supercell;
 use crate::trace::{Channel, Trace};
 use crate::warning::Warning;
-use grainlab_core::Vec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Wavelengths of the default frequencies, mean diameters.
 const WAVELENGTHS: [f64; 3] = [20.0, 28.0, 40.0];
-
-/// Thickness of source and receivers along the ray, mean diameters.
-const THICKNESS: f64 = 2.0;
 
 /// The first burst, which gives the speed to a few per cent: its wavelength in mean diameters for a typical speed over
 /// the affine one; and number, first and last distance of its receivers, wavelengths.
@@ -72,14 +67,16 @@ impl TimeOfFlight<'_> {
             frequencies.iter().map(|f| Burst { frequency: *f, cycles: settings.cycles }).collect();
         // A path that is too short is refused before a burst is sent, with the length that the longest wave
         // needs.
-        let plan = |burst: &Burst| self.plan(RECEIVERS, settings.copies, burst, speed);
+        let (path, sample) = (self.path, self.sample);
+        let plan = |burst: &Burst| PathPlan::new(path, sample, RECEIVERS, settings.copies, burst, speed);
         if let Some(worst) = bursts.iter().filter_map(|b| plan(b).err()).max_by_key(copies_needed) {
             return Err(worst);
         }
-        let send = |burst: &Burst| {
-            self.send(plan(burst)?, settings.amplitude, burst, speed, instrument.rate(burst.frequency)?)
+        let sent = |burst: &Burst| {
+            let rate = instrument.rate(burst.frequency)?;
+            send(path, sample, &plan(burst)?, burst, settings.amplitude, speed, rate)
         };
-        let responses: Vec<Result<BurstResponse, AcousticsError>> = bursts.par_iter().map(send).collect();
+        let responses: Vec<Result<BurstResponse, AcousticsError>> = bursts.par_iter().map(sent).collect();
         let responses = responses.into_iter().collect::<Result<Vec<_>, _>>()?;
         let mut traces = Vec::with_capacity(bursts.len());
         let mut arrivals = Vec::with_capacity(bursts.len());
@@ -114,51 +111,12 @@ impl TimeOfFlight<'_> {
         let burst = Burst { frequency, cycles: settings.cycles };
         let instrument = Instrument::default();
         let pick = ArrivalPick::CrossCorrelation;
-        let plan = self.plan(FIRST_RECEIVERS, None, &burst, guess)?;
-        let response = self.send(plan, settings.amplitude, &burst, guess, instrument.rate(frequency)?)?;
+        let plan = PathPlan::new(self.path, self.sample, FIRST_RECEIVERS, None, &burst, guess)?;
+        let rate = instrument.rate(frequency)?;
+        let response = send(self.path, self.sample, &plan, &burst, settings.amplitude, guess, rate)?;
         let trace = self.trace(&burst, &response, &instrument, pick, &self.path.place)?;
         let arrivals = Arrivals::pick(&trace, burst.cycles, pick, instrument.seed)?;
         Ok(1.0 / arrivals.slowness)
-    }
-
-    fn plan(
-        &self,
-        receivers: (u32, f64, f64),
-        copies: Option<u32>,
-        burst: &Burst,
-        speed: f64,
-    ) -> Result<PathPlan, AcousticsError> {
-        let indices = self.path.indices;
-        let planes = self.sample.packing.cell.inverse().transpose() * Vec3::from(indices.map(f64::from));
-        // Planes (2 0 0) are every second plane of (1 0 0).
-        let divisor = indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
-        let period = f64::from(divisor) / planes.norm();
-        PathPlan::new(receivers, copies, burst, speed, self.sample.diameter, period)
-    }
-
-    fn send(
-        &self,
-        plan: PathPlan,
-        amplitude: f64,
-        burst: &Burst,
-        speed: f64,
-        rate: f64,
-    ) -> Result<BurstResponse, AcousticsError> {
-        let supercell = supercell(&self.sample.packing, self.path.indices, plan.copies)?;
-        let run = BurstRun {
-            supercell: &supercell,
-            present: &self.sample.present,
-            setting: self.sample.setting,
-            polarization: self.path.polarization,
-            burst: *burst,
-            amplitude,
-            speed,
-            thickness: THICKNESS * self.sample.diameter,
-            receivers: &plan.receivers,
-            duration: plan.duration,
-            rate,
-        };
-        run.response()
     }
 
     /// The trace that the instrument records, which starts one burst duration before the trigger.
@@ -207,8 +165,9 @@ impl TimeOfFlight<'_> {
         let shortest = bursts.iter().zip(responses).max_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
         let Some((burst, full)) = shortest.filter(|_| opened + closed > 0) else { return Ok(Vec::new()) };
         let instrument = Instrument::default();
-        let (plan, amplitude) = (self.plan(RECEIVERS, settings.copies, burst, speed)?, settings.amplitude);
-        let half = self.send(plan, 0.5 * amplitude, burst, speed, instrument.rate(burst.frequency)?)?;
+        let plan = PathPlan::new(self.path, self.sample, RECEIVERS, settings.copies, burst, speed)?;
+        let (rate, amplitude) = (instrument.rate(burst.frequency)?, settings.amplitude);
+        let half = send(self.path, self.sample, &plan, burst, 0.5 * amplitude, speed, rate)?;
         let slowness = |response: &BurstResponse| {
             let trace = self.trace(burst, response, &instrument, settings.pick, &self.path.place)?;
             Ok::<f64, AcousticsError>(Arrivals::pick(&trace, burst.cycles, settings.pick, 1)?.slowness)
@@ -243,8 +202,4 @@ fn relative_change<'a>(pairs: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
 
 fn copies_needed(error: &AcousticsError) -> u32 {
     if let AcousticsError::PathTooShort { enough, .. } = error { *enough } else { u32::MAX }
-}
-
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
 }

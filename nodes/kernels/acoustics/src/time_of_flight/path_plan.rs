@@ -1,7 +1,10 @@
 //! Positions of the receivers, and length of the path.
 
 use super::burst::Burst;
+use super::wave_path::WavePath;
 use crate::error::AcousticsError;
+use crate::sample::Sample;
+use grainlab_core::Vec3;
 use std::f64::consts::TAU;
 
 /// Receivers of a measurement: their number, and the distances of the first and the last one, wavelengths.
@@ -30,19 +33,23 @@ pub(crate) struct PathPlan {
 
 impl PathPlan {
     /// For receivers as in [`RECEIVERS`], `copies` of the packing (`None`: as many as are needed) and a burst with the wave speed `speed`,
-    /// m/s, in a packing of mean `diameter` and `period` along the path, m.
+    /// m/s.
     pub(crate) fn new(
+        path: &WavePath,
+        sample: &Sample,
         receivers: (u32, f64, f64),
         copies: Option<u32>,
         burst: &Burst,
         speed: f64,
-        diameter: f64,
-        period: f64,
     ) -> Result<Self, AcousticsError> {
+        let planes = sample.packing.cell.inverse().transpose() * Vec3::from(path.indices.map(f64::from));
+        // Planes (2 0 0) are every second plane of (1 0 0).
+        let divisor = path.indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
+        let period = f64::from(divisor) / planes.norm();
         let wavelength = speed / burst.frequency;
         let receivers = places(receivers, wavelength, period);
         let furthest = receivers.last().copied().unwrap_or(0.0);
-        let slower = 1.0 + SLOWER * (TAU * diameter / wavelength).powi(2);
+        let slower = 1.0 + SLOWER * (TAU * sample.diameter / wavelength).powi(2);
         let duration = slower * furthest / speed + RECORDED * burst.duration();
         // The wave in the opposite direction must not reach the furthest receiver during the recording.
         let needed = furthest + FASTER * speed * duration;
@@ -65,4 +72,8 @@ fn places((receivers, nearest, furthest): (u32, f64, f64), wavelength: f64, peri
     let even = (0..receivers).map(|k| f64::from(k) * step);
     let whole = |x: f64| if step >= period { (x / period).round() * period } else { x };
     even.map(|x| nearest * wavelength + whole(x)).collect()
+}
+
+fn gcd(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
