@@ -33,6 +33,7 @@ use crate::sample::Sample;
 use crate::trace::Trace;
 use crate::warning::{Warning, keep};
 use grainlab_core::Packing;
+use measurement::TimeOfFlight;
 use rayon::prelude::*;
 use wave_path::paths;
 
@@ -52,7 +53,7 @@ pub fn curves(
     instrument.validated()?;
     let paths = paths(packing, rays)?;
     let sample = Sample::new(packing, settings.friction)?;
-    let measured = |path| measurement::measure(path, &sample, settings, instrument);
+    let measured = |path| TimeOfFlight { path, sample: &sample }.measure(settings, instrument);
     let (mut curves, mut traces) = (Vec::new(), Vec::new());
     let mut warnings = Vec::from_iter(sample.unbalanced.map(|unbalanced| Warning::NotAtRest { unbalanced }));
     keep(paths.par_iter().map(measured).collect(), &mut warnings, |mut found, warnings| {

@@ -32,6 +32,15 @@ impl StrainRatioSource {
             StrainRatioSource::Zero => "zero",
         }
     }
+
+    fn of(self, measured: &StrainRatios) -> Option<f64> {
+        match self {
+            StrainRatioSource::Total => measured.total,
+            StrainRatioSource::Elastic => measured.elastic,
+            StrainRatioSource::Contact => measured.contact,
+            StrainRatioSource::Given | StrainRatioSource::Zero => None,
+        }
+    }
 }
 
 /// The strain ratio g = γ/Δ given to a model.
@@ -56,12 +65,7 @@ impl StrainRatio {
 
     /// Whether the ratio of this source was measured.
     pub fn is_known(measured: &StrainRatios, source: StrainRatioSource) -> bool {
-        match source {
-            StrainRatioSource::Total => measured.total.is_some(),
-            StrainRatioSource::Elastic => measured.elastic.is_some(),
-            StrainRatioSource::Contact => measured.contact.is_some(),
-            StrainRatioSource::Given | StrainRatioSource::Zero => false,
-        }
+        source.of(measured).is_some()
     }
 
     /// The ratio for the paper's models: the total one if it is known, else that of the contacts, else zero.
@@ -71,14 +75,13 @@ impl StrainRatio {
 
     /// The ratio of this source; if it is not known, that of the contacts, else zero.
     pub fn of(measured: &StrainRatios, source: StrainRatioSource) -> Self {
-        let with = |value: Option<f64>, source| value.map(|value| StrainRatio { value, stddev: 0.0, source });
-        let wanted = match source {
-            StrainRatioSource::Total => with(measured.total, source),
-            StrainRatioSource::Elastic => with(measured.elastic, source),
-            StrainRatioSource::Contact => with(measured.contact, source),
-            StrainRatioSource::Given | StrainRatioSource::Zero => Some(Self::ZERO),
+        if matches!(source, StrainRatioSource::Given | StrainRatioSource::Zero) {
+            return Self::ZERO;
+        }
+        let with = |source: StrainRatioSource| {
+            Some(StrainRatio { value: source.of(measured)?, stddev: 0.0, source })
         };
-        wanted.or(with(measured.contact, StrainRatioSource::Contact)).unwrap_or(Self::ZERO)
+        with(source).or_else(|| with(StrainRatioSource::Contact)).unwrap_or(Self::ZERO)
     }
 }
 

@@ -260,33 +260,23 @@ pub enum EmtError {
 impl EmtError {
     /// Whether the data are missing or invalid, rather than inconsistent with the theory.
     pub fn is_input_error(&self) -> bool {
-        match self {
-            EmtError::NotFinite { .. }
-            | EmtError::NotPositive { .. }
-            | EmtError::NegativeStddev { .. }
-            | EmtError::Covariance { .. }
-            | EmtError::SolidFraction { .. }
-            | EmtError::StressRatio { .. }
-            | EmtError::PoissonRatio { .. }
-            | EmtError::NoStructure { .. }
-            | EmtError::Missing { .. }
-            | EmtError::NotCalibrated { .. }
-            | EmtError::PriorOutsideDomain { .. }
-            | EmtError::PriorContradicts { .. }
-            | EmtError::NoLikelihood { .. } => true,
-            EmtError::OtherContactLaw { .. }
-            | EmtError::SmoothGrains
-            | EmtError::Unstable { .. }
-            | EmtError::OutsideDomain { .. }
-            | EmtError::GammaOutOfRange { .. }
-            | EmtError::RatioOutOfRange { .. }
-            | EmtError::NoAnisotropy { .. }
-            | EmtError::ShearTooStiff { .. }
-            | EmtError::NoCoordination { .. }
-            | EmtError::TooFar { .. }
-            | EmtError::NotSampled { .. }
-            | EmtError::Ambiguous { .. } => false,
-        }
+        use EmtError::*;
+        matches!(
+            self,
+            NotFinite { .. }
+                | NotPositive { .. }
+                | NegativeStddev { .. }
+                | Covariance { .. }
+                | SolidFraction { .. }
+                | StressRatio { .. }
+                | PoissonRatio { .. }
+                | NoStructure { .. }
+                | Missing { .. }
+                | NotCalibrated { .. }
+                | PriorOutsideDomain { .. }
+                | PriorContradicts { .. }
+                | NoLikelihood { .. }
+        )
     }
 
     /// `model` needs `modulus`, which is not known.

@@ -37,23 +37,19 @@ const NONLINEAR: f64 = 1e-2;
 /// proportional to a power of one half or more of the amplitude.
 const TO_ZERO: f64 = 3.0;
 
-/// Sends bursts of all frequencies along `path`, picks arrivals, and extrapolates to long waves.
-pub(super) fn measure(
-    path: &WavePath,
-    sample: &Sample,
-    settings: &Settings,
-    instrument: &Instrument,
-) -> Result<PathResult, AcousticsError> {
-    TimeOfFlight { path, sample }.measure(settings, instrument)
-}
-
-struct TimeOfFlight<'a> {
-    path: &'a WavePath,
-    sample: &'a Sample,
+/// A path through a packing.
+pub(super) struct TimeOfFlight<'a> {
+    pub(super) path: &'a WavePath,
+    pub(super) sample: &'a Sample,
 }
 
 impl TimeOfFlight<'_> {
-    fn measure(&self, settings: &Settings, instrument: &Instrument) -> Result<PathResult, AcousticsError> {
+    /// Sends bursts of all frequencies, picks arrivals, and extrapolates to long waves.
+    pub(super) fn measure(
+        &self,
+        settings: &Settings,
+        instrument: &Instrument,
+    ) -> Result<PathResult, AcousticsError> {
         let diameter = self.sample.diameter;
         let speed = self.first_speed(settings)?;
         // The band edge of ω = (2 v/a) sin(q a/2), the dispersion of a chain, with a the mean diameter.
