@@ -99,3 +99,10 @@ pub trait Model: Sync + Debug {
         Ok(Box::new(OfEstimate::new(&estimate, &observation.checked()?)?))
     }
 }
+
+/// Names identify models.
+impl PartialEq for dyn Model {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}

@@ -62,8 +62,9 @@ fn answer(
         Ok(observed) => (observed, None),
         Err(error) => (Err(Unobservable::Refused(error.clone())), Some(error)),
     };
-    let estimates = settings.models.iter().map(|model| {
-        let calibration = settings.calibration.calibration_for(model);
+    let estimates = settings.models.iter().copied().map(|model| {
+        let own = || model.default_calibration();
+        let calibration = settings.calibration.as_ref().unwrap_or_else(own);
         let observed = match &observed {
             Ok(observed) => observed,
             Err(nothing) => return unobserved(model, calibration.name(), nothing),
