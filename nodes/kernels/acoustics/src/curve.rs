@@ -62,11 +62,6 @@ impl DispersionCurve {
         let curve = Self { direction, polarization, points, speed, stddev, dispersion_coefficient };
         stddev.is_finite().then_some(curve)
     }
-
-    /// Speed at the wave number `q` (rad/m) by the law, m/s.
-    pub fn at(&self, q: f64) -> f64 {
-        self.speed * (1.0 - self.dispersion_coefficient * q * q).max(0.0).sqrt()
-    }
 }
 
 /// v² as a polynomial in q².
@@ -134,7 +129,6 @@ mod tests {
             (curve.speed - 300.0).abs() < 1e-9 && (curve.dispersion_coefficient - 0.15).abs() < 1e-9,
             "{curve:?}"
         );
-        assert!((curve.at(0.25) - law(0.25)).abs() < 1e-9);
     }
 
     #[test]

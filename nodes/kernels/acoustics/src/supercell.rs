@@ -25,8 +25,6 @@ pub struct Supercell {
     /// All copies in order: grain `g` of the `n` of the packing has the index and id `c n + g` in copy `c`.
     /// Positions are in the cell. Contacts keep their forces.
     pub packing: Packing,
-    /// Unit normal of the lattice planes: the direction of the path.
-    pub normal: Vec3,
     /// Period along the path, m: number of copies times the spacing of the planes.
     pub path: f64,
     /// Position of each grain along the path, in [0, path), m.
@@ -91,8 +89,7 @@ pub fn supercell(packing: &Packing, indices: [i32; 3], copies: u32) -> Result<Su
         contacts,
         ..*packing
     };
-    let normal = (packing.cell.inverse().transpose() * layers.plane.cast::<f64>()).normalize();
-    Ok(Supercell { packing: repeated, normal, path, along })
+    Ok(Supercell { packing: repeated, path, along })
 }
 
 /// Contact `c` of a packing of `n` grains, in copy `copy`.

@@ -169,20 +169,7 @@ impl DeviatorLaw {
 
 /// k = a + b z + c z² + d z³ + e ln p + f s² + g z s²: the coordination number with rattlers counted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "[f64; 7]", into = "[f64; 7]")]
 pub struct RattlerLaw(pub [f64; 7]);
-
-impl From<[f64; 7]> for RattlerLaw {
-    fn from(coefficients: [f64; 7]) -> Self {
-        Self(coefficients)
-    }
-}
-
-impl From<RattlerLaw> for [f64; 7] {
-    fn from(law: RattlerLaw) -> Self {
-        law.0
-    }
-}
 
 impl RattlerLaw {
     /// The terms that the coefficients multiply.
