@@ -2,7 +2,7 @@
 
 use crate::backbone::Backbone;
 use crate::curve::DispersionCurve;
-use crate::dispersion::Alignment;
+use crate::dispersion::{Alignment, Dispersion};
 use crate::effective_density::EffectiveDensity;
 use crate::error::AcousticsError;
 use crate::instrument::Instrument;
@@ -71,7 +71,8 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
             let rays = survey.rays(&about, settings.modes);
             let diameter = dispersion::mean_diameter(packing);
             let alignment = if axis.is_some() { Alignment::InPlane } else { Alignment::Free };
-            let (found, warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
+            let method = Dispersion { backbone: &backbone, diameter, alignment, settings: of };
+            let (found, warnings) = method.curves(&rays)?;
             (found.curves, found.modes, Vec::new(), warnings)
         }
         MethodSettings::TimeOfFlight(of) => {

@@ -3,14 +3,6 @@
 use grainlab_acoustics::{Instrument, dispersion, time_of_flight};
 use grainlab_node_kit::{ParameterSpec, Range};
 
-/// The parameters of the node.
-pub fn parameters() -> Vec<ParameterSpec> {
-    let mut all = rays();
-    all.extend(ways());
-    all.extend(instrument());
-    all
-}
-
 /// The methods that time a burst.
 const OF_BURSTS: &[&str] = &["first_arrival", "cross_correlation", "peak"];
 
@@ -24,8 +16,11 @@ pub fn methods_with(parameter: &str) -> Option<&'static [&'static str]> {
     }
 }
 
-/// The set of waves.
-fn rays() -> Vec<ParameterSpec> {
+/// The parameters of the node: the set of waves, the methods, noise and errors of the instrument.
+pub fn parameters() -> Vec<ParameterSpec> {
+    let dispersion = dispersion::Settings::default();
+    let flight = time_of_flight::Settings::default();
+    let d = Instrument::default();
     vec![
         ParameterSpec::new(
             "method",
@@ -48,15 +43,6 @@ fn rays() -> Vec<ParameterSpec> {
         .within(Range::Choice(&["complete", "three", "everywhere"])),
         ParameterSpec::new("modes", "all", "polarizations sent along each ray: all, compression, shear")
             .within(Range::Choice(&["all", "compression", "shear"])),
-    ]
-}
-
-/// The methods.
-fn ways() -> Vec<ParameterSpec> {
-    let dispersion = dispersion::Settings::default();
-    let flight = time_of_flight::Settings::default();
-    let strain = Range::Double { min: 0.0, max: 1e-2 };
-    vec![
         ParameterSpec::new(
             "wavelengths",
             dispersion.wavelengths,
@@ -92,7 +78,7 @@ fn ways() -> Vec<ParameterSpec> {
             0.0,
             "peak strain of the waves of time of flight, 1; 0 for 1e-8",
         )
-        .within(strain),
+        .within(Range::Double { min: 0.0, max: 1e-2 }),
         ParameterSpec::new(
             "wave_friction",
             -1.0,
@@ -100,13 +86,6 @@ fn ways() -> Vec<ParameterSpec> {
              for no sliding",
         )
         .within(Range::Double { min: -1.0, max: f64::INFINITY }),
-    ]
-}
-
-/// Noise and errors of the instrument.
-fn instrument() -> Vec<ParameterSpec> {
-    let d = Instrument::default();
-    vec![
         ParameterSpec::new("sample_rate", 0.0, "sampling rate, Hz; 0 for forty samples per period")
             .within(Range::Double { min: 0.0, max: 1e12 }),
         ParameterSpec::new(
