@@ -22,15 +22,15 @@ pub struct DispersionPoint {
 pub struct DispersionCurve {
     /// Unit direction of propagation.
     pub direction: Vec3,
-    /// Unit polarization.
+    /// Unit polarization vector.
     pub polarization: Vec3,
     /// Measured speeds, longest wave first.
     pub points: Vec<DispersionPoint>,
     /// Speed of long waves v₀, m/s.
     pub speed: f64,
-    /// Its standard deviation from the errors of the points and of the law, m/s.
+    /// Standard deviation of v₀ from the errors of the points and of the law, m/s.
     pub stddev: f64,
-    /// b, m².
+    /// Coefficient b, m².
     pub dispersion_coefficient: f64,
 }
 

@@ -89,7 +89,7 @@ pub fn curves(
 /// Curves of rays, along given polarizations and of the modes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct RayCurves {
-    /// Of all polarizations of all rays, in that order.
+    /// Curves of all polarizations of all rays, in that order.
     pub(crate) curves: Vec<DispersionCurve>,
     /// In the same order, along the polarization of the mode nearest to each ([`christoffel_modes`]).
     pub(crate) modes: Vec<DispersionCurve>,

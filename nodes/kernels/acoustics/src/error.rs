@@ -8,11 +8,11 @@ pub enum AcousticsError {
     /// A setting is out of its range.
     #[error("setting {name} = {value:e} is out of range: {requirement}")]
     Setting {
-        /// Which setting.
+        /// Name of the setting.
         name: &'static str,
         /// The value found.
         value: f64,
-        /// What is required.
+        /// Requirement on the value.
         requirement: &'static str,
     },
     /// No contact carries force, so that no wave propagates.
@@ -64,9 +64,9 @@ pub enum AcousticsError {
     NotConverged {
         /// Direction of propagation.
         direction: [f64; 3],
-        /// Wavelength, m.
+        /// Wavelength of the modes, m.
         wavelength: f64,
-        /// The reason.
+        /// Reason of the failure.
         reason: String,
     },
     /// No arrival or long wave was found.
@@ -76,13 +76,13 @@ pub enum AcousticsError {
         in_brackets(polarization)
     )]
     NoSignal {
-        /// What was not found.
+        /// Name of the missing signal.
         what: &'static str,
         /// Direction of propagation.
         direction: [f64; 3],
-        /// Polarization.
+        /// Polarization of the wave.
         polarization: [f64; 3],
-        /// The reason.
+        /// Reason of the failure.
         reason: String,
     },
     /// The contact network could not be built.

@@ -24,12 +24,12 @@ const SPEEDS: u64 = u64::MAX;
 /// Place of the seed of the noise of the modes' speeds.
 const MODES: u64 = u64::MAX - 1;
 
-/// What was measured.
+/// Result of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// The speeds of long waves.
     pub waves: Vec<MeasuredWave>,
-    /// The same waves along the polarizations of the packing's own modes, quasi-P and quasi-S, which an instrument measures
+    /// Speeds along the polarizations of the packing's own modes, quasi-P and quasi-S, which an instrument measures
     /// (dispersion only). [`Measurement::waves`] are projections on the polarizations of a medium isotropic about the axis:
     /// their squares average over azimuths to the moduli of the transversely isotropic projection, those of the modes do
     /// not.
@@ -40,7 +40,7 @@ pub struct Measurement {
     pub effective_density: EffectiveDensity,
     /// Density to use with the speeds, kg/m³.
     pub density: f64,
-    /// Its standard deviation: differences between polarizations, and between the frequencies used.
+    /// Standard deviation of the density: differences between polarizations, and between the frequencies used.
     pub density_stddev: f64,
     /// The axis about which the rays were chosen.
     pub axis: Option<Vec3>,
@@ -48,7 +48,7 @@ pub struct Measurement {
     pub curves: Vec<DispersionCurve>,
     /// The traces from which the curves were evaluated; empty for dispersion.
     pub traces: Vec<Trace>,
-    /// Warnings.
+    /// Warnings of the measurement.
     pub warnings: Vec<Warning>,
 }
 
@@ -140,7 +140,7 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     })
 }
 
-/// The same speeds with an additional independent relative error of standard deviation `noise`, included in
+/// Speeds with an additional independent relative error of standard deviation `noise`, included in
 /// their uncertainty. The same seed gives the same errors.
 pub fn with_speed_noise(waves: &[MeasuredWave], noise: f64, seed: u64) -> Vec<MeasuredWave> {
     let mut waves = waves.to_vec();

@@ -114,7 +114,7 @@ fn contact(
     if i < j || (i == j && image > [0; 3]) {
         return Ok(Contact { i, j, image, ..*c });
     }
-    // The same contact with its grains exchanged.
+    // This contact with its grains exchanged.
     Ok(Contact {
         i: j,
         j: i,

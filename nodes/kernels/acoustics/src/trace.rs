@@ -1,4 +1,4 @@
-//! Recorded signals.
+//! Recorded signals of waves.
 
 use grainlab_core::{Vec3, WaveMethod};
 
@@ -21,7 +21,7 @@ pub struct Trace {
     pub channels: Vec<Channel>,
 }
 
-/// One receiver.
+/// Signal of one receiver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// Distance from the source along the ray, m.

@@ -16,9 +16,9 @@ pub enum Warning {
     Nonlinear {
         /// Direction of propagation.
         direction: [f64; 3],
-        /// Polarization.
+        /// Polarization of the wave.
         polarization: [f64; 3],
-        /// Peak strain.
+        /// Peak strain of the wave.
         amplitude: f64,
         /// Number of contacts that were missing in at least one comparison.
         opened: u32,
@@ -37,7 +37,7 @@ pub enum Warning {
     Noisy {
         /// Direction of propagation.
         direction: [f64; 3],
-        /// Polarization.
+        /// Polarization of the wave.
         polarization: [f64; 3],
         /// Relative standard deviation of the speed.
         relative: f64,

@@ -22,7 +22,7 @@ pub enum StrainRatioSource {
 }
 
 impl StrainRatioSource {
-    /// Its name in messages, parameters and results.
+    /// Name in messages, parameters and results.
     pub const fn name(self) -> &'static str {
         match self {
             StrainRatioSource::Total => "total",
@@ -46,11 +46,11 @@ impl StrainRatioSource {
 /// The strain ratio g = γ/Δ given to a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainRatio {
-    /// g, dimensionless.
+    /// Value of g, dimensionless.
     pub value: f64,
     /// Standard deviation, dimensionless; 0 takes the value as exact.
     pub stddev: f64,
-    /// Its source.
+    /// Source of the value.
     pub source: StrainRatioSource,
 }
 
@@ -63,7 +63,7 @@ impl StrainRatio {
         Self { value, stddev: 0.0, source: StrainRatioSource::Given }
     }
 
-    /// Whether the ratio of this source was measured.
+    /// True if the ratio of this source was measured.
     pub fn is_known(measured: &StrainRatios, source: StrainRatioSource) -> bool {
         source.of(measured).is_some()
     }
@@ -101,7 +101,7 @@ impl fmt::Display for StrainRatio {
 /// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The number.
+    /// Value of the number.
     pub value: f64,
     /// Standard deviation in the unit of the number; 0 takes the number as exact.
     pub stddev: f64,
@@ -148,7 +148,7 @@ pub struct Conditions {
     pub poisson_ratio_stddev: f64,
     /// Contact law of the grains; `None` takes Hertz–Mindlin contacts.
     pub contact_law: Option<ContactLaw>,
-    /// Whether the moduli are those of contacts without tangential springs: no model has an estimate for them.
+    /// True if the moduli are those of contacts without tangential springs: no model has an estimate for them.
     pub smooth: bool,
 }
 
@@ -184,7 +184,7 @@ impl Conditions {
         ]
     }
 
-    /// The same with one input of the state changed, by a relative amount where [`Conditions::stddevs`] has a relative
+    /// Conditions with one input of the state changed, by a relative amount where [`Conditions::stddevs`] has a relative
     /// deviation. `None` if the input is not known.
     pub(crate) fn moved(&self, input: usize, by: f64, material: &Material) -> Option<Self> {
         let mut moved = *self;

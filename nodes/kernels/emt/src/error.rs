@@ -37,7 +37,7 @@ pub enum EmtError {
         "the covariance of the moduli is invalid: {fault} ({value:e} Pa2); leave it out if it is not known"
     )]
     Covariance {
-        /// What is wrong with the covariance.
+        /// Fault of the covariance.
         fault: &'static str,
         /// The offending value, Pa².
         value: f64,
@@ -63,9 +63,9 @@ pub enum EmtError {
         quantity: &'static str,
         /// The value found.
         value: f64,
-        /// Lowest possible.
+        /// Lowest possible value.
         low: f64,
-        /// Highest possible.
+        /// Highest possible value.
         high: f64,
     },
     /// Contacts that are not Hertz–Mindlin contacts.
@@ -96,7 +96,7 @@ pub enum EmtError {
     Unstable {
         /// The modulus that follows from the others.
         modulus: &'static str,
-        /// Its value, Pa.
+        /// Value of the modulus, Pa.
         value: f64,
     },
     /// An input that the model needs is not known.
@@ -104,7 +104,7 @@ pub enum EmtError {
     Missing {
         /// Name of the model.
         model: &'static str,
-        /// What is missing.
+        /// Name of the missing input.
         missing: &'static str,
     },
     /// A structure or a state outside the model's domain.
@@ -163,7 +163,7 @@ pub enum EmtError {
          check the units and that both moduli are of one state, or use another calibration"
     )]
     ShearTooStiff {
-        /// G12/Θ.
+        /// Ratio G12/Θ observed.
         ratio: f64,
         /// The value it must stay below at the observed G13/G12.
         limit: f64,
@@ -190,7 +190,7 @@ pub enum EmtError {
     TooFar {
         /// Name of the quantity.
         quantity: &'static str,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
         /// Lowest of the packings.
         low: f64,
@@ -250,15 +250,15 @@ pub enum EmtError {
          moduli"
     )]
     Ambiguous {
-        /// One of them.
+        /// Coordination number of one of them.
         first: f64,
-        /// The other.
+        /// Coordination number of the other.
         second: f64,
     },
 }
 
 impl EmtError {
-    /// Whether the data are missing or invalid, rather than inconsistent with the theory.
+    /// True if the data are missing or invalid, rather than inconsistent with the theory.
     pub fn is_input_error(&self) -> bool {
         use EmtError::*;
         matches!(

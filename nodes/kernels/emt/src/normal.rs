@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// ln(2π)/2.
+/// Logarithm of √(2π).
 pub(crate) const LN_SQRT_TAU: f64 = 0.918_938_533_204_672_7;
 
 /// Half width, in standard deviations, of the central 95 % of a normal distribution.
@@ -55,7 +55,7 @@ pub(crate) fn chi_square_above(chi_square: f64, degrees_of_freedom: usize) -> f6
 /// The 0.999 quantile of the standard normal distribution.
 const CERTAIN: f64 = 3.09;
 
-/// Whether χ² with so many degrees of freedom (at least 1) exceeds this value by chance less than once in a thousand
+/// True if χ² with so many degrees of freedom (at least 1) exceeds this value by chance less than once in a thousand
 /// times.
 pub(crate) fn is_beyond_chance(chi_square: f64, degrees_of_freedom: usize) -> bool {
     score(chi_square / degrees_of_freedom.max(1) as f64, degrees_of_freedom, None) >= CERTAIN

@@ -11,9 +11,9 @@ pub enum Warning {
     /// A coordination number lies outside the packings of the calibration.
     #[error("{}", beyond(*quantity, *value, *range))]
     CoordinationOutsideFit {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
         /// Lowest and highest of the calibration.
         range: [f64; 2],
@@ -24,7 +24,7 @@ pub enum Warning {
         outside(pressure / 1e3, range.map(|p| p / 1e3), 4, [" kPa is outside ", " to ", " kPa"])
     )]
     PressureOutsideFit {
-        /// Pa.
+        /// Pressure, in Pa.
         pressure: f64,
         /// Lowest and highest of the calibration, Pa.
         range: [f64; 2],
@@ -34,7 +34,7 @@ pub enum Warning {
         "a coordination number of {coordination:.3} is larger than equal spheres can have (12): check the units (Pa)"
     )]
     CoordinationImpossible {
-        /// The largest.
+        /// Largest coordination number.
         coordination: f64,
     },
     /// G13/G12 is outside [2/3, 3/2], the range of packings whose only anisotropy is that of the contacts.
@@ -46,7 +46,7 @@ pub enum Warning {
     /// ε is outside [−1/2, 1]: Eq. 6 then gives some directions a negative contact density.
     #[error("eps = {eps:.4} is outside [-1/2, 1]: the contact density would be negative in some directions")]
     EpsOutOfRange {
-        /// ε inferred.
+        /// Value of ε inferred.
         eps: f64,
     },
     /// ε is outside the packings of the calibration.
@@ -54,7 +54,7 @@ pub enum Warning {
         "eps = {}, the range of the calibration's packings", outside(*eps, *range, 4, [" is outside [", ", ", "]"])
     )]
     EpsOutsideFit {
-        /// ε inferred.
+        /// Value of ε inferred.
         eps: f64,
         /// Lowest and highest of the calibration.
         range: [f64; 2],
@@ -88,11 +88,11 @@ pub enum Warning {
     /// An input of the state contributes most of the variance of a quantity.
     #[error("{input} widens most: {:.0} % of the variance of {quantity} is due to it", 100.0 * share)]
     WidenedMost {
-        /// Its name, one of [`crate::INPUT_NAMES`].
+        /// Name of the input, one of [`crate::INPUT_NAMES`].
         input: &'static str,
         /// The quantity that it widens most.
         quantity: InferredQuantity,
-        /// Its share of the variance of that quantity.
+        /// Share of the variance of that quantity that is due to it.
         share: f64,
     },
     /// The contact law is not known; Hertz–Mindlin contacts were assumed.
@@ -101,9 +101,9 @@ pub enum Warning {
     /// A quantity of the state is outside the packings of the calibration.
     #[error("{quantity} = {}, the range of the calibration's packings", of_state(quantity, *value, *range))]
     StateOutsideFit {
-        /// Its name.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
         /// Lowest and highest of the calibration.
         range: [f64; 2],
@@ -117,7 +117,7 @@ pub enum Warning {
         if is_share(*share) { "" } else { " (outside [0, 1])" }
     )]
     StickingShare {
-        /// f, dimensionless.
+        /// Share f, dimensionless.
         share: f64,
     },
     /// The Poisson ratio of the grains is not that of the calibration's packings.
@@ -159,9 +159,9 @@ pub enum Warning {
         "{quantity} = {value:.3} is less than one contact per grain: check the units of moduli and pressure (Pa)"
     )]
     CoordinationAbsurd {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
     },
     /// The error of a modulus is too large for linear error propagation.
@@ -172,7 +172,7 @@ pub enum Warning {
     ErrorsLarge {
         /// The modulus with the largest error.
         modulus: Modulus,
-        /// Its relative standard deviation.
+        /// Relative standard deviation of it.
         relative: f64,
     },
     /// The error of a modulus is so large that the modulus was taken as unknown.
@@ -180,7 +180,7 @@ pub enum Warning {
         "the error of {modulus} is more than {UNKNOWN_ERROR} times the largest modulus: {modulus} was taken as unknown"
     )]
     TakenAsUnknown {
-        /// The modulus.
+        /// Name of the modulus.
         modulus: Modulus,
     },
     /// The errors of the moduli are not known, and the uncertainty is without them.
@@ -191,9 +191,9 @@ pub enum Warning {
         "the {input} is known to {:.0} % only: intervals from linear error propagation are too narrow", 100.0 * relative
     )]
     StateErrorLarge {
-        /// Its name, one of [`crate::INPUT_NAMES`].
+        /// Name of the input, one of [`crate::INPUT_NAMES`].
         input: &'static str,
-        /// Its relative standard deviation.
+        /// Relative standard deviation of it.
         relative: f64,
     },
     /// The data contradict the prior.
@@ -201,13 +201,13 @@ pub enum Warning {
         "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma from {prior:.4}, the mean of its prior"
     )]
     PriorConflict {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value by the data alone.
+        /// Value by the data alone.
         value: f64,
         /// Mean of the prior.
         prior: f64,
-        /// Their difference in standard deviations.
+        /// Difference of both in standard deviations.
         sigma: f64,
     },
     /// The data contradict a limit of the prior.
@@ -215,13 +215,13 @@ pub enum Warning {
         "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma beyond {limit:.4}, the limit of its prior"
     )]
     PriorExcludes {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value by the data alone.
+        /// Value by the data alone.
         value: f64,
         /// The nearest limit of the prior.
         limit: f64,
-        /// Their difference in standard deviations of the value.
+        /// Difference of both in standard deviations of the value.
         sigma: f64,
     },
     /// The data contradict the priors of several quantities together.
@@ -239,13 +239,13 @@ pub enum Warning {
         "the data do not determine {quantity}, and its prior is not used; draws from the posterior use it"
     )]
     PriorUnused {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
     },
     /// The data do not determine these unknowns of the model, in the order of [`InferredQuantity::ALL`].
     #[error("the data do not determine {}", names(quantities))]
     Undetermined {
-        /// Whether each is open.
+        /// For each quantity, true if it is open.
         quantities: [bool; InferredQuantity::COUNT],
     },
     /// The estimate is outside the domain of the model.
@@ -253,9 +253,9 @@ pub enum Warning {
         "{quantity} = {}, the domain of the model", outside(*value, *range, 4, [" is outside [", ", ", "]"])
     )]
     OutsideDomain {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
         /// Lowest and highest of the domain.
         range: [f64; 2],
@@ -285,7 +285,7 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// Whether the data contradict each other, the model or the prior.
+    /// True if the data contradict each other, the model or the prior.
     pub fn is_contradiction(&self) -> bool {
         matches!(
             self,
@@ -299,7 +299,7 @@ impl Warning {
         )
     }
 
-    /// Whether it follows from the structure and its uncertainty alone, which a prior changes.
+    /// True if it follows from the structure and its uncertainty alone, which a prior changes.
     pub(crate) fn is_of_structure(&self) -> bool {
         matches!(
             self,
@@ -313,7 +313,7 @@ impl Warning {
         )
     }
 
-    /// Whether the model or the calibration is used outside its range.
+    /// True if the model or the calibration is used outside its range.
     pub fn is_extrapolation(&self) -> bool {
         !matches!(
             self,
@@ -368,7 +368,7 @@ fn degrees(degrees_of_freedom: usize, (modulus, sigma): (Modulus, f64)) -> Strin
     }
 }
 
-/// Whether a number is in [0, 1], to the rounding of its computation.
+/// True if a number is in [0, 1], to the rounding of its computation.
 fn is_share(number: f64) -> bool {
     (-1e-9..=1.0 + 1e-9).contains(&number)
 }

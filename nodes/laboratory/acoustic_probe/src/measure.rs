@@ -13,7 +13,7 @@ use grainlab_msgs::{DecodeError, msg};
 /// The messages published for one packing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// Its wave speeds.
+    /// Wave speeds of the packing.
     pub wave_speeds: msg::WaveSpeeds,
     /// The recorded traces, one message per wave; empty for dispersion.
     pub waveforms: Vec<msg::Waveform>,
@@ -33,7 +33,7 @@ pub enum MeasureError {
     NotJammed {
         /// Step of the packing.
         step: u64,
-        /// The reason.
+        /// Reason of the failure.
         reason: NotJammed,
     },
     /// The measurement failed.
@@ -41,7 +41,7 @@ pub enum MeasureError {
     Acoustics {
         /// Step of the packing.
         step: u64,
-        /// The reason.
+        /// Reason of the failure.
         reason: AcousticsError,
     },
     /// The result is not a valid message.
@@ -49,7 +49,7 @@ pub enum MeasureError {
     Result {
         /// Step of the packing.
         step: u64,
-        /// The reason.
+        /// Reason of the failure.
         reason: BoundaryError,
     },
 }

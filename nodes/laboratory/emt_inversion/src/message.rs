@@ -38,14 +38,14 @@ pub fn microstructure_of_moduli(moduli: &msg::Moduli, settings: &Settings) -> An
     answer(about, &topics::MODULI, reading.map(|reading| of_moduli(&reading, settings)), settings)
 }
 
-/// The same for one set of wave speeds.
+/// The microstructure inferred from one set of wave speeds.
 pub fn microstructure_of_speeds(speeds: &msg::WaveSpeeds, settings: &Settings) -> Answer {
     let about = About { header: &speeds.header, name: &speeds.name, source_step: speeds.source_step };
     let reading = WaveSpeedsReading::try_from(speeds);
     answer(about, &topics::WAVE_SPEEDS, reading.map(|reading| of_speeds(&reading, settings)), settings)
 }
 
-/// What an answer copies from the data.
+/// Parts of an answer that are copied from the data.
 struct About<'a> {
     header: &'a Header,
     name: &'a str,

@@ -23,9 +23,9 @@ pub(crate) struct Subspace {
 #[derive(Debug)]
 struct Held {
     x: Block,
-    /// K x.
+    /// Image K x.
     image: Block,
-    /// M x.
+    /// Product M x.
     mass_times: Block,
 }
 

@@ -35,7 +35,7 @@ pub struct Arrivals {
     pub times: Vec<f64>,
     /// 1/speed of the picked feature, s/m.
     pub slowness: f64,
-    /// Its standard deviation from noise, or from the scatter about the line where that is larger, s/m.
+    /// Standard deviation of the slowness from noise, or from the scatter about the line where that is larger, s/m.
     pub slowness_stddev: f64,
     /// Root mean square of the noise before the trigger, m/s.
     pub noise: f64,

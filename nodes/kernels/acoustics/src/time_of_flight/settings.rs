@@ -16,7 +16,7 @@ pub enum ArrivalPick {
 }
 
 impl ArrivalPick {
-    /// Its name in results.
+    /// Name in results.
     pub fn method(&self) -> WaveMethod {
         match self {
             Self::FirstArrival => WaveMethod::FirstArrival,

@@ -12,7 +12,7 @@ use grainlab_core::{Packing, Vec3};
 pub(crate) struct WavePath {
     /// Unit direction of propagation.
     pub(crate) direction: Vec3,
-    /// Unit polarization.
+    /// Unit polarization vector.
     pub(crate) polarization: Vec3,
     /// Lattice planes (h k l) normal to the direction.
     pub(crate) indices: [i32; 3],
@@ -20,7 +20,7 @@ pub(crate) struct WavePath {
     pub(crate) place: [u64; 2],
 }
 
-/// What was measured on one path.
+/// Result of one path.
 #[derive(Clone, Debug)]
 pub(crate) struct PathResult {
     pub(crate) curve: DispersionCurve,

@@ -90,7 +90,7 @@ impl Springs {
 
     fn softer(&self, uu: f64, phi: f64, coupling: f64) -> f64 {
         let (a, b, c) = (uu / self.mass, phi / self.inertia, coupling.powi(2) / (self.mass * self.inertia));
-        // Of the roots of w² − (a + b) w + ab − c, the product over the larger one, which avoids
+        // The smaller root of w² − (a + b) w + ab − c is the product over the larger one, which avoids
         // cancellation.
         (a * b - c) / (0.5 * (a + b) + (0.25 * (a - b).powi(2) + c).sqrt())
     }

@@ -14,7 +14,7 @@ const MEGA: f64 = 1.0e6;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
 pub struct IsotropicCalibration {
-    /// Which coordination number k̂ is: [`InferredQuantity::K`] or [`InferredQuantity::Z`].
+    /// Kind of the coordination number k̂: [`InferredQuantity::K`] or [`InferredQuantity::Z`].
     #[serde(rename = "abscissa", with = "coordination_kind")]
     pub coordination_kind: InferredQuantity,
     alpha: f64,

@@ -83,7 +83,7 @@ pub fn moduli_from_speeds(
     moduli_of_sample(speeds, density, axis, conditions, None)
 }
 
-/// The same for a sample of so many `grains`, 1 or more, if their number is known: the scatter that samples of this size and stiffness
+/// Moduli of a sample of so many `grains`, 1 or more, if their number is known: the scatter that samples of this size and stiffness
 /// have is then part of the errors of the moduli, also where the speeds are too few to show it.
 pub fn moduli_of_sample(
     speeds: &[WaveSpeed],

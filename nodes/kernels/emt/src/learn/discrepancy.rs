@@ -56,7 +56,7 @@ pub(super) fn discrepancies(
     learned
 }
 
-/// Of each recipe: ε inferred, and the errors of coordination number, k̂ and ε.
+/// ε inferred, and the errors of coordination number, k̂ and ε, by recipe.
 type Errors<'a> = BTreeMap<&'a str, Vec<(f64, [f64; 3])>>;
 
 /// Errors on the packings that the model solves; `None` if these are fewer than nine in ten.
@@ -124,7 +124,7 @@ fn enlarged(errors: &Errors<'_>, by_eps: [f64; 2]) -> [f64; 3] {
     })
 }
 
-/// How the square of the error of ε grows with the inferred ε: f0 + f1 ε² by least squares, with a mean of 1.
+/// Growth of the square of the error of ε with the inferred ε: f0 + f1 ε² by least squares, with a mean of 1.
 fn by_eps(errors: &Errors<'_>) -> [f64; 2] {
     let all = || errors.values().flatten();
     let count = all().count() as f64;

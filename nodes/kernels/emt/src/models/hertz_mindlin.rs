@@ -127,7 +127,7 @@ impl Known {
         let get = |m| moduli.get(m);
         let one_direction = |p, s| Some(Self { bulk: get(p)? - 4.0 / 3.0 * get(s)?, shear: get(s) });
         let shear = Invariants::of(moduli).map(|i| i.ln_shear.exp()).or_else(|| {
-            // Of the three planes, e3 lies in two.
+            // e3 lies in two of the three planes.
             match (get(Modulus::G12), get(Modulus::G13)) {
                 (Some(g12), Some(g13)) => Some((g12 + 2.0 * g13) / 3.0),
                 (one, other) => one.or(other),

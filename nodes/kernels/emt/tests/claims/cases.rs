@@ -15,7 +15,7 @@ pub(crate) fn calibrations() -> Vec<Calibration> {
     vec![Calibration::PAPER, Calibration::of_isotropic("own", own, grains), relaxed]
 }
 
-/// A generator.
+/// A generator of cases.
 pub(crate) struct Random(Pcg64Mcg);
 
 impl Random {
@@ -29,7 +29,7 @@ impl Random {
         (low + (high - low) * unit).min(high)
     }
 
-    /// Of mean 0 and variance 1: a sum of twelve uniform numbers, approximately normal.
+    /// Number of mean 0 and variance 1: a sum of twelve uniform numbers, approximately normal.
     pub(crate) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.within([0.0, 1.0])).sum::<f64>() - 6.0
     }

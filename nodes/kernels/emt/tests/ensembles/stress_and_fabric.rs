@@ -1,4 +1,4 @@
-//! What the anisotropy of moduli follows: the stress, or the contacts.
+//! Causes of the anisotropy of moduli: the stress, or the contacts.
 //!
 //! Khidas & Jia, Phys. Rev. E 81, 021303 (2010): P waves are more sensitive to stress, S waves to fabric. Mayer & Liu,
 //! arXiv:1010.2512: stress and density alone may explain these speeds. Here the contacts are counted. The squares of
@@ -12,9 +12,9 @@ use grainlab_emt::{Calibration, CalibrationSample, Moduli, Modulus, StrainRatioS
 /// A number of a packing.
 type Number = fn(&CalibrationSample) -> f64;
 
-/// ln(C33/C11).
+/// Logarithm of C33/C11.
 const P: Number = |s| ratio(&s.moduli, Modulus::C33, Modulus::C11);
-/// ln(G13/G12).
+/// Logarithm of G13/G12.
 const S: Number = |s| ratio(&s.moduli, Modulus::G13, Modulus::G12);
 const WAVES: [(&str, Number); 2] = [("P", P), ("S", S)];
 
@@ -119,7 +119,7 @@ fn coefficient(fit: &Fit, i: usize) -> [f64; 2] {
     [fit.coefficients[i], fit.errors[i]]
 }
 
-/// How much ε has the effect of a q/p of 1, with its standard error.
+/// ε with the effect of a q/p of 1, with its standard error.
 fn stress_over_fabric(fit: &Fit) -> [f64; 2] {
     fit.compared(fit, |c, _| c[1] / c[0])
 }
@@ -164,7 +164,7 @@ fn both_waves_follow_both_the_contacts_and_the_stress_p_waves_the_stress_more() 
     }
 }
 
-/// What changes in one packing, of which the contacts hardly change, has the coefficients of packings that differ.
+/// Changes in one packing, of which the contacts hardly change, have the coefficients of packings that differ.
 #[test]
 fn the_effect_of_stress_at_unchanged_contacts_is_the_same_within_a_packing() {
     let [_, (title, samples), _] = sets();

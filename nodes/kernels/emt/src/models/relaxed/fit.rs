@@ -67,7 +67,7 @@ impl Data {
 pub(super) struct Fit {
     pub(super) z: f64,
     pub(super) eps: f64,
-    /// Whether ε is fitted; else it is part of the scatter of the packings.
+    /// True if ε is fitted; else it is part of the scatter of the packings.
     fits_eps: bool,
     pub(super) chi_square: f64,
     /// χ² + ln det of the covariance: twice the negative logarithm of the likelihood.
