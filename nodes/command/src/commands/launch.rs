@@ -28,7 +28,7 @@ Examples:
   grainlab launch --scene s2 --seed 3       a scene of the paper
   grainlab launch --scene s2 --set grains.count=500 --set friction=0.2 --set phase.rest.drag=1e3
   grainlab launch acoustic                  the same, with wave speeds measured and inverted, too
-  grainlab launch acoustic method:=standing_wave speed_noise:=0.01
+  grainlab launch acoustic method:=cross_correlation speed_noise:=0.01
   grainlab launch my.launch.yaml --scene my_scene.toml
   grainlab launch threads:=1 simd:=scalar   arguments of the launch file
   grainlab launch --resume recordings/runs/s2-1-1

@@ -30,21 +30,25 @@ pub(crate) struct Backbone {
     pub(crate) clusters: Vec<Cluster>,
     /// Volume of the cell, m³.
     volume: f64,
-    bulk: f64,
-    rattlers: u32,
+}
+
+/// For each grain, whether it carries force; an error if none does.
+pub(crate) fn carrying(packing: &Packing) -> Result<Vec<bool>, NotJammed> {
+    let grains = packing.grains();
+    if packing.contacts.is_empty() {
+        return Err(NotJammed::NoContacts { grains });
+    }
+    let carries = non_rattlers(packing);
+    if carries.iter().all(|carries| !carries) {
+        return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
+    }
+    Ok(carries)
 }
 
 impl Backbone {
     pub(crate) fn new(packing: &Packing) -> Result<Self, AcousticsError> {
         packing.check().map_err(MicroError::from)?;
-        let grains = packing.grains();
-        if packing.contacts.is_empty() {
-            return Err(NotJammed::NoContacts { grains }.into());
-        }
-        let carries = non_rattlers(packing);
-        if carries.iter().all(|c| !c) {
-            return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) }.into());
-        }
+        let carries = carrying(packing)?;
         let held = |g: u32| carries[g as usize];
         let mut carrying = packing.clone();
         carrying.contacts.retain(|c| held(c.i) && held(c.j));
@@ -52,20 +56,18 @@ impl Backbone {
             SpringNetwork::new(&PackingView::new(&carrying).map_err(MicroError::from)?, Springs::Carried)?;
         let a = network.spin_scale();
         let mass: Vec<f64> = packing.radii.iter().map(|r| packing.material.sphere_mass(*r)).collect();
-        let bulk = mass.iter().sum::<f64>() / packing.cell.volume();
         let of = |g: usize, value: f64| if carries[g] { value } else { 0.0 };
-        let inertia =
-            (0..grains).map(|g| of(g, 0.4 * mass[g] * (packing.radii[g] / a).powi(2))).collect::<Vec<_>>();
+        let inertia = (0..packing.grains())
+            .map(|g| of(g, 0.4 * mass[g] * (packing.radii[g] / a).powi(2)))
+            .collect::<Vec<_>>();
         let mass: Vec<f64> = mass.iter().enumerate().map(|(g, m)| of(g, *m)).collect();
         let clusters = clusters(&network, &mass, &inertia);
-        let rattlers = carries.iter().filter(|c| !**c).count() as u32;
-        Ok(Self { network, mass, inertia, clusters, volume: packing.cell.volume(), bulk, rattlers })
+        Ok(Self { network, mass, inertia, clusters, volume: packing.cell.volume() })
     }
 
     /// The effective density for waves of the angular frequency `frequency`, rad/s, 0 or more.
     pub(crate) fn effective_density(&self, frequency: f64) -> EffectiveDensity {
         let mut tensor = Mat3::identity() * self.mass.iter().sum::<f64>();
-        let mut left_behind = 0;
         for cluster in &self.clusters {
             for motion in cluster.motions.iter().filter(|m| m.is_free || m.square < frequency.powi(2)) {
                 // TᵀM z for the three translations.
@@ -73,14 +75,8 @@ impl Backbone {
                     .map(|(at, g)| self.mass[*g as usize] * Vec3::from_fn(|k, _| motion.shape[6 * at + k]))
                     .sum();
                 tensor -= carried * carried.transpose();
-                left_behind += 1;
             }
         }
-        EffectiveDensity {
-            density: tensor / self.volume,
-            bulk: self.bulk,
-            rattlers: self.rattlers,
-            left_behind,
-        }
+        EffectiveDensity { density: tensor / self.volume }
     }
 }

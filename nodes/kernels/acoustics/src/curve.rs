@@ -22,15 +22,15 @@ pub struct DispersionPoint {
 pub struct DispersionCurve {
     /// Unit direction of propagation.
     pub direction: Vec3,
-    /// Unit polarization.
+    /// Unit polarization vector.
     pub polarization: Vec3,
     /// Measured speeds, longest wave first.
     pub points: Vec<DispersionPoint>,
     /// Speed of long waves v₀, m/s.
     pub speed: f64,
-    /// Its standard deviation from the errors of the points and of the law, m/s.
+    /// Standard deviation of v₀ from the errors of the points and of the law, m/s.
     pub stddev: f64,
-    /// b, m².
+    /// Coefficient b, m².
     pub dispersion_coefficient: f64,
 }
 
@@ -61,11 +61,6 @@ impl DispersionCurve {
         let dispersion_coefficient = -straight.coefficients[1] / square;
         let curve = Self { direction, polarization, points, speed, stddev, dispersion_coefficient };
         stddev.is_finite().then_some(curve)
-    }
-
-    /// Speed at the wave number `q` (rad/m) by the law, m/s.
-    pub fn at(&self, q: f64) -> f64 {
-        self.speed * (1.0 - self.dispersion_coefficient * q * q).max(0.0).sqrt()
     }
 }
 
@@ -134,7 +129,6 @@ mod tests {
             (curve.speed - 300.0).abs() < 1e-9 && (curve.dispersion_coefficient - 0.15).abs() < 1e-9,
             "{curve:?}"
         );
-        assert!((curve.at(0.25) - law(0.25)).abs() < 1e-9);
     }
 
     #[test]

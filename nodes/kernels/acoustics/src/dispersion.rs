@@ -27,7 +27,7 @@ use crate::backbone::Backbone;
 use crate::curve::{DispersionCurve, DispersionPoint};
 use crate::error::AcousticsError;
 use crate::ray::Ray;
-use crate::warning::Warning;
+use crate::warning::{Warning, keep};
 use acoustic_tensor::AcousticTensor;
 use alignment::{aligned, completed, nearest_of};
 use bloch::Bloch;
@@ -77,169 +77,135 @@ pub fn curves(
 ) -> Result<Vec<DispersionCurve>, AcousticsError> {
     settings.validated()?;
     let backbone = Backbone::new(packing)?;
-    Ok(curves_of(&backbone, mean_diameter(packing), rays, Alignment::InPlane, settings)?.curves)
+    let diameter = mean_diameter(packing);
+    let (found, warnings) =
+        Dispersion { backbone: &backbone, diameter, alignment: Alignment::InPlane, settings }.curves(rays)?;
+    match warnings.into_iter().find(|warning| matches!(warning, Warning::LeftOut(_))) {
+        Some(Warning::LeftOut(error)) => Err(error),
+        _ => Ok(found.curves),
+    }
 }
 
 /// Curves of rays, along given polarizations and of the modes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct RayCurves {
-    /// Of all polarizations of all rays, in that order.
+    /// Curves of all polarizations of all rays, in that order.
     pub(crate) curves: Vec<DispersionCurve>,
     /// In the same order, along the polarization of the mode nearest to each ([`christoffel_modes`]).
     pub(crate) modes: Vec<DispersionCurve>,
 }
 
-/// The curves of all rays. Rays whose modes are not found are left out with a warning. If all are, the first
-/// error is returned.
-pub(crate) fn all_curves(
-    backbone: &Backbone,
-    diameter: f64,
-    rays: &[Ray],
-    alignment: Alignment,
-    settings: &Settings,
-) -> Result<(RayCurves, Vec<Warning>), AcousticsError> {
-    let found: Vec<_> =
-        rays.par_iter().map(|ray| curves_along(backbone, diameter, ray, alignment, settings)).collect();
-    let (mut all, mut warnings, mut first_error) = (RayCurves::default(), Vec::new(), None);
-    for found in found {
-        match found {
-            Ok((found, warning)) => {
-                all.extend(found);
-                warnings.extend(warning);
-            }
-            Err(error @ (AcousticsError::NotConverged { .. } | AcousticsError::NoSignal { .. })) => {
-                first_error = first_error.or_else(|| Some(error.clone()));
-                warnings.push(Warning::LeftOut(error));
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    match first_error {
-        Some(error) if all.curves.is_empty() => Err(error),
-        _ => Ok((all, warnings)),
-    }
+/// The method, applied to one packing.
+pub(crate) struct Dispersion<'a> {
+    pub(crate) backbone: &'a Backbone,
+    /// Mean diameter, m.
+    pub(crate) diameter: f64,
+    pub(crate) alignment: Alignment,
+    pub(crate) settings: &'a Settings,
 }
 
-impl RayCurves {
-    fn extend(&mut self, other: Self) {
-        self.curves.extend(other.curves);
-        self.modes.extend(other.modes);
+impl Dispersion<'_> {
+    /// The curves of all rays. Rays whose modes are not found are left out with a warning. If all are, the first
+    /// error is returned.
+    pub(crate) fn curves(&self, rays: &[Ray]) -> Result<(RayCurves, Vec<Warning>), AcousticsError> {
+        let found: Vec<_> = rays.par_iter().map(|ray| self.along(ray)).collect();
+        let (mut all, mut warnings) = (RayCurves::default(), Vec::new());
+        keep(found, &mut warnings, |(found, warning), warnings| {
+            all.curves.extend(found.curves);
+            all.modes.extend(found.modes);
+            warnings.extend(warning);
+        })?;
+        Ok((all, warnings))
     }
-}
 
-fn curves_of(
-    backbone: &Backbone,
-    diameter: f64,
-    rays: &[Ray],
-    alignment: Alignment,
-    settings: &Settings,
-) -> Result<RayCurves, AcousticsError> {
-    let curves: Result<Vec<_>, _> =
-        rays.par_iter().map(|ray| curves_along(backbone, diameter, ray, alignment, settings)).collect();
-    let mut all = RayCurves::default();
-    curves?.into_iter().for_each(|(curves, _)| all.extend(curves));
-    Ok(all)
-}
-
-fn curves_along(
-    backbone: &Backbone,
-    diameter: f64,
-    ray: &Ray,
-    alignment: Alignment,
-    settings: &Settings,
-) -> Result<(RayCurves, Option<Warning>), AcousticsError> {
-    let mut wavelengths = settings.wavelengths.clone();
-    wavelengths.sort_by(|a, b| b.total_cmp(a));
-    let no_limit = || AcousticsError::NoSignal {
-        what: "long wave",
-        direction: ray.direction.into(),
-        polarization: ray.polarizations.first().copied().unwrap_or_default().into(),
-        reason: "its speeds have no positive limit at long waves; use longer waves".to_owned(),
-    };
-    for doubling in (0..).step_by(AT_ONCE as usize) {
-        let last = doubling + AT_ONCE > settings.doublings;
-        let found = modes_along(backbone, diameter, ray, alignment, &wavelengths, settings);
-        let too_short = match &found {
-            Ok(found) => found.as_ref().is_none_or(|(e, _)| e.is_too_short(settings.tolerance)),
-            Err(error) => matches!(error, AcousticsError::NotConverged { .. }),
+    fn along(&self, ray: &Ray) -> Result<(RayCurves, Option<Warning>), AcousticsError> {
+        let settings = self.settings;
+        let mut wavelengths = settings.wavelengths.clone();
+        wavelengths.sort_by(|a, b| b.total_cmp(a));
+        let no_limit = || AcousticsError::NoSignal {
+            what: "long wave",
+            direction: ray.direction.into(),
+            polarization: ray.polarizations.first().copied().unwrap_or_default().into(),
+            reason: "its speeds have no positive limit at long waves; use longer waves".to_owned(),
         };
-        if last || !too_short {
-            let (series, modes) = found?.ok_or_else(no_limit)?;
-            let (direction, ratio) = (ray.direction.into(), series.ratio);
-            let warning =
-                series.is_too_short(settings.tolerance).then_some(Warning::TooShort { direction, ratio });
-            let longest = wavelengths[0];
-            let unseen = if longest < FOLLOWED { UNSEEN * 100.0 / longest } else { 0.0 };
-            let [curves, modes] = [series, modes].map(|s| s.curves(ray.direction, unseen));
-            return Ok((RayCurves { curves, modes }, warning));
+        for doubling in (0..).step_by(AT_ONCE as usize) {
+            let last = doubling + AT_ONCE > settings.doublings;
+            let found = self.series(ray, &wavelengths);
+            let too_short = match &found {
+                Ok(found) => found.as_ref().is_none_or(|(e, _)| e.is_too_short(settings.tolerance)),
+                Err(error) => matches!(error, AcousticsError::NotConverged { .. }),
+            };
+            if last || !too_short {
+                let (series, modes) = found?.ok_or_else(no_limit)?;
+                let (direction, ratio) = (ray.direction.into(), series.ratio);
+                let warning =
+                    series.is_too_short(settings.tolerance).then_some(Warning::TooShort { direction, ratio });
+                let longest = wavelengths[0];
+                let unseen = if longest < FOLLOWED { UNSEEN * 100.0 / longest } else { 0.0 };
+                let [curves, modes] = [series, modes].map(|s| s.curves(ray.direction, unseen));
+                return Ok((RayCurves { curves, modes }, warning));
+            }
+            wavelengths.iter_mut().for_each(|w| *w *= f64::from(1 << AT_ONCE));
         }
-        wavelengths.iter_mut().for_each(|w| *w *= f64::from(1 << AT_ONCE));
+        Err(no_limit())
     }
-    Err(no_limit())
-}
 
-/// The series of all polarizations of a ray, and of the modes nearest to them; `None` if one of them has no limit.
-fn modes_along(
-    backbone: &Backbone,
-    diameter: f64,
-    ray: &Ray,
-    alignment: Alignment,
-    wavelengths: &[f64],
-    settings: &Settings,
-) -> Result<Option<(Extrapolation, Extrapolation)>, AcousticsError> {
-    let completed = completed(&ray.polarizations);
-    // All three modes are computed, so that they cannot be confused. If some have no stiffness, only those of
-    // the ray are.
-    let tensors = acoustic_tensors(backbone, ray, &completed, diameter, wavelengths, settings);
-    let (tensors, computed) = match tensors {
-        Err(_) if ray.polarizations.len() < completed.len() => {
-            let own = &ray.polarizations;
-            (acoustic_tensors(backbone, ray, own, diameter, wavelengths, settings)?, own)
+    /// The series of all polarizations of a ray, and of the modes nearest to them; `None` if one of them has no limit.
+    fn series(
+        &self,
+        ray: &Ray,
+        wavelengths: &[f64],
+    ) -> Result<Option<(Extrapolation, Extrapolation)>, AcousticsError> {
+        let completed = completed(&ray.polarizations);
+        // All three modes are computed, so that they cannot be confused. If some have no stiffness, only those of
+        // the ray are.
+        let tensors = self.tensors(ray, &completed, wavelengths);
+        let (tensors, computed) = match tensors {
+            Err(_) if ray.polarizations.len() < completed.len() => {
+                let own = &ray.polarizations;
+                (self.tensors(ray, own, wavelengths)?, own)
+            }
+            tensors => (tensors?, &completed),
+        };
+        let points = |polarization: Vec3| {
+            let points = tensors.iter().map(|a| {
+                let speed = polarization.dot(&(a.over_square * polarization)).max(0.0).sqrt();
+                DispersionPoint { wavenumber: a.wavenumber, speed, stddev: 0.5 * a.error * speed }
+            });
+            (polarization, points.collect())
+        };
+        let given = aligned(&ray.polarizations, self.alignment, &tensors[0].over_square);
+        let modes = nearest_of(&ray.polarizations, long_wave_polarizations(&tensors, computed));
+        let series =
+            |polarizations: Vec<Vec3>| Extrapolation::of(polarizations.into_iter().map(points).collect());
+        Ok(series(given).zip(series(modes)))
+    }
+
+    fn tensors(
+        &self,
+        ray: &Ray,
+        polarizations: &[Vec3],
+        wavelengths: &[f64],
+    ) -> Result<Vec<AcousticTensor>, AcousticsError> {
+        let Self { backbone, diameter, .. } = *self;
+        let Settings { tolerance, max_iterations, .. } = *self.settings;
+        let mut near = Vec::new();
+        let mut found = Vec::with_capacity(wavelengths.len());
+        for wavelength in wavelengths {
+            let wavenumber = TAU / (wavelength * diameter);
+            let bloch = Bloch::new(backbone, &(ray.direction * wavenumber));
+            let modes = modes(&bloch, polarizations, &near, tolerance, max_iterations)
+                .map_err(|error| failure(&backbone.network, error, ray.direction, wavelength * diameter))?;
+            let soft = if *wavelength < SOFT_BELOW { SOFT } else { 0.0 };
+            found.push(AcousticTensor {
+                wavenumber,
+                over_square: modes.acoustic_tensor / (wavenumber * wavenumber),
+                error: (CHANGE * modes.change).hypot(REACHED * tolerance).max(soft),
+            });
+            near = modes.found;
         }
-        tensors => (tensors?, &completed),
-    };
-    let points = |polarization: Vec3| {
-        let points = tensors.iter().map(|a| {
-            let speed = polarization.dot(&(a.over_square * polarization)).max(0.0).sqrt();
-            DispersionPoint { wavenumber: a.wavenumber, speed, stddev: 0.5 * a.error * speed }
-        });
-        (polarization, points.collect())
-    };
-    let given = aligned(&ray.polarizations, alignment, &tensors[0].over_square);
-    let modes = nearest_of(&ray.polarizations, long_wave_polarizations(&tensors, computed));
-    let series =
-        |polarizations: Vec<Vec3>| Extrapolation::of(polarizations.into_iter().map(points).collect());
-    Ok(series(given).zip(series(modes)))
-}
-
-fn acoustic_tensors(
-    backbone: &Backbone,
-    ray: &Ray,
-    polarizations: &[Vec3],
-    diameter: f64,
-    wavelengths: &[f64],
-    settings: &Settings,
-) -> Result<Vec<AcousticTensor>, AcousticsError> {
-    let mut near = Vec::new();
-    let mut found = Vec::with_capacity(wavelengths.len());
-    for wavelength in wavelengths {
-        let wavenumber = TAU / (wavelength * diameter);
-        let bloch = Bloch::new(backbone, &(ray.direction * wavenumber));
-        let Settings { tolerance, max_iterations, .. } = *settings;
-        let modes = modes(&bloch, polarizations, &near, tolerance, max_iterations)
-            .map_err(|error| failure(&backbone.network, error, ray.direction, wavelength * diameter))?;
-        found.push(AcousticTensor {
-            wavenumber,
-            over_square: modes.acoustic_tensor / (wavenumber * wavenumber),
-            error: (CHANGE * modes.change).hypot(REACHED * tolerance).max(if *wavelength < SOFT_BELOW {
-                SOFT
-            } else {
-                0.0
-            }),
-        });
-        near = modes.found;
+        Ok(found)
     }
-    Ok(found)
 }
 
 /// The error of modes that were not found. A motion without resistance is no sign that the whole network has none.

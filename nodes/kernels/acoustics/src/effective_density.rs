@@ -7,13 +7,6 @@ use grainlab_core::{Mat3, Stiffness, Vec3};
 pub struct EffectiveDensity {
     /// The tensor ρ, kg/m³: the effective density of the polarization p is pᵀ ρ p.
     pub density: Mat3,
-    /// Density of all grains, kg/m³.
-    pub bulk: f64,
-    /// Number of grains that carry no force.
-    pub rattlers: u32,
-    /// Number of motions of the other grains that do not follow the wave: floppy ones, and those with a lower
-    /// frequency.
-    pub left_behind: u32,
 }
 
 impl EffectiveDensity {

@@ -8,11 +8,11 @@ pub enum AcousticsError {
     /// A setting is out of its range.
     #[error("setting {name} = {value:e} is out of range: {requirement}")]
     Setting {
-        /// Which setting.
+        /// Name of the setting.
         name: &'static str,
         /// The value found.
         value: f64,
-        /// What is required.
+        /// Requirement on the value.
         requirement: &'static str,
     },
     /// No contact carries force, so that no wave propagates.
@@ -34,8 +34,8 @@ pub enum AcousticsError {
     },
     /// The sample is too short for the wave.
     #[error(
-        "{copies} repetitions of the packing are a path of {path:.4e} m, and {needed:.4e} m are needed: {why}; use {enough} \
-         repetitions or a shorter wave"
+        "{copies} repetitions of the packing are a path of {path:.4e} m, and {needed:.4e} m are needed: the wave in the opposite \
+         direction must not reach the furthest receiver during the recording; use {enough} repetitions or a shorter wave"
     )]
     PathTooShort {
         /// Number of repetitions.
@@ -44,8 +44,6 @@ pub enum AcousticsError {
         path: f64,
         /// Length needed, m.
         needed: f64,
-        /// Why it is needed.
-        why: &'static str,
         /// Number of repetitions that suffices.
         enough: u32,
     },
@@ -66,25 +64,25 @@ pub enum AcousticsError {
     NotConverged {
         /// Direction of propagation.
         direction: [f64; 3],
-        /// Wavelength, m.
+        /// Wavelength of the modes, m.
         wavelength: f64,
-        /// The reason.
+        /// Reason of the failure.
         reason: String,
     },
-    /// No arrival or standing wave was found.
+    /// No arrival or long wave was found.
     #[error(
         "no {what} along {}, polarization {}: {reason}",
         in_brackets(direction),
         in_brackets(polarization)
     )]
     NoSignal {
-        /// What was not found.
+        /// Name of the missing signal.
         what: &'static str,
         /// Direction of propagation.
         direction: [f64; 3],
-        /// Polarization.
+        /// Polarization of the wave.
         polarization: [f64; 3],
-        /// The reason.
+        /// Reason of the failure.
         reason: String,
     },
     /// The contact network could not be built.

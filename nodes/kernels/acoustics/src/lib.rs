@@ -1,15 +1,14 @@
 //! Virtual acoustic measurement of a packing.
 //!
-//! Three methods measure the speed of a wave:
+//! Two methods measure the speed of a wave:
 //!
 //! - [`dispersion`]: frequencies of the acoustic modes of the frozen contact network at Bloch wave vectors of any
 //!   length
-//! - [`standing_wave`]: free vibration of a supercell that starts with the velocities of plane waves
 //! - [`time_of_flight`]: arrival of a burst that is sent through a supercell
 //!
 //! They share `ray` (direction of propagation and polarizations), `curve` (speeds at several wavelengths, extrapolated
 //! to long waves), `backbone` (the grains that carry waves, and their effective density) and `supercell` (the packing,
-//! repeated along a path). `wave_path` runs the two methods with moving grains for all polarizations of all rays.
+//! repeated along a path).
 //!
 //! [`measure`](fn@measure) applies a method to a set of rays (`survey`), through an `instrument` with noise.
 
@@ -22,17 +21,14 @@ mod error;
 mod instrument;
 mod measure;
 mod noise;
-mod nonlinearity;
 mod ray;
 mod sample;
 mod settings;
-pub mod standing_wave;
 mod supercell;
 mod survey;
 pub mod time_of_flight;
 mod trace;
 mod warning;
-mod wave_path;
 
 pub use curve::{DispersionCurve, DispersionPoint};
 pub use effective_density::EffectiveDensity;

@@ -2,7 +2,7 @@
 
 use crate::backbone::Backbone;
 use crate::curve::DispersionCurve;
-use crate::dispersion::Alignment;
+use crate::dispersion::{Alignment, Dispersion};
 use crate::effective_density::EffectiveDensity;
 use crate::error::AcousticsError;
 use crate::instrument::Instrument;
@@ -11,7 +11,7 @@ use crate::settings::{MethodSettings, Settings};
 use crate::survey::Survey;
 use crate::trace::Trace;
 use crate::warning::Warning;
-use crate::{dispersion, standing_wave, time_of_flight};
+use crate::{dispersion, time_of_flight};
 use grainlab_core::results::{SpringNote, StiffnessMethod};
 use grainlab_core::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
 
@@ -24,12 +24,12 @@ const SPEEDS: u64 = u64::MAX;
 /// Place of the seed of the noise of the modes' speeds.
 const MODES: u64 = u64::MAX - 1;
 
-/// What was measured.
+/// Result of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// The speeds of long waves.
     pub waves: Vec<MeasuredWave>,
-    /// The same waves along the polarizations of the packing's own modes, quasi-P and quasi-S, which an instrument measures
+    /// Speeds along the polarizations of the packing's own modes, quasi-P and quasi-S, which an instrument measures
     /// (dispersion only). [`Measurement::waves`] are projections on the polarizations of a medium isotropic about the axis:
     /// their squares average over azimuths to the moduli of the transversely isotropic projection, those of the modes do
     /// not.
@@ -40,7 +40,7 @@ pub struct Measurement {
     pub effective_density: EffectiveDensity,
     /// Density to use with the speeds, kg/m³.
     pub density: f64,
-    /// Its standard deviation: differences between polarizations, and between the frequencies used.
+    /// Standard deviation of the density: differences between polarizations, and between the frequencies used.
     pub density_stddev: f64,
     /// The axis about which the rays were chosen.
     pub axis: Option<Vec3>,
@@ -48,13 +48,13 @@ pub struct Measurement {
     pub curves: Vec<DispersionCurve>,
     /// The traces from which the curves were evaluated; empty for dispersion.
     pub traces: Vec<Trace>,
-    /// Warnings.
+    /// Warnings of the measurement.
     pub warnings: Vec<Warning>,
 }
 
 /// Measures the wave speeds of `packing`. The result is the same to the last bit for any number of threads.
 ///
-/// Dispersion uses the frozen network. In the other two methods grains move. A wave without a speed is left
+/// Dispersion uses the frozen network; in time of flight grains move. A wave without a speed is left
 /// out with a warning. If no speed is left, that is an error.
 pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, AcousticsError> {
     settings.check()?;
@@ -65,50 +65,39 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     // Noise differs between packings.
     let seed = seed_at(settings.instrument.seed, &[packing.step]);
     let instrument = &Instrument { seed, ..settings.instrument };
-    let lattice = || survey.lattice_rays(&packing.cell, &about, settings.modes);
-    let (curves, modes, traces, mut warnings) = match &settings.method {
+    let (mut curves, modes, traces, mut warnings) = match &settings.method {
         MethodSettings::Dispersion(of) => {
             of.validated()?;
             let rays = survey.rays(&about, settings.modes);
             let diameter = dispersion::mean_diameter(packing);
             let alignment = if axis.is_some() { Alignment::InPlane } else { Alignment::Free };
-            let (found, warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
+            let method = Dispersion { backbone: &backbone, diameter, alignment, settings: of };
+            let (found, warnings) = method.curves(&rays)?;
             (found.curves, found.modes, Vec::new(), warnings)
         }
-        MethodSettings::StandingWave(of) => {
-            let (curves, traces, warnings) = standing_wave::curves(packing, &lattice(), of, instrument)?;
-            (curves, Vec::new(), traces, warnings)
-        }
         MethodSettings::TimeOfFlight(of) => {
-            let (curves, traces, warnings) = time_of_flight::curves(packing, &lattice(), of, instrument)?;
+            let rays = survey.lattice_rays(&packing.cell, &about, settings.modes);
+            let (curves, traces, warnings) = time_of_flight::curves(packing, &rays, of, instrument)?;
             (curves, Vec::new(), traces, warnings)
         }
     };
-    let (of_network, friction) = match &settings.method {
-        MethodSettings::Dispersion(_) => (StiffnessMethod::FrozenNetwork, None),
-        MethodSettings::StandingWave(of) => (StiffnessMethod::StrainProbe, of.friction),
-        MethodSettings::TimeOfFlight(of) => (StiffnessMethod::StrainProbe, of.friction),
+    let (of_network, friction, method, strain_amplitude) = match &settings.method {
+        MethodSettings::Dispersion(_) => (StiffnessMethod::FrozenNetwork, None, WaveMethod::Dispersion, 0.0),
+        MethodSettings::TimeOfFlight(of) => {
+            (StiffnessMethod::StrainProbe, of.friction, of.pick.method(), of.amplitude)
+        }
     };
     let smooth = friction.map_or_else(|| backbone.network.smooth(), |friction| friction == 0.0);
     let mut notes = SpringNote::of(packing, of_network, smooth);
     // Grains that move slide by themselves.
-    notes.retain(|n| {
-        matches!(settings.method, MethodSettings::Dispersion(_))
-            || !matches!(n, SpringNote::SlidingStuck { .. })
-    });
+    notes.retain(|n| method == WaveMethod::Dispersion || !matches!(n, SpringNote::SlidingStuck { .. }));
     warnings.extend(notes.into_iter().map(Warning::Springs));
-    let mut curves = curves;
     let [least, most] = frequencies(&curves);
     let effective_density = backbone.effective_density(least);
     for curve in &mut curves {
         let drift = drift(curve, &backbone, &effective_density);
         curve.stddev = curve.stddev.hypot(0.5 * drift * curve.speed);
     }
-    let (method, amplitude) = match &settings.method {
-        MethodSettings::Dispersion(_) => (WaveMethod::Dispersion, 0.0),
-        MethodSettings::StandingWave(of) => (WaveMethod::StandingWave, of.amplitude),
-        MethodSettings::TimeOfFlight(of) => (of.pick.method(), of.amplitude),
-    };
     let wave = |curve: &DispersionCurve| MeasuredWave {
         wave: WaveSpeed {
             direction: curve.direction,
@@ -119,7 +108,7 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
         method,
         // The speed is extrapolated to long waves.
         frequency: None,
-        strain_amplitude: amplitude,
+        strain_amplitude,
     };
     let waves: Vec<MeasuredWave> = curves.iter().map(wave).collect();
     let mut waves = with_speed_noise(&waves, instrument.speed_noise, instrument.seed);
@@ -151,7 +140,7 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     })
 }
 
-/// The same speeds with an additional independent relative error of standard deviation `noise`, included in
+/// Speeds with an additional independent relative error of standard deviation `noise`, included in
 /// their uncertainty. The same seed gives the same errors.
 pub fn with_speed_noise(waves: &[MeasuredWave], noise: f64, seed: u64) -> Vec<MeasuredWave> {
     let mut waves = waves.to_vec();

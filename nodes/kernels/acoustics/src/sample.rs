@@ -1,9 +1,9 @@
 //! A packing prepared for a measurement: at rest, with a time step and an estimate of the wave speed.
 
+use crate::backbone::carrying;
 use crate::error::AcousticsError;
 use grainlab_core::contact::TangentialLaw;
-use grainlab_core::results::NotJammed;
-use grainlab_core::{Mat3, Packing, Vec3, min_contacts, non_rattlers};
+use grainlab_core::{Mat3, Packing, Vec3};
 use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
 use grainlab_micromechanics::probe::Relaxation;
 use grainlab_micromechanics::unbalanced_force_ratio;
@@ -39,35 +39,24 @@ pub(crate) struct Sample {
 
 impl Sample {
     /// `packing` with `friction` (`None`: that of the packing), relaxed to rest.
-    pub(crate) fn new(
-        packing: &Packing,
-        friction: Option<f64>,
-        tangential: TangentialLaw,
-    ) -> Result<Self, AcousticsError> {
+    pub(crate) fn new(packing: &Packing, friction: Option<f64>) -> Result<Self, AcousticsError> {
         packing.check().map_err(DemError::from)?;
         let friction = friction.unwrap_or(packing.friction);
         if friction.is_nan() || friction < 0.0 {
             let requirement = "0 or more, infinite for no sliding";
             return Err(AcousticsError::Setting { name: "friction", value: friction, requirement });
         }
-        let grains = packing.grains();
-        if packing.contacts.is_empty() {
-            return Err(NotJammed::NoContacts { grains }.into());
-        }
         let mut packing = Packing { friction, ..packing.clone() };
-        let present = non_rattlers(&packing);
-        if present.iter().all(|p| !p) {
-            return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(friction) }.into());
-        }
+        let present = carrying(&packing)?;
         packing.velocities.fill(Vec3::zeros());
         packing.spins.fill(Vec3::zeros());
-        let diameter = 2.0 * packing.radii.iter().sum::<f64>() / grains as f64;
+        let diameter = 2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64;
         let setting = EngineSettings {
             friction,
             damping: 0.0,
             drag: 0.0,
             spin_drag: 0.0,
-            tangential,
+            tangential: TangentialLaw::Incremental,
             time_step: TimeStep::FractionOfStable(SAFETY),
             skin: SKIN * diameter,
             thermostat_speed: None,
@@ -92,10 +81,7 @@ impl Sample {
         let mut rested = rest.engines()[0].packing(packing.deformation);
         rested.velocities.fill(Vec3::zeros());
         rested.spins.fill(Vec3::zeros());
-        let present = non_rattlers(&rested);
-        if present.iter().all(|p| !p) {
-            return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(friction) }.into());
-        }
+        let present = carrying(&rested)?;
         Ok(Self { packing: rested, present, setting, diameter, unbalanced })
     }
 
@@ -116,12 +102,6 @@ impl Sample {
         (modulus / self.mass()).sqrt()
     }
 
-    /// Mass of each grain, kg; 0 if it carries no force.
-    pub(crate) fn masses(&self) -> Vec<f64> {
-        let mass = |r: &f64| self.packing.material.sphere_mass(*r);
-        self.packing.radii.iter().zip(&self.present).map(|(r, p)| if *p { mass(r) } else { 0.0 }).collect()
-    }
-
     /// Density of the grains that carry force, kg/m³.
     pub(crate) fn density(&self) -> f64 {
         self.mass() / self.packing.cell.volume()
@@ -134,6 +114,7 @@ impl Sample {
 
     /// Mass of the grains that carry force, kg.
     fn mass(&self) -> f64 {
-        self.masses().iter().sum()
+        let carried = self.packing.radii.iter().zip(&self.present).filter(|(_, present)| **present);
+        carried.map(|(radius, _)| self.packing.material.sphere_mass(*radius)).sum()
     }
 }

@@ -1,23 +1,21 @@
-//! What is measured, and how.
+//! Settings of a measurement.
 
 use crate::error::AcousticsError;
 use crate::instrument::Instrument;
 use crate::survey::{Modes, Survey};
-use crate::{dispersion, standing_wave, time_of_flight};
+use crate::{dispersion, time_of_flight};
 use grainlab_core::Vec3;
 
 /// A method of measuring speeds, with its settings.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MethodSettings {
-    /// See [`dispersion`].
+    /// Method of the module [`dispersion`].
     Dispersion(dispersion::Settings),
-    /// See [`standing_wave`].
-    StandingWave(standing_wave::Settings),
-    /// See [`time_of_flight`].
+    /// Method of the module [`time_of_flight`].
     TimeOfFlight(time_of_flight::Settings),
 }
 
-/// What is measured, and how.
+/// Settings of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Method of measuring speeds.

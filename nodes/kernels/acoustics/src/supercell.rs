@@ -25,19 +25,10 @@ pub struct Supercell {
     /// All copies in order: grain `g` of the `n` of the packing has the index and id `c n + g` in copy `c`.
     /// Positions are in the cell. Contacts keep their forces.
     pub packing: Packing,
-    /// Unit normal of the lattice planes: the direction of the path.
-    pub normal: Vec3,
     /// Period along the path, m: number of copies times the spacing of the planes.
     pub path: f64,
     /// Position of each grain along the path, in [0, path), m.
     pub along: Vec<f64>,
-}
-
-impl Supercell {
-    /// Wave number of the wave with `waves` periods in the path, rad/m.
-    pub fn wavenumber(&self, waves: u32) -> f64 {
-        std::f64::consts::TAU * f64::from(waves) / self.path
-    }
 }
 
 /// Repeats `packing` `copies` times (1 or more) along the normal of its lattice planes (h k l), divided by their common
@@ -98,8 +89,7 @@ pub fn supercell(packing: &Packing, indices: [i32; 3], copies: u32) -> Result<Su
         contacts,
         ..*packing
     };
-    let normal = (packing.cell.inverse().transpose() * layers.plane.cast::<f64>()).normalize();
-    Ok(Supercell { packing: repeated, normal, path, along })
+    Ok(Supercell { packing: repeated, path, along })
 }
 
 /// Contact `c` of a packing of `n` grains, in copy `copy`.
@@ -124,7 +114,7 @@ fn contact(
     if i < j || (i == j && image > [0; 3]) {
         return Ok(Contact { i, j, image, ..*c });
     }
-    // The same contact with its grains exchanged.
+    // This contact with its grains exchanged.
     Ok(Contact {
         i: j,
         j: i,

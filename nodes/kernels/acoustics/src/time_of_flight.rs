@@ -20,6 +20,7 @@ mod pick;
 mod settings;
 mod slab;
 mod spectrum;
+mod wave_path;
 
 pub use arrival::Arrivals;
 pub use settings::{ArrivalPick, Settings};
@@ -30,9 +31,11 @@ use crate::instrument::Instrument;
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::trace::Trace;
-use crate::warning::Warning;
-use crate::wave_path::{measure_all, paths};
+use crate::warning::{Warning, keep};
 use grainlab_core::Packing;
+use measurement::TimeOfFlight;
+use rayon::prelude::*;
+use wave_path::paths;
 
 /// The curves of all polarizations of all rays, in that order, and their traces.
 ///
@@ -49,8 +52,16 @@ pub fn curves(
     settings.validated()?;
     instrument.validated()?;
     let paths = paths(packing, rays)?;
-    let sample = Sample::new(packing, settings.friction, settings.tangential)?;
-    measure_all(&paths, &sample, |path| measurement::measure(path, &sample, settings, instrument))
+    let sample = Sample::new(packing, settings.friction)?;
+    let measured = |path| TimeOfFlight { path, sample: &sample }.measure(settings, instrument);
+    let (mut curves, mut traces) = (Vec::new(), Vec::new());
+    let mut warnings = Vec::from_iter(sample.unbalanced.map(|unbalanced| Warning::NotAtRest { unbalanced }));
+    keep(paths.par_iter().map(measured).collect(), &mut warnings, |mut found, warnings| {
+        curves.push(found.curve);
+        traces.append(&mut found.traces);
+        warnings.append(&mut found.warnings);
+    })?;
+    Ok((curves, traces, warnings))
 }
 
 /// The curve of one mode from its traces, for bursts of `cycles` periods at one or more frequencies. `seed`

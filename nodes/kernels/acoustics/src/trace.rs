@@ -1,8 +1,8 @@
-//! Recorded signals.
+//! Recorded signals of waves.
 
 use grainlab_core::{Vec3, WaveMethod};
 
-/// Traces of one wave: particle velocity at several receivers, or the amplitude of a standing wave.
+/// Traces of one wave: particle velocity at several receivers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// Unit direction of propagation.
@@ -21,10 +21,10 @@ pub struct Trace {
     pub channels: Vec<Channel>,
 }
 
-/// One receiver.
+/// Signal of one receiver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Distance from the source along the ray, m; the wavelength of a standing wave.
+    /// Distance from the source along the ray, m.
     pub distance: f64,
     /// Particle velocity along the polarization, m/s.
     pub samples: Vec<f64>,

@@ -16,9 +16,9 @@ pub enum Warning {
     Nonlinear {
         /// Direction of propagation.
         direction: [f64; 3],
-        /// Polarization.
+        /// Polarization of the wave.
         polarization: [f64; 3],
-        /// Peak strain.
+        /// Peak strain of the wave.
         amplitude: f64,
         /// Number of contacts that were missing in at least one comparison.
         opened: u32,
@@ -37,7 +37,7 @@ pub enum Warning {
     Noisy {
         /// Direction of propagation.
         direction: [f64; 3],
-        /// Polarization.
+        /// Polarization of the wave.
         polarization: [f64; 3],
         /// Relative standard deviation of the speed.
         relative: f64,
@@ -69,4 +69,28 @@ pub enum Warning {
     /// A mode was left out.
     #[error("left out: {0}")]
     LeftOut(AcousticsError),
+}
+
+/// Takes what was measured. What failed for want of a signal or a solution is left out with a warning; if all did, the first such error is
+/// returned.
+pub(crate) fn keep<T>(
+    results: Vec<Result<T, AcousticsError>>,
+    warnings: &mut Vec<Warning>,
+    mut take: impl FnMut(T, &mut Vec<Warning>),
+) -> Result<(), AcousticsError> {
+    let (mut taken, mut first_error) = (false, None);
+    for result in results {
+        match result {
+            Ok(found) => {
+                taken = true;
+                take(found, warnings);
+            }
+            Err(error @ (AcousticsError::NotConverged { .. } | AcousticsError::NoSignal { .. })) => {
+                first_error = first_error.or_else(|| Some(error.clone()));
+                warnings.push(Warning::LeftOut(error));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    first_error.filter(|_| !taken).map_or(Ok(()), Err)
 }

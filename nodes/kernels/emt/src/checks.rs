@@ -131,7 +131,7 @@ fn state_errors(conditions: &Conditions, calibration: &Calibration) -> [(&'stati
     [(named(0), stddevs[0]), (named(5), stddevs[5]), ("factor 1 - nu of the grains", of_poisson)]
 }
 
-/// What of the state is outside the packings on which the errors of the models were learned.
+/// Quantities of the state outside the packings on which the errors of the models were learned.
 fn outside_errors(conditions: &Conditions, calibration: &Calibration) -> Vec<Outside> {
     let learned = calibration.network().or_else(|| Calibration::builtin("grainlab")?.network());
     let Some(network) = learned else { return Vec::new() };

@@ -22,7 +22,7 @@ pub enum StrainRatioSource {
 }
 
 impl StrainRatioSource {
-    /// Its name in messages, parameters and results.
+    /// Name in messages, parameters and results.
     pub const fn name(self) -> &'static str {
         match self {
             StrainRatioSource::Total => "total",
@@ -32,16 +32,25 @@ impl StrainRatioSource {
             StrainRatioSource::Zero => "zero",
         }
     }
+
+    fn of(self, measured: &StrainRatios) -> Option<f64> {
+        match self {
+            StrainRatioSource::Total => measured.total,
+            StrainRatioSource::Elastic => measured.elastic,
+            StrainRatioSource::Contact => measured.contact,
+            StrainRatioSource::Given | StrainRatioSource::Zero => None,
+        }
+    }
 }
 
 /// The strain ratio g = γ/Δ given to a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainRatio {
-    /// g, dimensionless.
+    /// Value of g, dimensionless.
     pub value: f64,
     /// Standard deviation, dimensionless; 0 takes the value as exact.
     pub stddev: f64,
-    /// Its source.
+    /// Source of the value.
     pub source: StrainRatioSource,
 }
 
@@ -54,14 +63,9 @@ impl StrainRatio {
         Self { value, stddev: 0.0, source: StrainRatioSource::Given }
     }
 
-    /// Whether the ratio of this source was measured.
+    /// True if the ratio of this source was measured.
     pub fn is_known(measured: &StrainRatios, source: StrainRatioSource) -> bool {
-        match source {
-            StrainRatioSource::Total => measured.total.is_some(),
-            StrainRatioSource::Elastic => measured.elastic.is_some(),
-            StrainRatioSource::Contact => measured.contact.is_some(),
-            StrainRatioSource::Given | StrainRatioSource::Zero => false,
-        }
+        source.of(measured).is_some()
     }
 
     /// The ratio for the paper's models: the total one if it is known, else that of the contacts, else zero.
@@ -71,14 +75,13 @@ impl StrainRatio {
 
     /// The ratio of this source; if it is not known, that of the contacts, else zero.
     pub fn of(measured: &StrainRatios, source: StrainRatioSource) -> Self {
-        let with = |value: Option<f64>, source| value.map(|value| StrainRatio { value, stddev: 0.0, source });
-        let wanted = match source {
-            StrainRatioSource::Total => with(measured.total, source),
-            StrainRatioSource::Elastic => with(measured.elastic, source),
-            StrainRatioSource::Contact => with(measured.contact, source),
-            StrainRatioSource::Given | StrainRatioSource::Zero => Some(Self::ZERO),
+        if matches!(source, StrainRatioSource::Given | StrainRatioSource::Zero) {
+            return Self::ZERO;
+        }
+        let with = |source: StrainRatioSource| {
+            Some(StrainRatio { value: source.of(measured)?, stddev: 0.0, source })
         };
-        wanted.or(with(measured.contact, StrainRatioSource::Contact)).unwrap_or(Self::ZERO)
+        with(source).or_else(|| with(StrainRatioSource::Contact)).unwrap_or(Self::ZERO)
     }
 }
 
@@ -98,7 +101,7 @@ impl fmt::Display for StrainRatio {
 /// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The number.
+    /// Value of the number.
     pub value: f64,
     /// Standard deviation in the unit of the number; 0 takes the number as exact.
     pub stddev: f64,
@@ -145,7 +148,7 @@ pub struct Conditions {
     pub poisson_ratio_stddev: f64,
     /// Contact law of the grains; `None` takes Hertz–Mindlin contacts.
     pub contact_law: Option<ContactLaw>,
-    /// Whether the moduli are those of contacts without tangential springs: no model has an estimate for them.
+    /// True if the moduli are those of contacts without tangential springs: no model has an estimate for them.
     pub smooth: bool,
 }
 
@@ -181,7 +184,7 @@ impl Conditions {
         ]
     }
 
-    /// The same with one input of the state changed, by a relative amount where [`Conditions::stddevs`] has a relative
+    /// Conditions with one input of the state changed, by a relative amount where [`Conditions::stddevs`] has a relative
     /// deviation. `None` if the input is not known.
     pub(crate) fn moved(&self, input: usize, by: f64, material: &Material) -> Option<Self> {
         let mut moved = *self;

@@ -13,12 +13,12 @@ pub type Range = [f64; 2];
 /// onset of jamming, and some percent more under pressure.
 const JAMMED: Range = [0.5, 0.8];
 
-/// Of one quantity, the packings that the constants of a model were learned from.
+/// Range of one quantity over the packings that the constants of a model were learned from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitted {
     /// Lowest and highest of them.
     pub range: Range,
-    /// What still counts as inside: the same, or wider by the ends that random packings do not reach.
+    /// Range that still counts as inside: that of the packings, or wider by the ends that random packings do not reach.
     pub inside: Range,
 }
 
@@ -33,17 +33,15 @@ pub struct Domain {
     pub fitted: [Option<Fitted>; InferredQuantity::COUNT],
     /// Range of g = γ/Δ.
     pub gamma: Range,
-    /// Range of the Poisson ratio of the grains.
-    pub poisson_ratio: Range,
     /// Range of p/E*.
     pub reduced_pressure: Range,
     /// Range of (σ_33 − (σ_11 + σ_22)/2)/p.
     pub stress_ratio: Range,
     /// Range of the standard deviation of the radii over their mean.
     pub size_spread: Range,
-    /// Whether the solid fraction must be known.
+    /// True if the solid fraction must be known.
     pub needs_solid_fraction: bool,
-    /// Whether the model compares pressure, grains and stress with the packings of its calibration.
+    /// True if the model compares pressure, grains and stress with the packings of its calibration.
     pub compares_state: bool,
 }
 
@@ -55,7 +53,6 @@ impl Domain {
             structure,
             fitted: [None; InferredQuantity::COUNT],
             gamma: [-1.0, 1.0],
-            poisson_ratio: [0.0, 0.5],
             reduced_pressure: [0.0, f64::INFINITY],
             stress_ratio: [-1.5, 3.0],
             size_spread: [0.0, f64::INFINITY],
@@ -85,9 +82,6 @@ impl Domain {
             self.within(quantity.name(), values[i], range)?;
         }
         self.within("gamma/Delta", conditions.gamma.value, self.gamma)?;
-        if let Some(material) = &conditions.material {
-            self.within("the Poisson ratio of the grains", material.poisson_ratio, self.poisson_ratio)?;
-        }
         if let Some(ratio) = conditions.stress_ratio {
             self.within("q/p", ratio.value, self.stress_ratio)?;
         }
@@ -107,7 +101,7 @@ impl Domain {
         used.map_or(Ok(()), |phi| self.within("the solid fraction", phi.value, JAMMED))
     }
 
-    /// Whether everything of `structure` that the model uses lies inside.
+    /// True if everything of `structure` that the model uses lies inside.
     pub fn contains(&self, structure: &Microstructure) -> bool {
         structure.values().iter().zip(&self.structure).all(|(value, range)| match (value, range) {
             (Some(v), Some([low, high])) => (*low..=*high).contains(v),

@@ -23,14 +23,9 @@ impl Eq16Reading {
         }
     }
 
-    /// Bracket of Eq. 16: the bulk modulus in units of the isotropic one with as many contacts. Corrected, it is
-    /// 3 m1 + m2 = 1 − 4εg/5.
-    pub fn bulk_factor(self, eps: f64, g: f64) -> f64 {
-        self.bulk(eps, Moments::new(eps, g).spin(), g)
-    }
-
-    /// [`Eq16Reading::bulk_factor`] with a as an independent variable.
-    pub(crate) fn bulk(self, eps: f64, a: f64, g: f64) -> f64 {
+    /// Bracket of Eq. 16, with a as an independent variable: the bulk modulus in units of the isotropic one with as many contacts. Corrected,
+    /// it is 3 m1 + m2 = 1 − 4εg/5.
+    pub fn bulk(self, eps: f64, a: f64, g: f64) -> f64 {
         match self {
             Eq16Reading::Corrected => 1.0 - 0.8 * eps * g,
             Eq16Reading::AsPrinted => {

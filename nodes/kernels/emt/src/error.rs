@@ -37,7 +37,7 @@ pub enum EmtError {
         "the covariance of the moduli is invalid: {fault} ({value:e} Pa2); leave it out if it is not known"
     )]
     Covariance {
-        /// What is wrong with the covariance.
+        /// Fault of the covariance.
         fault: &'static str,
         /// The offending value, Pa².
         value: f64,
@@ -63,9 +63,9 @@ pub enum EmtError {
         quantity: &'static str,
         /// The value found.
         value: f64,
-        /// Lowest possible.
+        /// Lowest possible value.
         low: f64,
-        /// Highest possible.
+        /// Highest possible value.
         high: f64,
     },
     /// Contacts that are not Hertz–Mindlin contacts.
@@ -96,7 +96,7 @@ pub enum EmtError {
     Unstable {
         /// The modulus that follows from the others.
         modulus: &'static str,
-        /// Its value, Pa.
+        /// Value of the modulus, Pa.
         value: f64,
     },
     /// An input that the model needs is not known.
@@ -104,7 +104,7 @@ pub enum EmtError {
     Missing {
         /// Name of the model.
         model: &'static str,
-        /// What is missing.
+        /// Name of the missing input.
         missing: &'static str,
     },
     /// A structure or a state outside the model's domain.
@@ -129,18 +129,14 @@ pub enum EmtError {
         /// Name of the calibration.
         calibration: String,
     },
-    /// The strain ratio opens contacts, or makes their stiffness negative.
+    /// The strain ratio makes the stiffness of contacts negative.
     #[error(
-        "gamma/Delta = {g} is outside {range}, where {law} gives every contact a positive stiffness; give the elastic or \
+        "gamma/Delta = {g} is outside (-1, 1/2), where Eq. 10 gives every contact a positive stiffness; give the elastic or \
          the contact-fitted ratio, or 0"
     )]
     GammaOutOfRange {
         /// g = γ/Δ.
         g: f64,
-        /// The valid range.
-        range: &'static str,
-        /// The overlap law with this range.
-        law: &'static str,
     },
     /// No contact distribution has this shear ratio.
     #[error(
@@ -167,7 +163,7 @@ pub enum EmtError {
          check the units and that both moduli are of one state, or use another calibration"
     )]
     ShearTooStiff {
-        /// G12/Θ.
+        /// Ratio G12/Θ observed.
         ratio: f64,
         /// The value it must stay below at the observed G13/G12.
         limit: f64,
@@ -194,7 +190,7 @@ pub enum EmtError {
     TooFar {
         /// Name of the quantity.
         quantity: &'static str,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
         /// Lowest of the packings.
         low: f64,
@@ -254,43 +250,33 @@ pub enum EmtError {
          moduli"
     )]
     Ambiguous {
-        /// One of them.
+        /// Coordination number of one of them.
         first: f64,
-        /// The other.
+        /// Coordination number of the other.
         second: f64,
     },
 }
 
 impl EmtError {
-    /// Whether the data are missing or invalid, rather than inconsistent with the theory.
+    /// True if the data are missing or invalid, rather than inconsistent with the theory.
     pub fn is_input_error(&self) -> bool {
-        match self {
-            EmtError::NotFinite { .. }
-            | EmtError::NotPositive { .. }
-            | EmtError::NegativeStddev { .. }
-            | EmtError::Covariance { .. }
-            | EmtError::SolidFraction { .. }
-            | EmtError::StressRatio { .. }
-            | EmtError::PoissonRatio { .. }
-            | EmtError::NoStructure { .. }
-            | EmtError::Missing { .. }
-            | EmtError::NotCalibrated { .. }
-            | EmtError::PriorOutsideDomain { .. }
-            | EmtError::PriorContradicts { .. }
-            | EmtError::NoLikelihood { .. } => true,
-            EmtError::OtherContactLaw { .. }
-            | EmtError::SmoothGrains
-            | EmtError::Unstable { .. }
-            | EmtError::OutsideDomain { .. }
-            | EmtError::GammaOutOfRange { .. }
-            | EmtError::RatioOutOfRange { .. }
-            | EmtError::NoAnisotropy { .. }
-            | EmtError::ShearTooStiff { .. }
-            | EmtError::NoCoordination { .. }
-            | EmtError::TooFar { .. }
-            | EmtError::NotSampled { .. }
-            | EmtError::Ambiguous { .. } => false,
-        }
+        use EmtError::*;
+        matches!(
+            self,
+            NotFinite { .. }
+                | NotPositive { .. }
+                | NegativeStddev { .. }
+                | Covariance { .. }
+                | SolidFraction { .. }
+                | StressRatio { .. }
+                | PoissonRatio { .. }
+                | NoStructure { .. }
+                | Missing { .. }
+                | NotCalibrated { .. }
+                | PriorOutsideDomain { .. }
+                | PriorContradicts { .. }
+                | NoLikelihood { .. }
+        )
     }
 
     /// `model` needs `modulus`, which is not known.

@@ -1,4 +1,4 @@
-//! What a model infers, with its uncertainty.
+//! Estimates of a model, with their uncertainty.
 
 use crate::calibration::Calibration;
 use crate::checks;
@@ -22,7 +22,7 @@ pub const CREDIBLE_LEVEL: f64 = 0.95;
 /// Share of the variance of a quantity from which the input that causes it is named.
 const WIDENS: f64 = 0.5;
 
-/// How far an estimate can be relied on.
+/// Reliability of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Model and calibration were used inside their range, and the data agree with each other and with the model.
@@ -36,7 +36,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// Its name in texts, files and results.
+    /// Name in texts, files and results.
     pub const fn name(self) -> &'static str {
         match self {
             Status::Ok => "ok",
@@ -64,7 +64,7 @@ impl Status {
     }
 }
 
-/// What one model infers from one observation.
+/// Estimate of one model from one observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Name of the model.
@@ -75,7 +75,7 @@ pub struct Estimate {
     pub gamma: Option<StrainRatio>,
     /// The most probable values; `None` is undetermined, or not part of the model.
     pub structure: Microstructure,
-    /// Their derivatives with respect to the data.
+    /// Derivatives of the values with respect to the data.
     pub jacobian: Jacobian,
     /// Covariance from the errors of the observation; `None` if those are not known.
     pub data_covariance: Option<MicrostructureCovariance>,
@@ -85,9 +85,9 @@ pub struct Estimate {
     pub prior_covariance: Option<MicrostructureCovariance>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,
-    /// Whether model and calibration were used inside their range.
+    /// Status: model and calibration inside their range or not, data in agreement or not.
     pub status: Status,
-    /// Warnings.
+    /// Warnings about the estimate.
     pub warnings: Vec<Warning>,
     inputs: Option<InputCovariance>,
     /// That of the model: its independent quantities, from which the others follow, and their ranges.
@@ -150,7 +150,7 @@ impl Estimate {
         }
     }
 
-    /// The same, if its structure is within the domain, that of [`crate::Model::prior_domain`]: priors of quantities that
+    /// The estimate, if its structure is within the domain, that of [`crate::Model::prior_domain`]: priors of quantities that
     /// follow from others may have moved those out of it.
     pub fn within(self, domain: &Domain) -> Result<Self, EmtError> {
         for quantity in InferredQuantity::ALL {
@@ -252,7 +252,7 @@ pub(crate) fn assemble(
 ) -> Result<Estimate, EmtError> {
     let PointEstimate { structure, discrepancy, misfit, mut warnings, .. } = point;
     let inputs = observation.input_covariance(calibration.material());
-    // Where only errors of the state are known and the model does not use it, the error of the data is not known.
+    // The error of the data is not known where only errors of the state are known and the model does not use it.
     let data_covariance = inputs
         .map(|input| jacobian * input * jacobian.transpose())
         .filter(|c| observation.covariance.is_some() || c.amax() > 0.0);

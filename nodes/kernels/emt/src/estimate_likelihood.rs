@@ -27,7 +27,7 @@ pub(crate) struct OfEstimate {
 }
 
 impl OfEstimate {
-    /// Of this estimate from these moduli.
+    /// Likelihood of this estimate from these moduli.
     pub(crate) fn new(estimate: &Estimate, observation: &Observation) -> Result<Self, EmtError> {
         let without = |reason| EmtError::NoLikelihood { model: estimate.model, reason };
         if estimate.undetermined().next().is_some() {

@@ -29,7 +29,7 @@ pub struct Invariants {
 }
 
 impl Invariants {
-    /// Of all six moduli; `None` where one is missing, or Θ or G is not positive.
+    /// Invariants of all six moduli; `None` where one is missing, or Θ or G is not positive.
     pub fn of(moduli: &Moduli) -> Option<Self> {
         let get = |m| moduli.get(m);
         let (c11, c33, c13) = (get(Modulus::C11)?, get(Modulus::C33)?, get(Modulus::C13)?);

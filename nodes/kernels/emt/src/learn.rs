@@ -41,7 +41,7 @@ pub fn learn(
     Ok(calibration)
 }
 
-/// The same constants, with the errors that the models have with them on these packings.
+/// These constants, with the errors that the models have with them on these packings.
 pub fn with_errors(
     constants: &Calibration,
     samples: &[CalibrationSample],

@@ -14,9 +14,9 @@
 //!   - `ratio`: the paper's model, corrected and as printed
 //!   - `directional`: each modulus with its own coordination number
 //!   - `relaxed`: the relaxed network
-//!   - `hertz_mindlin`, `johnson`: packs with contacts in all directions alike, as in rock physics
+//!   - `hertz_mindlin`: a pack with contacts in all directions alike, as in rock physics
 //! - `calibration`, `learn`: the constants of the models, and how they are learned from packings
-//! - `moments`, `eq16`, `overlap`, `medium`, `sphere_pack`, `invariants`: the theory that the models share
+//! - `moments`, `eq16`, `medium`, `invariants`: the theory that the models share
 //! - `likelihood`, `estimate_likelihood`: the probability of moduli, as a model states it
 //! - `posterior`: draws, evidence, predictive checks and ranks
 //! - `prior`, `update`: prior knowledge, and estimates with it
@@ -58,7 +58,6 @@ mod moduli;
 mod moments;
 mod normal;
 mod observation;
-mod overlap;
 mod point_estimate;
 mod posterior;
 mod prior;
@@ -66,9 +65,7 @@ mod prior_conflict;
 mod propagation;
 mod random;
 mod registry;
-mod root;
 mod sampling;
-mod sphere_pack;
 mod update;
 mod warning;
 mod wave_moduli;
@@ -101,6 +98,5 @@ pub use posterior::{
 pub use prior::{Density, Prior, PriorError};
 pub use registry::{model, models, recommended};
 pub use sampling::{MonteCarlo, SamplingSettings, monte_carlo};
-pub use sphere_pack::{ContactHistory, PackShape};
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

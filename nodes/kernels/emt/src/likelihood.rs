@@ -25,7 +25,7 @@ pub trait Likelihood: Sync {
     /// The moduli that the likelihood is of.
     fn moduli(&self) -> &[Modulus];
 
-    /// Their observed values, Pa.
+    /// Observed values of these moduli, Pa.
     fn observed(&self) -> Vec<f64>;
 
     /// The distribution of the moduli for these independent quantities; `None` where the model has none.

@@ -17,7 +17,7 @@ pub struct Medium {
     pub solid_fraction: f64,
     /// Volume strain Δ since the grains touched, positive in compression. Positive.
     pub volume_strain: f64,
-    /// Coordination number.
+    /// Coordination number k.
     pub k: f64,
     /// Contact anisotropy ε, in [−1/2, 1].
     pub eps: f64,
@@ -44,7 +44,7 @@ impl Medium {
             * (self.volume_strain / 3.0).sqrt()
     }
 
-    /// The same at the Δ that gives `pressure`, Pa, by [`Medium::pressure`]; its own Δ is ignored.
+    /// Medium at the Δ that gives `pressure`, Pa, by [`Medium::pressure`]; the present Δ is ignored.
     #[must_use]
     pub fn at_pressure(self, pressure: f64) -> Self {
         let unit = Self { volume_strain: 1.0, ..self }.pressure();

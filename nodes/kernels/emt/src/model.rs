@@ -17,15 +17,15 @@ use std::fmt::Debug;
 /// A theory that relates microstructure to moduli. A new one is a file in `models` with this trait and a line in
 /// [`models`](fn@crate::models).
 pub trait Model: Sync + Debug {
-    /// Its name on command lines, in messages and in results.
+    /// Name on command lines, in messages and in results.
     fn name(&self) -> &'static str;
 
-    /// Whether the model uses γ/Δ.
+    /// True if the model uses γ/Δ.
     fn uses_gamma(&self) -> bool {
         true
     }
 
-    /// Whether the model uses the learned constants of a calibration, not its material alone.
+    /// True if the model uses the learned constants of a calibration, not its material alone.
     fn uses_constants(&self) -> bool {
         true
     }
@@ -83,7 +83,7 @@ pub trait Model: Sync + Debug {
         self.domain(calibration)
     }
 
-    /// Whether [`Model::likelihood`] is that of the packings of the calibration, and not made from the error of an estimate.
+    /// True if [`Model::likelihood`] is that of the packings of the calibration, and not made from the error of an estimate.
     fn states_likelihood(&self) -> bool {
         false
     }
@@ -97,5 +97,12 @@ pub trait Model: Sync + Debug {
     ) -> Result<Box<dyn Likelihood + 'a>, EmtError> {
         let estimate = self.infer(observation, calibration)?;
         Ok(Box::new(OfEstimate::new(&estimate, &observation.checked()?)?))
+    }
+}
+
+/// Names identify models.
+impl PartialEq for dyn Model {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
     }
 }

@@ -4,8 +4,6 @@ pub(crate) mod directional;
 pub(crate) mod effective_medium;
 mod equivalent;
 pub(crate) mod hertz_mindlin;
-pub(crate) mod johnson;
 pub(crate) mod ratio;
 pub(crate) mod relaxed;
 mod shear_ratio;
-mod uniform_strain;

@@ -23,7 +23,7 @@ pub enum Modulus {
     C11,
     /// P modulus along the axis.
     C33,
-    /// Off-diagonal C13.
+    /// Off-diagonal modulus C13.
     C13,
 }
 
@@ -32,7 +32,7 @@ impl Modulus {
     pub const ALL: [Modulus; MODULI] =
         [Modulus::G12, Modulus::G13, Modulus::Theta, Modulus::C11, Modulus::C33, Modulus::C13];
 
-    /// Its symbol.
+    /// Symbol of the modulus.
     pub const fn name(self) -> &'static str {
         match self {
             Modulus::G12 => "G12",
@@ -67,7 +67,7 @@ impl fmt::Display for Modulus {
 pub struct Moduli([Option<f64>; MODULI]);
 
 impl Moduli {
-    /// All unknown.
+    /// Moduli that are all unknown.
     pub const NONE: Moduli = Moduli([None; MODULI]);
 
     /// The three moduli of the paper, Pa.
@@ -96,14 +96,14 @@ impl Moduli {
         self.0[modulus as usize]
     }
 
-    /// The same with this one, Pa.
+    /// Moduli with this one, Pa, added.
     #[must_use]
     pub const fn with(mut self, modulus: Modulus, value: f64) -> Self {
         self.0[modulus as usize] = Some(value);
         self
     }
 
-    /// The same without this one.
+    /// Moduli without this one.
     #[must_use]
     pub const fn without(mut self, modulus: Modulus) -> Self {
         self.0[modulus as usize] = None;
@@ -129,7 +129,7 @@ impl Moduli {
         Some(variance.sqrt() / (9.0 * self.get(Modulus::Theta)?))
     }
 
-    /// The same with the one modulus that follows from the others, and its covariance with them.
+    /// Moduli with the one that follows from the others, and its covariance with them.
     #[must_use]
     pub(crate) fn completed(
         mut self,
@@ -152,7 +152,7 @@ impl Moduli {
         (self, covariance)
     }
 
-    /// Whether no medium has these moduli, by more than so many standard deviations of their errors: some strain would cost no
+    /// True if no medium has these moduli, by more than so many standard deviations of their errors: some strain would cost no
     /// energy. Considers the known ones of C11, C33, C13 and G12.
     pub(crate) fn unstable(&self, covariance: Option<&ModuliCovariance>, sigmas: f64) -> bool {
         let [c11, c33, c13, g12] =

@@ -1,4 +1,4 @@
-//! What is observed on a packing.
+//! Observations of a packing.
 
 use crate::conditions::{Conditions, Measured, STATE_INPUTS, StrainRatio};
 use crate::error::EmtError;
@@ -41,9 +41,9 @@ pub(crate) type InputCovariance = SMatrix<f64, INPUTS, INPUTS>;
 pub struct Observation {
     /// The moduli, Pa.
     pub moduli: Moduli,
-    /// Their covariance, Pa²; `None` if their uncertainty is not known.
+    /// Covariance of the moduli, Pa²; `None` if their uncertainty is not known.
     pub covariance: Option<ModuliCovariance>,
-    /// The state.
+    /// State of the packing.
     pub conditions: Conditions,
     /// Relative part of the stiffness that is not isotropic about the axis (Mandel norm); `None` if only the moduli are
     /// known.
@@ -52,7 +52,7 @@ pub struct Observation {
     pub grains: Option<u32>,
     /// The modulus that was not measured but follows from the others ([`Observation::checked`]).
     pub derived: Option<Modulus>,
-    /// Whether each modulus has an error so large that it was taken as unknown ([`Observation::checked`]).
+    /// For each modulus, true if its error is so large that it was taken as unknown ([`Observation::checked`]).
     pub taken_as_unknown: [bool; MODULI],
 }
 
@@ -110,7 +110,7 @@ impl Observation {
         })
     }
 
-    /// The same with independent errors of this relative standard deviation for all moduli: 0.01 is one percent.
+    /// Observation with independent errors of this relative standard deviation for all moduli: 0.01 is one percent.
     #[must_use]
     pub fn with_relative_error(mut self, relative: f64) -> Self {
         let variance = self.moduli.values().map(|m| m.map_or(0.0, |m| (relative * m).powi(2)));
@@ -118,14 +118,14 @@ impl Observation {
         self
     }
 
-    /// The same with this covariance of the moduli, Pa².
+    /// Observation with this covariance of the moduli, Pa².
     #[must_use]
     pub fn with_covariance(mut self, covariance: ModuliCovariance) -> Self {
         self.covariance = Some(covariance);
         self
     }
 
-    /// The same with this covariance of (G12, G13, Θ), Pa²; the others are taken as exact.
+    /// Observation with this covariance of (G12, G13, Θ), Pa²; the others are taken as exact.
     #[must_use]
     pub fn with_g12_g13_theta_covariance(self, covariance: &Mat3) -> Self {
         let mut all = ModuliCovariance::zeros();
@@ -133,7 +133,7 @@ impl Observation {
         self.with_covariance(all)
     }
 
-    /// Pressure, Pa.
+    /// Confining pressure, Pa.
     pub const fn pressure(&self) -> f64 {
         self.conditions.pressure.value
     }
@@ -159,7 +159,7 @@ impl Observation {
         Ok(Self { moduli, covariance, derived, ..known })
     }
 
-    /// The same without the moduli whose errors are more than [`UNKNOWN_ERROR`] times the largest modulus.
+    /// Observation without the moduli whose errors are more than [`UNKNOWN_ERROR`] times the largest modulus.
     fn without_unknown(&self) -> Self {
         let mut known = self.clone();
         let Some(covariance) = &mut known.covariance else { return known };
@@ -213,7 +213,7 @@ impl Observation {
         Some(relative)
     }
 
-    /// The same with one input changed, as [`Conditions::moved`]; moduli by a relative amount. `None` if the input is not known.
+    /// Observation with one input changed, as [`Conditions::moved`]; moduli by a relative amount. `None` if the input is not known.
     pub(crate) fn moved(&self, input: usize, by: f64, material: &Material) -> Option<Self> {
         let mut moved = self.clone();
         if let Some(modulus) = Modulus::ALL.get(input) {

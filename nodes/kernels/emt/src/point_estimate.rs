@@ -1,4 +1,4 @@
-//! What a model infers, before errors are propagated.
+//! Point estimates of a model, before errors are propagated.
 
 use crate::observation::INPUTS;
 use crate::warning::Warning;
@@ -12,9 +12,9 @@ pub type Jacobian = SMatrix<f64, { InferredQuantity::COUNT }, INPUTS>;
 /// A point estimate, with the data on its error that depend on the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointEstimate {
-    /// The structure.
+    /// Structure that was inferred.
     pub structure: Microstructure,
-    /// Its derivatives with respect to the inputs; `None`: by central differences of [`crate::Model::solve`].
+    /// Derivatives of the structure with respect to the inputs; `None`: by central differences of [`crate::Model::solve`].
     pub jacobian: Option<Jacobian>,
     /// Covariance of the model's own error where the model computes it; `None`: as the calibration has it for the
     /// model.

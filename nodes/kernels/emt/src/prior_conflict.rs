@@ -1,4 +1,4 @@
-//! Whether data and prior contradict each other.
+//! Contradictions of data and prior.
 
 use crate::normal::chi_square_above;
 use crate::prior::{Density, Prior};

@@ -17,7 +17,7 @@ use grainlab_core::Material;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{SMatrix, SVector};
 
-/// How to sample.
+/// Settings of the sampling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SamplingSettings {
     /// Number of draws. With 10,000 draws the end of a 95 % interval is accurate to 3 % of its distance from the
@@ -33,7 +33,7 @@ impl Default for SamplingSettings {
     }
 }
 
-/// What one model infers from one observation, as draws from its distribution.
+/// Estimate of one model from one observation, as draws from its distribution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MonteCarlo {
     /// Name of the model.

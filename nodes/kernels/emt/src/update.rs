@@ -16,12 +16,12 @@ const SETTLED: f64 = 1e-12;
 
 type Vector = SVector<f64, { InferredQuantity::COUNT }>;
 
-/// What the priors change.
+/// Changes by the priors.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Updated {
     /// Change of the means.
     pub(crate) shift: Vector,
-    /// Covariance.
+    /// Covariance with the priors.
     pub(crate) covariance: MicrostructureCovariance,
     /// Derivative of the means with respect to those before.
     pub(crate) kept: MicrostructureCovariance,
@@ -100,7 +100,7 @@ fn with_sites(covariance: &MicrostructureCovariance, sites: &[Site]) -> Updated 
     if let Some(solved) = b.cholesky().map(|c| c.solve(&columns.transpose())) {
         let less = &columns * &solved;
         with -= MicrostructureCovariance::from_fn(|i, j| less[(i, j)]);
-        // Where a prior is narrow the difference is rounding alone; this is the same without one.
+        // Without a difference: where a prior is narrow that is rounding alone.
         for (j, site) in
             sites.iter().enumerate().filter(|(_, s)| s.precision * covariance[(s.at, s.at)] > 1.0)
         {

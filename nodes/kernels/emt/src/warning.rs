@@ -4,93 +4,127 @@ use crate::digits::{apart, of_quantity};
 use crate::moduli::Modulus;
 use crate::observation::UNKNOWN_ERROR;
 use grainlab_core::results::InferredQuantity;
-use std::fmt;
 
 /// A limitation of an estimate.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Warning {
     /// A coordination number lies outside the packings of the calibration.
+    #[error("{}", beyond(*quantity, *value, *range))]
     CoordinationOutsideFit {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
         /// Lowest and highest of the calibration.
         range: [f64; 2],
     },
     /// The pressure lies outside the packings of the calibration.
+    #[error(
+        "a pressure of {}, the range of the calibration's packings",
+        outside(pressure / 1e3, range.map(|p| p / 1e3), 4, [" kPa is outside ", " to ", " kPa"])
+    )]
     PressureOutsideFit {
-        /// Pa.
+        /// Pressure, in Pa.
         pressure: f64,
         /// Lowest and highest of the calibration, Pa.
         range: [f64; 2],
     },
     /// A coordination number is larger than equal spheres can have.
+    #[error(
+        "a coordination number of {coordination:.3} is larger than equal spheres can have (12): check the units (Pa)"
+    )]
     CoordinationImpossible {
-        /// The largest.
+        /// Largest coordination number.
         coordination: f64,
     },
     /// G13/G12 is outside [2/3, 3/2], the range of packings whose only anisotropy is that of the contacts.
+    #[error("G13/G12 = {ratio:.4} is outside [2/3, 3/2], the range of contact anisotropy alone")]
     RatioUnusual {
         /// r = G13/G12.
         ratio: f64,
     },
     /// ε is outside [−1/2, 1]: Eq. 6 then gives some directions a negative contact density.
+    #[error("eps = {eps:.4} is outside [-1/2, 1]: the contact density would be negative in some directions")]
     EpsOutOfRange {
-        /// ε inferred.
+        /// Value of ε inferred.
         eps: f64,
     },
     /// ε is outside the packings of the calibration.
+    #[error(
+        "eps = {}, the range of the calibration's packings", outside(*eps, *range, 4, [" is outside [", ", ", "]"])
+    )]
     EpsOutsideFit {
-        /// ε inferred.
+        /// Value of ε inferred.
         eps: f64,
         /// Lowest and highest of the calibration.
         range: [f64; 2],
     },
     /// γ/Δ is outside [−0.3, 0.1], where the linear overlap law of Eq. 10 costs more than 0.005 in ε.
+    #[error("gamma/Delta = {g:.4} is outside [-0.3, 0.1], where Eq. 10 is accurate to 0.005 in eps")]
     GammaLarge {
         /// g = γ/Δ.
         g: f64,
     },
     /// γ/Δ is outside [−1/2, 1/4]: contacts in some directions would be open.
+    #[error("gamma/Delta = {g:.4} is outside [-1/2, 1/4]: contacts in some directions would be open")]
     ContactsOpen {
         /// g = γ/Δ.
         g: f64,
     },
     /// γ/Δ is not known and was taken as zero.
+    #[error("gamma/Delta is not known and was taken as 0")]
     GammaAssumedZero,
     /// The stress ratio q/p is not known; [`crate::UNKNOWN_STRESS_RATIO`] was taken.
+    #[error(
+        "the stress ratio q/p is not known: it is 0 +- 0.15, cut at +- 0.3, in value and error; a sample at rest in its bed \
+         (K0, q/p about 0.75) is outside"
+    )]
     StressRatioUnknown,
     /// The sizes of the grains are not known; [`crate::UNKNOWN_SIZE_SPREAD`] was taken.
+    #[error(
+        "the spread of the grain sizes is not known: any from 0 to 0.3 is equally probable, in value and error"
+    )]
     SizesUnknown,
     /// An input of the state contributes most of the variance of a quantity.
+    #[error("{input} widens most: {:.0} % of the variance of {quantity} is due to it", 100.0 * share)]
     WidenedMost {
-        /// Its name, one of [`crate::INPUT_NAMES`].
+        /// Name of the input, one of [`crate::INPUT_NAMES`].
         input: &'static str,
         /// The quantity that it widens most.
         quantity: InferredQuantity,
-        /// Its share of the variance of that quantity.
+        /// Share of the variance of that quantity that is due to it.
         share: f64,
     },
     /// The contact law is not known; Hertz–Mindlin contacts were assumed.
+    #[error("the contact law is not known: the contacts were taken as Hertz-Mindlin contacts")]
     ContactLawAssumed,
     /// A quantity of the state is outside the packings of the calibration.
+    #[error("{quantity} = {}, the range of the calibration's packings", of_state(quantity, *value, *range))]
     StateOutsideFit {
-        /// Its name.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
         /// Lowest and highest of the calibration.
         range: [f64; 2],
     },
     /// The model has contacts in all directions alike.
+    #[error("the model has contacts in all directions alike: eps is unknown, not zero")]
     IsotropicContacts,
     /// Share f of the contacts that stick in a shear wave, which makes the model fit Θ and the shear modulus.
+    #[error(
+        "the shear modulus over Theta is that of contacts of which a share f = {share:.3}{} sticks",
+        if is_share(*share) { "" } else { " (outside [0, 1])" }
+    )]
     StickingShare {
-        /// f, dimensionless.
+        /// Share f, dimensionless.
         share: f64,
     },
     /// The Poisson ratio of the grains is not that of the calibration's packings.
+    #[error(
+        "the Poisson ratio of the grains is {nu}, that of the calibration {calibrated}: moduli are scaled by the \
+         Hertz modulus alone"
+    )]
     OtherGrains {
         /// ν of the grains.
         nu: f64,
@@ -98,70 +132,102 @@ pub enum Warning {
         calibrated: f64,
     },
     /// The contacts resist rolling, and those of the calibration's packings do not.
+    #[error("the contacts resist rolling; no model knows packings whose contacts do")]
     RollingResistance,
     /// The stiffness is not isotropic about the axis.
+    #[error(
+        "{:.1} % of the stiffness is not isotropic about the axis: the sample is not, or the axis is wrong", 100.0 * asymmetry
+    )]
     NotTransverselyIsotropic {
         /// Relative part that is not isotropic.
         asymmetry: f64,
     },
     /// No stable medium has these moduli.
+    #[error("no stable medium has these moduli: they are not of one state, or the errors are large")]
     NotOneMedium,
     /// Θ differs from the value that follows from C11, C33, C13 and G12 by more than the errors.
+    #[error(
+        "Theta is {:.1} % off the value that follows from C11, C33, C13 and G12: they are not of one state, or one of \
+         them is wrong", 100.0 * relative.abs()
+    )]
     Imbalance {
         /// Difference relative to Θ.
         relative: f64,
     },
     /// The coordination number is less than one contact per grain.
+    #[error(
+        "{quantity} = {value:.3} is less than one contact per grain: check the units of moduli and pressure (Pa)"
+    )]
     CoordinationAbsurd {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
     },
     /// The error of a modulus is too large for linear error propagation.
+    #[error(
+        "{modulus} is known to {:.0} % only: intervals from linear error propagation are too narrow, use sampling",
+        100.0 * relative
+    )]
     ErrorsLarge {
         /// The modulus with the largest error.
         modulus: Modulus,
-        /// Its relative standard deviation.
+        /// Relative standard deviation of it.
         relative: f64,
     },
     /// The error of a modulus is so large that the modulus was taken as unknown.
+    #[error(
+        "the error of {modulus} is more than {UNKNOWN_ERROR} times the largest modulus: {modulus} was taken as unknown"
+    )]
     TakenAsUnknown {
-        /// The modulus.
+        /// Name of the modulus.
         modulus: Modulus,
     },
     /// The errors of the moduli are not known, and the uncertainty is without them.
+    #[error("the errors of the moduli are not known: the uncertainty does not include them")]
     DataErrorUnknown,
     /// The error of an input of the state is too large for linear error propagation.
+    #[error(
+        "the {input} is known to {:.0} % only: intervals from linear error propagation are too narrow", 100.0 * relative
+    )]
     StateErrorLarge {
-        /// Its name, one of [`crate::INPUT_NAMES`].
+        /// Name of the input, one of [`crate::INPUT_NAMES`].
         input: &'static str,
-        /// Its relative standard deviation.
+        /// Relative standard deviation of it.
         relative: f64,
     },
     /// The data contradict the prior.
+    #[error(
+        "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma from {prior:.4}, the mean of its prior"
+    )]
     PriorConflict {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value by the data alone.
+        /// Value by the data alone.
         value: f64,
         /// Mean of the prior.
         prior: f64,
-        /// Their difference in standard deviations.
+        /// Difference of both in standard deviations.
         sigma: f64,
     },
     /// The data contradict a limit of the prior.
+    #[error(
+        "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma beyond {limit:.4}, the limit of its prior"
+    )]
     PriorExcludes {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value by the data alone.
+        /// Value by the data alone.
         value: f64,
         /// The nearest limit of the prior.
         limit: f64,
-        /// Their difference in standard deviations of the value.
+        /// Difference of both in standard deviations of the value.
         sigma: f64,
     },
     /// The data contradict the priors of several quantities together.
+    #[error(
+        "the priors together contradict the data: chi-square {chi_square:.1} for {quantities} quantities with a prior"
+    )]
     PriorsConflict {
         /// Sum of squares weighted by the covariance of data and priors.
         chi_square: f64,
@@ -169,25 +235,36 @@ pub enum Warning {
         quantities: usize,
     },
     /// The data do not determine a quantity, so that its prior has no effect.
+    #[error(
+        "the data do not determine {quantity}, and its prior is not used; draws from the posterior use it"
+    )]
     PriorUnused {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
     },
     /// The data do not determine these unknowns of the model, in the order of [`InferredQuantity::ALL`].
+    #[error("the data do not determine {}", names(quantities))]
     Undetermined {
-        /// Whether each is open.
+        /// For each quantity, true if it is open.
         quantities: [bool; InferredQuantity::COUNT],
     },
     /// The estimate is outside the domain of the model.
+    #[error(
+        "{quantity} = {}, the domain of the model", outside(*value, *range, 4, [" is outside [", ", ", "]"])
+    )]
     OutsideDomain {
-        /// The quantity.
+        /// Name of the quantity.
         quantity: InferredQuantity,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
         /// Lowest and highest of the domain.
         range: [f64; 2],
     },
     /// The data contradict each other, or the model.
+    #[error(
+        "the moduli contradict each other or the model: chi-square {chi_square:.1} for {}",
+        degrees(*degrees_of_freedom, *worst)
+    )]
     Conflict {
         /// Sum of squares weighted by the errors of data and model.
         chi_square: f64,
@@ -197,6 +274,10 @@ pub enum Warning {
         worst: (Modulus, f64),
     },
     /// The moduli are improbable under the posterior, although their χ² about the estimate is ordinary.
+    #[error(
+        "the moduli are improbable under the posterior (p = {probability:.0e}): the sample is unlike the packings of the \
+         calibration, or the errors are larger than given"
+    )]
     Improbable {
         /// Probability of the whole, or of the least probable modulus times their number.
         probability: f64,
@@ -204,7 +285,7 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// Whether the data contradict each other, the model or the prior.
+    /// True if the data contradict each other, the model or the prior.
     pub fn is_contradiction(&self) -> bool {
         matches!(
             self,
@@ -218,7 +299,7 @@ impl Warning {
         )
     }
 
-    /// Whether it follows from the structure and its uncertainty alone, which a prior changes.
+    /// True if it follows from the structure and its uncertainty alone, which a prior changes.
     pub(crate) fn is_of_structure(&self) -> bool {
         matches!(
             self,
@@ -232,7 +313,7 @@ impl Warning {
         )
     }
 
-    /// Whether the model or the calibration is used outside its range.
+    /// True if the model or the calibration is used outside its range.
     pub fn is_extrapolation(&self) -> bool {
         !matches!(
             self,
@@ -254,183 +335,40 @@ impl Warning {
     }
 }
 
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Warning::CoordinationOutsideFit { quantity, value, range } => {
-                let [shown, low, high] = apart(*value, *range, 3);
-                if *value < range[0] {
-                    return write!(
-                        f,
-                        "{quantity} = {shown} is below {low}, the lowest of the calibration's packings"
-                    );
-                }
-                write!(f, "{quantity} = {shown} is above {high}, the highest of the calibration's packings")
-            }
-            Warning::PressureOutsideFit { pressure, range } => {
-                let [shown, low, high] = apart(pressure / 1e3, range.map(|p| p / 1e3), 4);
-                write!(
-                    f,
-                    "a pressure of {shown} kPa is outside {low} to {high} kPa, the range of the calibration's packings"
-                )
-            }
-            Warning::CoordinationImpossible { coordination } => {
-                write!(
-                    f,
-                    "a coordination number of {coordination:.3} is larger than equal spheres can have (12): check the units (Pa)"
-                )
-            }
-            Warning::RatioUnusual { ratio } => {
-                write!(f, "G13/G12 = {ratio:.4} is outside [2/3, 3/2], the range of contact anisotropy alone")
-            }
-            Warning::EpsOutOfRange { eps } => {
-                write!(
-                    f,
-                    "eps = {eps:.4} is outside [-1/2, 1]: the contact density would be negative in some directions"
-                )
-            }
-            Warning::EpsOutsideFit { eps, range } => {
-                let [shown, low, high] = apart(*eps, *range, 4);
-                write!(f, "eps = {shown} is outside [{low}, {high}], the range of the calibration's packings")
-            }
-            Warning::GammaLarge { g } => {
-                write!(
-                    f,
-                    "gamma/Delta = {g:.4} is outside [-0.3, 0.1], where Eq. 10 is accurate to 0.005 in eps"
-                )
-            }
-            Warning::ContactsOpen { g } => {
-                write!(
-                    f,
-                    "gamma/Delta = {g:.4} is outside [-1/2, 1/4]: contacts in some directions would be open"
-                )
-            }
-            Warning::GammaAssumedZero => write!(f, "gamma/Delta is not known and was taken as 0"),
-            Warning::RollingResistance => {
-                write!(f, "the contacts resist rolling; no model knows packings whose contacts do")
-            }
-            Warning::StressRatioUnknown => write!(
-                f,
-                "the stress ratio q/p is not known: it is 0 +- 0.15, cut at +- 0.3, in value and error; a sample at rest in its bed \
-                 (K0, q/p about 0.75) is outside"
-            ),
-            Warning::SizesUnknown => write!(
-                f,
-                "the spread of the grain sizes is not known: any from 0 to 0.3 is equally probable, in value and error"
-            ),
-            Warning::WidenedMost { input, quantity, share } => write!(
-                f,
-                "{input} widens most: {:.0} % of the variance of {quantity} is due to it",
-                100.0 * share
-            ),
-            Warning::ContactLawAssumed => {
-                write!(f, "the contact law is not known: the contacts were taken as Hertz-Mindlin contacts")
-            }
-            Warning::IsotropicContacts => {
-                write!(f, "the model has contacts in all directions alike: eps is unknown, not zero")
-            }
-            Warning::StickingShare { share } => {
-                let outside = if is_share(*share) { "" } else { " (outside [0, 1])" };
-                write!(
-                    f,
-                    "the shear modulus over Theta is that of contacts of which a share f = {share:.3}{outside} sticks"
-                )
-            }
-            Warning::StateOutsideFit { quantity, value, range } => {
-                let [shown, low, high] = of_quantity(quantity, *value, *range);
-                write!(
-                    f,
-                    "{quantity} = {shown} is outside {low} to {high}, the range of the calibration's packings"
-                )
-            }
-            Warning::OtherGrains { nu, calibrated } => write!(
-                f,
-                "the Poisson ratio of the grains is {nu}, that of the calibration {calibrated}: moduli are scaled by the \
-                 Hertz modulus alone"
-            ),
-            Warning::Undetermined { quantities } => {
-                let open = InferredQuantity::ALL.into_iter().filter(|q| quantities[*q as usize]);
-                let names: Vec<&str> = open.map(InferredQuantity::name).collect();
-                write!(f, "the data do not determine {}", names.join(", "))
-            }
-            Warning::OutsideDomain { quantity, value, range } => {
-                let [shown, low, high] = apart(*value, *range, 4);
-                write!(f, "{quantity} = {shown} is outside [{low}, {high}], the domain of the model")
-            }
-            Warning::NotTransverselyIsotropic { asymmetry } => write!(
-                f,
-                "{:.1} % of the stiffness is not isotropic about the axis: the sample is not, or the axis is wrong",
-                100.0 * asymmetry
-            ),
-            Warning::NotOneMedium => {
-                write!(
-                    f,
-                    "no stable medium has these moduli: they are not of one state, or the errors are large"
-                )
-            }
-            Warning::Imbalance { relative } => write!(
-                f,
-                "Theta is {:.1} % off the value that follows from C11, C33, C13 and G12: they are not of one state, or one of \
-                 them is wrong",
-                100.0 * relative.abs()
-            ),
-            Warning::CoordinationAbsurd { quantity, value } => write!(
-                f,
-                "{quantity} = {value:.3} is less than one contact per grain: check the units of moduli and pressure (Pa)"
-            ),
-            Warning::ErrorsLarge { modulus, relative } => write!(
-                f,
-                "{modulus} is known to {:.0} % only: intervals from linear error propagation are too narrow, use sampling",
-                100.0 * relative
-            ),
-            Warning::TakenAsUnknown { modulus } => write!(
-                f,
-                "the error of {modulus} is more than {UNKNOWN_ERROR} times the largest modulus: {modulus} was taken as unknown"
-            ),
-            Warning::DataErrorUnknown => {
-                write!(f, "the errors of the moduli are not known: the uncertainty does not include them")
-            }
-            Warning::StateErrorLarge { input, relative } => write!(
-                f,
-                "the {input} is known to {:.0} % only: intervals from linear error propagation are too narrow",
-                100.0 * relative
-            ),
-            Warning::PriorConflict { quantity, value, prior, sigma } => write!(
-                f,
-                "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma from {prior:.4}, the mean of its prior"
-            ),
-            Warning::PriorExcludes { quantity, value, limit, sigma } => write!(
-                f,
-                "the data alone give {quantity} = {value:.4}, {sigma:.1} sigma beyond {limit:.4}, the limit of its prior"
-            ),
-            Warning::PriorsConflict { chi_square, quantities } => write!(
-                f,
-                "the priors together contradict the data: chi-square {chi_square:.1} for {quantities} quantities with a prior"
-            ),
-            Warning::PriorUnused { quantity } => write!(
-                f,
-                "the data do not determine {quantity}, and its prior is not used; draws from the posterior use it"
-            ),
-            Warning::Conflict { chi_square, degrees_of_freedom: 1, .. } => write!(
-                f,
-                "the moduli contradict each other or the model: chi-square {chi_square:.1} for 1 degree of freedom, so that any of \
-                 them may be wrong"
-            ),
-            Warning::Conflict { chi_square, degrees_of_freedom, worst: (modulus, sigma) } => write!(
-                f,
-                "the moduli contradict each other or the model: chi-square {chi_square:.1} for {degrees_of_freedom} \
-                 degrees of freedom, {modulus} is {sigma:.1} sigma from its prediction by the others"
-            ),
-            Warning::Improbable { probability } => write!(
-                f,
-                "the moduli are improbable under the posterior (p = {probability:.0e}): the sample is unlike the packings of the \
-                 calibration, or the errors are larger than given"
-            ),
+/// A value and the ends of a range that it is outside of, with these texts between.
+fn outside(value: f64, range: [f64; 2], digits: usize, [is, to, end]: [&str; 3]) -> String {
+    let [value, low, high] = apart(value, range, digits);
+    format!("{value}{is}{low}{to}{high}{end}")
+}
+
+fn of_state(quantity: &str, value: f64, range: [f64; 2]) -> String {
+    let [value, low, high] = of_quantity(quantity, value, range);
+    format!("{value} is outside {low} to {high}")
+}
+
+fn beyond(quantity: InferredQuantity, value: f64, range: [f64; 2]) -> String {
+    let [shown, low, high] = apart(value, range, 3);
+    if value < range[0] {
+        return format!("{quantity} = {shown} is below {low}, the lowest of the calibration's packings");
+    }
+    format!("{quantity} = {shown} is above {high}, the highest of the calibration's packings")
+}
+
+fn names(open: &[bool; InferredQuantity::COUNT]) -> String {
+    let open = InferredQuantity::ALL.into_iter().filter(|q| open[*q as usize]);
+    open.map(InferredQuantity::name).collect::<Vec<_>>().join(", ")
+}
+
+fn degrees(degrees_of_freedom: usize, (modulus, sigma): (Modulus, f64)) -> String {
+    match degrees_of_freedom {
+        1 => "1 degree of freedom, so that any of them may be wrong".to_owned(),
+        n => {
+            format!("{n} degrees of freedom, {modulus} is {sigma:.1} sigma from its prediction by the others")
         }
     }
 }
 
-/// Whether a number is in [0, 1], to the rounding of its computation.
+/// True if a number is in [0, 1], to the rounding of its computation.
 fn is_share(number: f64) -> bool {
     (-1e-9..=1.0 + 1e-9).contains(&number)
 }

@@ -38,7 +38,7 @@ impl WaveModuli {
         self.fitted.as_ref().ok()?.observation.moduli.get(modulus)
     }
 
-    /// Its standard deviation, Pa; `None` also where the errors of the speeds are not known.
+    /// Standard deviation of a modulus, Pa; `None` also where the errors of the speeds are not known.
     pub fn stddev(&self, modulus: Modulus) -> Option<f64> {
         let observation = &self.fitted.as_ref().ok()?.observation;
         let (covariance, at) = (observation.covariance?, modulus as usize);

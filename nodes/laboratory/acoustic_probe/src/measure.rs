@@ -3,7 +3,7 @@
 use crate::Settings;
 use grainlab_acoustics::{AcousticsError, Measurement, Trace};
 use grainlab_core::results::NotJammed;
-use grainlab_core::{Packing, Vec3, WaveMethod, stress};
+use grainlab_core::{Packing, Vec3, stress};
 use grainlab_msgs::boundary::{
     BoundaryError, TraceReading, WaveSpeedsReading, WaveformReading, wave_speeds_message, waveform_message,
 };
@@ -13,7 +13,7 @@ use grainlab_msgs::{DecodeError, msg};
 /// The messages published for one packing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// Its wave speeds.
+    /// Wave speeds of the packing.
     pub wave_speeds: msg::WaveSpeeds,
     /// The recorded traces, one message per wave; empty for dispersion.
     pub waveforms: Vec<msg::Waveform>,
@@ -33,7 +33,7 @@ pub enum MeasureError {
     NotJammed {
         /// Step of the packing.
         step: u64,
-        /// The reason.
+        /// Reason of the failure.
         reason: NotJammed,
     },
     /// The measurement failed.
@@ -41,7 +41,7 @@ pub enum MeasureError {
     Acoustics {
         /// Step of the packing.
         step: u64,
-        /// The reason.
+        /// Reason of the failure.
         reason: AcousticsError,
     },
     /// The result is not a valid message.
@@ -49,7 +49,7 @@ pub enum MeasureError {
     Result {
         /// Step of the packing.
         step: u64,
-        /// The reason.
+        /// Reason of the failure.
         reason: BoundaryError,
     },
 }
@@ -114,13 +114,9 @@ fn waveform(
     source_step: Option<u64>,
     trace: &Trace,
 ) -> Result<msg::Waveform, BoundaryError> {
-    let word = match trace.method {
-        WaveMethod::StandingWave => "standing wave",
-        _ => "receiver",
-    };
     // Single precision is that of a good digitiser, and far finer than any noise.
     let channels = (1..).zip(&trace.channels).map(|(n, c)| TraceReading {
-        name: format!("{word} {n}"),
+        name: format!("receiver {n}"),
         distance: c.distance,
         samples: c.samples.iter().map(|s| *s as f32).collect(),
     });

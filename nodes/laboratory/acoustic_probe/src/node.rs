@@ -1,4 +1,4 @@
-//! The node.
+//! The node of the probe.
 
 use crate::{MeasureError, Measured, Settings, measure};
 use grainlab_msgs::msg::{Packing, WaveSpeeds, Waveform};
@@ -16,7 +16,7 @@ pub const MEASURING: &str = "measuring";
 /// The probe: measures every packing, one after the other, on a worker thread.
 pub type AcousticProbe = PackingNode<Probe>;
 
-/// The publishers.
+/// Publishers and counts of the probe.
 #[derive(Debug)]
 pub struct Probe {
     wave_speeds: Publisher<WaveSpeeds>,

@@ -3,46 +3,32 @@
 use grainlab_acoustics::{Instrument, dispersion, time_of_flight};
 use grainlab_node_kit::{ParameterSpec, Range};
 
-/// The parameters of the node.
-pub fn parameters() -> Vec<ParameterSpec> {
-    let mut all = rays();
-    all.extend(ways());
-    all.extend(instrument());
-    all
-}
-
-/// The methods that move the grains, and of these the ones that time a burst.
-const MOVING: &[&str] = &["standing_wave", "first_arrival", "cross_correlation", "peak"];
+/// The methods that time a burst.
 const OF_BURSTS: &[&str] = &["first_arrival", "cross_correlation", "peak"];
 
 /// The methods on which a parameter acts; `None`: all of them.
 pub fn methods_with(parameter: &str) -> Option<&'static [&'static str]> {
     match parameter {
         "wavelengths" | "tolerance" | "max_iterations" => Some(&["dispersion"]),
-        "frequencies" | "cycles" => Some(OF_BURSTS),
-        "copies" | "amplitude" | "wave_friction" | "sample_rate" | "signal_to_noise" | "jitter" | "shots" => {
-            Some(MOVING)
-        }
+        "frequencies" | "cycles" | "copies" | "amplitude" | "wave_friction" | "sample_rate"
+        | "signal_to_noise" | "jitter" | "shots" => Some(OF_BURSTS),
         _ => None,
     }
 }
 
-/// The set of waves.
-fn rays() -> Vec<ParameterSpec> {
+/// The parameters of the node: the set of waves, the methods, noise and errors of the instrument.
+pub fn parameters() -> Vec<ParameterSpec> {
+    let dispersion = dispersion::Settings::default();
+    let flight = time_of_flight::Settings::default();
+    let d = Instrument::default();
     vec![
         ParameterSpec::new(
             "method",
             "dispersion",
-            "how speeds are measured: dispersion (frequencies of long waves in the frozen contact network), standing_wave (the \
-             packing vibrates freely), or time of flight by first_arrival, cross_correlation or peak",
+            "how speeds are measured: dispersion (frequencies of long waves in the frozen contact network), or \
+             time of flight by first_arrival, cross_correlation or peak",
         )
-        .within(Range::Choice(&[
-            "dispersion",
-            "standing_wave",
-            "first_arrival",
-            "cross_correlation",
-            "peak",
-        ])),
+        .within(Range::Choice(&["dispersion", "first_arrival", "cross_correlation", "peak"])),
         ParameterSpec::new(
             "axis",
             "e3",
@@ -57,15 +43,6 @@ fn rays() -> Vec<ParameterSpec> {
         .within(Range::Choice(&["complete", "three", "everywhere"])),
         ParameterSpec::new("modes", "all", "polarizations sent along each ray: all, compression, shear")
             .within(Range::Choice(&["all", "compression", "shear"])),
-    ]
-}
-
-/// The methods.
-fn ways() -> Vec<ParameterSpec> {
-    let dispersion = dispersion::Settings::default();
-    let flight = time_of_flight::Settings::default();
-    let strain = Range::Double { min: 0.0, max: 1e-2 };
-    vec![
         ParameterSpec::new(
             "wavelengths",
             dispersion.wavelengths,
@@ -84,8 +61,7 @@ fn ways() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "copies",
             0_i64,
-            "repetitions of the packing along the path, 0 for 8 (standing_wave, which needs 5) or as many as are needed \
-             (time of flight)",
+            "repetitions of the packing along the path of time of flight, 0 for as many as are needed",
         )
         .within(Range::Integer { min: 0, max: 256 }),
         ParameterSpec::new(
@@ -100,9 +76,9 @@ fn ways() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "amplitude",
             0.0,
-            "peak strain of the waves, 1; 0 for 1e-9 (standing_wave) or 1e-8 (time of flight)",
+            "peak strain of the waves of time of flight, 1; 0 for 1e-8",
         )
-        .within(strain),
+        .within(Range::Double { min: 0.0, max: 1e-2 }),
         ParameterSpec::new(
             "wave_friction",
             -1.0,
@@ -110,13 +86,6 @@ fn ways() -> Vec<ParameterSpec> {
              for no sliding",
         )
         .within(Range::Double { min: -1.0, max: f64::INFINITY }),
-    ]
-}
-
-/// Noise and errors of the instrument.
-fn instrument() -> Vec<ParameterSpec> {
-    let d = Instrument::default();
-    vec![
         ParameterSpec::new("sample_rate", 0.0, "sampling rate, Hz; 0 for forty samples per period")
             .within(Range::Double { min: 0.0, max: 1e12 }),
         ParameterSpec::new(

@@ -1,9 +1,7 @@
 //! The values of the parameters.
 
 use grainlab_acoustics::time_of_flight::ArrivalPick;
-use grainlab_acoustics::{
-    Instrument, MethodSettings, Modes, Survey, dispersion, standing_wave, time_of_flight,
-};
+use grainlab_acoustics::{Instrument, MethodSettings, Modes, Survey, dispersion, time_of_flight};
 use grainlab_core::Vec3;
 use grainlab_node_kit::Parameters;
 
@@ -25,11 +23,6 @@ pub enum SettingsError {
         "parameter \"wavelengths\" has {0} entries: three or more are needed to extrapolate to long waves"
     )]
     Wavelengths(usize),
-    /// Too few repetitions for a standing wave.
-    #[error(
-        "parameter \"copies\" = {0}: a standing wave needs 5 or more repetitions of the packing, or 0 for 8"
-    )]
-    Copies(u32),
     /// A friction between -1 and 0.
     #[error("parameter \"wave_friction\" = {0}: it is 0 or more, or -1 for that of the packing")]
     Friction(f64),
@@ -71,8 +64,6 @@ fn count(parameters: &Parameters, name: &str) -> u32 {
 }
 
 fn method(parameters: &Parameters) -> Result<MethodSettings, SettingsError> {
-    let copies = Some(count(parameters, "copies")).filter(|n| *n > 0);
-    let amplitude = Some(parameters.get("amplitude")).filter(|strain| *strain > 0.0);
     let friction: f64 = parameters.get("wave_friction");
     if friction < 0.0 && friction != -1.0 {
         return Err(SettingsError::Friction(friction));
@@ -91,19 +82,6 @@ fn method(parameters: &Parameters) -> Result<MethodSettings, SettingsError> {
                 ..Default::default()
             }));
         }
-        "standing_wave" => {
-            let default = standing_wave::Settings::default();
-            let copies = copies.unwrap_or(default.copies);
-            if copies < standing_wave::MIN_COPIES {
-                return Err(SettingsError::Copies(copies));
-            }
-            return Ok(MethodSettings::StandingWave(standing_wave::Settings {
-                copies,
-                amplitude: amplitude.unwrap_or(default.amplitude),
-                friction,
-                ..default
-            }));
-        }
         "first_arrival" => ArrivalPick::FirstArrival,
         "peak" => ArrivalPick::Peak,
         _ => ArrivalPick::CrossCorrelation,
@@ -112,11 +90,10 @@ fn method(parameters: &Parameters) -> Result<MethodSettings, SettingsError> {
     Ok(MethodSettings::TimeOfFlight(time_of_flight::Settings {
         frequencies: Some(parameters.get::<Vec<f64>>("frequencies")).filter(|f| !f.is_empty()),
         cycles: parameters.get("cycles"),
-        copies,
-        amplitude: amplitude.unwrap_or(default.amplitude),
+        copies: Some(count(parameters, "copies")).filter(|n| *n > 0),
+        amplitude: Some(parameters.get("amplitude")).filter(|a| *a > 0.0).unwrap_or(default.amplitude),
         friction,
         pick,
-        ..default
     }))
 }
 

@@ -11,15 +11,7 @@ pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg:
     let message = as_it_is(estimate, observed);
     match ModelResult::try_from(&message) {
         Ok(_) => message,
-        Err(error) => msg::Estimate {
-            model: message.model,
-            calibration: message.calibration,
-            status: msg::Estimate::STATUS_UNKNOWN,
-            gamma_over_delta: message.gamma_over_delta,
-            gamma_over_delta_source: message.gamma_over_delta_source,
-            warnings: vec![error.to_string()],
-            ..Default::default()
-        },
+        Err(error) => unknown(estimate.model, &estimate.calibration, estimate.gamma, vec![error.to_string()]),
     }
 }
 
@@ -100,28 +92,29 @@ pub(crate) fn failure(
 ) -> msg::Estimate {
     let gamma = observed.observation.conditions.gamma;
     let reasons = std::iter::once(error.to_string()).chain(observed.notes.iter().cloned()).collect();
-    without_values(model, calibration, gamma, reasons)
+    unknown(model.name(), calibration, model.uses_gamma().then_some(gamma), reasons)
 }
 
 /// The message of a model that was not applied, because there were no moduli.
 pub(crate) fn unobserved(model: &dyn Model, calibration: &str, nothing: &Unobservable) -> msg::Estimate {
-    without_values(model, calibration, StrainRatio::ZERO, vec![nothing.to_string()])
+    let gamma = model.uses_gamma().then_some(StrainRatio::ZERO);
+    unknown(model.name(), calibration, gamma, vec![nothing.to_string()])
 }
 
-fn without_values(
-    model: &dyn Model,
+fn unknown(
+    model: &str,
     calibration: &str,
-    gamma: StrainRatio,
-    reasons: Vec<String>,
+    gamma: Option<StrainRatio>,
+    warnings: Vec<String>,
 ) -> msg::Estimate {
-    let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(model.uses_gamma().then_some(gamma));
+    let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(gamma);
     msg::Estimate {
-        model: model.name().to_owned(),
+        model: model.to_owned(),
         calibration: calibration.to_owned(),
         status: msg::Estimate::STATUS_UNKNOWN,
         gamma_over_delta,
         gamma_over_delta_source,
-        warnings: reasons,
+        warnings,
         ..Default::default()
     }
 }

@@ -5,10 +5,8 @@
 //!   of one message
 //! - [`EmtInversion`]: the node
 
-mod calibration;
 mod estimate;
 mod message;
-mod models;
 mod moduli;
 mod node;
 mod observed;
@@ -16,9 +14,7 @@ mod settings;
 mod settings_error;
 mod speeds;
 
-pub use calibration::CalibrationChoice;
 pub use message::{Answer, microstructure_of_moduli, microstructure_of_report, microstructure_of_speeds};
-pub use models::Models;
 pub use node::EmtInversion;
 pub use settings::{Axis, Settings, parameters};
 pub use settings_error::SettingsError;

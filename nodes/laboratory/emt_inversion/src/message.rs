@@ -38,14 +38,14 @@ pub fn microstructure_of_moduli(moduli: &msg::Moduli, settings: &Settings) -> An
     answer(about, &topics::MODULI, reading.map(|reading| of_moduli(&reading, settings)), settings)
 }
 
-/// The same for one set of wave speeds.
+/// The microstructure inferred from one set of wave speeds.
 pub fn microstructure_of_speeds(speeds: &msg::WaveSpeeds, settings: &Settings) -> Answer {
     let about = About { header: &speeds.header, name: &speeds.name, source_step: speeds.source_step };
     let reading = WaveSpeedsReading::try_from(speeds);
     answer(about, &topics::WAVE_SPEEDS, reading.map(|reading| of_speeds(&reading, settings)), settings)
 }
 
-/// What an answer copies from the data.
+/// Parts of an answer that are copied from the data.
 struct About<'a> {
     header: &'a Header,
     name: &'a str,
@@ -62,8 +62,9 @@ fn answer(
         Ok(observed) => (observed, None),
         Err(error) => (Err(Unobservable::Refused(error.clone())), Some(error)),
     };
-    let estimates = settings.models.iter().map(|model| {
-        let calibration = settings.calibration.calibration_for(model);
+    let estimates = settings.models.iter().copied().map(|model| {
+        let own = || model.default_calibration();
+        let calibration = settings.calibration.as_ref().unwrap_or_else(own);
         let observed = match &observed {
             Ok(observed) => observed,
             Err(nothing) => return unobserved(model, calibration.name(), nothing),

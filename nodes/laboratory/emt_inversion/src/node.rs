@@ -1,4 +1,4 @@
-//! The node.
+//! The node of the inversion.
 
 use crate::{Answer, Settings, microstructure_of_moduli, microstructure_of_report, microstructure_of_speeds};
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, PackingReport, WaveSpeeds};

@@ -11,7 +11,7 @@ pub(crate) struct Observed {
     pub(crate) observation: Observation,
     /// Misfit of the data about the moduli; `None` without degrees of freedom.
     pub(crate) misfit: Option<Misfit>,
-    /// Whether the misfit exceeds the errors of the data.
+    /// True if the misfit exceeds the errors of the data.
     pub(crate) in_conflict: bool,
     /// Notes, added to every estimate.
     pub(crate) notes: Vec<String>,
@@ -29,7 +29,7 @@ pub(crate) enum Unobservable {
          ({:.4}, {:.4}, {:.4})", axis[0], axis[1], axis[2]
     )]
     NoStiffness {
-        /// The axis.
+        /// Axis that was set.
         axis: [f64; 3],
     },
     /// Moduli, strain ratios and anisotropy refer to one axis, and another one is set.
@@ -59,7 +59,7 @@ impl From<Observation> for Observed {
     }
 }
 
-/// The same with an independent relative error of every measured modulus; if these are the five of a medium,
+/// Observation with an independent relative error of every measured modulus; if these are the five of a medium,
 /// Θ follows from them.
 pub(crate) fn with_error(observation: Observation, relative: f64) -> Observation {
     const BESIDE_THETA: [Modulus; 4] = [Modulus::C11, Modulus::C33, Modulus::C13, Modulus::G12];

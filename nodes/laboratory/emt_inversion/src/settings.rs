@@ -1,10 +1,8 @@
 //! The parameters of the node.
 
-use crate::calibration::CalibrationChoice;
-use crate::models::Models;
 use crate::settings_error::SettingsError;
 use grainlab_core::Vec3;
-use grainlab_emt::StrainRatioSource;
+use grainlab_emt::{Calibration, Model, StrainRatioSource};
 use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 
 /// The parameters of the node.
@@ -40,10 +38,10 @@ pub fn parameters() -> Vec<ParameterSpec> {
 /// The values of the parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Models to apply.
-    pub models: Models,
-    /// Constants of the models.
-    pub calibration: CalibrationChoice,
+    /// Models to apply, each once, in the order of [`grainlab_emt::models`].
+    pub models: Vec<&'static dyn Model>,
+    /// Constants of all models; `None`: those of each, [`Model::default_calibration`].
+    pub calibration: Option<Calibration>,
     /// Axis of the moduli.
     pub axis: Axis,
     /// The measured strain ratio γ/Δ that the models use. The paper uses the total one, which is mostly
@@ -72,8 +70,8 @@ pub enum Axis {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            models: Models::all(),
-            calibration: CalibrationChoice::Default,
+            models: grainlab_emt::models().to_vec(),
+            calibration: None,
             axis: Axis::Stated,
             gamma: StrainRatioSource::Total,
             modulus_error: 0.01,
@@ -96,8 +94,8 @@ impl Settings {
                 read.map_err(|reason| SettingsError::CalibrationFile { path: calibration, reason })?;
         }
         Ok(Self {
-            models: Models::named(&text("models"))?,
-            calibration: CalibrationChoice::named(&calibration)?,
+            models: models(&text("models"))?,
+            calibration: constants(&calibration)?,
             axis: axis(&text("axis"))?,
             gamma: match text("gamma_over_delta").as_str() {
                 "elastic" => StrainRatioSource::Elastic,
@@ -108,6 +106,37 @@ impl Settings {
             modulus_error: parameters.get("modulus_error"),
         })
     }
+}
+
+/// `all`, or comma-separated names in any order.
+fn models(text: &str) -> Result<Vec<&'static dyn Model>, SettingsError> {
+    let mut all = grainlab_emt::models().to_vec();
+    if text.trim() == "all" {
+        return Ok(all);
+    }
+    let names: Vec<&str> = text.split(',').map(str::trim).collect();
+    if let Some(stranger) = names.iter().find(|n| grainlab_emt::model(n).is_none()) {
+        let known = all.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ");
+        return Err(SettingsError::Model { name: (*stranger).to_owned(), known });
+    }
+    all.retain(|m| names.contains(&m.name()));
+    Ok(all)
+}
+
+/// `default`, the name of a built-in calibration, or the text of one (TOML).
+fn constants(text: &str) -> Result<Option<Calibration>, SettingsError> {
+    let name = text.trim();
+    if name == "default" {
+        return Ok(None);
+    }
+    if let Some(found) = Calibration::builtin(name) {
+        return Ok(Some(found.clone()));
+    }
+    if !name.contains('=') {
+        let known = ["default"].into_iter().chain(Calibration::BUILTIN).collect::<Vec<_>>().join(", ");
+        return Err(SettingsError::Calibration { name: name.to_owned(), known });
+    }
+    Calibration::parse(text).map(Some).map_err(SettingsError::CalibrationText)
 }
 
 fn axis(text: &str) -> Result<Axis, SettingsError> {

@@ -30,7 +30,7 @@ pub enum SettingsError {
     CalibrationFile {
         /// The path given.
         path: String,
-        /// The reason.
+        /// Reason of the failure.
         reason: String,
     },
     /// The text is not an axis.

@@ -105,7 +105,7 @@ fn other_axis(fitted: &SpeedFit, speeds: &[WaveSpeed], density: Measured, taken:
     })
 }
 
-/// What a reader should know about the moduli that were fitted to `speeds` speeds; `name` names each speed.
+/// Notes on the moduli that were fitted to `speeds` speeds; `name` names each speed.
 pub fn notes_on_fit(fitted: &SpeedFit, speeds: usize, name: impl Fn(usize) -> String) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(departure) = &fitted.anisotropy_scatter {

@@ -49,7 +49,6 @@ pub(crate) fn measured(
     packing: &Packing,
     methods: &[Method],
     tolerances: &[f64],
-    copies: &[u32],
 ) -> Result<Vec<Row>, Failure> {
-    measure::rows(packing, &Args::of(methods, tolerances, copies))
+    measure::rows(packing, &Args::of(methods, tolerances))
 }

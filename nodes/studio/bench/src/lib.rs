@@ -27,7 +27,7 @@ use grainlab_node_kit::Exit;
 pub enum Command {
     /// Time against error of every numerical setting, relative to a converged run, with the Pareto front.
     Accuracy(accuracy::Args),
-    /// Wave speeds of a packing: time against error of dispersion, standing waves and time of flight.
+    /// Wave speeds of a packing: time against error of dispersion and time of flight.
     Acoustics(acoustics::Args),
     /// The particle engine: particle-steps per second by size, threads, instruction set and features.
     Dem(dem::Args),

@@ -148,10 +148,10 @@ mod tests {
     #[test]
     fn a_flag_that_the_method_does_not_use_is_refused() {
         for (words, flag, methods) in [
-            (&["--signal-to-noise", "0"][..], "--signal-to-noise", "standing_wave, first_arrival"),
+            (&["--signal-to-noise", "0"][..], "--signal-to-noise", "first_arrival, cross_correlation"),
             (&["--jitter", "0.1"], "--jitter", "peak"),
-            (&["--shots", "5"], "--shots", "standing_wave"),
-            (&["--method", "standing_wave", "--cycles", "3"], "--cycles", "first_arrival"),
+            (&["--shots", "5"], "--shots", "cross_correlation"),
+            (&["--cycles", "3"], "--cycles", "first_arrival"),
             (&["--method", "peak", "--wavelengths", "30,40,60"], "--wavelengths", "dispersion"),
         ] {
             let error = settings(words).unwrap_err();

@@ -12,7 +12,7 @@ const FEW: usize = 3;
 /// gives 1e-15, real contacts more than 1e-8.
 const FREE: f64 = 1e-10;
 
-/// The same ratio, below which motions are kept. Motions above it are stiffer than a wave of some tens of
+/// Ratio of an eigenvalue to the largest, below which motions are kept. Motions above it are stiffer than a wave of some tens of
 /// grains.
 const SOFT: f64 = 1e-2;
 
@@ -31,9 +31,9 @@ pub(crate) struct Cluster {
 /// One motion of a cluster, M-orthogonal to the others.
 #[derive(Clone, Debug)]
 pub(crate) struct Soft {
-    /// ω², (rad/s)².
+    /// Square of the angular frequency, (rad/s)².
     pub(crate) square: f64,
-    /// Whether it is floppy.
+    /// True for a floppy motion.
     pub(crate) is_free: bool,
     /// Six rows per grain, normalised to kinetic energy: zᵀ M z = 1.
     pub(crate) shape: DVector<f64>,

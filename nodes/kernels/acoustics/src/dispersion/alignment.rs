@@ -3,12 +3,12 @@
 use grainlab_core::{Mat3, Vec3};
 use nalgebra::SymmetricEigen;
 
-/// How three polarizations of a ray are rotated to those of the modes.
+/// Rotation of three polarizations of a ray to those of the modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Alignment {
     /// The first two, in their plane.
     InPlane,
-    /// All three.
+    /// All three polarizations.
     Free,
 }
 

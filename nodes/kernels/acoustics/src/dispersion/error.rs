@@ -13,7 +13,7 @@ pub(crate) enum SolveError {
     NotConverged {
         /// Residual over the load.
         residual: f64,
-        /// Iterations used.
+        /// Number of iterations.
         iterations: u32,
     },
     /// The maximum number of rounds of inverse iteration was reached.

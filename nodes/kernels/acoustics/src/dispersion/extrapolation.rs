@@ -41,7 +41,7 @@ pub(super) struct Extrapolation {
 }
 
 impl Extrapolation {
-    /// Of the modes of one ray, each with its polarization and its speeds at three or more wavelengths. `None` if a
+    /// Series of the modes of one ray, each with its polarization and its speeds at three or more wavelengths. `None` if a
     /// limit is not positive or not finite.
     pub(super) fn of(modes: Vec<(Vec3, Vec<DispersionPoint>)>) -> Option<Self> {
         let series = |(polarization, mut points): (Vec3, Vec<DispersionPoint>)| {
@@ -55,7 +55,7 @@ impl Extrapolation {
         ratio.is_finite().then_some(Self { modes, ratio })
     }
 
-    /// Whether the series does not converge well enough to state an error, and its last term is more than a part
+    /// True if the series does not converge well enough to state an error, and its last term is more than a part
     /// `tolerance` of v².
     pub(super) fn is_too_short(&self, tolerance: f64) -> bool {
         let is_seen = |s: &Series| s.bent.abs() > (3.0 * s.variance.sqrt() / s.terms[0]).max(tolerance);

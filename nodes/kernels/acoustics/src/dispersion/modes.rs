@@ -7,10 +7,11 @@
 
 use crate::dispersion::bloch::Bloch;
 use crate::dispersion::error::SolveError;
-use crate::dispersion::solve::Solve;
-use crate::dispersion::subspace::{Complex3, Subspace};
+use crate::dispersion::solve::inverse_iteration;
+use crate::dispersion::subspace::{C, Subspace};
 use crate::dispersion::waves::{Amplitude, Block, Row, WAVES};
 use grainlab_core::{Mat3, Vec3};
+use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
 
 /// Maximum number of rounds of inverse iteration.
 const ROUNDS: u32 = 30;
@@ -52,8 +53,8 @@ pub(crate) fn modes(
     let mut change = f64::INFINITY;
     for _ in 0..ROUNDS {
         let residual = RESIDUAL * tolerance.sqrt();
-        let solve = Solve::inverse_iteration(bloch, &ritz.waves, &ritz.squares, residual, &mut budget);
-        let solved = pulp::Arch::new().dispatch(solve)?;
+        let solved = pulp::Arch::new()
+            .dispatch(|| inverse_iteration(bloch, &ritz.waves, &ritz.squares, residual, &mut budget))?;
         let before = ritz.squares;
         let mut subspace = Subspace::new(count);
         // The change in this round, not its result, which is nearly parallel to the previous one.
@@ -96,13 +97,21 @@ fn plane_waves(bloch: &Bloch<'_>, polarizations: &[Vec3]) -> Block {
 }
 
 /// Real part of Σ ω² p p*, with the polarizations p of the modes orthogonalised in the least-squares sense (Löwdin).
-fn acoustic_tensor(squares: &[f64; WAVES], overlaps: &Complex3, polarizations: &[Vec3]) -> Mat3 {
+fn acoustic_tensor(squares: &[f64; WAVES], overlaps: &Matrix3<C>, polarizations: &[Vec3]) -> Mat3 {
     let count = polarizations.len();
-    let small = overlaps.acoustic_tensor(squares, count);
+    let w = overlaps.view((0, 0), (count, count)).into_owned();
+    // W (W*W)^-½: the nearest orthogonal polarizations.
+    let eigen = SymmetricEigen::new(w.adjoint() * &w);
+    let root = DMatrix::from_diagonal(&eigen.eigenvalues.map(|v| C::from(1.0 / v.sqrt())));
+    let vectors = DMatrix::from_fn(count, count, |i, j| eigen.eigenvectors[(i, j)]);
+    let w = DMatrix::from_fn(count, count, |i, j| w[(i, j)]);
+    let motions = w * &vectors * root * vectors.adjoint();
     let mut sum = Mat3::zeros();
     for a in 0..count {
         for b in 0..count {
-            sum += polarizations[a] * polarizations[b].transpose() * small[(a, b)];
+            let term = |k: usize| squares[k] * (motions[(a, k)] * motions[(b, k)].conj()).re;
+            let share: f64 = (0..count).map(term).sum();
+            sum += polarizations[a] * polarizations[b].transpose() * share;
         }
     }
     sum

@@ -16,7 +16,7 @@ pub struct Settings {
     pub tolerance: f64,
     /// Maximum number of conjugate gradient iterations per wave vector.
     pub max_iterations: u32,
-    /// How often all wavelengths are doubled, three times at once, along a ray whose speeds have no convergent series at those
+    /// Number of doublings of all wavelengths, three at once, along a ray whose speeds have no convergent series at those
     /// set, at most 9. Packings near isostaticity need longer waves.
     pub doublings: u32,
 }

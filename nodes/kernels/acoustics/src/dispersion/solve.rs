@@ -4,105 +4,74 @@
 use crate::dispersion::bloch::Bloch;
 use crate::dispersion::error::SolveError;
 use crate::dispersion::waves::{Amplitude, Block, Row, WAVES, products};
-use pulp::WithSimd;
 
-/// Solves K y = f for each wave: conjugate gradients with a block Jacobi preconditioner.
-#[derive(Debug)]
-pub(crate) struct Solve<'a> {
-    bloch: &'a Bloch<'a>,
-    /// f.
-    load: Block,
-    /// The first y.
-    start: Block,
-    /// Residual over the load.
+/// K y = M x, for each wave with its ω², starting at y = x/ω²: conjugate gradients with a block Jacobi preconditioner, to a residual of
+/// `tolerance` over the load. `budget`: iterations left.
+#[inline(always)]
+pub(crate) fn inverse_iteration(
+    bloch: &Bloch<'_>,
+    x: &[Amplitude],
+    squares: &[f64; WAVES],
     tolerance: f64,
-    /// Iterations left.
-    budget: &'a mut u32,
-}
-
-impl WithSimd for Solve<'_> {
-    type Output = Result<Block, SolveError>;
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
-        self.run()
+    budget: &mut u32,
+) -> Result<Block, SolveError> {
+    let (mut y, mut load) = (x.to_vec(), vec![Amplitude::STILL; x.len()]);
+    let softness = Row::of(squares.map(|s| if s > 0.0 { 1.0 / s } else { 0.0 }));
+    for row in y.iter_mut().flat_map(|y| y.re.iter_mut().chain(&mut y.im)) {
+        *row = softness * *row;
     }
-}
-
-impl<'a> Solve<'a> {
-    /// K y = M x, starting at y = x/ω², with the ω² of each wave.
-    pub(crate) fn inverse_iteration(
-        bloch: &'a Bloch<'a>,
-        x: &Block,
-        squares: &[f64; WAVES],
-        tolerance: f64,
-        budget: &'a mut u32,
-    ) -> Self {
-        let (mut start, mut load) = (x.clone(), vec![Amplitude::STILL; x.len()]);
-        let softness = Row::of(squares.map(|s| if s > 0.0 { 1.0 / s } else { 0.0 }));
-        for row in start.iter_mut().flat_map(|y| y.re.iter_mut().chain(&mut y.im)) {
-            *row = softness * *row;
+    bloch.apply_mass(x, &mut load);
+    let zero = || vec![Amplitude::STILL; load.len()];
+    let (mut rest, mut image) = (load.clone(), zero());
+    let loads = products(&rest, &rest);
+    bloch.apply(&y, &mut image);
+    advance(Row::of([-1.0; WAVES]), &image, &mut rest);
+    let (mut search, mut better) = (zero(), zero());
+    bloch.precondition(&rest, &mut better);
+    search.copy_from_slice(&better);
+    let mut rho = products(&rest, &better);
+    let start = *budget;
+    loop {
+        let left = products(&rest, &rest);
+        let ratio = |k: usize| if loads[k] > 0.0 { (left[k] / loads[k]).sqrt() } else { 0.0 };
+        let residual =
+            (0..WAVES).map(ratio).fold(0.0, |worst: f64, r| if r.is_nan() || r > worst { r } else { worst });
+        if residual <= tolerance {
+            break;
         }
-        bloch.apply_mass(x, &mut load);
-        Self { bloch, load, start, tolerance, budget }
-    }
-
-    #[inline(always)]
-    fn run(self) -> Result<Block, SolveError> {
-        let Self { bloch, load, start, tolerance, budget } = self;
-        let zero = || vec![Amplitude::STILL; load.len()];
-        let (mut y, mut rest, mut image) = (start, load.clone(), zero());
-        let loads = products(&rest, &rest);
-        bloch.apply(&y, &mut image);
-        advance(Row::of([-1.0; WAVES]), &image, &mut rest);
-        let (mut search, mut better) = (zero(), zero());
+        if *budget == 0 || residual.is_nan() {
+            return Err(SolveError::NotConverged { residual, iterations: start - *budget });
+        }
+        *budget -= 1;
+        bloch.apply(&search, &mut image);
+        let energy = products(&search, &image);
+        let mut alpha = [0.0; WAVES];
+        for k in 0..WAVES {
+            // A wave that has converged is left unchanged.
+            if ratio(k) > 0.5 * tolerance && rho[k] > 0.0 {
+                if energy[k] <= 0.0 {
+                    return Err(SolveError::Floppy);
+                }
+                alpha[k] = rho[k] / energy[k];
+            }
+        }
+        let alpha = Row::of(alpha);
+        advance(alpha, &search, &mut y);
+        advance(Row::ZERO - alpha, &image, &mut rest);
         bloch.precondition(&rest, &mut better);
-        search.copy_from_slice(&better);
-        let mut rho = products(&rest, &better);
-        let start = *budget;
-        loop {
-            let left = products(&rest, &rest);
-            let ratio = |k: usize| if loads[k] > 0.0 { (left[k] / loads[k]).sqrt() } else { 0.0 };
-            let residual = (0..WAVES)
-                .map(ratio)
-                .fold(0.0, |worst: f64, r| if r.is_nan() || r > worst { r } else { worst });
-            if residual <= tolerance {
-                break;
-            }
-            if *budget == 0 || residual.is_nan() {
-                return Err(SolveError::NotConverged { residual, iterations: start - *budget });
-            }
-            *budget -= 1;
-            bloch.apply(&search, &mut image);
-            let energy = products(&search, &image);
-            let mut alpha = [0.0; WAVES];
-            for k in 0..WAVES {
-                // A wave that has converged is left unchanged.
-                if ratio(k) > 0.5 * tolerance && rho[k] > 0.0 {
-                    if energy[k] <= 0.0 {
-                        return Err(SolveError::Floppy);
-                    }
-                    alpha[k] = rho[k] / energy[k];
-                }
-            }
-            let alpha = Row::of(alpha);
-            advance(alpha, &search, &mut y);
-            advance(Row::ZERO - alpha, &image, &mut rest);
-            bloch.precondition(&rest, &mut better);
-            let next = products(&rest, &better);
-            let grown = |k: usize| if rho[k] > 0.0 { next[k] / rho[k] } else { 0.0 };
-            let beta = Row::of([grown(0), grown(1), grown(2)]);
-            rho = next;
-            for (search, better) in search.iter_mut().zip(&better) {
-                for k in 0..6 {
-                    search.re[k] = better.re[k] + beta * search.re[k];
-                    search.im[k] = better.im[k] + beta * search.im[k];
-                }
+        let next = products(&rest, &better);
+        let grown = |k: usize| if rho[k] > 0.0 { next[k] / rho[k] } else { 0.0 };
+        let beta = Row::of([grown(0), grown(1), grown(2)]);
+        rho = next;
+        for (search, better) in search.iter_mut().zip(&better) {
+            for k in 0..6 {
+                search.re[k] = better.re[k] + beta * search.re[k];
+                search.im[k] = better.im[k] + beta * search.im[k];
             }
         }
-        bloch.project_out_floppy_modes(&mut y);
-        Ok(y)
     }
+    bloch.project_out_floppy_modes(&mut y);
+    Ok(y)
 }
 
 /// y += share × x, for each wave.

@@ -4,7 +4,8 @@ use crate::dispersion::bloch::Bloch;
 use crate::dispersion::waves::{Amplitude, Block, Row, WAVES};
 use nalgebra::{Complex, DMatrix, Matrix3, SymmetricEigen};
 
-type C = Complex<f64>;
+/// A complex number.
+pub(super) type C = Complex<f64>;
 
 /// Squared norm of a combination of unit motions below which it is rounding.
 const DEPENDENT: f64 = 1e-12;
@@ -22,9 +23,9 @@ pub(crate) struct Subspace {
 #[derive(Debug)]
 struct Held {
     x: Block,
-    /// K x.
+    /// Image K x.
     image: Block,
-    /// M x.
+    /// Product M x.
     mass_times: Block,
 }
 
@@ -36,34 +37,9 @@ pub(crate) struct Ritz {
     /// The modes, of unit kinetic energy: x* M x = 1.
     pub(crate) waves: Block,
     /// Overlap of each mode (column) with each reference (row).
-    pub(crate) overlaps: Complex3,
+    pub(crate) overlaps: Matrix3<C>,
     /// Softer modes, of unit kinetic energy: nearly floppy motions of a few grains, to be separated.
     pub(crate) softer: Vec<Block>,
-}
-
-/// Three by three complex numbers.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Complex3(Matrix3<C>);
-
-impl Complex3 {
-    /// Real part of Σ ω² p p* over the first `count` modes, with their polarizations p orthogonalised.
-    pub(crate) fn acoustic_tensor(&self, squares: &[f64; WAVES], count: usize) -> Matrix3<f64> {
-        let w = self.0.view((0, 0), (count, count)).into_owned();
-        // W (W*W)^-½: the nearest orthogonal polarizations.
-        let eigen = SymmetricEigen::new(w.adjoint() * &w);
-        let root = DMatrix::from_diagonal(&eigen.eigenvalues.map(|v| C::from(1.0 / v.sqrt())));
-        let vectors = DMatrix::from_fn(count, count, |i, j| eigen.eigenvectors[(i, j)]);
-        let w = DMatrix::from_fn(count, count, |i, j| w[(i, j)]);
-        let motions = w * &vectors * root * vectors.adjoint();
-        let mut sum = Matrix3::zeros();
-        for a in 0..count {
-            for b in 0..count {
-                let term = |k: usize| squares[k] * (motions[(a, k)] * motions[(b, k)].conj()).re;
-                sum[(a, b)] = (0..count).map(term).sum();
-            }
-        }
-        sum
-    }
 }
 
 impl Subspace {
@@ -133,7 +109,7 @@ impl Subspace {
         }
         let combine = |chosen: &[usize]| self.combine(&combinations, chosen);
         let softer = softer.chunks(waves).map(combine).collect();
-        Some(Ritz { squares, waves: combine(&order), overlaps: Complex3(overlaps), softer })
+        Some(Ritz { squares, waves: combine(&order), overlaps, softer })
     }
 
     /// The waves given by the `chosen` columns of `combinations`, with a row for each wave of each block.

@@ -33,11 +33,9 @@ const FLOOR: f64 = 1e-3;
 pub struct Arrivals {
     /// Arrival time at each receiver after the trigger, s. For a correlation: the first receiver's peak plus the delay.
     pub times: Vec<f64>,
-    /// Standard deviation of each, s, from noise alone.
-    pub stddevs: Vec<f64>,
     /// 1/speed of the picked feature, s/m.
     pub slowness: f64,
-    /// Its standard deviation from noise, or from the scatter about the line where that is larger, s/m.
+    /// Standard deviation of the slowness from noise, or from the scatter about the line where that is larger, s/m.
     pub slowness_stddev: f64,
     /// Root mean square of the noise before the trigger, m/s.
     pub noise: f64,
@@ -89,7 +87,6 @@ impl Arrivals {
         let rate = trace.sample_rate;
         Ok(Self {
             times: times.iter().map(|t| trace.start + t / rate).collect(),
-            stddevs: variances.iter().map(|v| v.sqrt() / rate).collect(),
             slowness: through.slope / rate,
             slowness_stddev: by_noise.max(scatter) / rate,
             noise,

@@ -1,4 +1,4 @@
-//! Tone bursts.
+//! Tone bursts of the source.
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,12 +12,12 @@ pub(crate) struct Burst {
 }
 
 impl Burst {
-    /// Duration, s.
+    /// Duration of the burst, s.
     pub(crate) fn duration(&self) -> f64 {
         self.cycles / self.frequency
     }
 
-    /// Its value at `time` s after its start, at most 1.
+    /// Value at `time` s after the start of the burst, at most 1.
     pub(crate) fn at(&self, time: f64) -> f64 {
         let from_middle = time - 0.5 * self.duration();
         if from_middle.abs() >= 0.5 * self.duration() {

@@ -1,13 +1,15 @@
 //! One burst through one supercell, by the particle engine.
 
 use super::burst::Burst;
+use super::path_plan::PathPlan;
 use super::slab::Slab;
+use super::wave_path::WavePath;
 use crate::contact_changes::ContactChanges;
 use crate::error::AcousticsError;
 use crate::instrument::ReceiverSignals;
-use crate::supercell::Supercell;
-use grainlab_core::Vec3;
-use grainlab_dem::{Engine, EngineSettings};
+use crate::sample::Sample;
+use crate::supercell::supercell;
+use grainlab_dem::Engine;
 
 /// Number of comparisons of the contacts.
 const LOOKS: usize = 8;
@@ -15,32 +17,8 @@ const LOOKS: usize = 8;
 /// Least number of samples per period of the centre frequency.
 const SAMPLES_PER_PERIOD: f64 = 64.0;
 
-/// Source, receivers and sampling of one burst.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct BurstRun<'a> {
-    /// The packing, at rest.
-    pub(crate) supercell: &'a Supercell,
-    /// For each grain of one copy, whether it carries force.
-    pub(crate) present: &'a [bool],
-    /// Engine settings, with a fixed time step.
-    pub(crate) setting: EngineSettings,
-    /// Unit polarization.
-    pub(crate) polarization: Vec3,
-    /// Signal of the source.
-    pub(crate) burst: Burst,
-    /// Peak strain of the wave.
-    pub(crate) amplitude: f64,
-    /// Approximate speed of the wave, m/s: the force of the source is proportional to its square.
-    pub(crate) speed: f64,
-    /// Thickness of source and receivers, m.
-    pub(crate) thickness: f64,
-    /// Distances of the receivers from the source along the path, m.
-    pub(crate) receivers: &'a [f64],
-    /// Duration of the recording, s.
-    pub(crate) duration: f64,
-    /// Sampling rate of the instrument, Hz.
-    pub(crate) rate: f64,
-}
+/// Thickness of source and receivers along the ray, mean diameters.
+const THICKNESS: f64 = 2.0;
 
 /// The signals at the receivers.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,67 +33,61 @@ pub(crate) struct BurstResponse {
     pub(crate) closed: u32,
 }
 
-impl BurstRun<'_> {
-    /// Sends the burst and records the receivers.
-    pub(crate) fn response(&self) -> Result<BurstResponse, AcousticsError> {
-        let source = self.slab(0.0)?;
-        let receivers: Vec<Slab> = self.receivers.iter().map(|d| self.slab(*d)).collect::<Result<_, _>>()?;
-        let mut engine = Engine::from_packing(&self.supercell.packing, self.setting)?;
-        engine.update_time_step();
-        engine.initialise()?;
-        let step = engine.time_step();
-        let mut changes = ContactChanges::since(&engine);
+/// Sends `burst` along `path` with the peak strain `amplitude`, and records the receivers for an instrument of the sampling rate `rate`, Hz.
+/// `speed`: approximate speed of the wave, m/s; the force of the source is proportional to its square.
+pub(crate) fn send(
+    path: &WavePath,
+    sample: &Sample,
+    plan: &PathPlan,
+    burst: &Burst,
+    amplitude: f64,
+    speed: f64,
+    rate: f64,
+) -> Result<BurstResponse, AcousticsError> {
+    let supercell = supercell(&sample.packing, path.indices, plan.copies)?;
+    let thickness = THICKNESS * sample.diameter;
+    let slab = |place: &f64| {
+        let requirement = "thick enough for grains in every slab";
+        let missing = AcousticsError::Setting { name: "thickness", value: thickness, requirement };
+        Slab::new(&supercell, &sample.present, *place, thickness).ok_or(missing)
+    };
+    let source = slab(&0.0)?;
+    let receivers: Vec<Slab> = plan.receivers.iter().map(slab).collect::<Result<_, _>>()?;
+    let mut engine = Engine::from_packing(&supercell.packing, sample.setting)?;
+    engine.update_time_step();
+    engine.initialise()?;
+    let step = engine.time_step();
+    let mut changes = ContactChanges::since(&engine);
 
-        // A plane source of force per area f sends waves of velocity f/(2ρv) in both directions.
-        let acceleration = 2.0 * self.amplitude * self.speed * self.speed / self.thickness;
-        let stride =
-            (1.0 / (self.rate.max(SAMPLES_PER_PERIOD * self.burst.frequency) * step)).max(1.0) as u32;
-        let samples = (self.duration / (f64::from(stride) * step)).ceil().max(1.0) as usize;
-        let look = samples.div_ceil(LOOKS);
-        let mut channels = vec![Vec::with_capacity(samples); receivers.len()];
-        for sample in 0..samples {
-            let elapsed = sample as f64 * f64::from(stride) * step;
-            if elapsed < self.burst.duration() {
-                for k in 0..stride {
-                    let time = elapsed + f64::from(k) * step;
-                    let by = self.polarization * (acceleration * step * self.burst.at(time));
-                    engine.add_velocities(source.kicks(by))?;
-                    engine.step()?;
-                }
-            } else {
-                engine.run(stride)?;
+    // A plane source of force per area f sends waves of velocity f/(2ρv) in both directions.
+    let acceleration = 2.0 * amplitude * speed * speed / thickness;
+    let stride = (1.0 / (rate.max(SAMPLES_PER_PERIOD * burst.frequency) * step)).max(1.0) as u32;
+    let samples = (plan.duration / (f64::from(stride) * step)).ceil().max(1.0) as usize;
+    let look = samples.div_ceil(LOOKS);
+    let mut channels = vec![Vec::with_capacity(samples); receivers.len()];
+    for sample in 0..samples {
+        let elapsed = sample as f64 * f64::from(stride) * step;
+        if elapsed < burst.duration() {
+            for k in 0..stride {
+                let time = elapsed + f64::from(k) * step;
+                let by = path.polarization * (acceleration * step * burst.at(time));
+                engine.add_velocities(source.kicks(by))?;
+                engine.step()?;
             }
-            let velocities = engine.velocities();
-            for (channel, slab) in channels.iter_mut().zip(&receivers) {
-                channel.push(slab.velocity(&velocities, &self.polarization));
-            }
-            if (sample + 1) % look == 0 {
-                changes.look(&engine);
-            }
+        } else {
+            engine.run(stride)?;
         }
-        Ok(BurstResponse {
-            signals: ReceiverSignals {
-                start: f64::from(stride) * step,
-                interval: f64::from(stride) * step,
-                channels,
-            },
-            distances: self
-                .receivers
-                .iter()
-                .zip(&receivers)
-                .map(|(d, r)| d + r.offset - source.offset)
-                .collect(),
-            opened: changes.opened(),
-            closed: changes.closed(),
-        })
+        let velocities = engine.velocities();
+        for (channel, slab) in channels.iter_mut().zip(&receivers) {
+            channel.push(slab.velocity(&velocities, &path.polarization));
+        }
+        if (sample + 1) % look == 0 {
+            changes.look(&engine);
+        }
     }
-
-    fn slab(&self, place: f64) -> Result<Slab, AcousticsError> {
-        let missing = || AcousticsError::Setting {
-            name: "thickness",
-            value: self.thickness,
-            requirement: "thick enough for grains in every slab",
-        };
-        Slab::new(self.supercell, self.present, place, self.thickness).ok_or_else(missing)
-    }
+    let interval = f64::from(stride) * step;
+    let distances =
+        plan.receivers.iter().zip(&receivers).map(|(d, r)| d + r.offset - source.offset).collect();
+    let signals = ReceiverSignals { start: interval, interval, channels };
+    Ok(BurstResponse { signals, distances, opened: changes.opened(), closed: changes.closed() })
 }

@@ -2,21 +2,18 @@
 
 use super::arrival::Arrivals;
 use super::burst::Burst;
-use super::burst_run::{BurstResponse, BurstRun};
-use super::path_plan::PathPlan;
+use super::burst_run::{BurstResponse, send};
+use super::path_plan::{PathPlan, RECEIVERS};
 use super::phase_velocity;
 use super::settings::{ArrivalPick, Settings};
+use super::wave_path::{PathResult, WavePath};
 use crate::curve::DispersionCurve;
 use crate::error::AcousticsError;
 use crate::instrument::{Instrument, ReceiverSignals, SamplingWindow, burst_level};
 use crate::noise::seed_at;
-use crate::nonlinearity::{TO_ZERO, relative_change};
 use crate::sample::Sample;
-use crate::supercell::supercell;
 use crate::trace::{Channel, Trace};
 use crate::warning::Warning;
-use crate::wave_path::{PathResult, WavePath};
-use grainlab_core::Vec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -36,23 +33,23 @@ const FASTEST: f64 = 2.0;
 /// Relative change of the trace at half the amplitude above which the response is nonlinear.
 const NONLINEAR: f64 = 1e-2;
 
-/// Sends bursts of all frequencies along `path`, picks arrivals, and extrapolates to long waves.
-pub(super) fn measure(
-    path: &WavePath,
-    sample: &Sample,
-    settings: &Settings,
-    instrument: &Instrument,
-) -> Result<PathResult, AcousticsError> {
-    TimeOfFlight { path, sample }.measure(settings, instrument)
-}
+/// Ratio of the changes of a speed: from half the amplitude to zero over from the full amplitude to half. The change is
+/// proportional to a power of one half or more of the amplitude.
+const TO_ZERO: f64 = 3.0;
 
-struct TimeOfFlight<'a> {
-    path: &'a WavePath,
-    sample: &'a Sample,
+/// A path through a packing.
+pub(super) struct TimeOfFlight<'a> {
+    pub(super) path: &'a WavePath,
+    pub(super) sample: &'a Sample,
 }
 
 impl TimeOfFlight<'_> {
-    fn measure(&self, settings: &Settings, instrument: &Instrument) -> Result<PathResult, AcousticsError> {
+    /// Sends bursts of all frequencies, picks arrivals, and extrapolates to long waves.
+    pub(super) fn measure(
+        &self,
+        settings: &Settings,
+        instrument: &Instrument,
+    ) -> Result<PathResult, AcousticsError> {
         let diameter = self.sample.diameter;
         let speed = self.first_speed(settings)?;
         // The band edge of ω = (2 v/a) sin(q a/2), the dispersion of a chain, with a the mean diameter.
@@ -66,12 +63,16 @@ impl TimeOfFlight<'_> {
             frequencies.iter().map(|f| Burst { frequency: *f, cycles: settings.cycles }).collect();
         // A path that is too short is refused before a burst is sent, with the length that the longest wave
         // needs.
-        let short = bursts.iter().filter_map(|b| self.plan(settings, b, speed).err());
-        if let Some(worst) = short.max_by_key(copies_needed) {
+        let (path, sample) = (self.path, self.sample);
+        let plan = |burst: &Burst| PathPlan::new(path, sample, RECEIVERS, settings.copies, burst, speed);
+        if let Some(worst) = bursts.iter().filter_map(|b| plan(b).err()).max_by_key(copies_needed) {
             return Err(worst);
         }
-        let send = |burst: &Burst| self.send(settings, burst, speed, instrument.rate(burst.frequency)?);
-        let responses: Vec<Result<BurstResponse, AcousticsError>> = bursts.par_iter().map(send).collect();
+        let sent = |burst: &Burst| {
+            let rate = instrument.rate(burst.frequency)?;
+            send(path, sample, &plan(burst)?, burst, settings.amplitude, speed, rate)
+        };
+        let responses: Vec<Result<BurstResponse, AcousticsError>> = bursts.par_iter().map(sent).collect();
         let responses = responses.into_iter().collect::<Result<Vec<_>, _>>()?;
         let mut traces = Vec::with_capacity(bursts.len());
         let mut arrivals = Vec::with_capacity(bursts.len());
@@ -93,7 +94,7 @@ impl TimeOfFlight<'_> {
         let modulus = self.sample.density() * curve.speed.powi(2);
         curve.stddev = curve.stddev.hypot(0.5 * self.sample.pressure() / modulus * curve.speed);
         let warnings = self.nonlinearity(settings, speed, &bursts, &responses, &mut curve)?;
-        Ok(PathResult { curve, traces, warnings, scatter: 0.0 })
+        Ok(PathResult { curve, traces, warnings })
     }
 
     /// The speed of a first burst, m/s, from which frequencies and receivers follow.
@@ -102,50 +103,16 @@ impl TimeOfFlight<'_> {
         if guess.is_nan() || guess <= 0.0 {
             return Err(self.path.no_signal("wave", "the contacts have no stiffness for this polarization"));
         }
-        let (receivers, nearest, furthest) = FIRST_RECEIVERS;
-        let settings = Settings { receivers, nearest, furthest, copies: None, ..settings.clone() };
         let frequency = guess / (FIRST_WAVELENGTH * self.sample.diameter);
         let burst = Burst { frequency, cycles: settings.cycles };
         let instrument = Instrument::default();
         let pick = ArrivalPick::CrossCorrelation;
-        let response = self.send(&settings, &burst, guess, instrument.rate(frequency)?)?;
+        let plan = PathPlan::new(self.path, self.sample, FIRST_RECEIVERS, None, &burst, guess)?;
+        let rate = instrument.rate(frequency)?;
+        let response = send(self.path, self.sample, &plan, &burst, settings.amplitude, guess, rate)?;
         let trace = self.trace(&burst, &response, &instrument, pick, &self.path.place)?;
         let arrivals = Arrivals::pick(&trace, burst.cycles, pick, instrument.seed)?;
         Ok(1.0 / arrivals.slowness)
-    }
-
-    fn plan(&self, settings: &Settings, burst: &Burst, speed: f64) -> Result<PathPlan, AcousticsError> {
-        let indices = self.path.indices;
-        let planes = self.sample.packing.cell.inverse().transpose() * Vec3::from(indices.map(f64::from));
-        // Planes (2 0 0) are every second plane of (1 0 0).
-        let divisor = indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
-        let period = f64::from(divisor) / planes.norm();
-        PathPlan::new(settings, burst, speed, self.sample.diameter, period)
-    }
-
-    fn send(
-        &self,
-        settings: &Settings,
-        burst: &Burst,
-        speed: f64,
-        rate: f64,
-    ) -> Result<BurstResponse, AcousticsError> {
-        let plan = self.plan(settings, burst, speed)?;
-        let supercell = supercell(&self.sample.packing, self.path.indices, plan.copies)?;
-        let run = BurstRun {
-            supercell: &supercell,
-            present: &self.sample.present,
-            setting: self.sample.setting,
-            polarization: self.path.polarization,
-            burst: *burst,
-            amplitude: settings.amplitude,
-            speed,
-            thickness: settings.thickness * self.sample.diameter,
-            receivers: &plan.receivers,
-            duration: plan.duration,
-            rate,
-        };
-        run.response()
     }
 
     /// The trace that the instrument records, which starts one burst duration before the trigger.
@@ -194,8 +161,9 @@ impl TimeOfFlight<'_> {
         let shortest = bursts.iter().zip(responses).max_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
         let Some((burst, full)) = shortest.filter(|_| opened + closed > 0) else { return Ok(Vec::new()) };
         let instrument = Instrument::default();
-        let settings = Settings { amplitude: 0.5 * settings.amplitude, ..settings.clone() };
-        let half = self.send(&settings, burst, speed, instrument.rate(burst.frequency)?)?;
+        let plan = PathPlan::new(self.path, self.sample, RECEIVERS, settings.copies, burst, speed)?;
+        let (rate, amplitude) = (instrument.rate(burst.frequency)?, settings.amplitude);
+        let half = send(self.path, self.sample, &plan, burst, 0.5 * amplitude, speed, rate)?;
         let slowness = |response: &BurstResponse| {
             let trace = self.trace(burst, response, &instrument, settings.pick, &self.path.place)?;
             Ok::<f64, AcousticsError>(Arrivals::pick(&trace, burst.cycles, settings.pick, 1)?.slowness)
@@ -209,7 +177,7 @@ impl TimeOfFlight<'_> {
         let warning = Warning::Nonlinear {
             direction: self.path.direction.into(),
             polarization: self.path.polarization.into(),
-            amplitude: 2.0 * settings.amplitude,
+            amplitude,
             opened,
             closed,
             change,
@@ -218,10 +186,16 @@ impl TimeOfFlight<'_> {
     }
 }
 
-fn copies_needed(error: &AcousticsError) -> u32 {
-    if let AcousticsError::PathTooShort { enough, .. } = error { *enough } else { u32::MAX }
+/// Root mean square of full − 2 × half over that of the full signal, for pairs of samples (full, half).
+fn relative_change<'a>(pairs: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
+    let (mut difference, mut square) = (0.0, 0.0);
+    for (full, half) in pairs {
+        difference += (full - 2.0 * half).powi(2);
+        square += full * full;
+    }
+    (difference / square).sqrt()
 }
 
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
+fn copies_needed(error: &AcousticsError) -> u32 {
+    if let AcousticsError::PathTooShort { enough, .. } = error { *enough } else { u32::MAX }
 }

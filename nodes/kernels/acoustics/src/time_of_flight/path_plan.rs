@@ -1,9 +1,14 @@
 //! Positions of the receivers, and length of the path.
 
 use super::burst::Burst;
-use super::settings::Settings;
+use super::wave_path::WavePath;
 use crate::error::AcousticsError;
+use crate::sample::Sample;
+use grainlab_core::Vec3;
 use std::f64::consts::TAU;
+
+/// Receivers of a measurement: their number, and the distances of the first and the last one, wavelengths.
+pub(crate) const RECEIVERS: (u32, f64, f64) = (5, 1.0, 3.0);
 
 /// Speed of the wave in the opposite direction over the expected one, as a margin.
 const FASTER: f64 = 1.05;
@@ -27,29 +32,34 @@ pub(crate) struct PathPlan {
 }
 
 impl PathPlan {
-    /// For a burst with the wave speed `speed`, m/s, in a packing of mean `diameter` and `period` along the path, m.
+    /// For receivers as in [`RECEIVERS`], `copies` of the packing (`None`: as many as are needed) and a burst with the wave speed `speed`,
+    /// m/s.
     pub(crate) fn new(
-        settings: &Settings,
+        path: &WavePath,
+        sample: &Sample,
+        receivers: (u32, f64, f64),
+        copies: Option<u32>,
         burst: &Burst,
         speed: f64,
-        diameter: f64,
-        period: f64,
     ) -> Result<Self, AcousticsError> {
+        let planes = sample.packing.cell.inverse().transpose() * Vec3::from(path.indices.map(f64::from));
+        // Planes (2 0 0) are every second plane of (1 0 0).
+        let divisor = path.indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
+        let period = f64::from(divisor) / planes.norm();
         let wavelength = speed / burst.frequency;
-        let receivers = places(settings, wavelength, period);
+        let receivers = places(receivers, wavelength, period);
         let furthest = receivers.last().copied().unwrap_or(0.0);
-        let slower = 1.0 + SLOWER * (TAU * diameter / wavelength).powi(2);
+        let slower = 1.0 + SLOWER * (TAU * sample.diameter / wavelength).powi(2);
         let duration = slower * furthest / speed + RECORDED * burst.duration();
         // The wave in the opposite direction must not reach the furthest receiver during the recording.
         let needed = furthest + FASTER * speed * duration;
         let enough = (needed / period).ceil().max(1.0);
-        let copies = settings.copies.unwrap_or(enough as u32);
+        let copies = copies.unwrap_or(enough as u32);
         if f64::from(copies) < enough {
             return Err(AcousticsError::PathTooShort {
                 copies,
                 path: f64::from(copies) * period,
                 needed,
-                why: "the wave in the opposite direction must not reach the furthest receiver during the recording",
                 enough: enough as u32,
             });
         }
@@ -57,10 +67,13 @@ impl PathPlan {
     }
 }
 
-fn places(settings: &Settings, wavelength: f64, period: f64) -> Vec<f64> {
-    let nearest = settings.nearest * wavelength;
-    let step = (settings.furthest - settings.nearest) * wavelength / f64::from(settings.receivers - 1);
-    let even = (0..settings.receivers).map(|k| f64::from(k) * step);
+fn places((receivers, nearest, furthest): (u32, f64, f64), wavelength: f64, period: f64) -> Vec<f64> {
+    let step = (furthest - nearest) * wavelength / f64::from(receivers - 1);
+    let even = (0..receivers).map(|k| f64::from(k) * step);
     let whole = |x: f64| if step >= period { (x / period).round() * period } else { x };
-    even.map(|x| nearest + whole(x)).collect()
+    even.map(|x| nearest * wavelength + whole(x)).collect()
+}
+
+fn gcd(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -2,7 +2,6 @@
 
 use crate::error::AcousticsError;
 use grainlab_core::WaveMethod;
-use grainlab_core::contact::TangentialLaw;
 
 /// The feature of a trace that is taken as the arrival.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,7 +16,7 @@ pub enum ArrivalPick {
 }
 
 impl ArrivalPick {
-    /// Its name in results.
+    /// Name in results.
     pub fn method(&self) -> WaveMethod {
         match self {
             Self::FirstArrival => WaveMethod::FirstArrival,
@@ -38,14 +37,6 @@ pub struct Settings {
     /// Repetitions of the packing along the path; `None`: as many as keep the wave in the opposite direction
     /// away from the receivers.
     pub copies: Option<u32>,
-    /// Thickness of source and receivers along the ray, mean grain diameters.
-    pub thickness: f64,
-    /// Number of receivers, 2 or more.
-    pub receivers: u32,
-    /// Distance of the first receiver, wavelengths.
-    pub nearest: f64,
-    /// Distance of the last receiver, wavelengths.
-    pub furthest: f64,
     /// Peak strain. From 1e-10 to 1e-6 speeds in packings at 50 kPa are the same to 5e-4; above, contacts open.
     pub amplitude: f64,
     /// The feature that is taken as the arrival.
@@ -53,8 +44,6 @@ pub struct Settings {
     /// Friction; `None`: that of the packing, where contacts at the Coulomb limit slide under any wave; infinite: no
     /// sliding.
     pub friction: Option<f64>,
-    /// How the tangential force follows a change of normal stiffness.
-    pub tangential: TangentialLaw,
 }
 
 impl Default for Settings {
@@ -63,14 +52,9 @@ impl Default for Settings {
             frequencies: None,
             cycles: 2.0,
             copies: None,
-            thickness: 2.0,
-            receivers: 5,
-            nearest: 1.0,
-            furthest: 3.0,
             amplitude: 1e-8,
             pick: ArrivalPick::default(),
             friction: None,
-            tangential: TangentialLaw::Incremental,
         }
     }
 }
@@ -80,22 +64,14 @@ impl Settings {
     pub fn validated(&self) -> Result<&Self, AcousticsError> {
         let fault = |name, value, requirement| Err(AcousticsError::Setting { name, value, requirement });
         let positive = |x: f64| x.is_finite() && x > 0.0;
-        let numbers =
-            [("thickness", self.thickness), ("nearest", self.nearest), ("amplitude", self.amplitude)];
-        if let Some((name, value)) = numbers.into_iter().find(|(_, x)| !positive(*x)) {
-            return fault(name, value, "more than 0 and finite");
+        if !positive(self.amplitude) {
+            return fault("amplitude", self.amplitude, "more than 0 and finite");
         }
         if !(self.cycles.is_finite() && self.cycles >= 1.0) {
             return fault("cycles", self.cycles, "1 or more and finite");
         }
-        if !(self.furthest.is_finite() && self.furthest > self.nearest) {
-            return fault("furthest", self.furthest, "more than nearest and finite");
-        }
         if self.amplitude > 1e-2 {
             return fault("amplitude", self.amplitude, "0.01 or less");
-        }
-        if self.receivers < 2 {
-            return fault("receivers", self.receivers.into(), "2 or more");
         }
         if self.copies == Some(0) {
             return fault("copies", 0.0, "1 or more");

@@ -50,7 +50,7 @@ impl Calibration {
         }
     }
 
-    /// Its name, reported with every estimate.
+    /// Name of the calibration, reported with every estimate.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -88,7 +88,7 @@ impl Calibration {
         material.map_or(1.0, |m| (m.effective_young() / own).cbrt().powi(2))
     }
 
-    /// The same with this coordination number for the isotropic packings; `None` if the calibration lacks
+    /// Calibration with this coordination number for the isotropic packings; `None` if the calibration lacks
     /// such a fit.
     pub fn with_coordination_kind(&self, kind: InferredQuantity) -> Option<Self> {
         if self.isotropic.coordination_kind == kind {

@@ -6,11 +6,11 @@ pub enum CalibrationError {
     /// A constant is out of range.
     #[error("{field} = {value} is invalid: {requirement}")]
     Constant {
-        /// Which constant.
+        /// Name of the constant.
         field: &'static str,
-        /// Its value.
+        /// Value of the constant.
         value: f64,
-        /// What is required.
+        /// Requirement on the value.
         requirement: &'static str,
     },
     /// The text is not a valid calibration file.
@@ -19,9 +19,9 @@ pub enum CalibrationError {
     /// A packing to learn from is none, or its numbers are in other units.
     #[error("packing `{packing}`: {fault}")]
     Packing {
-        /// Its name.
+        /// Name of the packing.
         packing: String,
-        /// What is wrong, and what to do.
+        /// Fault, and what to do.
         fault: String,
     },
     /// The packings do not determine the constants.

@@ -40,26 +40,26 @@ fn critical_slope(z: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScalingLaw {
-    /// a.
+    /// Coefficient a, the level.
     pub level: f64,
-    /// b.
+    /// Coefficient b, of ln z.
     pub by_z: f64,
-    /// c.
+    /// Coefficient c, of ln(z − z0).
     pub by_excess: f64,
     /// z0, below every z of the packings.
     pub onset: f64,
-    /// d.
+    /// Coefficient d, of ln p.
     pub by_pressure: f64,
-    /// e.
+    /// Coefficient e, of κ.
     pub by_stiffness_ratio: f64,
-    /// f.
+    /// Coefficient f, of s².
     pub by_size_variance: f64,
     /// g and h.
     pub mixed: [f64; 2],
 }
 
 impl ScalingLaw {
-    /// Number of coefficients beside z0.
+    /// Number of coefficients, z0 not counted.
     pub(crate) const TERMS: usize = 8;
 
     /// The terms that the coefficients multiply, in the order of the fields.
@@ -81,7 +81,7 @@ impl ScalingLaw {
         }
     }
 
-    /// ln X.
+    /// Logarithm of X.
     pub(crate) fn value(&self, z: f64, state: &NetworkState) -> f64 {
         let coefficients = [
             self.level,
@@ -143,22 +143,22 @@ impl DeviatorLaw {
         Self { by_eps: [a0, a1, a2, a3, a4, a5, a6, a7], by_stress_ratio }
     }
 
-    /// dX/dε.
+    /// Derivative by ε.
     pub(crate) fn by_eps(&self, z: f64, state: &NetworkState) -> f64 {
         dot(&self.by_eps, &Self::factors(z, state))
     }
 
-    /// dX/d(q/p).
+    /// Derivative by q/p.
     fn by_stress_ratio(&self, z: f64, state: &NetworkState) -> f64 {
         dot(&self.by_stress_ratio, &Self::stress_factors(z, state))
     }
 
-    /// X.
+    /// Value of X.
     pub(crate) fn value(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
         self.by_eps(z, state) * eps + self.by_stress_ratio(z, state) * state.stress_ratio
     }
 
-    /// dX/dz.
+    /// Derivative by z.
     pub(crate) fn slope(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
         let [_, a1, _, _, _, a5, a6, a7] = self.by_eps;
         let of_eps = a1 + a5 * state.ln_pressure + a7 * state.stiffness_ratio;
@@ -169,20 +169,7 @@ impl DeviatorLaw {
 
 /// k = a + b z + c z² + d z³ + e ln p + f s² + g z s²: the coordination number with rattlers counted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "[f64; 7]", into = "[f64; 7]")]
 pub struct RattlerLaw(pub [f64; 7]);
-
-impl From<[f64; 7]> for RattlerLaw {
-    fn from(coefficients: [f64; 7]) -> Self {
-        Self(coefficients)
-    }
-}
-
-impl From<RattlerLaw> for [f64; 7] {
-    fn from(law: RattlerLaw) -> Self {
-        law.0
-    }
-}
 
 impl RattlerLaw {
     /// The terms that the coefficients multiply.
@@ -191,12 +178,12 @@ impl RattlerLaw {
         [1.0, z, z * z, z * z * z, state.ln_pressure, s2, z * s2]
     }
 
-    /// k.
+    /// Coordination number k.
     pub(crate) fn value(&self, z: f64, state: &NetworkState) -> f64 {
         dot(&self.0, &Self::terms(z, state))
     }
 
-    /// dk/dz.
+    /// Derivative by z.
     pub(crate) fn slope(&self, z: f64, state: &NetworkState) -> f64 {
         let [_, b, c, d, _, _, g] = self.0;
         b + 2.0 * c * z + 3.0 * d * z * z + g * state.size_variance

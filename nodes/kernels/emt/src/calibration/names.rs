@@ -19,7 +19,7 @@ pub(super) mod coordination_kind {
     }
 }
 
-/// Where γ/Δ comes from, or `none` for a model that does not use it.
+/// Source of γ/Δ, or `none` for a model that does not use it.
 pub(super) mod strain_ratio {
     use super::{Deserialize, Deserializer, Error, Serializer, StrainRatioSource};
 

@@ -1,4 +1,4 @@
-//! What the packings of a calibration cover, and how far another packing is from them.
+//! Ranges of the packings of a calibration, and the distance of another packing from them.
 
 use super::laws::{NetworkState, REFERENCE_PRESSURE, REFERENCE_STIFFNESS_RATIO};
 use serde::{Deserialize, Serialize};
@@ -34,13 +34,13 @@ const WIDTH: f64 = 0.1;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
-    /// z.
+    /// Range of z.
     pub z: [f64; 2],
-    /// ε.
+    /// Range of ε.
     pub eps: [f64; 2],
-    /// p/E*.
+    /// Range of p/E*.
     pub pressure: [f64; 2],
-    /// k_t/k_n.
+    /// Range of k_t/k_n.
     pub stiffness_ratio: [f64; 2],
     /// Standard deviation of the radii over their mean.
     pub size_spread: [f64; 2],
@@ -61,12 +61,12 @@ pub(crate) struct Outside {
 }
 
 impl Outside {
-    /// Whether it is an extrapolation, and not one of the ends of the range.
+    /// True for an extrapolation, false for the ends of the range.
     pub(crate) fn is_extrapolation(&self) -> bool {
         self.distance.is_nan() || self.distance > self.end
     }
 
-    /// Whether it is too far for an estimate.
+    /// True if it is too far for an estimate.
     pub(crate) fn is_too_far(&self) -> bool {
         self.distance.is_nan() || self.distance > UNKNOWN
     }

@@ -39,7 +39,7 @@ pub struct RelaxationCalibration {
     pub recipes: u32,
     /// Mean and standard deviation of ε over the packings.
     pub eps_spread: [f64; 2],
-    /// k.
+    /// Law of k.
     pub rattlers: RattlerLaw,
     /// h0 and h1 of the two scalars, of the deviators with the ε weighted by stiffness, and of k: the variance of their
     /// scatter is multiplied by exp(h0 s² + h1 ln p), with s² the variance of the radii.
@@ -47,24 +47,24 @@ pub struct RelaxationCalibration {
     /// Covariance of (ln Θ, ln G, D, V, H, ε weighted by stiffness, k) of packings of the same z, ε and state, left out by
     /// their recipes, all but k multiplied by (z − 4)/z; row-major.
     pub scatter: [[f64; SCATTERED]; SCATTERED],
-    /// What the packings cover.
+    /// Ranges of the packings.
     pub reach: Reach,
-    /// Dilatational deviator.
+    /// Law of the dilatational deviator.
     pub dilatation: DeviatorLaw,
-    /// Voigt deviator.
+    /// Law of the Voigt deviator.
     pub voigt: DeviatorLaw,
-    /// Harmonic part.
+    /// Law of the harmonic part.
     pub harmonic: DeviatorLaw,
     /// ε weighted by contact stiffness.
     pub eps_stiffness: DeviatorLaw,
-    /// Bulk modulus.
+    /// Law of the bulk modulus.
     pub theta: ScalingLaw,
     /// Shear modulus of the isotropic part.
     pub shear: ScalingLaw,
 }
 
 impl NetworkState {
-    /// Of grains of this material at this pressure, Pa, with this standard deviation of the radii over their mean and q/p.
+    /// State of grains of this material at this pressure, Pa, with this standard deviation of the radii over their mean and q/p.
     pub(crate) fn of(pressure: f64, material: &Material, size_spread: f64, stress_ratio: f64) -> Self {
         let stiffness_ratio = material.stiffness_ratio();
         Self {
@@ -113,7 +113,7 @@ impl RelaxationCalibration {
     /// sample changes as the inverse of the number of grains, and none of that of k in larger samples: differences between
     /// recipes remain at any size. The share is that with the larger variance.
     pub(crate) fn variance_factors(&self, grains: Option<u32>) -> [f64; SCATTERED] {
-        // Of an unknown size: as the packings.
+        // A sample of unknown size counts as the packings.
         let ratio = grains.map_or(1.0, |n| f64::from(self.grains) / f64::from(n.max(1)));
         let [least, largest] = OF_THE_SAMPLE;
         let share = if ratio > 1.0 { largest } else { least };

@@ -15,7 +15,7 @@ const STANDS_OUT: f64 = 10.0;
 pub struct SpeedConflict {
     /// Index of the speed furthest from its prediction by the others.
     pub worst: usize,
-    /// Its distance, in its standard deviations.
+    /// Distance of this speed, in its standard deviations.
     pub sigma: f64,
 }
 

@@ -6,7 +6,7 @@ use grainlab_core::Vec3;
 /// Why wave speeds do not determine an axis of symmetry.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AxisError {
-    /// Invalid speeds.
+    /// The speeds are invalid.
     #[error(transparent)]
     Speeds(#[from] ChristoffelError),
     /// Fewer speeds than unknowns.
@@ -20,7 +20,7 @@ pub enum AxisError {
         /// Number of combinations of moduli that they determine, plus two for the axis, plus one if their error is not
         /// known.
         unknowns: usize,
-        /// Whether the error of the speeds is one of the unknowns.
+        /// True if the error of the speeds is one of the unknowns.
         scatter: bool,
         /// The unit direction furthest from all measured ones.
         direction: Vec3,

@@ -1,4 +1,4 @@
-//! What the departure of a sample from a transversely isotropic medium does to the moduli fitted to its speeds.
+//! Effect of the departure of a sample from a transversely isotropic medium on the moduli fitted to its speeds.
 //!
 //! The departure is a stiffness whose transversely isotropic projection is zero. To first order ρ v² of a polarization p
 //! along n changes by p·Γ(departure)·p, so that the errors of several speeds are not independent: over enough
@@ -52,7 +52,7 @@ fn seen(speeds: &[WaveSpeed], axis: &Vec3) -> DMatrix<f64> {
     })
 }
 
-/// What the projection on media that are isotropic about `axis` discards.
+/// Part that the projection on media isotropic about `axis` discards.
 fn departure(stiffness: &Stiffness, axis: &Vec3) -> Stiffness {
     let turn = nalgebra::Rotation3::rotation_between(axis, &Vec3::z());
     // Opposite to e3: any half turn across it.

@@ -1,4 +1,4 @@
-//! Which moduli the fit determines, with their covariance.
+//! Moduli that the fit determines, with their covariance.
 
 use super::fit::Fit;
 use super::ray::UNKNOWNS;

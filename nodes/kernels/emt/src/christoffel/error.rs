@@ -12,7 +12,7 @@ pub enum ChristoffelError {
     /// A vector that is not a unit vector.
     #[error("{vector} has the length {length}, and must be a unit vector")]
     NotUnit {
-        /// Which vector, with its index in the list of speeds.
+        /// Name of the vector, with its index in the list of speeds.
         vector: String,
         /// The length found.
         length: f64,
@@ -74,7 +74,7 @@ pub enum ChristoffelError {
 }
 
 impl ChristoffelError {
-    /// Whether the data are missing or invalid, rather than inconsistent with the theory.
+    /// True if the data are missing or invalid, rather than inconsistent with the theory.
     pub fn is_input_error(&self) -> bool {
         !matches!(self, ChristoffelError::Unstable { .. } | ChristoffelError::NoMedium)
     }

@@ -23,7 +23,7 @@ const TYPICAL: f64 = 0.6;
 /// Number of degrees of freedom that the laws count for, by the scatter of single states about them.
 const WORTH: f64 = 7.0;
 
-/// Relative precision of the scatter found.
+/// Relative precision of the error found.
 const PRECISION: f64 = 1e-4;
 
 /// Least and greatest scatter over that of the laws.
@@ -76,21 +76,31 @@ pub(super) fn with_prior(
         let chi_square: f64 = fit.residuals.iter().zip(&all).map(|(r, e)| (r / e).powi(2)).sum();
         let freedom = rays.len().saturating_sub(fit.rank) as f64;
         let excess = chi_square + WORTH / factor.powi(2) - freedom - WORTH;
-        Ok::<_, ChristoffelError>((fit, unit, excess))
+        Ok((fit, unit, excess))
     };
-    let [mut low, mut high] = RANGE;
+    let (factor, fit, unit) = tightest(RANGE, |low, high| (low * high).sqrt(), fitted)?;
+    let mean = (prior.iter().map(|p| p * p).sum::<f64>() / prior.len() as f64).sqrt();
+    Ok(ScatteredFit { added: factor * mean, usual: mean, fit, unit })
+}
+
+/// The least error in a range whose fit has no excess of χ², by bisection at `middle`, with this fit and its error of a speed of weight 1.
+/// `fitted`: fit, error of a speed of weight 1 and excess of χ².
+pub(super) fn tightest(
+    [mut low, mut high]: [f64; 2],
+    middle: impl Fn(f64, f64) -> f64,
+    fitted: impl Fn(f64) -> Result<(fit::Fit, Option<f64>, f64), ChristoffelError>,
+) -> Result<(f64, fit::Fit, Option<f64>), ChristoffelError> {
     let mut best = fitted(high)?;
     while high - low > PRECISION * high {
-        let middle = (low * high).sqrt();
-        let next = fitted(middle)?;
+        let at = middle(low, high);
+        let next = fitted(at)?;
         if next.2 > 0.0 {
-            low = middle;
+            low = at;
         } else {
-            (high, best) = (middle, next);
+            (high, best) = (at, next);
         }
     }
-    let mean = (prior.iter().map(|p| p * p).sum::<f64>() / prior.len() as f64).sqrt();
-    Ok(ScatteredFit { added: high * mean, usual: mean, fit: best.0, unit: best.1 })
+    Ok((high, best.0, best.1))
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ const SHORTEST: f64 = 1e-8;
 pub(super) struct Speeds<'a> {
     pub(super) measured: &'a [WaveSpeed],
     pub(super) weights: &'a [f64],
-    /// Whether a speed is one of two S modes of its direction.
+    /// For each speed, true if it is one of two S modes of its direction.
     pub(super) paired: &'a [bool],
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Stand {
 
 /// Derivatives with respect to tilts of the axis towards two perpendicular directions.
 pub(super) struct Tilts {
-    /// The directions.
+    /// Directions of the tilts.
     pub(super) towards: [Vec3; 2],
     /// Second derivatives of half the weighted sum of squares of the best medium about each axis, 1/rad².
     pub(super) curvature: Matrix2<f64>,

@@ -21,21 +21,21 @@ const AXIAL: f64 = 1e-3;
 /// right angle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
-    /// v, m/s.
+    /// Measured speed, m/s.
     pub(super) speed: f64,
-    /// Its standard deviation over v.
+    /// Standard deviation of the speed over it.
     pub(super) error: Option<f64>,
     sin: f64,
     cos: f64,
     /// Unit polarization: components across the axis in the plane, across the plane, along the axis.
     motion: [f64; 3],
-    /// Whether it is the S mode polarized across the plane.
+    /// True for the S mode polarized across the plane.
     horizontal: bool,
-    /// Whether it is one of two S modes, both measured, that are turned from those of the medium. Its v² is then the
+    /// True for one of two S modes, both measured, that are turned from those of the medium. v² is then the
     /// mean of theirs, weighted by the squared components of the polarization: exact to first order for a nearly
     /// isotropic medium.
     mixed: bool,
-    /// Whether direction and polarization alone identify the mode: in a packing the modes are close to those of an
+    /// True if direction and polarization alone identify the mode: in a packing the modes are close to those of an
     /// isotropic medium.
     pub(super) named: bool,
 }
@@ -45,7 +45,7 @@ pub(super) struct Ray {
 pub(super) struct Response {
     /// v² of the mode, m²/s².
     pub(super) square: f64,
-    /// Its derivatives with respect to the specific moduli.
+    /// Derivatives of v² with respect to the specific moduli.
     pub(super) slopes: Column,
     /// cos² of the angle between the measured polarization and that of the mode.
     pub(super) share: f64,
@@ -70,7 +70,7 @@ impl Ray {
         }
     }
 
-    /// The same about a trial axis: a polarization between two modes is assigned to the nearest one. Also
+    /// Checks a speed about a trial axis: a polarization between two modes is assigned to the nearest one. Also
     /// returns cos² of the angle to the nearest polarization that the direction has in any medium.
     pub(super) fn about(
         index: usize,
@@ -120,12 +120,12 @@ impl Ray {
         self.sin * self.sin
     }
 
-    /// Whether it is polarized across the plane of direction and axis.
+    /// True if it is polarized across the plane of direction and axis.
     pub(super) fn is_horizontal(&self) -> bool {
         self.horizontal
     }
 
-    /// The same ray as one of two S modes that may be turned from those of the medium.
+    /// This ray as one of two S modes that may be turned from those of the medium.
     pub(super) fn mixed(self) -> Self {
         Self { mixed: true, named: true, ..self }
     }
@@ -135,17 +135,17 @@ impl Ray {
         (self.sin * self.motion[0] + self.cos * self.motion[2]).powi(2)
     }
 
-    /// Whether the polarization is more along the direction than across it.
+    /// True if the polarization is more along the direction than across it.
     pub(super) fn is_compressional(&self) -> bool {
         self.along() > 0.5
     }
 
-    /// Whether the polarization is clearly across the direction.
+    /// True if the polarization is clearly across the direction.
     pub(super) fn is_transverse(&self) -> bool {
         is_clear(1.0 - self.along())
     }
 
-    /// Whether the polarization of the mode, and with it v², depends on C13 and on the ratios of the moduli.
+    /// True if the polarization of the mode, and with it v², depends on C13 and on the ratios of the moduli.
     pub(super) fn is_coupled(&self) -> bool {
         (self.mixed || !self.horizontal) && (self.sin * self.cos).powi(2) > AXIAL
     }
@@ -237,7 +237,7 @@ pub(super) fn paired(speeds: &[WaveSpeed]) -> Vec<bool> {
     speeds.iter().map(|a| across(a) && speeds.iter().any(|b| across(b) && is_pair(a, b))).collect()
 }
 
-/// Whether a polarization with this cos² of the angle to that of a mode belongs to the mode.
+/// True if a polarization with this cos² of the angle to that of a mode belongs to the mode.
 pub(super) fn is_clear(share: f64) -> bool {
     share >= CLEAR
 }

@@ -10,7 +10,7 @@ use nalgebra::{Const, SMatrix, SymmetricEigen};
 /// counts as undetermined: speeds with errors of 0.1 % contain no information about it.
 const BLIND: f64 = 1e-3;
 
-/// The same, below which other media may have the same speeds.
+/// Relative change of the speeds below which other media may have the same speeds.
 const WEAK: f64 = 0.1;
 
 /// Distances from a medium at which others are searched, in scales of its moduli.
@@ -64,7 +64,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Whether the sum of squares has one minimum: the rays whose polarization does not depend on the medium, whose v²
+    /// True if the sum of squares has one minimum: the rays whose polarization does not depend on the medium, whose v²
     /// is linear in the moduli, determine all moduli but C13 (or there are no other rays), and every v² is monotone in
     /// C13.
     pub(super) fn has_one_minimum(&self) -> bool {

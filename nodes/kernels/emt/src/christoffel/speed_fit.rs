@@ -2,16 +2,14 @@
 
 use super::agreement::{self, Agreement, AnisotropyScatter, SpeedConflict};
 use super::error::ChristoffelError;
+use super::prior_scatter::{self, tightest};
 use super::ray::{self, Ray};
 use super::weights::{errors, weights};
-use super::{departure, determined, fit, prior_scatter};
+use super::{departure, determined, fit};
 use crate::conditions::{Conditions, Measured};
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use grainlab_core::{Vec3, WaveSpeed};
-
-/// Relative precision of the error that is added for the scatter of the sample.
-const OWN_ERROR_PRECISION: f64 = 1e-4;
 
 /// Scatter over the usual one of a sample beyond which the speeds are in conflict.
 const UNUSUAL: f64 = 3.0;
@@ -85,7 +83,7 @@ pub fn moduli_from_speeds(
     moduli_of_sample(speeds, density, axis, conditions, None)
 }
 
-/// The same for a sample of so many `grains`, 1 or more, if their number is known: the scatter that samples of this size and stiffness
+/// Moduli of a sample of so many `grains`, 1 or more, if their number is known: the scatter that samples of this size and stiffness
 /// have is then part of the errors of the moduli, also where the speeds are too few to show it.
 pub fn moduli_of_sample(
     speeds: &[WaveSpeed],
@@ -176,25 +174,16 @@ fn with_own_error(
     sharp: &fit::Fit,
 ) -> Result<(f64, fit::Fit, Option<f64>), ChristoffelError> {
     let fitted = |added: f64| {
-        let errors: Vec<f64> = errors.iter().map(|e| e.hypot(added)).collect();
-        let (weights, unit) = weights(Some(&errors), rays.len());
-        Ok((fit::fit(rays, &weights, unit)?, unit))
+        let all: Vec<f64> = errors.iter().map(|e| e.hypot(added)).collect();
+        let (weights, unit) = weights(Some(&all), rays.len());
+        let fit = fit::fit(rays, &weights, unit)?;
+        let freedom = rays.len().saturating_sub(fit.rank) as f64;
+        let excess = chi_square(&fit, errors, added) - freedom;
+        Ok((fit, unit, excess))
     };
     // With an error as large as the largest residual χ² is below one per speed, and refitting only lowers it.
     let largest = sharp.residuals.iter().fold(0.0, |most: f64, r| most.max(r.abs()));
-    let (mut low, mut high) = (0.0, largest * rays.len() as f64);
-    let mut best = fitted(high)?;
-    while high - low > OWN_ERROR_PRECISION * high {
-        let middle = 0.5 * (low + high);
-        let next = fitted(middle)?;
-        let freedom = rays.len().saturating_sub(next.0.rank) as f64;
-        if chi_square(&next.0, errors, middle) > freedom {
-            low = middle;
-        } else {
-            (high, best) = (middle, next);
-        }
-    }
-    Ok((high, best.0, best.1))
+    tightest([0.0, largest * rays.len() as f64], |low, high| 0.5 * (low + high), fitted)
 }
 
 fn rays(speeds: &[WaveSpeed], axis: Option<Vec3>) -> Result<Vec<Ray>, ChristoffelError> {

@@ -40,7 +40,6 @@ pub(super) fn discrepancies(
                 // The recipes are a sample of all recipes.
                 let of_recipes = student(errors.len() - 1);
                 let enlarged = enlarged(&errors, by_eps).map(|factor| factor * of_recipes);
-                let bias = bias(&errors);
                 learned.push(ModelDiscrepancy {
                     model: model.name().to_owned(),
                     coordination_kind: kind,
@@ -48,7 +47,7 @@ pub(super) fn discrepancies(
                     mean_square: std::array::from_fn(|i| {
                         std::array::from_fn(|j| all[i][j] * (enlarged[i] * enlarged[j]))
                     }),
-                    bias: std::array::from_fn(|i| bias[i] * enlarged[i]),
+                    bias: std::array::from_fn(|i| mean(&errors, None, |e| e[i]) * enlarged[i]),
                     by_eps,
                 });
             }
@@ -57,7 +56,7 @@ pub(super) fn discrepancies(
     learned
 }
 
-/// Of each recipe: ε inferred, and the errors of coordination number, k̂ and ε.
+/// ε inferred, and the errors of coordination number, k̂ and ε, by recipe.
 type Errors<'a> = BTreeMap<&'a str, Vec<(f64, [f64; 3])>>;
 
 /// Errors on the packings that the model solves; `None` if these are fewer than nine in ten.
@@ -92,23 +91,16 @@ fn errors<'a>(
     (solved > 0 && solved * 10 >= asked * 9).then_some(errors)
 }
 
-/// Means of the products of the errors, first over each recipe and then over the recipes but one.
-fn mean_square(errors: &Errors<'_>, without: Option<&str>) -> [[f64; 3]; 3] {
+/// Mean of a number of each error, first over each recipe and then over the recipes but one.
+fn mean(errors: &Errors<'_>, without: Option<&str>, of: impl Fn(&[f64; 3]) -> f64) -> f64 {
     let kept = errors.iter().filter(|(recipe, _)| Some(**recipe) != without).map(|(_, all)| all);
     let recipes = kept.clone().count() as f64;
-    let mean = |i: usize, j: usize| {
-        let of_recipe =
-            |all: &Vec<(f64, [f64; 3])>| all.iter().map(|(_, e)| e[i] * e[j]).sum::<f64>() / all.len() as f64;
-        kept.clone().map(of_recipe).sum::<f64>() / recipes
-    };
-    std::array::from_fn(|i| std::array::from_fn(|j| mean(i, j)))
+    kept.map(|all| all.iter().map(|(_, e)| of(e)).sum::<f64>() / all.len() as f64).sum::<f64>() / recipes
 }
 
-/// Means of the errors, as [`mean_square`].
-fn bias(errors: &Errors<'_>) -> [f64; 3] {
-    let of_recipe =
-        |all: &Vec<(f64, [f64; 3])>, i: usize| all.iter().map(|(_, e)| e[i]).sum::<f64>() / all.len() as f64;
-    std::array::from_fn(|i| errors.values().map(|all| of_recipe(all, i)).sum::<f64>() / errors.len() as f64)
+/// Means of the products of the errors.
+fn mean_square(errors: &Errors<'_>, without: Option<&str>) -> [[f64; 3]; 3] {
+    std::array::from_fn(|i| std::array::from_fn(|j| mean(errors, without, |e| e[i] * e[j])))
 }
 
 /// Factor, 1 or more, of the standard deviation of each error.
@@ -132,7 +124,7 @@ fn enlarged(errors: &Errors<'_>, by_eps: [f64; 2]) -> [f64; 3] {
     })
 }
 
-/// How the square of the error of ε grows with the inferred ε: f0 + f1 ε² by least squares, with a mean of 1.
+/// Growth of the square of the error of ε with the inferred ε: f0 + f1 ε² by least squares, with a mean of 1.
 fn by_eps(errors: &Errors<'_>) -> [f64; 2] {
     let all = || errors.values().flatten();
     let count = all().count() as f64;

@@ -42,7 +42,7 @@ pub fn check_structure(structure: &Microstructure) -> Result<(), EmtError> {
 /// One packing: its moduli, and its structure counted from the contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationSample {
-    /// How it was prepared. Packings of one preparation are left out together when the models are tested.
+    /// Recipe of the preparation. Packings of one preparation are left out together when the models are tested.
     pub preparation: String,
     /// Name of the packing: states of the same packing at several pressures share it.
     pub packing: String,
@@ -50,7 +50,7 @@ pub struct CalibrationSample {
     pub grains: u32,
     /// Material of the grains.
     pub material: Material,
-    /// Pressure, Pa.
+    /// Confining pressure, Pa.
     pub pressure: f64,
     /// Solid fraction φ.
     pub solid_fraction: f64,
@@ -60,7 +60,7 @@ pub struct CalibrationSample {
     pub size_spread: f64,
     /// All six moduli, Pa.
     pub moduli: Moduli,
-    /// γ/Δ.
+    /// Measured ratios γ/Δ.
     pub gamma: StrainRatios,
     /// Coordination number of all grains.
     pub k: f64,
@@ -137,12 +137,12 @@ impl CalibrationSample {
         Ok(())
     }
 
-    /// p/E*.
+    /// Ratio p/E*, dimensionless.
     pub(super) fn reduced_pressure(&self) -> f64 {
         self.pressure / self.material.effective_young()
     }
 
-    /// Whether every number is finite and every modulus positive.
+    /// True if every number is finite and every modulus positive.
     pub(super) fn is_finite(&self) -> bool {
         let numbers = [
             self.pressure,

@@ -9,7 +9,7 @@
 //! of the model and not of the data.
 
 use super::equivalent::MAX_COORDINATION;
-use super::shear_ratio::{ratio_warnings, shear_ratio};
+use super::shear_ratio::{check_eq_10, ratio_warnings, shear_ratio};
 use crate::calibration::Calibration;
 use crate::conditions::{Conditions, Measured};
 use crate::domain::Domain;
@@ -20,7 +20,6 @@ use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
 use crate::moments::eps_of_spin;
 use crate::observation::Observation;
-use crate::overlap::check_eq_10;
 use crate::point_estimate::PointEstimate;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 

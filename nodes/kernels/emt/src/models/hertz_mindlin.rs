@@ -8,7 +8,6 @@
 //! Where the moduli are anisotropic, the shear modulus is that of the isotropic part, or the mean of the known ones.
 
 use super::equivalent::MAX_COORDINATION;
-use super::uniform_strain::own_error;
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
 use crate::domain::Domain;
@@ -18,9 +17,10 @@ use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
-use crate::sphere_pack::{PackShape, mindlin};
 use crate::warning::Warning;
-use grainlab_core::results::{InferredQuantity, Microstructure};
+use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
+use grainlab_core::{Material, TransverseIsotropy};
+use std::f64::consts::PI;
 
 /// Hertz–Mindlin with a share of contacts that stick: model `hertz-mindlin`. It uses only the material of the calibration,
 /// where that of the grains is not known.
@@ -28,6 +28,13 @@ use grainlab_core::results::{InferredQuantity, Microstructure};
 pub(crate) struct HertzMindlin;
 
 const NAME: &str = "hertz-mindlin";
+
+/// Error of k over the k inferred, root mean square over the 1,068 states of the calibration `grainlab`, bias included: what the model
+/// leaves out is the relaxation of the network. No constant of the model comes from it.
+const ERROR_OF_K: f64 = 0.21;
+
+/// Mean stress in units of (2/π) φ k E* (Δ/3)^{3/2}.
+const PRESSURE: f64 = 1.0 / 3.0;
 
 impl Model for HertzMindlin {
     fn name(&self) -> &'static str {
@@ -58,9 +65,9 @@ impl Model for HertzMindlin {
         let found = self.domain(calibration).validate(structure, conditions)?;
         let material = conditions.material.unwrap_or(*calibration.material());
         let phi = conditions.solid_fraction.map_or(f64::NAN, |phi| phi.value);
-        let shape = PackShape::new(0.0, mindlin(&material))?;
-        let unit = shape.unit(found[InferredQuantity::K as usize], phi, &material, conditions.pressure.value);
-        let moduli = Moduli::of_medium(&shape.stiffness()).values();
+        let network = phi * found[InferredQuantity::K as usize] * material.effective_young();
+        let unit = 3.0 / PI * network * (0.5 * PI * conditions.pressure.value / (network * PRESSURE)).cbrt();
+        let moduli = Moduli::of_medium(&stiffness(mindlin(&material))).values();
         Ok(Moduli::of_values(moduli.map(|m| m.map(|m| m * unit))))
     }
 
@@ -70,17 +77,42 @@ impl Model for HertzMindlin {
         let phi = conditions.solid_fraction.ok_or(missing)?.value;
         let material = conditions.material.unwrap_or(*calibration.material());
         let Known { bulk, shear } = Known::of(&observation.moduli)?;
-        let shape = PackShape::new(0.0, mindlin(&material))?;
-        // Θ of the isotropic pack is a ninth of the unit.
-        let k = shape.coordination(9.0 * bulk, phi, &material, observation.pressure());
+        // Θ of the isotropic pack is a ninth of the unit of the moduli.
+        let unit = 9.0 * bulk;
+        let network = (PI / 3.0 * unit).powf(1.5) * (2.0 * PRESSURE / (PI * observation.pressure())).sqrt();
+        let k = network / (phi * material.effective_young());
         let mut warnings = vec![Warning::IsotropicContacts];
         warnings.extend(shear.map(|shear| {
             let smooth = 0.6 * bulk;
             Warning::StickingShare { share: (shear / smooth - 1.0) / (1.5 * mindlin(&material)) }
         }));
         let structure = Microstructure::default().with(InferredQuantity::K, k);
-        let discrepancy = Some(own_error(&structure));
-        Ok(PointEstimate { warnings, discrepancy, ..PointEstimate::exact(structure) })
+        let mut discrepancy = MicrostructureCovariance::zeros();
+        let at = InferredQuantity::K as usize;
+        discrepancy[(at, at)] = (ERROR_OF_K * k).powi(2);
+        Ok(PointEstimate { warnings, discrepancy: Some(discrepancy), ..PointEstimate::exact(structure) })
+    }
+}
+
+/// k_t/k_n of two spheres that stick, 2(1−ν)/(2−ν) (Mindlin).
+fn mindlin(material: &Material) -> f64 {
+    4.0 * material.effective_shear() / material.effective_young()
+}
+
+/// The moduli in units of (3/π) φ k E* (Δ/3)^½, for this k_t/k_n. Walton, J. Mech. Phys. Solids 35, 213 (1987).
+fn stiffness(tangential: f64) -> TransverseIsotropy {
+    // Means of the second and fourth power of the cosine to an axis.
+    let [i2, i4] = [1.0 / 3.0, 1.0 / 5.0];
+    let normal = 1.0 - tangential;
+    let flat = 1.0 - 2.0 * i2 + i4;
+    TransverseIsotropy {
+        c11: 0.375 * normal * flat + 0.5 * tangential * (1.0 - i2),
+        c12: 0.125 * normal * flat,
+        c13: 0.5 * normal * (i2 - i4),
+        c33: normal * i4 + tangential * i2,
+        g13: 0.5 * normal * (i2 - i4) + 0.125 * tangential * (1.0 + i2),
+        g12: 0.125 * normal * flat + 0.25 * tangential * (1.0 - i2),
+        residual: 0.0,
     }
 }
 
@@ -95,7 +127,7 @@ impl Known {
         let get = |m| moduli.get(m);
         let one_direction = |p, s| Some(Self { bulk: get(p)? - 4.0 / 3.0 * get(s)?, shear: get(s) });
         let shear = Invariants::of(moduli).map(|i| i.ln_shear.exp()).or_else(|| {
-            // Of the three planes, e3 lies in two.
+            // e3 lies in two of the three planes.
             match (get(Modulus::G12), get(Modulus::G13)) {
                 (Some(g12), Some(g13)) => Some((g12 + 2.0 * g13) / 3.0),
                 (one, other) => one.or(other),

@@ -5,7 +5,7 @@
 //! corrected reading B/(3 m1) = (4−r)/(3(2−r)): k̂ depends on neither g nor ε.
 
 use super::equivalent::{Factors, domain};
-use super::shear_ratio::shear_ratio;
+use super::shear_ratio::{check_eq_10, shear_ratio};
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
 use crate::domain::Domain;
@@ -15,7 +15,6 @@ use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::moments::{Moments, eps_of_spin};
 use crate::observation::Observation;
-use crate::overlap::check_eq_10;
 use crate::point_estimate::PointEstimate;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 

@@ -156,7 +156,7 @@ fn point_estimate(
     state: &State,
     domain: &Domain,
 ) -> PointEstimate {
-    let inferred = fit.inferred(data, network, state);
+    let point = fit.inferred(data, network, state);
     let mut warnings = Vec::new();
     if !state.stress_known {
         warnings.push(Warning::StressRatioUnknown);
@@ -168,7 +168,7 @@ fn point_estimate(
         let Outside { quantity, value, range, .. } = *outside;
         warnings.push(Warning::StateOutsideFit { quantity, value, range });
     }
-    warnings.extend(outside_fitted(&domain.fitted, &inferred.structure));
+    warnings.extend(outside_fitted(&domain.fitted, &point.structure));
     let misfit = fit
         .degrees_of_freedom(data)
         .map(|degrees_of_freedom| Misfit { chi_square: fit.chi_square, degrees_of_freedom });
@@ -182,11 +182,5 @@ fn point_estimate(
             warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
         }
     }
-    PointEstimate {
-        structure: inferred.structure,
-        jacobian: Some(inferred.jacobian),
-        discrepancy: Some(inferred.discrepancy),
-        misfit,
-        warnings,
-    }
+    PointEstimate { misfit, warnings, ..point }
 }

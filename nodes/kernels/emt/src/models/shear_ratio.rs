@@ -1,4 +1,4 @@
-//! The ratio of the shear moduli, from which several models infer ε.
+//! The ratio of the shear moduli and the strain ratio, from which several models infer ε.
 
 use crate::error::EmtError;
 use crate::moduli::Modulus;
@@ -20,4 +20,10 @@ pub(super) fn shear_ratio(model: &'static str, observation: &Observation) -> Res
 pub(super) fn ratio_warnings(ratio: f64) -> Vec<Warning> {
     let usual = (2.0 / 3.0..=1.5).contains(&ratio);
     if usual { Vec::new() } else { vec![Warning::RatioUnusual { ratio }] }
+}
+
+/// g = γ/Δ, if Eq. 10, the root of the overlap to first order in g, gives every contact a positive stiffness. It costs less than
+/// 0.006 in ε for g in [−0.3, 0.1], and 0.1 at g = 1/4.
+pub(super) fn check_eq_10(g: f64) -> Result<f64, EmtError> {
+    if g > -1.0 && g < 0.5 { Ok(g) } else { Err(EmtError::GammaOutOfRange { g }) }
 }

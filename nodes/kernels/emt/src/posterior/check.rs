@@ -22,30 +22,30 @@ const POINTS: u64 = 4096;
 /// Effective number of points below which a modulus left out is not predicted.
 const FEWEST: f64 = 30.0;
 
-/// One modulus.
+/// Check of one modulus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModulusCheck {
-    /// Which.
+    /// The modulus that is checked.
     pub modulus: Modulus,
-    /// Observed, Pa.
+    /// Observed value, Pa.
     pub observed: f64,
     /// Probability of a value as extreme as the observed one, two-sided, under the posterior of all moduli.
     pub predictive: f64,
-    /// The same under the posterior of the other moduli; `None` where they do not predict it.
+    /// Probability under the posterior of the other moduli; `None` where they do not predict it.
     pub left_out: Option<f64>,
 }
 
 /// The whole observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// Each modulus.
+    /// Check of each modulus.
     pub moduli: Vec<ModulusCheck>,
     /// Probability of a χ² of all moduli as large as the observed one, under the posterior.
     pub chi_square: f64,
 }
 
 impl Check {
-    /// Whether the observation is unlike what the model predicts: a probability of less than one in a thousand.
+    /// True if the observation is unlike what the model predicts: a probability of less than one in a thousand.
     pub fn is_unlikely(&self) -> bool {
         self.probability() < UNLIKELY
     }

@@ -12,7 +12,7 @@ const MARGIN: f64 = 0.2;
 /// Proposals per draw beyond which rejection is given up.
 const MOST_PROPOSALS: usize = 2000;
 
-/// One draw.
+/// One draw from the posterior.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
     /// The unknowns, and what follows from them.
@@ -34,11 +34,11 @@ pub struct Draws {
     pub quantities: Vec<InferredQuantity>,
     /// The moduli of the likelihood and their observed values, Pa.
     pub observed: Vec<(Modulus, f64)>,
-    /// The draws.
+    /// Draws from the posterior.
     pub draws: Vec<Draw>,
     /// Share of the proposals that were accepted.
     pub acceptance: f64,
-    /// How often a proposal exceeded the envelope, which was raised then, and all draws made anew.
+    /// Number of times that a proposal exceeded the envelope, which was raised then, and all draws made anew.
     pub raised: usize,
 }
 

@@ -6,7 +6,7 @@ use crate::error::EmtError;
 /// The marginal likelihood of the moduli of an observation: the mean of the likelihood over the prior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// Its natural logarithm, for densities of moduli in MPa.
+    /// Natural logarithm of the evidence, for densities of moduli in MPa.
     pub ln: f64,
     /// Standard error of the logarithm, from the integration.
     pub stderr: f64,

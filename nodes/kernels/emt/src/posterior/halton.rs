@@ -1,4 +1,4 @@
-//! Quasi-random points.
+//! Quasi-random points of Halton.
 
 /// Bases of the coordinates.
 const PRIMES: [u64; 6] = [2, 3, 5, 7, 11, 13];

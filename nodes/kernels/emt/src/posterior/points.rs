@@ -21,7 +21,7 @@ pub(super) const REPLICATES: usize = 8;
 /// Effective number of points below which the posterior counts as not integrated.
 const FEWEST: f64 = 30.0;
 
-/// How to integrate a posterior.
+/// Settings of the integration of a posterior.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PosteriorSettings {
     /// Number of points. With 16,384 the logarithm of the evidence is accurate to 1e-3.
@@ -60,7 +60,7 @@ pub(super) struct Point {
 }
 
 impl<'a> Posterior<'a> {
-    /// Of what `model` states for an observation, with a prior; quantities without one have the uniform density over the
+    /// Posterior of what `model` states for an observation, with a prior; quantities without one have the uniform density over the
     /// domain of the model.
     pub fn new(
         model: &'a dyn Model,

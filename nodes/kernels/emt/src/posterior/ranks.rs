@@ -1,4 +1,4 @@
-//! Whether true values are among the draws as other draws are.
+//! Ranks of true values among the draws: uniform if they are as other draws are.
 
 use crate::normal;
 

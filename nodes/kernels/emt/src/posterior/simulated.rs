@@ -26,7 +26,7 @@ const POINTS: usize = 1024;
 /// Structures drawn from the prior before the model counts as predicting none of them.
 const TRIES: usize = 1000;
 
-/// What to simulate.
+/// Settings of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimulationSettings {
     /// The state of every simulated sample.

@@ -15,7 +15,7 @@ pub(super) struct Target<'a> {
     pub(super) unknowns: Vec<Density>,
     /// Priors of what follows.
     pub(super) following: [Option<Density>; FOLLOWING],
-    /// Their moments.
+    /// Moments of these quantities.
     moments: [Option<[f64; 2]>; FOLLOWING],
 }
 
@@ -38,7 +38,7 @@ impl At {
         self.ln_likelihood + self.ln_prior + self.ln_overlap
     }
 
-    /// What follows, from two independent normal numbers.
+    /// Draw of what follows, from two independent normal numbers.
     pub(super) fn follow(&self, normal: Vector2<f64>) -> [f64; FOLLOWING] {
         (self.mean + self.root * normal).into()
     }

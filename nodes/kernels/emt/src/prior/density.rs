@@ -85,12 +85,12 @@ impl Density {
         self.normal.map_or(0.0, |[mean, stddev]| normal::ln_density(x, mean, stddev)) - self.ln_mass
     }
 
-    /// Mean.
+    /// Mean of the density.
     pub fn mean(&self) -> f64 {
         self.moments()[0]
     }
 
-    /// Standard deviation.
+    /// Standard deviation of the density.
     pub fn stddev(&self) -> f64 {
         self.moments()[1].sqrt()
     }
@@ -122,7 +122,7 @@ impl Density {
         (mean + stddev * x).clamp(low, high)
     }
 
-    /// The same between these limits, too; `None` where less than 1e-9 of the probability is left.
+    /// Density between these limits, too; `None` where less than 1e-9 of the probability is left.
     pub(crate) fn within(&self, [low, high]: [f64; 2]) -> Option<Self> {
         let range = [self.range[0].max(low), self.range[1].min(high)];
         let limited = match self.normal {
@@ -152,7 +152,7 @@ impl Density {
     }
 }
 
-/// Whether a number is finite, and its square, too.
+/// True if a number is finite, and its square, too.
 fn is_usual(number: f64) -> bool {
     number.abs() < LARGEST
 }

@@ -17,7 +17,7 @@ pub enum PriorError {
     /// Both limits are the same.
     #[error("low and high are both {at}: a prior needs a width")]
     SameLimits {
-        /// Both limits.
+        /// Value of both limits.
         at: f64,
     },
     /// The limits are in the wrong order.
@@ -34,7 +34,7 @@ pub enum PriorError {
          the limits"
     )]
     Empty {
-        /// The mean.
+        /// Mean of the density.
         mean: f64,
         /// The standard deviation.
         stddev: f64,
@@ -51,7 +51,7 @@ pub enum PriorError {
     Section {
         /// Name of the quantity.
         quantity: &'static str,
-        /// What is wrong with it.
+        /// Fault of the section.
         fault: String,
     },
 }

@@ -4,11 +4,10 @@ use super::density::Density;
 use super::error::PriorError;
 use super::set::Prior;
 use grainlab_core::results::InferredQuantity;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Section {
     distribution: Kind,
@@ -18,7 +17,7 @@ struct Section {
     high: Option<f64>,
 }
 
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Kind {
     Normal,
@@ -50,32 +49,26 @@ impl Prior {
 
     /// The text of a prior file, as [`Prior::parse`] reads it.
     pub fn to_toml(&self) -> String {
-        let mut text = String::new();
-        for quantity in self.quantities() {
-            let Some(density) = self.get(quantity) else { continue };
-            let _ = writeln!(text, "[{quantity}]");
-            let [low, high] = density.range();
-            let limited = low.is_finite() || high.is_finite();
-            let _ = match density.of_normal() {
-                None => writeln!(text, "distribution = \"uniform\""),
-                Some([mean, stddev]) => {
-                    let kind = if limited { "truncated-normal" } else { "normal" };
-                    writeln!(text, "distribution = \"{kind}\"\nmean = {mean:?}\nstddev = {stddev:?}")
-                }
-            };
-            for (key, limit) in [("low", low), ("high", high)] {
-                if limit.is_finite() {
-                    let _ = writeln!(text, "{key} = {limit:?}");
-                }
-            }
-            text.push('\n');
-        }
-        text.truncate(text.trim_end().len());
-        text + "\n"
+        let section = |quantity: InferredQuantity| {
+            let section = Section::of(self.get(quantity)?);
+            Some(format!("[{quantity}]\n{}", toml::to_string(&section).unwrap_or_default()))
+        };
+        self.quantities().filter_map(section).collect::<Vec<_>>().join("\n")
     }
 }
 
 impl Section {
+    fn of(density: &Density) -> Self {
+        let [low, high] = density.range().map(|limit| Some(limit).filter(|limit| limit.is_finite()));
+        let distribution = match density.of_normal() {
+            None => Kind::Uniform,
+            Some(_) if low.or(high).is_some() => Kind::TruncatedNormal,
+            Some(_) => Kind::Normal,
+        };
+        let [mean, stddev] = density.of_normal().map_or([None; 2], |numbers| numbers.map(Some));
+        Self { distribution, mean, stddev, low, high }
+    }
+
     fn density(&self) -> Result<Density, String> {
         let &Self { distribution, mean, stddev, low, high } = self;
         let given = [("mean", mean), ("stddev", stddev), ("low", low), ("high", high)];

@@ -10,14 +10,14 @@ use grainlab_core::results::InferredQuantity;
 pub struct Prior([Option<Density>; InferredQuantity::COUNT]);
 
 impl Prior {
-    /// The same with this density of a quantity.
+    /// Prior with this density of a quantity, too.
     #[must_use]
     pub fn with(mut self, quantity: InferredQuantity, density: Density) -> Self {
         self.0[quantity as usize] = Some(density);
         self
     }
 
-    /// The same of these quantities alone.
+    /// Prior of these quantities alone.
     #[must_use]
     pub fn only(&self, quantities: &[InferredQuantity]) -> Self {
         let mut kept = self.clone();

@@ -55,7 +55,7 @@ impl Sample {
         WaveSpeed { direction, polarization: mode.1, speed: (mode.0 / DENSITY).sqrt(), stddev: None }
     }
 
-    /// The same with the polarization assumed without knowledge of the moduli.
+    /// Speeds with the polarization assumed without knowledge of the moduli.
     pub(crate) fn named(&self, wave: Wave, azimuth: f64) -> WaveSpeed {
         WaveSpeed { polarization: self.nominal(wave, azimuth).1, ..self.exact(wave, azimuth) }
     }
@@ -141,7 +141,7 @@ impl Numbers {
         low + (high - low) * self.uniform()
     }
 
-    /// Of mean 0 and variance 1.
+    /// Normal number of mean 0 and variance 1.
     pub(crate) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
         radius * (std::f64::consts::TAU * self.uniform()).cos()

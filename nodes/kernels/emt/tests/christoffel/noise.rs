@@ -22,7 +22,7 @@ fn exact(waves: &[Wave]) -> Vec<WaveSpeed> {
     waves.iter().enumerate().map(|(i, w)| sample.named(*w, 50.0 * i as f64)).collect()
 }
 
-/// The same with relative errors of these standard deviations, stated as uncertainties.
+/// Speeds with relative errors of these standard deviations, stated as uncertainties.
 fn with_errors(speeds: &[WaveSpeed], relative: &[f64], numbers: &mut Numbers) -> Vec<WaveSpeed> {
     let measure = |(speed, relative): (&WaveSpeed, &f64)| {
         let stddev = relative * speed.speed;

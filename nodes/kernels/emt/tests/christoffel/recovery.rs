@@ -97,7 +97,7 @@ fn every_subset_gives_back(
             let fitted =
                 sample.fit(&speeds).unwrap_or_else(|e| panic!("{e}: {waves:?} of {:?}", sample.moduli));
             let all_known = open.iter().all(|o| *o == 0.0);
-            // Where a combination is undetermined, up to 0.3 % of a modulus may be undetermined.
+            // Up to 0.3 % of a modulus may be undetermined where a combination is.
             let allowed = if all_known { 1e-10 } else { 3e-3 };
             let mut rivalled = false;
             for (modulus, open) in Modulus::ALL.into_iter().zip(open) {

@@ -15,7 +15,7 @@ pub(crate) fn calibrations() -> Vec<Calibration> {
     vec![Calibration::PAPER, Calibration::of_isotropic("own", own, grains), relaxed]
 }
 
-/// A generator.
+/// A generator of cases.
 pub(crate) struct Random(Pcg64Mcg);
 
 impl Random {
@@ -29,7 +29,7 @@ impl Random {
         (low + (high - low) * unit).min(high)
     }
 
-    /// Of mean 0 and variance 1: a sum of twelve uniform numbers, approximately normal.
+    /// Number of mean 0 and variance 1: a sum of twelve uniform numbers, approximately normal.
     pub(crate) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.within([0.0, 1.0])).sum::<f64>() - 6.0
     }
@@ -57,7 +57,7 @@ impl Random {
         let structure = domain.structure.map(|range| range.map(|r| self.with_ends(r)));
         let other = Material {
             shear_modulus: 10f64.powf(self.within([9.0, 11.5])),
-            poisson_ratio: self.with_ends(domain.poisson_ratio),
+            poisson_ratio: self.with_ends([0.0, 0.5]),
             density: 2500.0,
         };
         let material = (self.0.next_u64() >> 63 == 0).then_some(other);

@@ -14,7 +14,6 @@ mod relaxed;
 mod rock_physics;
 mod sampling;
 mod sphere;
-mod sphere_pack;
 mod table3;
 
 /// The models of the paper, with its errata and approximations: all that use G12, G13 and γ/Δ.

@@ -201,7 +201,7 @@ fn ranks_of_true_values_among_draws_are_uniform_for_the_scatter_that_the_model_s
     for (histogram, q) in histograms.iter().zip(["z", "eps", "eps_stiffness", "k"]) {
         let (chi_square, p) = histogram.uniformity();
         eprintln!("{q}: chi-square {chi_square:.1}, p {p:.3}, {:?}", histogram.counts());
-        // Of four quantities.
+        // Four quantities are compared.
         assert!(p > 0.0125, "{q}: {p}");
     }
 }

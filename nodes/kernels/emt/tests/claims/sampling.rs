@@ -152,7 +152,6 @@ impl Model for Line {
             structure,
             fitted: [None; InferredQuantity::COUNT],
             gamma: [0.0, 0.0],
-            poisson_ratio: [0.0, 0.5],
             reduced_pressure: [0.0, f64::INFINITY],
             stress_ratio: [-1.5, 3.0],
             size_spread: [0.0, f64::INFINITY],

@@ -3,7 +3,7 @@
 use grainlab_core::results::Microstructure;
 use grainlab_emt::{Observation, StrainRatio};
 
-/// One state.
+/// One state of the table.
 pub(crate) struct Row {
     /// Sample and pressure, for messages.
     pub(crate) label: String,
@@ -11,7 +11,7 @@ pub(crate) struct Row {
     pub(crate) g: f64,
     /// k, k̂ and ε of Table III.
     pub(crate) printed: [f64; 3],
-    /// Pa.
+    /// Confining pressure, Pa.
     pub(crate) g12: f64,
     pressure: f64,
     g13: f64,

@@ -43,7 +43,7 @@ fn pulls(e: &Estimate, s: &CalibrationSample) -> Vec<(InferredQuantity, f64)> {
     QUANTITIES.into_iter().filter_map(pull).collect()
 }
 
-/// Whether the sample is in the domain of `relaxed` that README states.
+/// True if the sample is in the domain of `relaxed` that README states.
 fn inside(s: &CalibrationSample) -> bool {
     let within = |v: f64, [low, high]: [f64; 2]| (low..=high).contains(&v);
     within(s.z, [4.2, 6.4])
@@ -275,7 +275,7 @@ fn nine_in_ten_moduli_off_by_five_standard_deviations_from_their_prediction_are_
     assert!(of_all[0] * 10 >= of_all[1] * 9, "{of_all:?}");
 }
 
-/// Where the scatter of packings hides a fault of five stated errors, no test finds it: half the sum of χ² with the fault to
+/// No test finds a fault of five stated errors that the scatter of packings hides: half the sum of χ² with the fault to
 /// either side, less that without, is the square of its distance in standard deviations. The best test, of a known modulus and
 /// sign and at a false alarm in a hundred, finds nine in ten only in Θ, and in C11 at large errors.
 #[test]

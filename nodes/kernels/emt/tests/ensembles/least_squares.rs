@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeSet;
 
-/// What is regressed: a number, the numbers that it may follow from, and the packing and recipe that it belongs to.
+/// Row of a regression: a number, the numbers that it may follow from, and the packing and recipe that it belongs to.
 #[derive(Clone, Debug)]
 pub(crate) struct Point {
     pub(crate) value: f64,
@@ -27,7 +27,7 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
-    /// Of a linear law with a constant.
+    /// Fit of a linear law with a constant.
     pub(crate) fn of(points: &[Point]) -> Self {
         let all = law(points);
         let names = |of: fn(&Point) -> &String| points.iter().map(of).collect::<BTreeSet<_>>();
@@ -57,7 +57,7 @@ impl Fit {
     }
 }
 
-/// The same with the mean of its packing taken off every number: only what changes within a packing is left.
+/// Rows with the mean of their packing taken off every number: only what changes within a packing is left.
 pub(crate) fn within_packings(points: &[Point]) -> Vec<Point> {
     let of_packing = |p: &Point| points.iter().filter(|o| o.packing == p.packing).collect::<Vec<_>>();
     let off = |p: &Point| {

@@ -99,7 +99,7 @@ fn reduced_pressure(s: &CalibrationSample) -> f64 {
     s.pressure / s.material.effective_young()
 }
 
-/// Of the recipe, the friction and the seed that the name of a packing consists of.
+/// Recipe, friction and seed, of which the name of a packing consists.
 fn friction(s: &CalibrationSample) -> f64 {
     s.packing.split(' ').nth(1).and_then(|friction| friction.parse().ok()).unwrap()
 }
@@ -164,7 +164,7 @@ fn packings_of_recipes_that_taught_nothing_are_inverted_to_what_is_stated() {
     }
 }
 
-/// Whether all of its state is within 2 % of the ranges of the packings taught: their ends belong to the domain.
+/// True if all of its state is within 2 % of the ranges of the packings taught: their ends belong to the domain.
 fn is_at_an_end(s: &CalibrationSample, calibration: &Calibration) -> bool {
     let reach = calibration.network().unwrap().reach;
     let within = |v: f64, [low, high]: [f64; 2]| {
@@ -207,7 +207,7 @@ fn every_packing_outside_is_flagged_or_unknown_and_none_is_confidently_wrong() {
             }
         }
         eprintln!("learned from {name}: {unknown} unknown, the others within {furthest:.1} sigma");
-        // Of some 2,000 errors, five normal ones are beyond 3.
+        // Five of some 2,000 normal errors are beyond 3.
         assert!(furthest <= 3.2, "{name}: {furthest} sigma");
     }
     assert!(answered >= 450, "{answered}");

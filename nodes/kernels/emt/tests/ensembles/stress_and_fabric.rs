@@ -1,4 +1,4 @@
-//! What the anisotropy of moduli follows: the stress, or the contacts.
+//! Causes of the anisotropy of moduli: the stress, or the contacts.
 //!
 //! Khidas & Jia, Phys. Rev. E 81, 021303 (2010): P waves are more sensitive to stress, S waves to fabric. Mayer & Liu,
 //! arXiv:1010.2512: stress and density alone may explain these speeds. Here the contacts are counted. The squares of
@@ -6,15 +6,15 @@
 
 use crate::csv;
 use crate::least_squares::{Fit, Point, within_packings};
-use grainlab_core::results::{InferredQuantity, Microstructure};
+use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, CalibrationSample, Moduli, Modulus, StrainRatioSource};
 
 /// A number of a packing.
 type Number = fn(&CalibrationSample) -> f64;
 
-/// ln(C33/C11).
+/// Logarithm of C33/C11.
 const P: Number = |s| ratio(&s.moduli, Modulus::C33, Modulus::C11);
-/// ln(G13/G12).
+/// Logarithm of G13/G12.
 const S: Number = |s| ratio(&s.moduli, Modulus::G13, Modulus::G12);
 const WAVES: [(&str, Number); 2] = [("P", P), ("S", S)];
 
@@ -119,7 +119,7 @@ fn coefficient(fit: &Fit, i: usize) -> [f64; 2] {
     [fit.coefficients[i], fit.errors[i]]
 }
 
-/// How much ε has the effect of a q/p of 1, with its standard error.
+/// ε with the effect of a q/p of 1, with its standard error.
 fn stress_over_fabric(fit: &Fit) -> [f64; 2] {
     fit.compared(fit, |c, _| c[1] / c[0])
 }
@@ -164,7 +164,7 @@ fn both_waves_follow_both_the_contacts_and_the_stress_p_waves_the_stress_more() 
     }
 }
 
-/// What changes in one packing, of which the contacts hardly change, has the coefficients of packings that differ.
+/// Changes in one packing, of which the contacts hardly change, have the coefficients of packings that differ.
 #[test]
 fn the_effect_of_stress_at_unchanged_contacts_is_the_same_within_a_packing() {
     let [_, (title, samples), _] = sets();
@@ -265,38 +265,4 @@ fn speeds_separate_contacts_from_stress_only_if_the_stress_is_known() {
     eprintln!("eps {:.4} {:.4}, eps_k {:.4} {:.4}", eps[0], eps[1], eps_k[0], eps_k[1]);
     assert!(eps[0] < 0.01 && eps[1] > 3.0 * eps[0], "{eps:?}");
     assert!(eps_k[0] < 0.005 && eps_k[1] < 1.5 * eps_k[0], "{eps_k:?}");
-}
-
-/// The models in which anisotropy comes from stress alone, against packings under stress.
-#[test]
-fn stress_alone_predicts_its_own_part_of_the_anisotropy_and_not_the_rest() {
-    let [(_, wide), ..] = sets();
-    let stressed = of(&wide, |s| s.stress_ratio.abs() > 0.02);
-    let rms = |of: &dyn Fn(&CalibrationSample) -> f64| {
-        (stressed.iter().map(|s| of(s).powi(2)).sum::<f64>() / stressed.len() as f64).sqrt()
-    };
-    eprintln!(
-        "\n{} states of wide.csv under q/p: measured b, and slope and rms error of the models",
-        stressed.len()
-    );
-    for (wave, value) in WAVES {
-        let [measured, error] = coefficient(&fit(&wide, value, &[EPS, STRESS]), 1);
-        {
-            let name = "johnson";
-            let model = grainlab_emt::model(name).unwrap();
-            let predict = |s: &CalibrationSample, stress_ratio: f64| {
-                let state = CalibrationSample { stress_ratio, ..s.clone() };
-                let conditions = state.observation(StrainRatioSource::Zero).conditions;
-                let structure = Microstructure::default().with(InferredQuantity::K, s.k);
-                let moduli = model.predict(&structure, &conditions, &Calibration::PAPER).unwrap();
-                value(&CalibrationSample { moduli, ..state })
-            };
-            let slope = stressed.iter().map(|s| predict(s, 0.01) - predict(s, -0.01)).sum::<f64>()
-                / (0.02 * stressed.len() as f64);
-            let (off, size) = (rms(&|s| predict(s, s.stress_ratio) - value(s)), rms(&|s| value(s)));
-            eprintln!(
-                "{wave}  {name:12} b {measured:.3} +-{error:.3}, slope {slope:.3}; rms {off:.3} of {size:.3}"
-            );
-        }
-    }
 }

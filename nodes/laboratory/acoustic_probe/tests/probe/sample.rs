@@ -64,12 +64,7 @@ pub(crate) fn measurement() -> Measurement {
         modes: Vec::new(),
         smooth: false,
         waves: vec![wave(Vec3::z(), 500.0), wave(Vec3::x(), 300.0)],
-        effective_density: EffectiveDensity {
-            density: Mat3::identity() * 1500.0,
-            bulk: 1550.0,
-            rattlers: 0,
-            left_behind: 0,
-        },
+        effective_density: EffectiveDensity { density: Mat3::identity() * 1500.0 },
         density: 1500.0,
         density_stddev: 5.0,
         axis: Some(Vec3::z()),

@@ -2,7 +2,6 @@
 
 use crate::bench::{Bench, FOREVER, Record, exit_of};
 use grainlab_dem_simulator::{Mode, Settings};
-use grainlab_emt_inversion::Models;
 use grainlab_msgs::msg::{Estimate, Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::{Actor, Exit, run_until};
@@ -33,7 +32,8 @@ fn every_packing_is_measured_and_inverted_with_its_stamp_and_step() {
         assert_eq!((&packing.header, packing.step), (&inferred.header, inferred.source_step));
         assert_eq!(inferred.source, "packing_report");
         let models: Vec<&str> = inferred.estimates.iter().map(|e| e.model.as_str()).collect();
-        assert_eq!(models, Models::all().iter().map(|m| m.name()).collect::<Vec<_>>());
+        let asked = grainlab_emt_inversion::Settings::default().models;
+        assert_eq!(models, asked.iter().map(|m| m.name()).collect::<Vec<_>>());
         for e in inferred.estimates.iter().filter(|e| e.model.starts_with("ratio")) {
             assert!(matches!(e.status, Estimate::STATUS_OK | Estimate::STATUS_EXTRAPOLATED), "{e:?}");
             assert_eq!(

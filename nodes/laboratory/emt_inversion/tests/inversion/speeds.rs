@@ -141,7 +141,7 @@ fn a_missing_speed_leaves_what_hangs_on_it_unknown_and_the_rest_known() {
 #[test]
 fn speeds_that_contradict_each_other_say_so_and_name_the_worst() {
     let mut speeds = upright();
-    // The same modulus G13 from two waves, one of which is off by eight standard deviations.
+    // Two waves give the modulus G13, and one of them is off by eight standard deviations.
     speeds.speeds[3].speed *= 1.04;
     let e = answer(&speeds, &Settings::default());
     let conflict =

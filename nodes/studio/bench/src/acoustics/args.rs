@@ -16,7 +16,7 @@ Examples:
   A full set of speeds by dispersion:
     grainlab bench acoustics --survey complete --method dispersion
   Whether stated errors hold, over the packings of many runs:
-    grainlab bench acoustics --judge --method dispersion,standing_wave --packing recordings/runs/s2-1-1
+    grainlab bench acoustics --judge --method dispersion --packing recordings/runs/s2-1-1
   Microstructure from speeds with errors of 0 to 3 %, and from moduli of the network (every packing of every file):
     grainlab bench acoustics --survey complete --noise 0,0.001,0.003,0.01,0.03 --packing recordings/runs/s2-1-1";
 
@@ -37,16 +37,13 @@ pub struct Args {
     /// Tolerances of the squared frequencies of a dispersion
     #[arg(long, value_name = "REL", value_delimiter = ',', default_value = "1e-2,1e-4,1e-6,1e-8", value_parser = tolerance)]
     pub(super) tolerances: Vec<f64>,
-    /// Repetitions of the packing along the path of a standing wave
-    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "5,8,12", value_parser = clap::value_parser!(u32).range(5..=200))]
-    pub(super) copies: Vec<u32>,
     /// Instead: infer the microstructure from speeds by dispersion with these relative errors, and compare it
     /// with the counted one
     #[arg(long, value_name = "REL", value_delimiter = ',', value_parser = noise, conflicts_with_all = ["method", "out"])]
     pub(super) noise: Vec<f64>,
     /// Instead: compare the errors of all speeds of every packing of every file with those stated, one row a method,
     /// with the default settings
-    #[arg(long, conflicts_with_all = ["noise", "out", "draws", "tolerances", "copies"])]
+    #[arg(long, conflicts_with_all = ["noise", "out", "draws", "tolerances"])]
     pub(super) judge: bool,
     /// Draws of the noise per packing
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
@@ -61,13 +58,12 @@ pub struct Args {
 
 impl Args {
     /// These methods along three rays.
-    pub(super) fn of(methods: &[Method], tolerances: &[f64], copies: &[u32]) -> Self {
+    pub(super) fn of(methods: &[Method], tolerances: &[f64]) -> Self {
         Self {
             packing: Vec::new(),
             method: methods.to_vec(),
             survey: Rays::Three,
             tolerances: tolerances.to_vec(),
-            copies: copies.to_vec(),
             noise: Vec::new(),
             judge: false,
             draws: 1,
@@ -107,8 +103,6 @@ impl From<Rays> for Survey {
 pub(crate) enum Method {
     /// Modes of the frozen network.
     Dispersion,
-    /// Free vibration of the packing.
-    StandingWave,
     /// Onset of a burst.
     FirstArrival,
     /// Delay of largest correlation of a burst.
@@ -121,7 +115,6 @@ impl Method {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Dispersion => "dispersion",
-            Self::StandingWave => "standing_wave",
             Self::FirstArrival => "first_arrival",
             Self::CrossCorrelation => "cross_correlation",
             Self::Peak => "peak",

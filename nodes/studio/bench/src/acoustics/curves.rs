@@ -1,7 +1,7 @@
 //! Dispersion as SVG: decrease of the speed at shorter wavelengths, and the law of the extrapolation.
 
 use grainlab_acoustics::DispersionPoint;
-use grainlab_acoustics::{DispersionCurve, Modes, Ray, Survey, dispersion, standing_wave};
+use grainlab_acoustics::{DispersionCurve, Modes, Ray, Survey, dispersion};
 use grainlab_console::Failure;
 use grainlab_core::{Packing, Vec3};
 use grainlab_node_kit::Exit;
@@ -21,16 +21,11 @@ const NAMES: [&str; 9] =
 /// The plot of one packing.
 pub(super) fn svg(packing: &Packing) -> Result<String, Failure> {
     let invalid = |e: grainlab_acoustics::AcousticsError| Failure::new(Exit::PhysicsInvalid, e.to_string());
-    let axis = Vec3::z();
-    let rays = Survey::Minimal.rays(&axis, Modes::All);
+    let rays = Survey::Minimal.rays(&Vec3::z(), Modes::All);
     let laws = dispersion::curves(packing, &rays, &dispersion::Settings::default()).map_err(invalid)?;
     let seen = seen(packing, &rays);
-    let lattice = Survey::Minimal.lattice_rays(&packing.cell, &axis, Modes::All);
-    let settings = standing_wave::Settings { copies: 12, ..Default::default() };
-    let (rung, ..) =
-        standing_wave::curves(packing, &lattice, &settings, &Default::default()).map_err(invalid)?;
     let diameter = 2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64;
-    Ok(draw(&laws, &seen, &rung, diameter))
+    Ok(draw(&laws, &seen, diameter))
 }
 
 /// Speeds at every wavelength shown, by curve, as far as the packing has propagating modes of that
@@ -47,16 +42,11 @@ fn seen(packing: &Packing, rays: &[Ray]) -> Vec<Vec<DispersionPoint>> {
     (0..all.first().map_or(0, Vec::len)).map(of).collect()
 }
 
-fn draw(
-    laws: &[DispersionCurve],
-    seen: &[Vec<DispersionPoint>],
-    rung: &[DispersionCurve],
-    diameter: f64,
-) -> String {
+fn draw(laws: &[DispersionCurve], seen: &[Vec<DispersionPoint>], diameter: f64) -> String {
     let (mut series, mut legend) = (Vec::new(), Vec::new());
     for (k, law) in laws.iter().enumerate() {
         let name = NAMES.get(k).copied().unwrap_or("mode");
-        let slower = |points: &[DispersionPoint], hollow: bool| {
+        let slower = |points: &Vec<DispersionPoint>| {
             let of = |p: &DispersionPoint| {
                 let wavelength = TAU / (p.wavenumber * diameter);
                 let slower = 1.0 - (p.speed / law.speed).powi(2);
@@ -64,23 +54,21 @@ fn draw(
                 plot::Point { tooltip: Some(tooltip), ..plot::Point::at(wavelength, slower) }
             };
             let points = points.iter().map(of).collect();
-            Series { colour: Some(k), marker: Some(Marker::Circle), hollow, line: None, points }
+            Series { colour: Some(k), marker: Some(Marker::Circle), points, ..Series::default() }
         };
         let bent = |wavelength: f64| {
             plot::Point::at(wavelength, law.dispersion_coefficient * (TAU / (wavelength * diameter)).powi(2))
         };
         let points = [SHOWN[0], SHOWN[SHOWN.len() - 1]].map(bent).into();
         series.push(Series { colour: Some(k), line: Some(Line::Straight), points, ..Series::default() });
-        series.extend(seen.get(k).map(|seen| slower(seen, false)));
-        series.extend(rung.get(k).map(|rung| slower(&rung.points, true)));
+        series.extend(seen.get(k).map(slower));
         let bend = law.dispersion_coefficient / (diameter * diameter);
         legend.push(Entry::Shape(Marker::Circle, Some(k), false, format!("{name}: b = {bend:.2} D^2")));
     }
     Figure {
         title: "Dispersion of a packing: how much slower shorter waves are".into(),
-        subtitle:
-            "full: modes of the frozen network; hollow: standing waves of moving grains; lines: b q^2, taken from 320 to 1280 diameters"
-                .into(),
+        subtitle: "points: modes of the frozen network; lines: b q^2, taken from 320 to 1280 diameters"
+            .into(),
         x: Axis::log("wavelength, mean grain diameters"),
         y: Axis::log("1 - v^2/v0^2"),
         series,

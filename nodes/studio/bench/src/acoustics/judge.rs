@@ -87,7 +87,6 @@ fn usual(method: Method) -> MethodSettings {
     let flight = |pick| MethodSettings::TimeOfFlight(time_of_flight::Settings { pick, ..Default::default() });
     match method {
         Method::Dispersion => MethodSettings::Dispersion(Default::default()),
-        Method::StandingWave => MethodSettings::StandingWave(Default::default()),
         Method::FirstArrival => flight(ArrivalPick::FirstArrival),
         Method::CrossCorrelation => flight(ArrivalPick::CrossCorrelation),
         Method::Peak => flight(ArrivalPick::Peak),

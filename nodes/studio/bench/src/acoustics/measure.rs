@@ -4,9 +4,7 @@ use super::args::{Args, Method};
 use super::report::{Error, Row};
 use crate::cpu_time::process_seconds;
 use grainlab_acoustics::time_of_flight::{self, ArrivalPick};
-use grainlab_acoustics::{
-    AcousticsError, Measurement, MethodSettings, Settings, dispersion, measure, standing_wave,
-};
+use grainlab_acoustics::{AcousticsError, Measurement, MethodSettings, Settings, dispersion, measure};
 use grainlab_console::Failure;
 use grainlab_core::{Packing, Stiffness};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
@@ -43,12 +41,6 @@ fn ways(method: Method, args: &Args) -> Vec<(Option<f64>, MethodSettings)> {
             .map(|tolerance| {
                 let settings = dispersion::Settings { tolerance: *tolerance, ..Default::default() };
                 (Some(*tolerance), MethodSettings::Dispersion(settings))
-            })
-            .collect(),
-        Method::StandingWave => (args.copies.iter())
-            .map(|copies| {
-                let settings = standing_wave::Settings { copies: *copies, ..Default::default() };
-                (Some(f64::from(*copies)), MethodSettings::StandingWave(settings))
             })
             .collect(),
         Method::FirstArrival => flight(ArrivalPick::FirstArrival),

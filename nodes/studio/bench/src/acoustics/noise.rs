@@ -73,7 +73,7 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
         grainlab_micromechanics::analyze(packing, &Default::default()).map_err(|e| invalid(&e))?.report;
     let header = Default::default();
     let report = packing_report_message(Default::default(), &truth).map_err(|e| invalid(&e))?;
-    let inversion = inversion()?;
+    let inversion = inversion();
     let by_moduli = grainlab_emt_inversion::microstructure_of_report(&report, &inversion);
     let by_moduli = by_moduli.ok_or_else(|| invalid(&"the packing has no stiffness"))?;
     let mut errors = vec![vec![compared(&answered(by_moduli)?, &truth)]];
@@ -98,9 +98,9 @@ fn answered(answer: grainlab_emt_inversion::Answer) -> Result<Microstructure, Fa
     answer.refused.map_or(Ok(answer.message), |e| Err(Failure::new(Exit::PhysicsInvalid, e.to_string())))
 }
 
-fn inversion() -> Result<grainlab_emt_inversion::Settings, Failure> {
-    let models = grainlab_emt_inversion::Models::named(MODEL).map_err(Failure::failed)?;
-    Ok(grainlab_emt_inversion::Settings { models, ..Default::default() })
+fn inversion() -> grainlab_emt_inversion::Settings {
+    let models = Vec::from_iter(grainlab_emt::model(MODEL));
+    grainlab_emt_inversion::Settings { models, ..Default::default() }
 }
 
 fn compared(found: &Microstructure, truth: &PackingReport) -> Errors {

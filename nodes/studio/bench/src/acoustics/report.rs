@@ -14,8 +14,7 @@ pub(super) struct Report {
 }
 
 const NOTES: [&str; 3] = [
-    "value: error allowed to the square of a frequency (dispersion), repetitions along the path (standing_wave); seconds: CPU \
-     time of all threads for all speeds, the preparation of the packing included",
+    "value: error allowed to the square of a frequency (dispersion); seconds: CPU time of all threads for all speeds, the preparation of the packing included",
     "rms, largest, stated: of rho v^2, relative to p Gamma p of the frozen network; stated is the standard deviation \
      of the result, including the density, and sigmas the largest error over its own. It is zero for an exact measurement of a frozen \
      network, from which moving grains differ slightly",

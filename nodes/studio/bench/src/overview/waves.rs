@@ -14,24 +14,19 @@ const GRAINS: u32 = 500;
 /// Tolerances of the squared frequencies of a dispersion.
 const TOLERANCES: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
-/// Repetitions of the packing along the path of a standing wave.
-const COPIES: [u32; 3] = [8, 12, 20];
-
-/// Measurements of a dispersion; the other methods, which take far longer, are measured once.
+/// Measurements of a dispersion; the other methods, which take far longer, are measured once, and not by `--quick`.
 const REPETITIONS: usize = 3;
 
 pub(super) fn rows(quick: bool) -> Result<Vec<Row>, Failure> {
     let scene = Scene { grains: GRAINS, ..press()? };
     let packing = prepared(&scene).map_err(|why| Failure::new(Exit::PhysicsInvalid, why))?;
-    let rounds = (0..REPETITIONS).map(|_| measured(&packing, &[Method::Dispersion], &TOLERANCES, &[]));
+    let rounds = (0..REPETITIONS).map(|_| measured(&packing, &[Method::Dispersion], &TOLERANCES));
     let rounds = rounds.collect::<Result<Vec<_>, _>>()?;
-    let (methods, copies) = if quick {
-        (&[Method::StandingWave][..], &COPIES[..1])
+    let slow = if quick {
+        Vec::new()
     } else {
-        let all = &[Method::StandingWave, Method::FirstArrival, Method::CrossCorrelation, Method::Peak];
-        (&all[..], &COPIES[..])
+        measured(&packing, &[Method::FirstArrival, Method::CrossCorrelation, Method::Peak], &[])?
     };
-    let slow = measured(&packing, methods, &[], copies)?;
     let times = |at: usize| rounds.iter().map(|round| round[at].seconds).collect::<Vec<f64>>();
     let first = rounds.first().into_iter().flatten().enumerate();
     let dispersion = first.filter_map(|(at, row)| of(row, times(at)));
@@ -40,11 +35,7 @@ pub(super) fn rows(quick: bool) -> Result<Vec<Row>, Failure> {
 
 /// `None` if the method failed.
 fn of(found: &acoustics::Row, times: Vec<f64>) -> Option<Row> {
-    let setting = match (found.method, found.value) {
-        (_, None) => String::new(),
-        (Method::StandingWave, Some(copies)) => format!("{copies} copies"),
-        (_, Some(value)) => format!("{value:e}"),
-    };
+    let setting = found.value.map_or(String::new(), |value| format!("{value:e}"));
     let repetitions = times.len();
     Some(Row::new(
         Family::Waves,

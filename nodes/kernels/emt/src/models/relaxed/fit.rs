@@ -1,11 +1,11 @@
 //! The least squares problem at one coordination number, and what follows from its solution.
 
 use super::state::State;
-use crate::calibration::{NetworkState, Outside, RelaxationCalibration, SCATTERED};
+use crate::calibration::{DeviatorLaw, NetworkState, Outside, RelaxationCalibration, SCATTERED};
 use crate::invariants::INVARIANTS;
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::Observation;
-use crate::point_estimate::Jacobian;
+use crate::point_estimate::{Jacobian, PointEstimate};
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
@@ -18,6 +18,7 @@ const PREDICTED: f64 = 1e-9;
 
 type Square = SMatrix<f64, MODULI, MODULI>;
 type Moduli = SVector<f64, MODULI>;
+type ByInvariants = SMatrix<f64, MODULI, INVARIANTS>;
 type WithFollowing = SMatrix<f64, 2, MODULI>;
 
 /// The moduli used, in units of [`State::unit`]. A modulus that was not measured but follows from the others is left
@@ -65,8 +66,8 @@ impl Data {
 /// The problem linearised at one z and ε.
 pub(super) struct Fit {
     pub(super) z: f64,
-    eps: f64,
-    /// Whether ε is fitted; else it is part of the scatter of the packings.
+    pub(super) eps: f64,
+    /// True if ε is fitted; else it is part of the scatter of the packings.
     fits_eps: bool,
     pub(super) chi_square: f64,
     /// χ² + ln det of the covariance: twice the negative logarithm of the likelihood.
@@ -74,7 +75,7 @@ pub(super) struct Fit {
     /// Observed minus predicted.
     residual: Moduli,
     /// Derivatives of the moduli with respect to the invariants, and to (z, ε).
-    by_invariants: SMatrix<f64, MODULI, INVARIANTS>,
+    by_invariants: ByInvariants,
     by_unknowns: SMatrix<f64, MODULI, 2>,
     /// Inverse of the covariance of the residual, and covariance of the unknowns.
     weight: Square,
@@ -83,13 +84,6 @@ pub(super) struct Fit {
     of_packings: f64,
     /// Covariance of ε weighted by stiffness and of k with the moduli, by the errors of the state.
     with_following: WithFollowing,
-}
-
-/// The estimate and its errors.
-pub(super) struct Inferred {
-    pub(super) structure: Microstructure,
-    pub(super) jacobian: Jacobian,
-    pub(super) discrepancy: MicrostructureCovariance,
 }
 
 impl Fit {
@@ -103,12 +97,10 @@ impl Fit {
         fits_eps: bool,
     ) -> Option<Self> {
         let laws = &state.laws;
-        let deviators = [network.dilatation, network.voigt, network.harmonic];
+        let deviators = deviators(network);
         // The moduli are linear in ε.
         let isotropic = state.invariants(network, z, 0.0);
-        let by_eps = |slopes: &SMatrix<f64, MODULI, INVARIANTS>| {
-            (0..3).map(|i| slopes.column(2 + i) * deviators[i].by_eps(z, laws)).sum::<Moduli>()
-        };
+        let by_eps = |slopes: &ByInvariants| by_eps(slopes, network, z, laws);
         let of_inputs = |eps: f64| {
             let uncertain = state.inputs.iter().filter(|input| input.variance > 0.0);
             uncertain
@@ -124,7 +116,7 @@ impl Fit {
         };
         let at_zero = data.masked(isotropic.slopes());
         let first = Moduli::from(isotropic.moduli());
-        let covariance = |slopes: &SMatrix<f64, MODULI, INVARIANTS>, by_eps: &Moduli, of_inputs: &Square| {
+        let covariance = |slopes: &ByInvariants, by_eps: &Moduli, of_inputs: &Square| {
             let scatter = network
                 .scatter_at(z, &state.variance_factors)
                 .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
@@ -205,16 +197,6 @@ impl Fit {
         gain
     }
 
-    /// ε at which the problem is linearised.
-    pub(super) fn eps_now(&self) -> f64 {
-        self.eps
-    }
-
-    /// ε; `None` if it is not fitted.
-    pub(super) fn eps(&self) -> Option<f64> {
-        self.fits_eps.then_some(self.eps)
-    }
-
     pub(super) fn eps_stddev(&self) -> f64 {
         self.unknowns[(1, 1)].max(0.0).sqrt()
     }
@@ -246,7 +228,12 @@ impl Fit {
     }
 
     /// z and ε; and k and the ε weighted by stiffness, which follow from them and from the residual of the moduli.
-    pub(super) fn inferred(&self, data: &Data, network: &RelaxationCalibration, state: &State) -> Inferred {
+    pub(super) fn inferred(
+        &self,
+        data: &Data,
+        network: &RelaxationCalibration,
+        state: &State,
+    ) -> PointEstimate {
         let (z, eps) = (self.z, self.eps);
         let gain = self.gain();
         let scatter = network.scatter_at(z, &state.variance_factors);
@@ -311,7 +298,7 @@ impl Fit {
         let mut errors = by_scatter * scatter * by_scatter.transpose();
         if !self.fits_eps {
             let [mean, spread] = network.eps_spread;
-            let row = by_moduli * self.of_eps(network, laws);
+            let row = by_moduli * by_eps(&self.by_invariants, network, z, laws);
             errors += row * row.transpose() * (mean * mean + spread * spread);
         }
         errors *= self.growth(data, network);
@@ -321,12 +308,13 @@ impl Fit {
                 discrepancy[(qa as usize, qb as usize)] = errors[(a, b)];
             }
         }
-        Inferred { structure, jacobian, discrepancy }
+        let (jacobian, discrepancy) = (Some(jacobian), Some(discrepancy));
+        PointEstimate { jacobian, discrepancy, ..PointEstimate::exact(structure) }
     }
 
     /// The inferred quantities that are outside the packings of the calibration.
     pub(super) fn outside(&self, network: &RelaxationCalibration) -> Vec<Outside> {
-        network.reach.outside_structure(self.z, self.eps())
+        network.reach.outside_structure(self.z, self.fits_eps.then_some(self.eps))
     }
 
     /// Factor of the variance of the model's error, 1 or more: it grows with the distance of the structure from the
@@ -335,10 +323,14 @@ impl Fit {
         let misfit = self.degrees_of_freedom(data).map_or(1.0, |n| (self.chi_square / n as f64).max(1.0));
         self.outside(network).iter().map(Outside::growth).product::<f64>() * misfit
     }
+}
 
-    /// Derivative of the moduli with respect to ε.
-    fn of_eps(&self, network: &RelaxationCalibration, laws: &NetworkState) -> Moduli {
-        let deviators = [network.dilatation, network.voigt, network.harmonic];
-        (0..3).map(|i| self.by_invariants.column(2 + i) * deviators[i].by_eps(self.z, laws)).sum()
-    }
+/// Laws of the two deviators and of the harmonic part.
+fn deviators(network: &RelaxationCalibration) -> [DeviatorLaw; 3] {
+    [network.dilatation, network.voigt, network.harmonic]
+}
+
+/// Derivative of the moduli with respect to ε.
+fn by_eps(slopes: &ByInvariants, network: &RelaxationCalibration, z: f64, laws: &NetworkState) -> Moduli {
+    (2..).zip(deviators(network)).map(|(i, law)| slopes.column(i) * law.by_eps(z, laws)).sum()
 }

@@ -22,7 +22,7 @@ pub(super) struct NetworkLikelihood<'a> {
 }
 
 impl<'a> NetworkLikelihood<'a> {
-    /// Of an observation that was checked; the name of the model is for the error of one without moduli.
+    /// Likelihood of an observation that was checked; the name of the model is for the error of one without moduli.
     pub(super) fn new(
         model: &'static str,
         observation: &Observation,

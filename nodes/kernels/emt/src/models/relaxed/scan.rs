@@ -87,7 +87,7 @@ fn refined(
                 return None;
             }
         }
-        fit = at(z, Some(fit.eps_now() + deps))?;
+        fit = at(z, Some(fit.eps + deps))?;
     }
     None
 }

@@ -25,22 +25,22 @@ pub(super) struct State {
     pub(super) laws: NetworkState,
     /// The inputs on which the state depends, with their errors.
     pub(super) inputs: Vec<UncertainInput>,
-    /// Whether q/p was given.
+    /// True if q/p was given.
     pub(super) stress_known: bool,
-    /// Whether the sizes were given.
+    /// True if the sizes were given.
     pub(super) sizes_known: bool,
     /// Variances of the scatter in this state and of samples of this size over those of the calibration.
     pub(super) variance_factors: [f64; SCATTERED],
-    /// What is outside the packings of the calibration.
+    /// Quantities outside the packings of the calibration.
     pub(super) outside: Vec<Outside>,
 }
 
 /// An input of the state, and the states next to it.
 #[derive(Clone, Debug)]
 pub(super) struct UncertainInput {
-    /// Its place in [`crate::INPUT_NAMES`].
+    /// Index in [`crate::INPUT_NAMES`].
     pub(super) at: usize,
-    /// Its variance, as in [`Conditions::stddevs`].
+    /// Variance, of the kind of [`Conditions::stddevs`].
     pub(super) variance: f64,
     /// ln of the unit and state of the laws, a step above and below.
     sides: [(f64, NetworkState); 2],
@@ -48,9 +48,9 @@ pub(super) struct UncertainInput {
 
 /// Derivatives by one input of the state.
 pub(super) struct Slopes {
-    /// Of predicted less observed moduli, in units of [`State::unit`].
+    /// Slopes of predicted less observed moduli, in units of [`State::unit`].
     pub(super) moduli: SVector<f64, MODULI>,
-    /// Of ε weighted by stiffness, and of k.
+    /// Slopes of ε weighted by stiffness, and of k.
     pub(super) following: Vector2<f64>,
 }
 

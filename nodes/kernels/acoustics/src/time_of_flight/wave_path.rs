@@ -1,20 +1,18 @@
-//! Measurements with moving grains, for every polarization of every ray.
+//! The paths of a burst: every polarization of every ray.
 
 use crate::curve::DispersionCurve;
 use crate::error::AcousticsError;
 use crate::ray::Ray;
-use crate::sample::Sample;
 use crate::trace::Trace;
 use crate::warning::Warning;
 use grainlab_core::{Packing, Vec3};
-use rayon::prelude::*;
 
 /// One polarization along one ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WavePath {
     /// Unit direction of propagation.
     pub(crate) direction: Vec3,
-    /// Unit polarization.
+    /// Unit polarization vector.
     pub(crate) polarization: Vec3,
     /// Lattice planes (h k l) normal to the direction.
     pub(crate) indices: [i32; 3],
@@ -22,20 +20,13 @@ pub(crate) struct WavePath {
     pub(crate) place: [u64; 2],
 }
 
-/// What was measured on one path.
+/// Result of one path.
 #[derive(Clone, Debug)]
 pub(crate) struct PathResult {
     pub(crate) curve: DispersionCurve,
     pub(crate) traces: Vec<Trace>,
     pub(crate) warnings: Vec<Warning>,
-    /// Relative standard deviation of the speed from the scatter of the measurement alone, in which it takes part in the
-    /// mean of all paths; 0 if it does not.
-    pub(crate) scatter: f64,
 }
-
-/// Part of the mean scatter of all paths that is added to the error of each: the scatter of few points about a line is
-/// small by chance on some of them.
-const SHARED: f64 = 0.5;
 
 impl WavePath {
     /// The error that there is no `what` on this path.
@@ -65,43 +56,6 @@ pub(crate) fn paths(packing: &Packing, rays: &[Ray]) -> Result<Vec<WavePath>, Ac
         }
     }
     Ok(paths)
-}
-
-/// Measures every path in parallel; the results are in the order of the paths and the same for any number of threads.
-///
-/// A path without a signal is left out with a [`Warning::LeftOut`]; if all are, the first such error is returned.
-#[allow(clippy::type_complexity)]
-pub(crate) fn measure_all(
-    paths: &[WavePath],
-    sample: &Sample,
-    measure: impl Fn(&WavePath) -> Result<PathResult, AcousticsError> + Send + Sync,
-) -> Result<(Vec<DispersionCurve>, Vec<Trace>, Vec<Warning>), AcousticsError> {
-    let results: Vec<_> = paths.par_iter().map(measure).collect();
-    let (mut curves, mut traces) = (Vec::new(), Vec::new());
-    let mut warnings: Vec<Warning> =
-        sample.unbalanced.map(|unbalanced| Warning::NotAtRest { unbalanced }).into_iter().collect();
-    let mut first_error = None;
-    let scatters = results.iter().flatten().map(|r| r.scatter.powi(2));
-    let shared = SHARED * (scatters.clone().sum::<f64>() / scatters.count().max(1) as f64).sqrt();
-    for result in results {
-        match result {
-            Ok(mut result) => {
-                result.curve.stddev = result.curve.stddev.hypot(shared * result.curve.speed);
-                curves.push(result.curve);
-                traces.append(&mut result.traces);
-                warnings.append(&mut result.warnings);
-            }
-            Err(error @ AcousticsError::NoSignal { .. }) => {
-                first_error = first_error.or_else(|| Some(error.clone()));
-                warnings.push(Warning::LeftOut(error));
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    match first_error {
-        Some(error) if curves.is_empty() => Err(error),
-        _ => Ok((curves, traces, warnings)),
-    }
 }
 
 /// The lattice planes normal to a ray.
