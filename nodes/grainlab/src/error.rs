@@ -1,4 +1,4 @@
-//! What can go wrong, by what the caller asked for. Each text says what, where, and what to do.
+//! Errors, by what the caller asked for. Each text has the fault, its place, and what to do.
 
 /// The reason why there is no result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

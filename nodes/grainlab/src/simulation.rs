@@ -58,7 +58,7 @@ fn present(run: &grainlab_experiment::Simulation) -> State {
 }
 
 impl Simulation {
-    /// The same run with this number of threads, 1 or more. The packings stay the same bit for bit.
+    /// Sets the number of threads of the run, 1 or more. The packings stay the same bit for bit.
     ///
     /// # Errors
     /// If there are no or too many threads.
@@ -78,12 +78,12 @@ impl Simulation {
         self.run.engine().steps()
     }
 
-    /// Whether the loading path is done.
+    /// True once the loading path is done.
     pub fn finished(&self) -> bool {
         self.failed || self.start.is_none() && self.run.finished()
     }
 
-    /// What to know about the packing that the scene starts from.
+    /// Notes on the packing that the scene starts from.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

@@ -8,7 +8,7 @@ use std::ops::Deref;
 /// A packing, and where on the loading path of its run it is. Make one of a packing of your own by `State::from`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// The packing.
+    /// State of the grains.
     pub packing: Packing,
     /// Run state, as recorded with the packing: the two resume the run. Empty: the packing is of no run.
     pub run_state: Vec<u8>,

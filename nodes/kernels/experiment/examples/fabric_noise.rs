@@ -50,7 +50,7 @@ fn structure(packing: &Packing) {
     std::hint::black_box((contact_statistics(&view), stress_decomposition(&view, &fabric)));
 }
 
-/// Wall time.
+/// Wall time, s.
 fn seconds<T>(work: impl FnOnce() -> T) -> f64 {
     let begin = Instant::now();
     std::hint::black_box(work());

@@ -31,7 +31,7 @@ impl Claim {
     }
 }
 
-/// Every claim.
+/// Every claim of the contract.
 pub const CLAIMS: [Claim; 16] = [
     Claim { name: "an_engine_has_the_grains_of_its_packing", test: has_the_grains },
     Claim { name: "steps_and_time_count_from_those_of_the_packing", test: counts_steps },

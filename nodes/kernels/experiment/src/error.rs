@@ -25,7 +25,7 @@ pub enum ExperimentError {
 }
 
 impl ExperimentError {
-    /// Whether the run was stopped by the flag of its compute settings, and can go on.
+    /// True if the run was stopped by the flag of its compute settings, and can go on.
     pub fn is_stopped(&self) -> bool {
         matches!(self, Self::Engine(DemError::Stopped))
     }

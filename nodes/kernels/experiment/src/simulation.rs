@@ -27,7 +27,7 @@ pub struct Simulation {
     rollback: Option<(u64, Progress)>,
 }
 
-/// Everything beside the engine that changes as a run advances.
+/// Everything except the engine that changes as a run advances.
 #[derive(Clone, Copy, Debug)]
 struct Progress {
     path: PathState,
@@ -197,7 +197,7 @@ impl Simulation {
         &self.progress.path
     }
 
-    /// Whether the path is done.
+    /// True once the path is done.
     pub fn finished(&self) -> bool {
         self.progress.path.phase >= self.scene.phases.len()
     }
@@ -213,12 +213,12 @@ impl Simulation {
         self.compute = compute;
     }
 
-    /// The engine.
+    /// Engine that moves the grains.
     pub fn engine(&self) -> &dyn ParticleEngine {
         &*self.engine
     }
 
-    /// What the present phase leaves out of the model, and the operations saved, in one line; empty once the
+    /// Parts of the model that the present phase leaves out, and the operations saved, in one line; empty once the
     /// path is done.
     pub fn left_out(&self) -> String {
         match self.progress.path.phase(&self.scene) {
@@ -400,7 +400,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The packing.
+    /// Present state of the grains.
     pub fn packing(&self) -> Packing {
         Packing { friction: self.progress.friction, ..self.engine.packing(self.progress.deformation) }
     }

@@ -67,7 +67,7 @@ fn begin(scene: &str) -> Simulation {
     Simulation::new(Scene::parse(scene).unwrap()).unwrap()
 }
 
-/// The same path from an event-driven gas.
+/// Scene with the same path from an event-driven gas.
 fn event_driven() -> String {
     SCENE.replace("method = \"soft\"\nrate = -60.0\ncontrol_period = 100", "rate = -60.0\ncontrol_period = 3")
 }

@@ -10,7 +10,7 @@ pub(crate) type Entries = Vec<(&'static str, Entry)>;
 pub(crate) enum Entry {
     /// Written as TOML.
     Value(String),
-    /// A table.
+    /// A table of entries.
     Table(Entries),
     /// An array of tables, each with its own heading.
     Tables(Vec<Entries>),
@@ -28,7 +28,7 @@ pub(crate) fn numbers(values: &[f64]) -> Entry {
     Entry::Value(format!("[{}]", values.iter().map(|v| format!("{v:?}")).collect::<Vec<_>>().join(", ")))
 }
 
-/// A text.
+/// A text in quotes.
 pub(crate) fn text(value: &str) -> Entry {
     Entry::Value(Value::from(value).to_string())
 }

@@ -20,9 +20,9 @@ use toml::{Table, Value};
 /// The text of a base.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
-    /// Its identity: the built-in name, or the whole path.
+    /// Identity of the base: the built-in name, or the whole path.
     pub name: String,
-    /// The text.
+    /// Text in TOML.
     pub text: String,
 }
 
@@ -49,7 +49,7 @@ const FILES: [&str; 2] = ["packing", "contact_forces"];
 /// The packing that a scene starts from, as written in its text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StartFile {
-    /// Its file.
+    /// File of the packing.
     pub packing: StartPath,
     /// The file with its contact forces, if they are in one of their own.
     pub contact_forces: Option<StartPath>,
@@ -211,7 +211,7 @@ fn named(keys: &Table, place: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Whether a table has a key of `[start]`.
+/// True if a table has a key of `[start]`.
 fn has_key(table: &Table, key: &str) -> bool {
     table.get("start").and_then(Value::as_table).is_some_and(|start| start.contains_key(key))
 }

@@ -1,4 +1,4 @@
-//! Whether a phase can end: conditions that exclude each other, that nothing imposed can meet, or that come too late.
+//! Phases that cannot end: conditions that exclude each other, that nothing imposed can meet, or that come too late.
 
 use crate::model::{Condition, Conditions, GasMethod, Measure, Phase, PhaseKind, Record};
 use crate::path::name;
@@ -8,7 +8,7 @@ use grainlab_core::ComponentControl;
 /// Solid fraction of random close packing: no disordered packing of equal hard spheres is denser.
 const CLOSEST_EQUAL: f64 = 0.64;
 
-/// The same of spheres of two sizes, where the small ones fill the voids of the large ones: 1 − (1 − 0.64)².
+/// Solid fraction of the closest packing of spheres of two sizes, where the small ones fill the voids of the large ones: 1 − (1 − 0.64)².
 const CLOSEST: f64 = 0.87;
 
 /// Why the phase cannot end, or cannot publish the packings that it records: the key at fault, and the message.
@@ -122,15 +122,9 @@ fn least_time(condition: &Condition, phase: &Phase) -> Option<f64> {
 
 /// Rate of a strain component, or of the logarithm of the solid fraction, 1/s; `None` where a stress is controlled instead.
 fn imposed_rate(measure: Measure, phase: &Phase) -> Option<f64> {
-    let controls = phase.controls();
-    let of = |component: usize| match controls[component] {
-        ComponentControl::StrainRate(rate) => Some(rate),
-        ComponentControl::Held => Some(0.0),
-        ComponentControl::Stress(_) => None,
-    };
     match measure {
-        Measure::Strain(component) => of(component),
-        Measure::SolidFraction => Some(-(of(0)? + of(1)? + of(2)?)),
+        Measure::Strain(component) => phase.imposed_rate(component),
+        Measure::SolidFraction => phase.imposed_volumetric_rate().map(|rate| -rate),
         _ => None,
     }
 }

@@ -7,7 +7,7 @@ use std::fmt;
 pub struct Fault {
     /// The place: for example `phase[2] (load).friction`.
     pub place: String,
-    /// What is wrong, and valid values.
+    /// Fault, and valid values.
     pub message: String,
 }
 

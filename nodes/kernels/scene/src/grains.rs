@@ -90,7 +90,7 @@ fn mixture(entries: &[Value]) -> Option<Sizes> {
     Some(Sizes::Mixture(species.collect()))
 }
 
-/// The same as text.
+/// Sizes as text.
 fn entry(sizes: &Sizes) -> Entry {
     let table = |pairs: [(&'static str, f64); 2]| -> Entries {
         pairs.map(|(name, value)| (name, number(value))).to_vec()

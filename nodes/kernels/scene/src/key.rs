@@ -1,7 +1,7 @@
 //! A key of the format: its meaning and its values.
 
 use std::fmt;
-use std::ops::Bound;
+use std::ops::{Bound, RangeBounds};
 
 /// A key of the format.
 #[derive(Clone, Copy, Debug)]
@@ -23,13 +23,13 @@ pub struct Key {
 /// Values of a key.
 #[derive(Clone, Copy, Debug)]
 pub enum Domain {
-    /// A number.
+    /// A number within an interval.
     Number(Interval),
     /// A whole number from the first to the second.
     Whole(u64, u64),
     /// True or false.
     Flag,
-    /// Text.
+    /// Any text in quotes.
     Text,
     /// One of these words.
     Choice(&'static [&'static str]),
@@ -42,13 +42,13 @@ pub enum Domain {
 pub enum DefaultValue {
     /// No default: the scene must set it.
     Required,
-    /// A number.
+    /// A default number.
     Number(f64),
     /// A whole number.
     Whole(u64),
     /// True or false.
     Flag(bool),
-    /// Text.
+    /// A default text.
     Text(&'static str),
     /// Depends on other keys, or the key has no effect without a value; in words.
     Words(&'static str),
@@ -57,14 +57,14 @@ pub enum DefaultValue {
 /// Numbers between two bounds; infinity only where there is no upper bound.
 #[derive(Clone, Copy, Debug)]
 pub struct Interval {
-    /// Lower bound.
+    /// Lower bound of the numbers.
     pub low: Bound<f64>,
-    /// Upper bound.
+    /// Upper bound of the numbers.
     pub high: Bound<f64>,
 }
 
 impl Interval {
-    /// Finite numbers.
+    /// All finite numbers.
     pub(crate) const FINITE: Self =
         Self { low: Bound::Excluded(f64::NEG_INFINITY), high: Bound::Excluded(f64::INFINITY) };
     /// Finite numbers above 0.
@@ -81,19 +81,9 @@ impl Interval {
         Self { low: Bound::Included(low), high: Bound::Included(high) }
     }
 
-    /// Whether `value` is in the interval; NaN never is.
+    /// True if `value` is in the interval; NaN never is.
     pub fn contains(&self, value: f64) -> bool {
-        let above = match self.low {
-            Bound::Included(low) => value >= low,
-            Bound::Excluded(low) => value > low,
-            Bound::Unbounded => !value.is_nan(),
-        };
-        let below = match self.high {
-            Bound::Included(high) => value <= high,
-            Bound::Excluded(high) => value < high,
-            Bound::Unbounded => !value.is_nan(),
-        };
-        above && below
+        (self.low, self.high).contains(&value)
     }
 }
 
@@ -119,7 +109,7 @@ impl fmt::Display for Interval {
 }
 
 impl Key {
-    /// Its name in its table.
+    /// Name in its table.
     pub fn name(&self) -> &'static str {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }

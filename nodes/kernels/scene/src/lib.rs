@@ -1,4 +1,4 @@
-//! What to simulate: grains, material, numerics and a loading path, parsed from text.
+//! Experiments as data: grains, material, numerics and a loading path, parsed from text.
 //!
 //! - `model`: the scene as a value
 //! - `keys`: every key of the format, with unit, range and default; `reference`: the same as a page

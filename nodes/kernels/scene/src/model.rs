@@ -17,13 +17,13 @@ pub struct Scene {
     pub start: Option<Start>,
     /// Number of grains.
     pub grains: u32,
-    /// Their sizes.
+    /// Sizes of the grains.
     pub sizes: Sizes,
     /// Material of every grain.
     pub material: Material,
-    /// Contact law.
+    /// Law of the contacts.
     pub law: ContactLaw,
-    /// Numerical settings.
+    /// Settings of the numerical method.
     pub numerics: Numerics,
     /// Phases in the order they run; cycles are already unrolled.
     pub phases: Vec<Phase>,
@@ -40,9 +40,9 @@ pub struct Numerics {
     pub time_step_safety: f64,
     /// Verlet skin over grain diameter, positive.
     pub skin: f64,
-    /// How the tangential force follows a change of normal stiffness.
+    /// Law by which the tangential force follows a change of normal stiffness.
     pub tangential: TangentialLaw,
-    /// Whether the energy balance of each phase is summed, which makes steps several times slower.
+    /// True if the energy balance of each phase is summed, which makes steps several times slower.
     pub energy_balance: bool,
 }
 
@@ -57,7 +57,7 @@ impl Default for Numerics {
 pub struct Phase {
     /// Name; unrolled cycles carry their round, as in `unload#2`.
     pub name: String,
-    /// What drives the cell.
+    /// Drive of the cell.
     pub kind: PhaseKind,
     /// Friction coefficient; 0 switches spins and tangential springs off, infinity the Coulomb check.
     pub friction: f64,
@@ -75,7 +75,7 @@ pub struct Phase {
     pub reference: bool,
     /// Publish the packing at the end.
     pub publish: bool,
-    /// How often a packing within the phase is published; the one at its end is published by `publish`, or if it is due.
+    /// Interval at which packings within the phase are published; the one at its end is published by `publish`, or if it is due.
     pub record: Option<Record>,
     /// Conditions that end the phase.
     pub until: Conditions,
@@ -90,11 +90,11 @@ pub struct Start {
     pub contact_forces: Option<String>,
     /// Columns of that file, if they are named.
     pub contact_columns: Vec<String>,
-    /// Its solver step.
+    /// Solver step of the packing.
     pub step: Option<u64>,
 }
 
-/// How often a packing is published.
+/// Interval at which packings are published.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Record {
     /// Solver steps of the run.
@@ -105,7 +105,7 @@ pub enum Record {
     EveryTime(f64),
 }
 
-/// What drives the cell during a phase.
+/// Drive of the cell during a phase.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PhaseKind {
     /// Grains placed at random and agitated, compressed isotropically.
@@ -116,10 +116,10 @@ pub enum PhaseKind {
         speed: f64,
         /// Strain rate of each axis, 1/s, negative in compression.
         rate: f64,
-        /// How the grains collide.
+        /// Method of the collisions.
         method: GasMethod,
     },
-    /// Fixed cell.
+    /// A fixed cell.
     Relax,
     /// Imposed strain rate.
     Strain {
@@ -128,7 +128,7 @@ pub enum PhaseKind {
     },
     /// Per component: a stress target, a strain rate, or held.
     Servo {
-        /// What is imposed on each component, Voigt order.
+        /// Control of each component, Voigt order.
         controls: [ComponentControl; 6],
         /// The control law.
         law: ServoLaw,
@@ -138,7 +138,7 @@ pub enum PhaseKind {
 }
 
 impl Phase {
-    /// What is imposed on each strain component while this phase runs.
+    /// Control of each strain component while this phase runs.
     pub fn controls(&self) -> [ComponentControl; 6] {
         use ComponentControl::{Held, StrainRate};
         match &self.kind {
@@ -149,6 +149,22 @@ impl Phase {
             PhaseKind::Strain { rate } => rate.map(|r| if r == 0.0 { Held } else { StrainRate(r) }),
             PhaseKind::Servo { controls, .. } => *controls,
         }
+    }
+}
+
+impl Phase {
+    /// Imposed rate of a strain component (Voigt index), 1/s; `None` where a stress is controlled instead.
+    pub(crate) fn imposed_rate(&self, component: usize) -> Option<f64> {
+        match self.controls()[component] {
+            ComponentControl::StrainRate(rate) => Some(rate),
+            ComponentControl::Held => Some(0.0),
+            ComponentControl::Stress(_) => None,
+        }
+    }
+
+    /// Imposed rate of the volumetric strain, 1/s.
+    pub(crate) fn imposed_volumetric_rate(&self) -> Option<f64> {
+        (0..3).map(|component| self.imposed_rate(component)).sum()
     }
 }
 
@@ -181,7 +197,7 @@ impl PhaseKind {
     }
 }
 
-/// How the grains of a gas collide.
+/// Method by which the grains of a gas collide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GasMethod {
     /// As hard, elastic, frictionless spheres, from collision to collision. A solver step is a mean free time at the
@@ -219,7 +235,7 @@ pub enum Condition {
 /// The quantity of a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
-    /// Solid fraction.
+    /// Solid fraction of the packing.
     SolidFraction,
     /// Time in this phase, s.
     Elapsed,

@@ -1,10 +1,10 @@
-//! What a reader of a scene should know, and no fault.
+//! Notes for the reader of a scene, which are no faults.
 
 use crate::model::{Phase, Scene};
 use grainlab_core::{ComponentControl, SymTensor};
 
 impl Scene {
-    /// Notes on the scene, one line each: components that stay uncontrolled beside controlled ones, and packings published at
+    /// Notes on the scene, one line each: components that stay uncontrolled while others are controlled, and packings published at
     /// another friction than they were prepared with.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = grouped(&self.phases, |_, phase| uncontrolled(phase));

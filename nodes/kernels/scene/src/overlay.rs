@@ -44,7 +44,7 @@ fn merge(table: &mut Table, over: Table, place: &str, faults: &mut Vec<Fault>) {
                     nearest(&key, table.keys().map(String::as_str)).map(|k| hint(&k)).unwrap_or_default();
                 faults.push(Fault { place, message: format!("is unset, but there is none{hint}") });
             }
-            // What is imposed on a component is a single value.
+            // The control of a component is a single value.
             (Some(Value::Table(under)), Value::Table(over)) if !is_component(&place) => {
                 merge(under, over, &place, faults);
             }
@@ -66,13 +66,13 @@ fn change_phase(phases: Option<&mut Vec<Value>>, pattern: &str, change: Value, f
         faults.push(Fault { place, message });
         return;
     };
-    let (mut found, mut names) = (Vec::new(), Vec::new());
+    let (mut found, mut known) = (Vec::new(), Vec::new());
     if let Some(phases) = phases {
-        visit(phases, &mut |name, _| names.push(name.to_owned()));
+        known = names(phases);
         select(phases, pattern, &mut found);
     }
     match found.len() {
-        0 => faults.push(Fault { place, message: unknown(pattern, &names) }),
+        0 => faults.push(Fault { place, message: unknown(pattern, &known) }),
         2.. if !pattern.contains('*') => {
             let message = format!("{} phases have this name; {pattern}* means all of them", found.len());
             faults.push(Fault { place, message });
@@ -81,16 +81,16 @@ fn change_phase(phases: Option<&mut Vec<Value>>, pattern: &str, change: Value, f
     }
 }
 
-fn remove(phases: Option<&mut Vec<Value>>, names: Value, faults: &mut Vec<Fault>) {
-    let patterns: Option<Vec<&str>> = names.as_array().and_then(|a| a.iter().map(Value::as_str).collect());
+fn remove(phases: Option<&mut Vec<Value>>, removed: Value, faults: &mut Vec<Fault>) {
+    let patterns: Option<Vec<&str>> = removed.as_array().and_then(|a| a.iter().map(Value::as_str).collect());
     let (Some(patterns), Some(phases)) = (patterns, phases) else {
-        let message = format!("is {}; it must be names of phases of a base, as in [\"rest\"]", kind(&names));
+        let message =
+            format!("is {}; it must be names of phases of a base, as in [\"rest\"]", kind(&removed));
         faults.push(Fault { place: "remove".into(), message });
         return;
     };
     for pattern in patterns {
-        let mut known = Vec::new();
-        visit(phases, &mut |name, _| known.push(name.to_owned()));
+        let known = names(phases);
         if known.iter().any(|name| matches(pattern, name)) {
             leave_out(phases, pattern);
         } else {
@@ -131,9 +131,7 @@ fn append(phases: Option<&mut Vec<Value>>, added: Value, faults: &mut Vec<Fault>
         if insert(phases, &behind, entry) {
             last.push((after.to_owned(), name));
         } else {
-            let mut known = Vec::new();
-            visit(phases, &mut |name, _| known.push(name.to_owned()));
-            faults.push(Fault { place, message: unknown(after, &known) });
+            faults.push(Fault { place, message: unknown(after, &names(phases)) });
         }
     }
 }
@@ -147,14 +145,13 @@ fn insert(phases: &mut Vec<Value>, behind: &str, phase: Value) -> bool {
     phases.iter_mut().filter_map(|p| path(p.as_table_mut()?)).any(|body| insert(body, behind, phase.clone()))
 }
 
-/// Every phase, including those of cycles.
-fn visit(phases: &[Value], see: &mut dyn FnMut(&str, &Table)) {
-    for table in phases.iter().filter_map(Value::as_table) {
-        see(name_of(table), table);
-        if let Some(body) = table.get("phase").and_then(Value::as_array) {
-            visit(body, see);
-        }
-    }
+/// The names of all phases, including those of cycles.
+fn names(phases: &[Value]) -> Vec<String> {
+    let own_and_inner = |table: &Table| {
+        let body = table.get("phase").and_then(Value::as_array);
+        [vec![name_of(table).to_owned()], body.map_or_else(Vec::new, |body| names(body))].concat()
+    };
+    phases.iter().filter_map(Value::as_table).flat_map(own_and_inner).collect()
 }
 
 /// The phases whose name matches the pattern. A matching cycle is returned without its phases.
@@ -177,7 +174,7 @@ fn name_of(table: &Table) -> &str {
     table.get("name").or(table.get("kind")).and_then(Value::as_str).unwrap_or_default()
 }
 
-/// Whether a name matches a pattern, in which `*` matches any letters.
+/// True if a name matches a pattern, in which `*` matches any letters.
 fn matches(pattern: &str, name: &str) -> bool {
     let Some((start, rest)) = pattern.split_once('*') else { return pattern == name };
     let Some(mut name) = name.strip_prefix(start) else { return false };

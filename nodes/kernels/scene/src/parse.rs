@@ -17,9 +17,9 @@ use toml::Table;
 /// A valid scene, as a value and as text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolved {
-    /// The scene.
+    /// Scene as a value.
     pub scene: Scene,
-    /// The same as TOML that needs no other file: bases and overrides applied, every default written out.
+    /// Scene as TOML that needs no other file: bases and overrides applied, every default written out.
     /// Resolving this text gives the same text.
     pub toml: String,
 }

@@ -12,7 +12,7 @@ pub struct Observation {
     pub stress: SymTensor,
     /// Logarithmic strain since the phase began, positive in extension.
     pub strain: SymTensor,
-    /// Solid fraction.
+    /// Solid fraction of the packing.
     pub solid_fraction: f64,
     /// Unbalanced force ratio; 1 without contacts.
     pub unbalanced: f64,
@@ -61,7 +61,7 @@ pub enum PathError {
         index: usize,
         /// Name of the phase.
         name: String,
-        /// Its timeout, s.
+        /// Timeout of the phase, s.
         timeout: f64,
         /// The conditions not met, with the values seen.
         unmet: String,

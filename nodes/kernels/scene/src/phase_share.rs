@@ -1,8 +1,7 @@
-//! How much of a phase is done, where its end is known beforehand.
+//! Share of a phase that is done, where its end is known beforehand.
 
 use crate::model::{Condition, Measure, Phase, Scene};
 use crate::path::{Observation, PathState};
-use grainlab_core::ComponentControl;
 
 impl PathState {
     /// Share of the present phase that is done, 0 to 1, in simulated time. It is known where every condition follows from
@@ -23,20 +22,18 @@ impl PathState {
 
 /// Simulated time until a condition holds, s, at the imposed rates; `None` where these do not determine it.
 fn time_until(condition: &Condition, phase: &Phase, seen: &Observation, elapsed: f64) -> Option<f64> {
-    let controls = phase.controls();
-    let rate_of = |component: usize| match controls[component] {
-        ComponentControl::StrainRate(rate) => Some(rate),
-        ComponentControl::Held => Some(0.0),
-        ComponentControl::Stress(_) => None,
-    };
     // Distance to the bound and the rate at which it shrinks.
     let (distance, rate) = match *condition {
         Condition::AtLeast(Measure::Elapsed, time) => (time - elapsed, 1.0),
-        Condition::AtLeast(Measure::Strain(c), bound) => (bound - seen.strain.voigt()[c], rate_of(c)?),
-        Condition::AtMost(Measure::Strain(c), bound) => (seen.strain.voigt()[c] - bound, -rate_of(c)?),
+        Condition::AtLeast(Measure::Strain(c), bound) => {
+            (bound - seen.strain.voigt()[c], phase.imposed_rate(c)?)
+        }
+        Condition::AtMost(Measure::Strain(c), bound) => {
+            (seen.strain.voigt()[c] - bound, -phase.imposed_rate(c)?)
+        }
         Condition::AtLeast(Measure::SolidFraction, bound) => {
-            // Its logarithm grows as the volumetric strain shrinks.
-            ((bound / seen.solid_fraction).ln(), -(rate_of(0)? + rate_of(1)? + rate_of(2)?))
+            // The logarithm of the solid fraction grows as the volumetric strain shrinks.
+            ((bound / seen.solid_fraction).ln(), -phase.imposed_volumetric_rate()?)
         }
         _ => return None,
     };

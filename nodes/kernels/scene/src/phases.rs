@@ -30,7 +30,7 @@ pub(crate) struct Inherited<'a> {
     pub(crate) sizes: &'a Sizes,
     /// Friction coefficient of the scene.
     pub(crate) friction: Option<f64>,
-    /// Whether a phase used it.
+    /// True if a phase used it.
     pub(crate) taken: bool,
     /// Drag on spins of relaxing and servoed phases, 1/s.
     pub(crate) spin_drag: f64,
@@ -180,7 +180,7 @@ fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited<'_>) -> Phase
     if hard {
         refuse_contacts(r, &phase);
     }
-    // What is at fault itself is not judged twice.
+    // A phase with other faults is not judged twice.
     if r.is_sound() {
         ends::faults(&phase, inherited.sizes).into_iter().for_each(|(key, message)| r.fault(key, message));
     }
@@ -192,22 +192,16 @@ fn friction(r: &mut Reader<'_>, gas: bool, inherited: &mut Inherited<'_>) -> f64
     if gas || r.has(&keys::PHASE_FRICTION) {
         return r.number_or(&keys::PHASE_FRICTION, gas.then_some(0.0));
     }
-    match inherited.friction {
-        Some(friction) => {
-            r.get(&keys::PHASE_FRICTION);
-            inherited.taken = true;
-            friction
-        }
-        None => {
-            r.get(&keys::PHASE_FRICTION);
-            let requirement = keys::PHASE_FRICTION.requirement();
-            let message = format!(
-                "is missing; it must be {requirement}, here or at the top of the scene for all phases that name none"
-            );
-            r.fault("friction", message);
-            f64::NAN
-        }
-    }
+    r.get(&keys::PHASE_FRICTION);
+    inherited.taken |= inherited.friction.is_some();
+    inherited.friction.unwrap_or_else(|| {
+        let requirement = keys::PHASE_FRICTION.requirement();
+        let message = format!(
+            "is missing; it must be {requirement}, here or at the top of the scene for all phases that name none"
+        );
+        r.fault("friction", message);
+        f64::NAN
+    })
 }
 
 /// An event-driven gas has no contact law.
@@ -227,16 +221,8 @@ fn refuse_contacts(r: &mut Reader<'_>, phase: &Phase) {
     }
     r.leave_out(&contacts.map(|(key, _)| key));
     let needs_force = |c: &Condition| {
-        matches!(
-            c,
-            Condition::AtLeast(
-                Measure::Pressure | Measure::Deviator | Measure::Stress(_) | Measure::Unbalanced,
-                _
-            ) | Condition::AtMost(
-                Measure::Pressure | Measure::Deviator | Measure::Stress(_) | Measure::Unbalanced,
-                _
-            )
-        )
+        let (Condition::AtLeast(measure, _) | Condition::AtMost(measure, _)) = c else { return false };
+        matches!(measure, Measure::Pressure | Measure::Deviator | Measure::Stress(_) | Measure::Unbalanced)
     };
     if phase.until.all.iter().any(needs_force) {
         r.fault(

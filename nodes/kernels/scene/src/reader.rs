@@ -28,7 +28,7 @@ impl<'a> Reader<'a> {
         self.faults.push(Fault { place, message: message.into() });
     }
 
-    /// Whether no fault was found so far.
+    /// True if no fault was found so far.
     pub(crate) fn is_sound(&self) -> bool {
         self.faults.is_empty()
     }
@@ -46,7 +46,8 @@ impl<'a> Reader<'a> {
         let found = match value {
             None => "is missing".into(),
             Some(v @ (Value::Table(_) | Value::Array(_))) => format!("is {}", kind(v)),
-            Some(v) => format!("is {}", brief(v)),
+            Some(Value::Float(v)) => format!("is {v}"),
+            Some(v) => format!("is {v}"),
         };
         self.fault(key.name(), format!("{found}; it must be {}", key.requirement()));
     }
@@ -65,7 +66,7 @@ impl<'a> Reader<'a> {
         self.table.get(key.name())
     }
 
-    /// The same for a key that is not in the table of keys: a component.
+    /// The value of a key that is not in the table of keys: a component.
     pub(crate) fn get_named(&mut self, name: &'static str) -> Option<&'a Value> {
         self.asked.push(name);
         self.table.get(name)
@@ -93,34 +94,34 @@ impl<'a> Reader<'a> {
 
     /// A number; `default` if it is absent, a fault if there is no default.
     pub(crate) fn number_or(&mut self, key: &'static Key, default: Option<f64>) -> f64 {
-        if !self.has(key) && default.is_none() {
-            self.asked.push(key.name());
-            self.refuse(key, None);
-            return f64::NAN;
+        let read = |value: &Value| number_of(key, value);
+        self.read(key, default, read, |v| number(*v)).or(default).unwrap_or(f64::NAN)
+    }
+
+    /// A value as `read` takes it, or `default` if it is absent: kept as `entry` writes it, or refused.
+    fn read<T>(
+        &mut self,
+        key: &'static Key,
+        default: Option<T>,
+        read: impl FnOnce(&'a Value) -> Option<T>,
+        entry: impl FnOnce(&T) -> Entry,
+    ) -> Option<T> {
+        let value = self.get(key);
+        let found = value.map_or(default, read);
+        match &found {
+            Some(found) => self.keep(key, entry(found)),
+            None => self.refuse(key, value),
         }
-        let value = self.found(key).flatten().or(default).unwrap_or(f64::NAN);
-        self.keep(key, number(value));
-        value
+        found
     }
 
     /// A number, if present; an invalid one is a fault and returned as 1.
     pub(crate) fn optional(&mut self, key: &'static Key) -> Option<f64> {
-        let value = self.found(key)?.unwrap_or(1.0);
-        self.keep(key, number(value));
-        Some(value)
-    }
-
-    /// A number, if present. The inner option is `None`, with a fault, if the value is invalid.
-    fn found(&mut self, key: &'static Key) -> Option<Option<f64>> {
-        let value = self.get(key)?;
-        let found = as_number(value).filter(|v| match key.domain {
-            Domain::Number(range) => range.contains(*v),
-            _ => v.is_finite(),
-        });
-        if found.is_none() {
-            self.refuse(key, Some(value));
+        if !self.has(key) {
+            self.asked.push(key.name());
+            return None;
         }
-        Some(found)
+        Some(self.read(key, None, |value| number_of(key, value), |v| number(*v)).unwrap_or(1.0))
     }
 
     /// A whole number with the default of its key.
@@ -131,35 +132,16 @@ impl<'a> Reader<'a> {
 
     pub(crate) fn whole_or(&mut self, key: &'static Key, default: Option<u64>) -> u64 {
         let (min, max) = if let Domain::Whole(min, max) = key.domain { (min, max) } else { (0, u64::MAX) };
-        let value = self.get(key);
-        let found = match value {
-            None => default,
-            Some(value) => value.as_integer().and_then(|v| u64::try_from(v).ok()),
-        };
-        match found.filter(|v| (min..=max).contains(v)) {
-            Some(v) => {
-                self.keep(key, Entry::Value(v.to_string()));
-                v
-            }
-            None => {
-                self.refuse(key, value);
-                default.unwrap_or(min)
-            }
-        }
+        let within = |v: &u64| (min..=max).contains(v);
+        let read = |value: &Value| u64::try_from(value.as_integer()?).ok().filter(within);
+        let entry = |v: &u64| Entry::Value(v.to_string());
+        self.read(key, default.filter(within), read, entry).or(default).unwrap_or(min)
     }
 
     pub(crate) fn flag(&mut self, key: &'static Key) -> bool {
         let default = matches!(key.default, DefaultValue::Flag(true));
-        let value = match self.get(key) {
-            None => default,
-            Some(Value::Boolean(b)) => *b,
-            Some(other) => {
-                self.refuse(key, Some(other));
-                default
-            }
-        };
-        self.keep(key, Entry::Value(value.to_string()));
-        value
+        let entry = |v: &bool| Entry::Value(v.to_string());
+        self.read(key, Some(default), Value::as_bool, entry).unwrap_or(default)
     }
 
     /// A text with the default of its key.
@@ -169,22 +151,9 @@ impl<'a> Reader<'a> {
     }
 
     pub(crate) fn text_or(&mut self, key: &'static Key, default: Option<&str>) -> String {
-        let value = self.get(key);
-        let text = match value {
-            Some(Value::String(s)) => s.as_str(),
-            Some(_) => {
-                self.refuse(key, value);
-                ""
-            }
-            None => {
-                if default.is_none() {
-                    self.refuse(key, None);
-                }
-                default.unwrap_or_default()
-            }
-        };
-        self.keep(key, Entry::Value(Value::from(text).to_string()));
-        text.to_string()
+        let read = |value: &Value| value.as_str().map(str::to_owned);
+        let entry = |v: &String| Entry::Value(Value::from(v.as_str()).to_string());
+        self.read(key, default.map(str::to_owned), read, entry).unwrap_or_default()
     }
 
     /// One of the choices of the key.
@@ -194,17 +163,10 @@ impl<'a> Reader<'a> {
         default: &str,
         choices: &[(&'static str, T)],
     ) -> T {
-        let named = |word: Option<&str>| choices.iter().find(|c| Some(c.0) == word);
-        let value = self.get(key);
-        let word = value.map_or(Some(default), Value::as_str);
-        let Some((word, chosen)) = named(word).or_else(|| {
-            self.refuse(key, value);
-            named(Some(default)).or(choices.first())
-        }) else {
-            unreachable!("a choice of nothing")
-        };
-        self.keep(key, Entry::Value(format!("{word:?}")));
-        *chosen
+        let named = |word: &str| choices.iter().find(|c| c.0 == word);
+        let entry = |(word, _): &&(&str, T)| Entry::Value(format!("{word:?}"));
+        let found = self.read(key, named(default), |value| named(value.as_str()?), entry);
+        found.or(named(default)).unwrap_or(&choices[0]).1
     }
 
     /// A sub-table, read by `read`; `None` where it is absent.
@@ -269,7 +231,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// What a key of the format that is not taken at its own place needs; `None` if there is no such key.
+/// Requirement of a key of the format that is not taken at its own place; `None` if there is no such key.
 fn needs(place: &str) -> Option<String> {
     // A place such as `phase[1] (rest).until.speed`, which in a cycle has the place of the cycle before it.
     let path = place.rsplit_once("phase[").map_or_else(
@@ -291,19 +253,19 @@ fn elsewhere(name: &str) -> String {
     found.map_or_else(String::new, |k| hint(&k.path.replacen("phase.", "phase.NAME.", 1)))
 }
 
+/// A number that the key takes.
+fn number_of(key: &Key, value: &Value) -> Option<f64> {
+    as_number(value).filter(|v| match key.domain {
+        Domain::Number(range) => range.contains(*v),
+        _ => v.is_finite(),
+    })
+}
+
 pub(crate) fn as_number(value: &Value) -> Option<f64> {
     match value {
         Value::Float(v) => Some(*v),
         Value::Integer(v) => Some(*v as f64),
         _ => None,
-    }
-}
-
-/// A value, quoted for a message.
-fn brief(value: &Value) -> String {
-    match value {
-        Value::Float(v) => v.to_string(),
-        other => other.to_string(),
     }
 }
 

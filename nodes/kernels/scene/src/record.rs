@@ -16,7 +16,7 @@ pub struct Travelled {
 }
 
 impl Record {
-    /// Whether a packing is due between `before` and `now`.
+    /// True if a packing is due between `before` and `now`.
     pub fn is_due(&self, before: &Travelled, now: &Travelled) -> bool {
         // The end of a phase is often a multiple, from which a sum of many intervals differs by rounding.
         let multiples = |travelled: f64, every: f64| (travelled / every + 1e-9).floor();

@@ -31,27 +31,18 @@ pub(crate) fn read(r: &mut Reader<'_>) -> PhaseKind {
     PhaseKind::Servo { controls, law, rate_limit }
 }
 
-#[derive(Clone, Copy)]
-enum Law {
-    Normalised,
-    Scaled,
-    Integral,
-}
-
 fn law(r: &mut Reader<'_>) -> ServoLaw {
     // A response time selects the law that has one.
     let default = if r.has(&keys::RESPONSE_TIME) { "scaled" } else { "normalised" };
-    let laws = [("normalised", Law::Normalised), ("scaled", Law::Scaled), ("integral", Law::Integral)];
+    let laws = ["normalised", "scaled", "integral"].map(|law| (law, law));
     match r.choice(&keys::LAW, default, &laws) {
-        Law::Normalised => {
-            ServoLaw::Normalised { share: r.number(&keys::GAIN_SHARE), leak: r.number(&keys::LEAK) }
-        }
-        Law::Scaled => ServoLaw::Scaled { response_time: r.number(&keys::RESPONSE_TIME) },
-        Law::Integral => ServoLaw::Integral { gain: r.number(&keys::GAIN), leak: r.number(&keys::LEAK) },
+        "scaled" => ServoLaw::Scaled { response_time: r.number(&keys::RESPONSE_TIME) },
+        "integral" => ServoLaw::Integral { gain: r.number(&keys::GAIN), leak: r.number(&keys::LEAK) },
+        _ => ServoLaw::Normalised { share: r.number(&keys::GAIN_SHARE), leak: r.number(&keys::LEAK) },
     }
 }
 
-/// What is imposed on one component.
+/// Control of one component.
 fn component(r: &mut Reader<'_>, name: &'static str) -> ComponentControl {
     let single = |t: &Table, k: &str| (t.len() == 1).then(|| t.get(k).and_then(as_number)).flatten();
     let parsed = match r.get_named(name) {

@@ -26,7 +26,7 @@ pub enum Sizes {
         /// Standard deviation of the logarithm.
         spread: f64,
     },
-    /// Several diameters.
+    /// Several diameters, each with its share.
     Mixture(Vec<Species>),
     /// Those of the packing that the run starts from.
     OfPacking {
@@ -38,7 +38,7 @@ pub enum Sizes {
 /// Grains of one diameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Species {
-    /// Diameter, m.
+    /// Diameter of the grains, m.
     pub diameter: f64,
     /// Fraction of the grains, by number; the sum is 1.
     pub share: f64,
@@ -76,7 +76,7 @@ impl Sizes {
         match self {
             Self::Equal(diameter) => *diameter,
             Self::Uniform { min, max } => 0.5 * (min + max),
-            // Of the distribution that is not cut: the difference is negligible.
+            // Mean of the distribution that is not cut: the difference is negligible.
             Self::Lognormal { median, spread } => median * libm::exp(0.5 * spread * spread),
             Self::Mixture(species) => species.iter().map(|s| s.share * s.diameter).sum(),
             Self::OfPacking { mean } => *mean,

@@ -10,7 +10,7 @@ pub enum ServoError {
         field: &'static str,
         /// Name of the component: xx, yy, zz, yz, xz or xy.
         component: &'static str,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
     },
     /// A number that must be positive and finite is not.
@@ -18,15 +18,15 @@ pub enum ServoError {
     NotPositive {
         /// Name of the quantity.
         field: &'static str,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
-        /// Its unit.
+        /// Unit of the quantity.
         unit: &'static str,
     },
     /// The leak of the integral law is outside [0, 1].
     #[error("leak = {value} is outside [0, 1]; 0 is exactly Eq. 1, 1 resets the rate each control period")]
     Leak {
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
     },
     /// The gain over the critical gain is not between 0 and 1.
@@ -34,7 +34,7 @@ pub enum ServoError {
         "share = {value} of the critical gain is outside (0, 1): from 1 on the stress error grows every control period"
     )]
     Share {
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
     },
     /// The gain of Eq. 1 is not below the critical one.

@@ -27,6 +27,6 @@ pub struct ServoInput {
 pub struct ServoOutput {
     /// Strain rate, 1/s, tensor components, positive in extension. Finite, at most `rate_limit` in magnitude.
     pub rate: [f64; 6],
-    /// Whether the component was limited to `rate_limit`.
+    /// True if the component was limited to `rate_limit`.
     pub saturated: [bool; 6],
 }

@@ -11,7 +11,7 @@ pub(crate) struct Component {
     pub(crate) rate: f64,
     /// Change of stress per unit of this tensor strain component alone, Pa.
     pub(crate) diagonal_stiffness: f64,
-    /// The same with all servoed components of its kind strained together, Pa.
+    /// Change of stress with all servoed components of its kind strained together, Pa.
     pub(crate) closed_loop_stiffness: f64,
     /// Simulated time until the next input, s.
     pub(crate) interval: f64,

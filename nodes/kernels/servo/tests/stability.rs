@@ -14,7 +14,7 @@ fn errors(law: ServoLaw, stiffness: f64, dt: f64, periods: usize) -> Vec<f64> {
     errors_with(law, stiffness, known, dt, periods)
 }
 
-/// The same, with the stiffness given to the law.
+/// Errors of a loop whose law is given this stiffness.
 fn errors_with(law: ServoLaw, stiffness: f64, known: f64, dt: f64, periods: usize) -> Vec<f64> {
     let mut request = ServoInput {
         stress: SymTensor { zz: TARGET - 1.0e3, ..SymTensor::default() },

@@ -1,6 +1,6 @@
 //! Sends mutated and forged datagrams to all processes in a domain on the loopback of this host.
 //!
-//! `cargo run --release -p grainlab_node_kit --example attack -- DOMAIN [COUNT]`, beside
+//! `cargo run --release -p grainlab_node_kit --example attack -- DOMAIN [COUNT]`, next to
 //! `ROS_DOMAIN_ID=DOMAIN grainlab launch`. The mutated half needs the right to capture packets (root).
 
 #[path = "../tests/process/flood.rs"]

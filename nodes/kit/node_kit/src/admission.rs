@@ -13,11 +13,11 @@ const MAX_COUNTED: usize = 64;
 /// A participant whose samples were ignored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stranger {
-    /// Its GUID prefix; zero for the participants that are counted together.
+    /// GUID prefix; zero for the participants that are counted together.
     pub participant: Participant,
     /// The run in its GUID prefix.
     pub run: Option<RunId>,
-    /// Its process, as in `pid 4711 (python3)`, if known.
+    /// Process of the participant, as in `pid 4711 (python3)`, if known.
     pub process: Option<String>,
     /// Number of ignored samples by resolved topic.
     pub ignored: BTreeMap<String, u64>,
@@ -49,11 +49,11 @@ impl std::fmt::Display for Stranger {
 /// A process on this host.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Process {
-    /// Its process id.
+    /// Id of the process.
     pub pid: u32,
-    /// Its name, as `ps` shows it.
+    /// Name, as `ps` shows it.
     pub name: String,
-    /// Whether it descends from the process that started the run.
+    /// True if it descends from the process that started the run.
     pub below_root: bool,
 }
 
@@ -94,7 +94,7 @@ impl Admission {
         }
     }
 
-    /// Whether samples of this participant are accepted.
+    /// True if samples of this participant are accepted.
     pub(crate) fn admits(&self, participant: &Participant) -> bool {
         if self.identity.scope == Scope::Everyone || *participant == self.own {
             return true;
@@ -113,7 +113,7 @@ impl Admission {
         }
     }
 
-    /// The same for one sample; an ignored one is counted. The second value is true for the first one of its writer.
+    /// Decides on one sample; an ignored one is counted. The second value is true for the first one of its writer.
     pub(crate) fn takes(&mut self, writer: Guid, topic: &str) -> (bool, bool) {
         let participant = writer.participant();
         if self.admits(&participant) {
@@ -121,17 +121,14 @@ impl Admission {
         }
         let full = self.strangers.len() >= MAX_COUNTED && !self.strangers.contains_key(&participant);
         let key = if full { [0; 12] } else { participant };
-        let mut new = false;
-        let process = self.processes.get(&key).map(|p| format!("pid {} ({})", p.pid, p.name));
-        let stranger = self.strangers.entry(key).or_insert_with(|| {
-            new = true;
-            let run = run_of(&key);
-            Stranger { participant: key, run, process, ignored: BTreeMap::new() }
-        });
-        match stranger.ignored.get_mut(topic) {
-            Some(count) => *count += 1,
-            None => {
-                stranger.ignored.insert(topic.into(), 1);
+        let new = !self.strangers.contains_key(&key);
+        if new {
+            self.strangers.insert(key, self.describe(&key));
+        }
+        if let Some(stranger) = self.strangers.get_mut(&key) {
+            match stranger.ignored.get_mut(topic) {
+                Some(count) => *count += 1,
+                None => _ = stranger.ignored.insert(topic.into(), 1),
             }
         }
         (false, new)

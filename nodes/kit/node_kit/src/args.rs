@@ -2,50 +2,10 @@
 
 use std::path::PathBuf;
 
-/// Errors of a command line. The process then ends with [`crate::Exit::Usage`].
+/// Why a command line is refused. The process then ends with [`crate::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ArgsError {
-    /// An option without its value.
-    #[error("{option} needs a value: {example}")]
-    MissingValue {
-        /// The option as typed.
-        option: String,
-        /// A correct use.
-        example: &'static str,
-    },
-    /// A rule without `:=`.
-    #[error("{option} {text:?} is not of the form {example}")]
-    Malformed {
-        /// The option as typed.
-        option: String,
-        /// Its value as typed.
-        text: String,
-        /// A correct use.
-        example: &'static str,
-    },
-    /// An option that is not a ROS 2 argument.
-    #[error(
-        "unknown ROS argument {option:?}; known: -r, -p, --params-file, --log-level, --enable-/--disable-{{rosout,stdout}}-logs, and -- to end them"
-    )]
-    Unknown {
-        /// The option as typed.
-        option: String,
-    },
-    /// An option of ROS 2 that is not supported.
-    #[error("{option} is not supported: {reason}")]
-    Unsupported {
-        /// The option as typed.
-        option: String,
-        /// Why it is not supported.
-        reason: &'static str,
-    },
-    /// An unknown log level.
-    #[error("log level {level:?} does not exist: use debug, info, warn, error or fatal")]
-    LogLevel {
-        /// The level as typed.
-        level: String,
-    },
-}
+#[error("{0}")]
+pub struct ArgsError(String);
 
 /// One remap rule, `[node:]from:=to`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -65,7 +25,7 @@ pub struct Assignment {
     pub node: Option<String>,
     /// The parameter's name.
     pub name: String,
-    /// Its value as YAML text.
+    /// Value as YAML text.
     pub yaml: String,
 }
 
@@ -82,9 +42,9 @@ pub struct RosArgs {
     pub log_level: log::LevelFilter,
     /// Levels of single loggers, `--log-level ros2_client:=debug`; the logger is a Rust module path.
     pub logger_levels: Vec<(String, log::LevelFilter)>,
-    /// Whether log lines are published on `/rosout`.
+    /// True if log lines are published on `/rosout`.
     pub rosout: bool,
-    /// Whether log lines go to stderr.
+    /// True if log lines go to stderr.
     pub stderr: bool,
 }
 
@@ -131,7 +91,7 @@ impl RosArgs {
         rest: &mut impl Iterator<Item = &'a String>,
     ) -> Result<(), ArgsError> {
         let mut value = |example: &'static str| {
-            rest.next().cloned().ok_or(ArgsError::MissingValue { option: option.into(), example })
+            rest.next().cloned().ok_or_else(|| ArgsError(format!("{option} needs a value: {example}")))
         };
         match option {
             "-r" | "--remap" => {
@@ -158,18 +118,20 @@ impl RosArgs {
             // Some launch tools always pass these; there is no external logger here.
             "--enable-external-lib-logs" | "--disable-external-lib-logs" => {}
             "-e" | "--enclave" => {
-                return Err(ArgsError::Unsupported {
-                    option: option.into(),
-                    reason: "DDS security is not built in; leave the option out",
-                });
+                let reason = "is not supported: DDS security is not built in; leave the option out";
+                return Err(ArgsError(format!("{option} {reason}")));
             }
             "--log-config-file" => {
-                return Err(ArgsError::Unsupported {
-                    option: option.into(),
-                    reason: "there is no configurable logger; use --log-level [logger:=]level",
-                });
+                let reason =
+                    "is not supported: there is no configurable logger; use --log-level [logger:=]level";
+                return Err(ArgsError(format!("{option} {reason}")));
             }
-            unknown => return Err(ArgsError::Unknown { option: unknown.into() }),
+            unknown => {
+                return Err(ArgsError(format!(
+                    "unknown ROS argument {unknown:?}; known: -r, -p, --params-file, --log-level, \
+                     --enable-/--disable-{{rosout,stdout}}-logs, and -- to end them"
+                )));
+            }
         }
         Ok(())
     }
@@ -181,7 +143,7 @@ fn split_rule(
     text: &str,
     example: &'static str,
 ) -> Result<(Option<String>, String, String), ArgsError> {
-    let malformed = || ArgsError::Malformed { option: option.into(), text: text.into(), example };
+    let malformed = || ArgsError(format!("{option} {text:?} is not of the form {example}"));
     let (left, right) = text.split_once(":=").ok_or_else(malformed)?;
     let (node, name) = match left.split_once(':') {
         Some((node, name)) if !name.starts_with("//") => (Some(node), name),
@@ -201,7 +163,9 @@ fn parse_level(text: &str) -> Result<log::LevelFilter, ArgsError> {
         "info" => Ok(log::LevelFilter::Info),
         "warn" | "warning" => Ok(log::LevelFilter::Warn),
         "error" | "fatal" => Ok(log::LevelFilter::Error),
-        _ => Err(ArgsError::LogLevel { level: text.into() }),
+        _ => Err(ArgsError(format!(
+            "log level {text:?} does not exist: use debug, info, warn, error or fatal"
+        ))),
     }
 }
 

@@ -52,29 +52,6 @@ impl fmt::Debug for Caller {
     }
 }
 
-/// Publishes from another thread; see [`Bus::sender`].
-#[derive(Clone)]
-pub struct Sender(pub(crate) Arc<Publish>);
-
-/// Publishes a body and returns its sequence number.
-type Publish = dyn Fn(&[u8]) -> Result<i64, BusError> + Send + Sync;
-
-impl Sender {
-    /// The same as [`Bus::publish`].
-    ///
-    /// # Errors
-    /// Those of [`Bus::publish`].
-    pub fn publish(&self, body: &[u8]) -> Result<i64, BusError> {
-        (self.0)(body)
-    }
-}
-
-impl fmt::Debug for Sender {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Sender")
-    }
-}
-
 /// Sends and receives serialized samples, and waits for events.
 ///
 /// Names are resolved with the node's namespace and remaps; the QoS is always that of the topic table.
@@ -102,7 +79,7 @@ pub trait Bus {
         self.publish_about(publisher, body, None)
     }
 
-    /// The same for a message that refers to a received sample; see [`SampleInfo::about`](crate::SampleInfo::about).
+    /// Publishes a message that refers to a received sample; see [`SampleInfo::about`](crate::SampleInfo::about).
     fn publish_about(
         &mut self,
         publisher: PublisherId,
@@ -122,10 +99,6 @@ pub trait Bus {
     /// A handle for another thread to end [`Bus::wait`]. `None` on a bus with virtual time, where results must not
     /// depend on the speed of a thread.
     fn caller(&self) -> Option<Caller>;
-
-    /// A handle for another thread to publish with this publisher, which must not outlast the bus. `None` on a bus with
-    /// virtual time.
-    fn sender(&self, publisher: PublisherId) -> Option<Sender>;
 
     /// Readers matched with this publisher, of those that [`Bus::identity`] counts, as known at the last [`Bus::wait`].
     /// A crashed peer counts until its lease ends, up to a minute: see [`crate::Peers`].
@@ -148,7 +121,7 @@ pub trait Bus {
         Vec::new()
     }
 
-    /// What the writers of other processes offer on topics of ROS, of those that [`Bus::identity`] counts, in the order of
+    /// Offers of the writers of other processes on topics of ROS, of those that [`Bus::identity`] counts, in the order of
     /// topics, as known at the last [`Bus::wait`].
     fn offers(&self) -> Vec<Offer>;
 

@@ -23,7 +23,7 @@ pub enum BusError {
     Encapsulation {
         /// Resolved topic name.
         topic: String,
-        /// Its first bytes, at most four.
+        /// First bytes of the body, at most four.
         found: Vec<u8>,
     },
     /// The handle belongs to another bus.
@@ -32,7 +32,7 @@ pub enum BusError {
     /// The network returned an error.
     #[error("{what}: {reason}")]
     Network {
-        /// What was attempted.
+        /// Operation that failed.
         what: String,
         /// The error of DDS.
         reason: String,

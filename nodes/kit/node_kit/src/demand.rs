@@ -5,7 +5,7 @@ use grainlab_msgs::Topic;
 /// The requested quality of service: at most what the topic offers, so that it always matches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Demand {
-    /// Whether lost samples are repeated and a late reader receives the last samples of a latched topic.
+    /// True if lost samples are repeated and a late reader receives the last samples of a latched topic.
     pub reliable: bool,
     /// Maximum number of queued samples; a full queue drops the oldest. At least the largest backlog.
     pub depth: u32,
@@ -27,7 +27,7 @@ impl Demand {
         Self { reliable: self.reliable && topic.qos.reliable, depth: self.depth.max(1) }
     }
 
-    /// Whether a subscription with this demand also serves `other`.
+    /// True if a subscription with this demand also serves `other`.
     pub fn covers(self, other: Self) -> bool {
         self.reliable >= other.reliable && self.depth >= other.depth
     }

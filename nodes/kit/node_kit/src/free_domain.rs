@@ -6,7 +6,7 @@ use std::net::{Ipv4Addr, UdpSocket};
 /// A DDS domain without participants on this host, locked against other launchers until this is dropped.
 #[derive(Debug)]
 pub struct FreeDomain {
-    /// Its id.
+    /// Id of the domain.
     pub id: u16,
     _lock: UdpSocket,
 }
@@ -41,13 +41,13 @@ fn bind(id: u16, offset: u16) -> Option<UdpSocket> {
     UdpSocket::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * id + offset)).ok()
 }
 
-/// Whether a participant of this domain, at most 101, is on this host: a port for unicast discovery of any possible one
+/// True if a participant of this domain, at most 101, is on this host: a port for unicast discovery of any possible one
 /// (RTPS 9.6.2.3) is in use.
 pub fn is_in_use(id: u16) -> bool {
     !(0..PARTICIPANTS).all(|n| bind(id, 10 + 2 * n).is_some())
 }
 
-/// Whether a launcher on this host has taken this domain, at most 101.
+/// True if a launcher on this host has taken this domain, at most 101.
 pub fn is_launched(id: u16) -> bool {
     bind(id, LOCK).is_none()
 }

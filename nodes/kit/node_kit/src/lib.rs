@@ -15,7 +15,7 @@
 //!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
 //! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants
-//! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`; `wall_clock`: their stamps
+//! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`, between steps; `wall_clock`: their stamps
 
 mod admission;
 mod args;
@@ -48,15 +48,14 @@ mod worker;
 pub use admission::{Participant, Process, Stranger};
 pub use args::{ArgsError, Assignment, Remap, RosArgs};
 pub use bulk::{BULK_LIMIT, BulkPublisher, BulkSubscription};
-pub use bus::{Bus, Caller, PublisherId, Sender, SubscriptionId, Wake};
+pub use bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
 pub use bus_error::BusError;
 pub use dds::{ClaimedDomain, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers};
 pub use demand::Demand;
 pub use free_domain::{FreeDomain, is_in_use, is_launched};
 pub use grainlab_msgs::{Exit, Health, Level, Published, Received, Report};
 pub use identity::{
-    Identity, MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId, RunIdError, Scope, may_be_ours, member_of,
-    run_of,
+    Identity, MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId, Scope, may_be_ours, member_of, run_of,
 };
 pub use logging::Logger;
 pub use memory::{Actor, Dice, Faults, Hub, MemoryBus, run_until};
@@ -65,11 +64,12 @@ pub use node::{Next, Node, NodeError};
 pub use offer::{Offer, type_hash};
 pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
 pub use parameters::{
-    FromParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range, parse_value,
+    FromParameter, IntoParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range,
+    parameter_text, parse_value,
 };
 pub use peers::{Liveliness, Peer, PeerWatch, Peers, SILENCE};
 pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};
 pub use sample::{Sample, SampleId, SampleInfo};
 pub use tool_bus::{bus_in, bus_named, tool_bus};
-pub use typed::{Publisher, Subscription, TakeError};
+pub use typed::{Publisher, Subscription};
 pub use worker::Worker;

@@ -10,7 +10,7 @@ use log::{Level, LevelFilter, Metadata, Record};
 use std::cell::Cell;
 use std::collections::VecDeque;
 use std::io::IsTerminal;
-use std::sync::{Condvar, Mutex, Once, PoisonError};
+use std::sync::{Mutex, Once, PoisonError};
 
 /// Maximum number of lines queued for `/rosout`; a full queue drops the oldest.
 const BACKLOG: usize = 1000;
@@ -29,11 +29,10 @@ static LOGGER: Logger = Logger {
         colour: false,
         queue: VecDeque::new(),
     }),
-    changed: Condvar::new(),
 };
 
 thread_local! {
-    /// Whether this thread publishes the lines: those about publishing would follow each other without end.
+    /// True while this thread publishes the lines: those about publishing would follow each other without end.
     static PUBLISHES: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -51,8 +50,6 @@ struct Settings {
 /// The logger of this process.
 pub struct Logger {
     settings: Mutex<Settings>,
-    /// A line was queued, or the queue was closed.
-    changed: Condvar,
 }
 
 impl Logger {
@@ -90,20 +87,18 @@ impl Logger {
         self.lock().queue.drain(..).collect()
     }
 
-    /// The same, after waiting for a line; `None` after [`Self::close`] if none is left. The lines of this thread are not
-    /// queued from now on.
-    pub(crate) fn wait_for_lines(&self) -> Option<Vec<Log>> {
+    /// Hands the queued lines for `/rosout` to `each`, in the order of their stamps. Lines that this thread logs meanwhile
+    /// are not queued.
+    pub(crate) fn publish<E>(&self, each: impl FnMut(&Log) -> Result<(), E>) -> Result<(), E> {
         PUBLISHES.set(true);
-        let empty = |settings: &mut Settings| settings.rosout && settings.queue.is_empty();
-        let waited = self.changed.wait_while(self.lock(), empty);
-        let lines: Vec<Log> = waited.unwrap_or_else(PoisonError::into_inner).queue.drain(..).collect();
-        (!lines.is_empty()).then_some(lines)
+        let published = self.drain().iter().try_for_each(each);
+        PUBLISHES.set(false);
+        published
     }
 
     /// Queues no more lines for `/rosout`: the final counts are to be reported.
     pub fn close(&self) {
         self.lock().rosout = false;
-        self.changed.notify_all();
     }
 }
 
@@ -166,7 +161,6 @@ impl log::Log for Logger {
                 line: record.line().unwrap_or_default(),
             };
             settings.queue.push_back(entry);
-            self.changed.notify_all();
         }
     }
 

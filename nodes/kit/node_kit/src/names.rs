@@ -3,49 +3,27 @@
 use crate::args::RosArgs;
 use std::fmt;
 
-/// Errors of a name.
+/// Why a name is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NameError {
-    /// A part of the name is empty.
-    #[error("name {name:?} has an empty part: write tokens separated by single slashes, as in /lab/stress")]
-    Empty {
-        /// The refused name.
-        name: String,
-    },
-    /// A character that ROS 2 does not allow in a name.
-    #[error(
-        "name {name:?} contains {found:?}: only letters, digits and underscores are allowed between slashes"
-    )]
-    Character {
-        /// The refused name.
-        name: String,
-        /// The first offending character.
-        found: char,
-    },
-    /// A part that begins with a digit.
-    #[error("name {name:?} has a part that begins with a digit: begin it with a letter or an underscore")]
-    LeadingDigit {
-        /// The refused name.
-        name: String,
-    },
-    /// A namespace that does not begin with a slash.
-    #[error("namespace {name:?} must begin with a slash, as in __ns:=/lab")]
-    RelativeNamespace {
-        /// The refused namespace.
-        name: String,
-    },
-}
+#[error("{0}")]
+pub struct NameError(String);
 
 /// Checks one token of a name: `[A-Za-z_][A-Za-z0-9_]*`.
 fn check_token(token: &str, name: &str) -> Result<(), NameError> {
     let Some(first) = token.chars().next() else {
-        return Err(NameError::Empty { name: name.into() });
+        return Err(NameError(format!(
+            "name {name:?} has an empty part: write tokens separated by single slashes, as in /lab/stress"
+        )));
     };
     if let Some(found) = token.chars().find(|c| !(c.is_ascii_alphanumeric() || *c == '_')) {
-        return Err(NameError::Character { name: name.into(), found });
+        return Err(NameError(format!(
+            "name {name:?} contains {found:?}: only letters, digits and underscores are allowed between slashes"
+        )));
     }
     if first.is_ascii_digit() {
-        return Err(NameError::LeadingDigit { name: name.into() });
+        return Err(NameError(format!(
+            "name {name:?} has a part that begins with a digit: begin it with a letter or an underscore"
+        )));
     }
     Ok(())
 }
@@ -93,7 +71,7 @@ impl Names {
         Ok(names)
     }
 
-    /// The same namespace and remaps for the topics of another node.
+    /// Names with this namespace and these remaps for another node.
     #[must_use]
     pub fn for_node(self, node: &str) -> Self {
         Self { node: node.into(), ..self }
@@ -160,7 +138,7 @@ fn join(namespace: &str, name: &str) -> String {
 /// Validates a namespace and removes a slash at its end.
 fn checked_namespace(namespace: &str) -> Result<String, NameError> {
     if !namespace.starts_with('/') {
-        return Err(NameError::RelativeNamespace { name: namespace.into() });
+        return Err(NameError(format!("namespace {namespace:?} must begin with a slash, as in __ns:=/lab")));
     }
     let trimmed = namespace.trim_end_matches('/');
     if trimmed.is_empty() {
@@ -240,7 +218,7 @@ mod tests {
             let error = n.resolve(bad).expect_err(bad).to_string();
             assert!(error.contains(&format!("{bad:?}")), "{error}");
         }
-        assert!(matches!(Names::in_namespace("n", "lab"), Err(NameError::RelativeNamespace { .. })));
+        assert!(Names::in_namespace("n", "lab").unwrap_err().to_string().contains("begin with a slash"));
         assert!(Names::new("a/b").is_err());
     }
 }

@@ -6,7 +6,7 @@ use crate::peers::Peers;
 use grainlab_msgs::{Exit, Health};
 use std::time::Duration;
 
-/// What the run loop does after a step.
+/// Next action of the run loop after a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
     /// Step again at once.
@@ -17,35 +17,13 @@ pub enum Next {
     Finished(Exit),
 }
 
-/// Errors that end a node.
-#[derive(Debug, thiserror::Error)]
-pub enum NodeError {
-    /// The bus failed.
-    #[error(transparent)]
-    Bus(#[from] BusError),
-    /// Any other error, with its exit code.
-    #[error("{message}")]
-    Failed {
-        /// The exit of the process.
-        exit: Exit,
-        /// The error, its place, and what to do.
-        message: String,
-    },
-}
+/// The failure that ends a node: the exit of the process, and the text of the error with its place and what to do.
+pub use grainlab_console::Failure as NodeError;
 
-impl NodeError {
-    /// An error that ends the process with `exit`.
-    pub fn new(exit: Exit, message: impl Into<String>) -> Self {
-        Self::Failed { exit, message: message.into() }
-    }
-
-    /// The exit of the process.
-    pub fn exit(&self) -> Exit {
-        match self {
-            Self::Bus(BusError::Name(_)) => Exit::Usage,
-            Self::Bus(_) => Exit::Failure,
-            Self::Failed { exit, .. } => *exit,
-        }
+impl From<BusError> for NodeError {
+    fn from(error: BusError) -> Self {
+        let exit = if matches!(error, BusError::Name(_)) { Exit::Usage } else { Exit::Failure };
+        Self::new(exit, error)
     }
 }
 

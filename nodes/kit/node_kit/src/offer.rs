@@ -1,40 +1,33 @@
-//! What a writer of another process offers, and the names of topics and types in DDS.
+//! Offers of writers of other processes, and the names of topics and types in DDS.
 
 use grainlab_msgs::{Guid, Qos, TypeInfo};
 
 /// A writer of another process on a topic of ROS.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Offer {
-    /// The writer.
+    /// Writer that offers it.
     pub writer: Guid,
     /// Full name of the topic: `/lab/stress`.
     pub topic: String,
     /// Type of the messages: `grainlab_msgs/msg/Stress`.
     pub type_name: String,
-    /// Its QoS; a depth of 0 is unknown.
+    /// QoS of the writer; a depth of 0 is unknown.
     pub qos: Qos,
     /// Hash of the type, `RIHS01_…`, or empty if it is not announced.
     pub type_hash: String,
 }
 
-/// Why the messages of a writer are not read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Misfit {
-    /// They are of another type.
-    Type(String),
-    /// They are of another definition of the type, with this hash.
-    Definition(String),
-}
-
 impl Offer {
     /// Why messages of this writer must not be read as those of `info`, whose fields come in another order or have other
     /// types. A writer that announces no hash is taken at its word.
-    pub(crate) fn misfit(&self, info: &TypeInfo) -> Option<Misfit> {
+    pub(crate) fn misfit(&self, info: &TypeInfo) -> Option<String> {
         if self.type_name != info.type_name {
-            return Some(Misfit::Type(self.type_name.clone()));
+            return Some(format!("its messages are {}", self.type_name));
         }
-        let known = !self.type_hash.is_empty() && !info.hash.is_empty();
-        (known && self.type_hash != info.hash).then(|| Misfit::Definition(self.type_hash.clone()))
+        let (found, known) = (&self.type_hash, !self.type_hash.is_empty() && !info.hash.is_empty());
+        let start = &found[..19.min(found.len())];
+        (known && found != info.hash)
+            .then(|| format!("it has another definition of the type (hash {start}...)"))
     }
 
     /// From the names in DDS and the user data of the writer; `None` unless they are those of a topic of ROS.
@@ -82,17 +75,6 @@ pub fn type_hash(user_data: &[u8]) -> String {
     found.filter(is_hash).unwrap_or_default().to_owned()
 }
 
-impl std::fmt::Display for Misfit {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Type(other) => write!(f, "its messages are {other}"),
-            Self::Definition(hash) => {
-                write!(f, "it has another definition of the type (hash {}...)", &hash[..19.min(hash.len())])
-            }
-        }
-    }
-}
-
 /// `grainlab_msgs/msg/Stress` as DDS has it: `grainlab_msgs::msg::dds_::Stress_`.
 pub(crate) fn wire_type(type_name: &str) -> String {
     match type_name.rsplit_once('/') {
@@ -118,9 +100,10 @@ mod tests {
         assert_eq!(misfit(info.type_name, b""), None);
         let other = format!("RIHS01_{}", "0f".repeat(32));
         let announced = format!("typehash={other};");
-        assert_eq!(misfit(info.type_name, announced.as_bytes()), Some(Misfit::Definition(other)));
-        let string = "std_msgs/msg/String";
-        assert_eq!(misfit(string, b""), Some(Misfit::Type(string.to_owned())));
+        assert!(
+            misfit(info.type_name, announced.as_bytes()).unwrap().contains("(hash RIHS01_0f0f0f0f0f0f...)")
+        );
+        assert_eq!(misfit("std_msgs/msg/String", b"").unwrap(), "its messages are std_msgs/msg/String");
     }
 
     #[test]

@@ -22,7 +22,7 @@ const BACKLOG: u32 = 512;
 /// The known state of one process.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Peer {
-    /// Its last report.
+    /// Last report of the process.
     pub report: Report,
     /// The GUID prefix of its writers.
     pub participant: [u8; 12],
@@ -42,7 +42,7 @@ pub enum Liveliness {
 }
 
 impl Peer {
-    /// Its liveliness at `now`, in [`Bus::now`].
+    /// Liveliness at `now`, in [`Bus::now`].
     pub fn liveliness(&self, now: Duration) -> Liveliness {
         let silent = now.saturating_sub(self.last_heard);
         match self.report.exit {

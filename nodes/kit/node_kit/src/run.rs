@@ -27,24 +27,24 @@ pub const HEARTBEAT: Duration = Duration::from_secs(1);
 /// Period at which a node that never waits updates its view of the graph.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// How long an ending process waits for its readers' acknowledgements: a recorder that was suspended has some
+/// Time for which an ending process waits for its readers' acknowledgements: a recorder that was suspended has some
 /// megabytes to request again. A crashed one costs this time.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
-/// How long it stays after that: a reader loses the samples it has not taken when the writer leaves. A busy node's
+/// Time for which it stays after that: a reader loses the samples it has not taken when the writer leaves. A busy node's
 /// readers are emptied within 40 ms, on a busy host some ten milliseconds later.
 const GRACE: Duration = Duration::from_millis(90);
 
 /// Name, description and parameters of a node.
 #[derive(Clone, Debug)]
 pub struct NodeSpec {
-    /// Its default name; `__node` overrides it.
+    /// Default name; `__node` overrides it.
     pub name: &'static str,
-    /// Its description, one line.
+    /// Description, one line.
     pub summary: &'static str,
     /// Whose samples it accepts if started by hand, without a run.
     pub scope: Scope,
-    /// Its parameters.
+    /// Parameters of the node.
     pub parameters: Vec<ParameterSpec>,
 }
 
@@ -96,7 +96,7 @@ where
         refused(Exit::Failure, bus.watch(signals))?;
         let mut node = build(&mut bus, &parameters).map_err(|error| {
             log::error!("{error}");
-            error.exit()
+            error.exit
         })?;
         refused(Exit::Failure, bus.serve())?;
         let stop = move || stop.load(std::sync::atomic::Ordering::Relaxed);
@@ -147,7 +147,7 @@ pub fn drive(
 fn settle(result: Result<Exit, NodeError>) -> Exit {
     result.unwrap_or_else(|error| {
         log::error!("{error}");
-        error.exit()
+        error.exit
     })
 }
 
@@ -183,7 +183,7 @@ impl Housekeeping {
             pid: std::process::id(),
             diagnostics,
             diagnostics_writer,
-            rosout: Rosout::start(bus, logger)?,
+            rosout: Rosout::advertise(bus, logger)?,
             watch: PeerWatch::subscribe(bus)?,
             next_beat: bus.now() + HEARTBEAT,
             next_look: bus.now() + LOOK,
@@ -207,7 +207,7 @@ impl Housekeeping {
         Ok(self.next_beat.saturating_sub(now))
     }
 
-    /// Whether a node that never waits has to poll the bus, so that it follows the graph.
+    /// True if a node that never waits has to poll the bus, so that it follows the graph.
     fn look_due(&mut self, now: Duration) -> bool {
         let due = now >= self.next_look;
         if due {

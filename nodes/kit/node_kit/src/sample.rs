@@ -7,14 +7,14 @@ use grainlab_msgs::Guid;
 pub struct Sample {
     /// The serialized message with its 4-byte encapsulation header.
     pub body: Vec<u8>,
-    /// Its writer, sequence number and times.
+    /// Writer, sequence number and times.
     pub info: SampleInfo,
 }
 
 /// Writer, sequence number and times of one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleInfo {
-    /// The writer.
+    /// Writer of the sample.
     pub writer: Guid,
     /// RTPS sequence number: 1, 2, 3, … for each writer; a missing number is a lost sample.
     pub sequence: i64,
@@ -23,7 +23,7 @@ pub struct SampleInfo {
     /// Time of arrival in this process, ns since 1970.
     pub received: u64,
     /// The sample it refers to, if given: the request of an answer, the packing of a
-    /// result. It is sent beside the body, as DDS-RPC relates a reply to its request.
+    /// result. It is sent next to the body, as DDS-RPC relates a reply to its request.
     pub about: Option<SampleId>,
 }
 
@@ -42,8 +42,8 @@ impl SampleInfo {
 /// One sample of one writer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SampleId {
-    /// The writer.
+    /// Writer of the sample.
     pub writer: Guid,
-    /// Its RTPS sequence number.
+    /// RTPS sequence number of the sample.
     pub sequence: i64,
 }

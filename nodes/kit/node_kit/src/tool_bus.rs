@@ -21,7 +21,7 @@ pub fn bus_in(domain: u16, name: &str) -> Result<DdsBus, Failure> {
     bus_named(domain, Names::new(name).map_err(Failure::usage)?, Identity::from_env(Scope::Everyone))
 }
 
-/// The same with these names of topics and this identity.
+/// Joins a domain with these names of topics and this identity.
 pub fn bus_named(domain: u16, names: Names, identity: Identity) -> Result<DdsBus, Failure> {
     let quiet = RosArgs { log_level: log::LevelFilter::Warn, rosout: false, ..RosArgs::default() };
     Logger::install(names.node(), &quiet);

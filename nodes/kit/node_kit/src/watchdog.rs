@@ -77,7 +77,7 @@ pub fn check() -> Result<(), DdsFailure> {
     judge(THREADS * PARTICIPANTS.load(Ordering::Relaxed), dds_threads())
 }
 
-/// The same for `found` running threads; `None` where they cannot be counted.
+/// Judges `found` running threads; `None` where they cannot be counted.
 fn judge(started: usize, found: Option<usize>) -> Result<(), DdsFailure> {
     match found {
         Some(left) if left < started => Err(DdsFailure::Ended { started, left }),

@@ -63,7 +63,7 @@ impl<J: Send + 'static, R: Send + 'static> Worker<J, R> {
         Ok(Self { kind: Kind::Thread { jobs, results }, busy: false })
     }
 
-    /// Whether a job was given and its result not taken yet.
+    /// True if a job was given and its result not taken yet.
     pub fn is_busy(&self) -> bool {
         self.busy
     }

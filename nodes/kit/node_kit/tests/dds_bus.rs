@@ -55,7 +55,7 @@ fn samples_arrive_once_in_order_with_sequence_numbers_and_the_writers_id() {
     assert_eq!((ours.topic.as_str(), ours.count, ours.full), ("/lab/strain_rate", 300, 0));
     let mut next = 1;
     until(&mut b, "300 samples", |b| {
-        while let Some((message, info)) = subscription.take(b).unwrap() {
+        while let Some((message, info)) = subscription.take_valid(b).unwrap() {
             assert_eq!((message.sequence, info.sequence), (next, next as i64));
             assert_eq!(info.writer, ours.writer);
             // RTPS times have a resolution of 0.23 ns, rounded to 1 ns.
@@ -92,7 +92,7 @@ fn a_late_joiner_gets_what_was_latched_with_its_first_sequence_numbers() {
         last == Some((8, 2))
     });
     publisher.publish(&mut a, &state(9)).unwrap();
-    until(&mut late, "the new state", |b| latched.take(b).unwrap().is_some_and(|(m, _)| m.step == 9));
+    until(&mut late, "the new state", |b| latched.take_valid(b).unwrap().is_some_and(|(m, _)| m.step == 9));
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn a_clean_leave_is_seen_at_once_and_its_last_samples_are_kept() {
     std::thread::sleep(Duration::from_millis(300));
     let mut got = 0;
     until(&mut b, "the leave", |b| {
-        while subscription.take(b).unwrap().is_some() {
+        while subscription.take_valid(b).unwrap().is_some() {
             got += 1;
         }
         b.writers(subscription.id()) == 0
@@ -160,9 +160,9 @@ fn waiting_blocks_until_data_and_returns_on_time_without_it() {
         Subscription::<StrainRate>::subscribe(&mut b, &topics::STRAIN_RATE, Demand::best_effort(10)).unwrap();
     until(&mut b, "match", |b| b.writers(subscription.id()) == 1);
     until(&mut a, "match", |a| a.readers(publisher.id()) == 1);
-    while subscription.take(&mut b).unwrap().is_some() {}
+    while subscription.take_valid(&mut b).unwrap().is_some() {}
     while b.wait(Duration::from_millis(300)) != Wake::Timeout {
-        while subscription.take(&mut b).unwrap().is_some() {}
+        while subscription.take_valid(&mut b).unwrap().is_some() {}
     }
     let start = Instant::now();
     assert_eq!(b.wait(Duration::from_millis(200)), Wake::Timeout);
@@ -180,7 +180,7 @@ fn waiting_blocks_until_data_and_returns_on_time_without_it() {
     // A spinning wait would use 200 ms of CPU time; a blocking one needs a few wakeups of the threads below.
     assert!(cpu_time() - cpu < Duration::from_millis(100));
     assert_eq!(b.wait(TIME_LIMIT), Wake::Data, "untaken data is reported again");
-    assert!(subscription.take(&mut b).unwrap().is_some());
+    assert!(subscription.take_valid(&mut b).unwrap().is_some());
     writer.join().unwrap();
 }
 
@@ -355,7 +355,7 @@ fn a_process_receives_its_own_messages_once_for_any_demand() {
     });
     for subscription in [strong, weak] {
         let heard: Vec<u64> =
-            std::iter::from_fn(|| subscription.take(&mut bus).unwrap()).map(|(m, _)| m.step).collect();
+            std::iter::from_fn(|| subscription.take_valid(&mut bus).unwrap()).map(|(m, _)| m.step).collect();
         assert_eq!(heard, far);
     }
 }
@@ -392,6 +392,6 @@ fn a_process_takes_its_own_samples_after_those_that_arrived_before() {
     assert!(b.flush(TIME_LIMIT), "it arrived, and was not taken");
     ours.publish(&mut a, &line("ours")).unwrap();
     let taken: Vec<String> =
-        std::iter::from_fn(|| rosout.take(&mut a).unwrap()).map(|(l, _)| l.msg).collect();
+        std::iter::from_fn(|| rosout.take_valid(&mut a).unwrap()).map(|(l, _)| l.msg).collect();
     assert_eq!(taken, ["theirs", "ours"]);
 }

@@ -73,10 +73,10 @@ fn run(then: fn(u64) -> Result<Next, NodeError>, interrupt: bool) -> (Exit, Tick
     }
     let exit = drive(&mut node, &mut bus, "/lab/ticker", None, &|| false).unwrap();
     let mut heard = Heard { reports: Vec::new(), states: 0 };
-    while let Some((message, info)) = diagnostics.take(&mut observer).unwrap() {
+    while let Some((message, info)) = diagnostics.take_valid(&mut observer).unwrap() {
         heard.reports.extend(Report::from_message(&message).into_iter().map(|r| (r, info.sequence)));
     }
-    while let Some((_, info)) = states.take(&mut lab).unwrap() {
+    while let Some((_, info)) = states.take_valid(&mut lab).unwrap() {
         heard.states = info.sequence;
     }
     (exit, node, heard)

@@ -35,7 +35,7 @@ fn log_lines_go_to_rosout_with_the_nodes_name_and_none_after_the_last_report() {
     let rosout =
         Subscription::<Log>::subscribe(&mut observer, &topics::ROSOUT, Demand::reliable(1000)).unwrap();
     let lines: Vec<Log> =
-        std::iter::from_fn(|| rosout.take(&mut observer).unwrap()).map(|(line, _)| line).collect();
+        std::iter::from_fn(|| rosout.take_valid(&mut observer).unwrap()).map(|(line, _)| line).collect();
     let texts: Vec<&str> = lines.iter().map(|l| l.msg.as_str()).collect();
     assert_eq!(texts, ["the gas is 0.5 dense", "leaving: done (exit 0)"]);
     assert_eq!((lines[0].name.as_str(), lines[0].level), ("lab.ticker", Log::INFO));

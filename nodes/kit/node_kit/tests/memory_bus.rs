@@ -26,7 +26,7 @@ fn publish_all(publisher: &Publisher<StrainRate>, bus: &mut MemoryBus, last: u64
 }
 
 fn take_all(subscription: &Subscription<StrainRate>, bus: &mut MemoryBus) -> Vec<(u64, i64)> {
-    std::iter::from_fn(|| subscription.take(bus).unwrap())
+    std::iter::from_fn(|| subscription.take_valid(bus).unwrap())
         .map(|(m, info)| (m.sequence, info.sequence))
         .collect()
 }
@@ -59,8 +59,8 @@ fn only_reliable_late_joiners_get_the_latched_samples_and_only_the_depth_of_them
     for (demand, expected) in [(Demand::reliable(10), Some(3)), (Demand::best_effort(10), None)] {
         let mut b = bus(&hub, "b");
         let late = Subscription::<RunState>::subscribe(&mut b, &topics::RUN_STATE, demand).unwrap();
-        assert_eq!(late.take(&mut b).unwrap().map(|(m, _)| m.step), expected);
-        assert!(late.take(&mut b).unwrap().is_none());
+        assert_eq!(late.take_valid(&mut b).unwrap().map(|(m, _)| m.step), expected);
+        assert!(late.take_valid(&mut b).unwrap().is_none());
     }
 }
 
@@ -113,7 +113,7 @@ fn waiting_passes_virtual_time_to_the_next_arrival_or_the_timeout() {
     publisher.publish(&mut a, &rate(1)).unwrap();
     assert_eq!(b.wait(Duration::from_secs(1)), Wake::Data);
     assert!(hub.now() < 14 * MS);
-    assert!(subscription.take(&mut b).unwrap().is_some());
+    assert!(subscription.take_valid(&mut b).unwrap().is_some());
     b.interrupt();
     assert_eq!(b.wait(MS), Wake::Shutdown);
     assert_eq!(b.wait(MS), Wake::Timeout, "a signal is reported once");

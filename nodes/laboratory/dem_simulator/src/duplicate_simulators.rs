@@ -25,7 +25,7 @@ pub(crate) struct DuplicateSimulators {
     running: BTreeMap<Participant, Duration>,
 }
 
-/// Whether a run may start.
+/// Verdict on the start of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// There is no other writer.

@@ -6,7 +6,6 @@ use crate::messages;
 use crate::node::{BEAT, HOLD, NOTICE_PERIOD, Stage};
 use crate::partner::AnswerSource;
 use crate::question::Question;
-use crate::settings::Mode;
 use crate::speculative_step::SpeculativeStep;
 use grainlab_experiment::{ExperimentError, StepOutcome};
 use grainlab_msgs::boundary::StrainRateAnswer;
@@ -79,14 +78,14 @@ impl DemSimulator {
     }
 
     /// Publishes the next request, or ends the run.
-    pub(crate) fn go_on(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
+    pub(crate) fn request_next(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
         let Some(request) = self.run.request() else {
             self.stage = Stage::Finished;
             self.done = Some(now);
             self.next_beat = now + BEAT;
             self.publish_run_state(RunState::FINISHED, "");
             log::info!("the loading path is done at step {}", self.run.engine().steps());
-            return self.rest(bus);
+            return self.wait_after_end(bus);
         };
         let message = match Stress::try_from(&request) {
             Ok(message) => message,
@@ -102,11 +101,8 @@ impl DemSimulator {
         self.samples.offer(bus, &request, self.run.scene().grains, &body)?;
         self.lockstep.ask(Question::of(&request), body, now);
         let delivered = self.send_queue.deliver(bus)?;
-        // A free run does not wait for the answer.
-        let free = self.settings.mode != Mode::Lockstep;
         Ok(match delivered {
             false => Next::Wait(HOLD),
-            true if free => Next::Again,
             // After the speculative step the answer should be there.
             true if self.speculate(bus, &request) => Next::Again,
             true => Next::Wait(self.lockstep.patience(now)),
@@ -121,7 +117,7 @@ impl DemSimulator {
     }
 
     /// Advances the run with an answer, or takes the speculative step.
-    fn obey(&mut self, bus: &dyn Bus, rate: &[f64; 6]) -> Result<StepOutcome, ExperimentError> {
+    fn apply_answer(&mut self, bus: &dyn Bus, rate: &[f64; 6]) -> Result<StepOutcome, ExperimentError> {
         let sequence = self.lockstep.sequence();
         match self.speculative.take() {
             Some(step) if step.matches(sequence, rate) => {
@@ -147,7 +143,7 @@ impl DemSimulator {
     /// At most one exchange.
     pub(crate) fn exchange(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
         if let Some(rate) = self.lockstep.pass(now) {
-            return match self.obey(bus, &rate) {
+            return match self.apply_answer(bus, &rate) {
                 Ok(advanced) => self.advanced(bus, &advanced),
                 // The run is at a request that it can be resumed from; the shutdown that follows saves it.
                 Err(error) if error.is_stopped() => {
@@ -195,22 +191,22 @@ impl DemSimulator {
                 self.publish_run_state(RunState::RUNNING, &left_out);
             }
         }
-        self.go_on(bus, now)
+        self.request_next(bus, now)
     }
 
-    pub(crate) fn rest(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+    pub(crate) fn wait_after_end(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         self.send_queue.deliver(bus)?;
         if !self.send_queue.is_empty() {
             return Ok(Next::Wait(HOLD));
         }
         if self.settings.exit_when_finished && self.may_end(bus.now()) {
-            self.farewell(bus);
+            self.flush_last_messages(bus);
             return Ok(Next::Finished(Exit::Done));
         }
         Ok(Next::Wait(self.next_beat.saturating_sub(bus.now())))
     }
 
-    /// Whether the last packing is inverted, or has been awaited for long enough.
+    /// True if the last packing is inverted, or has been awaited for long enough.
     fn may_end(&self, now: Duration) -> bool {
         let (step, packings) = (self.packings.last_step, self.packings.count);
         let missing = self.inversions.missing(step).filter(|_| packings > 0);

@@ -24,4 +24,4 @@ mod speculative_step;
 mod start;
 
 pub use node::{DemSimulator, PHASE, PHASE_SHARE, SAVED_WITHIN, SimulatorError, UNMET};
-pub use settings::{Mode, Settings, parameters};
+pub use settings::{Settings, parameters};

@@ -3,7 +3,6 @@
 use crate::Settings;
 use crate::question::{Question, Violation};
 use grainlab_msgs::boundary::StrainRateAnswer;
-use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Number of consecutive invalid answers that ends a run.
@@ -12,11 +11,10 @@ pub(crate) const REFUSALS_ALLOWED: u32 = 10;
 /// The current request and the latest answer.
 #[derive(Debug)]
 pub(crate) struct Lockstep {
-    lag: u64,
     resend_after: Duration,
     resend_at_most: Duration,
-    /// The current request, in a free run after earlier ones whose answers are still accepted. Empty before the first request.
-    questions: VecDeque<Question>,
+    /// The current request; `None` before the first one.
+    question: Option<Question>,
     body: Vec<u8>,
     /// The previous request; empty for the first one.
     previous: Vec<u8>,
@@ -25,7 +23,8 @@ pub(crate) struct Lockstep {
     busy: Duration,
     resend_at: Duration,
     pause: Duration,
-    answer: Option<(u64, [f64; 6])>,
+    /// The first answer to it.
+    answer: Option<[f64; 6]>,
     refused_in_row: u32,
     pub(crate) counts: Counts,
 }
@@ -57,10 +56,9 @@ pub(crate) enum AnswerKind {
 impl Lockstep {
     pub(crate) fn new(settings: &Settings) -> Self {
         Self {
-            lag: settings.mode.lag(),
             resend_after: settings.resend_after,
             resend_at_most: settings.resend_at_most.max(settings.resend_after),
-            questions: VecDeque::new(),
+            question: None,
             body: Vec::new(),
             previous: Vec::new(),
             asked: Duration::ZERO,
@@ -75,9 +73,7 @@ impl Lockstep {
 
     /// A request has been published.
     pub(crate) fn ask(&mut self, question: Question, body: Vec<u8>, now: Duration) {
-        let oldest = question.sequence.saturating_sub(self.lag);
-        self.questions.retain(|q| q.sequence >= oldest);
-        self.questions.push_back(question);
+        (self.question, self.answer) = (Some(question), None);
         self.previous = std::mem::replace(&mut self.body, body);
         (self.asked, self.busy) = (now, Duration::ZERO);
         self.pause = self.resend_after;
@@ -89,32 +85,25 @@ impl Lockstep {
         self.busy += time;
     }
 
-    /// Receives an answer. It is accepted if sequence number and stamp are those of a current request and the rates are
+    /// Receives an answer. It is accepted if sequence number and stamp are those of the current request and the rates are
     /// allowed by it.
     pub(crate) fn receive(&mut self, answer: &StrainRateAnswer) -> Result<AnswerKind, Violation> {
         let asked = |q: &&Question| (q.sequence, q.stamp) == (answer.sequence, answer.stamp);
-        let Some(question) = self.questions.iter().find(asked) else {
+        let Some(question) = self.question.as_ref().filter(asked) else {
             self.counts.stale += 1;
             return Ok(AnswerKind::Stale);
         };
-        match self.answer {
-            Some((known, rate)) if known == answer.sequence => {
-                let same = rate.map(f64::to_bits) == answer.rate.map(f64::to_bits);
-                let (count, kind) = match same {
-                    true => (&mut self.counts.stale, AnswerKind::Stale),
-                    false => (&mut self.counts.contradictions, AnswerKind::Contradicts),
-                };
-                *count += 1;
-                return Ok(kind);
-            }
-            Some((known, _)) if known > answer.sequence => {
-                self.counts.stale += 1;
-                return Ok(AnswerKind::Stale);
-            }
-            _ => {}
+        if let Some(known) = self.answer {
+            let same = known.map(f64::to_bits) == answer.rate.map(f64::to_bits);
+            let (count, kind) = match same {
+                true => (&mut self.counts.stale, AnswerKind::Stale),
+                false => (&mut self.counts.contradictions, AnswerKind::Contradicts),
+            };
+            *count += 1;
+            return Ok(kind);
         }
         question.check(&answer.rate)?;
-        self.answer = Some((answer.sequence, answer.rate));
+        self.answer = Some(answer.rate);
         self.refused_in_row = 0;
         Ok(AnswerKind::New)
     }
@@ -129,10 +118,7 @@ impl Lockstep {
 
     /// The rate to apply, if the run may continue.
     pub(crate) fn pass(&mut self, now: Duration) -> Option<[f64; 6]> {
-        let (sequence, rate) = self.answer?;
-        if sequence + self.lag < self.sequence() {
-            return None;
-        }
+        let rate = self.answer?;
         self.counts.exchanges += 1;
         self.counts.waiting += now.saturating_sub(self.asked + self.busy);
         Some(rate)
@@ -168,14 +154,13 @@ impl Lockstep {
 
     /// Sequence number of the current request.
     pub(crate) fn sequence(&self) -> u64 {
-        self.questions.back().map_or(0, |q| q.sequence)
+        self.question.map_or(0, |q| q.sequence)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Mode;
     use grainlab_core::ComponentControl;
     use grainlab_msgs::builtin_interfaces::Time;
 
@@ -187,8 +172,8 @@ mod tests {
         Question { sequence, stamp, controls: [target; 6], rate_limit: 100.0 }
     }
 
-    fn lockstep(mode: Mode) -> Lockstep {
-        let mut lockstep = Lockstep::new(&Settings { mode, ..Settings::default() });
+    fn lockstep() -> Lockstep {
+        let mut lockstep = Lockstep::new(&Settings::default());
         lockstep.ask(question(7), vec![7], Duration::ZERO);
         lockstep
     }
@@ -204,7 +189,7 @@ mod tests {
 
     #[test]
     fn only_the_answer_to_this_very_request_passes() {
-        let mut lockstep = lockstep(Mode::Lockstep);
+        let mut lockstep = lockstep();
         for stale in [answer(6, 6), answer(8, 8), answer(7, 6)] {
             assert_eq!(lockstep.receive(&stale), Ok(AnswerKind::Stale));
             assert_eq!(lockstep.pass(MS), None, "{stale:?}");
@@ -227,7 +212,7 @@ mod tests {
 
     #[test]
     fn another_rate_for_the_same_request_is_a_contradiction_and_changes_nothing() {
-        let mut lockstep = lockstep(Mode::Lockstep);
+        let mut lockstep = lockstep();
         assert_eq!(lockstep.receive(&answer(7, 7)), Ok(AnswerKind::New));
         let other = StrainRateAnswer { rate: [1.0; 6], ..answer(7, 7) };
         assert_eq!(lockstep.receive(&other), Ok(AnswerKind::Contradicts));
@@ -236,7 +221,7 @@ mod tests {
 
     #[test]
     fn an_answer_beyond_the_rate_limit_is_refused() {
-        let mut lockstep = lockstep(Mode::Lockstep);
+        let mut lockstep = lockstep();
         let fast = StrainRateAnswer { rate: [101.0; 6], ..answer(7, 7) };
         assert!(lockstep.receive(&fast).is_err());
         assert_eq!(lockstep.pass(MS), None);
@@ -244,7 +229,7 @@ mod tests {
 
     #[test]
     fn repetitions_grow_apart_up_to_the_longest_pause() {
-        let mut lockstep = lockstep(Mode::Lockstep);
+        let mut lockstep = lockstep();
         let mut at = Vec::new();
         for t in 0..1000 {
             if lockstep.resend(t * MS) == Some([&[], &[7]]) {
@@ -256,7 +241,7 @@ mod tests {
 
     #[test]
     fn ten_refusals_in_a_row_end_a_run_and_an_answer_between_them_does_not_let_them_add_up() {
-        let mut lockstep = lockstep(Mode::Lockstep);
+        let mut lockstep = lockstep();
         assert!((1..REFUSALS_ALLOWED).all(|_| !lockstep.refuse(MS)));
         assert_eq!(lockstep.resend(MS), Some([&[][..], &[7]]), "a refused answer is asked for again at once");
         lockstep.ask(question(8), vec![8], MS);
@@ -265,20 +250,5 @@ mod tests {
         assert_eq!(lockstep.receive(&answer(9, 9)), Ok(AnswerKind::New));
         assert!((1..REFUSALS_ALLOWED).all(|_| !lockstep.refuse(MS)));
         assert!(lockstep.refuse(MS));
-    }
-
-    #[test]
-    fn free_run_uses_the_latest_answer_until_it_is_too_old() {
-        let mut lockstep = Lockstep::new(&Settings { mode: Mode::FreeRun { lag: 2 }, ..Settings::default() });
-        (5..=7).for_each(|sequence| lockstep.ask(question(sequence), vec![], MS));
-        assert_eq!(lockstep.pass(MS), None, "there is nothing to obey before the first answer");
-        assert_eq!(lockstep.receive(&answer(6, 6)), Ok(AnswerKind::New));
-        assert_eq!(lockstep.receive(&answer(5, 5)), Ok(AnswerKind::Stale));
-        assert_eq!(lockstep.receive(&answer(7, 6)), Ok(AnswerKind::Stale), "stamps are looked at there, too");
-        assert_eq!(lockstep.pass(MS), Some([6.0; 6]), "a late answer does not replace a newer one");
-        for (sequence, passes) in [(8, true), (9, false)] {
-            lockstep.ask(question(sequence), vec![], MS);
-            assert_eq!(lockstep.pass(MS).is_some(), passes, "request {sequence}");
-        }
     }
 }

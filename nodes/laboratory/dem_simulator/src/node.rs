@@ -1,4 +1,4 @@
-//! The node.
+//! The simulator as a node.
 
 use crate::duplicate_simulators::DuplicateSimulators;
 use crate::inversions::Inversions;
@@ -7,7 +7,7 @@ use crate::messages::{self, Packings};
 use crate::partner::Partner;
 use crate::samples::Samples;
 use crate::send_queue::SendQueue;
-use crate::settings::{Mode, Settings};
+use crate::settings::Settings;
 use crate::speculative_step::{self, SpeculativeStep};
 use grainlab_dem::ComputeError;
 use grainlab_experiment::{ExperimentError, Simulation};
@@ -90,15 +90,15 @@ pub struct DemSimulator {
     pub(crate) partner: Partner,
     /// The run after the next steps if the answer is the one that the law gives.
     pub(crate) speculative: Option<SpeculativeStep>,
-    /// Whether speculative steps are computed: switched off once the answer of a servo differs.
+    /// True while speculative steps are computed: switched off once the answer of a servo differs.
     pub(crate) speculates: bool,
     /// Answers that equal the one a speculative step was computed with.
     pub(crate) foreseen: u64,
     pub(crate) send_queue: SendQueue,
     pub(crate) packings: Packings,
-    /// Whether the packing that the run resumes from is still to be published.
+    /// True while the packing that the run resumes from is still to be published.
     pub(crate) resumed: bool,
-    pub(crate) born: Duration,
+    pub(crate) created_at: Duration,
     pub(crate) began: Duration,
     pub(crate) first_step: u64,
     pub(crate) computing: Duration,
@@ -106,7 +106,7 @@ pub struct DemSimulator {
     pub(crate) wall: Duration,
     pub(crate) next_beat: Duration,
     pub(crate) next_clock: Duration,
-    /// What the start waits for, in words.
+    /// Condition that the start waits for, in words.
     pub(crate) awaited: String,
     pub(crate) next_notice: Duration,
 }
@@ -169,14 +169,12 @@ impl DemSimulator {
             lockstep: Lockstep::new(&settings),
             partner: Partner::new(own_stress),
             speculative: None,
-            speculates: settings.ahead
-                && settings.mode == Mode::Lockstep
-                && run.scene().grains <= speculative_step::GRAINS,
+            speculates: settings.ahead && run.scene().grains <= speculative_step::GRAINS,
             foreseen: 0,
             send_queue: SendQueue::new(packing),
             packings,
             resumed: resume.is_some(),
-            born: now,
+            created_at: now,
             began: now,
             first_step: run.engine().steps(),
             computing: Duration::ZERO,
@@ -204,7 +202,7 @@ impl DemSimulator {
     }
 
     /// Publishes the progress once a second and the simulated time at most every 10 ms.
-    fn beat(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
+    fn publish_progress(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
         // Published only after the run has begun: before that, no reader is there to receive it.
         if now >= self.next_clock && self.stage != Stage::Starting {
             self.next_clock = now + CLOCK_PERIOD;
@@ -219,7 +217,7 @@ impl DemSimulator {
         Ok(())
     }
 
-    /// Whether the log message of a waiting run is due.
+    /// True if the log message of a waiting run is due.
     pub(crate) fn notice_due(&mut self, now: Duration) -> bool {
         let due = now >= self.next_notice;
         if due {
@@ -243,7 +241,7 @@ impl DemSimulator {
         let published = self.publish_packing().map_err(|e| e.to_string());
         self.publish_run_state(RunState::FAILED, reason);
         let delivered = self.deliver_all(bus);
-        self.farewell(bus);
+        self.flush_last_messages(bus);
         published?;
         if delivered.map_err(|e| e.to_string())? {
             return Ok(());
@@ -271,7 +269,7 @@ impl DemSimulator {
         Ok(false)
     }
 
-    pub(crate) fn farewell(&self, bus: &mut dyn Bus) {
+    pub(crate) fn flush_last_messages(&self, bus: &mut dyn Bus) {
         if !bus.flush(FLUSH_LIMIT) {
             log::warn!("a reader has not acknowledged the last messages");
         }
@@ -286,14 +284,14 @@ impl Node for DemSimulator {
         if let Some(reason) = self.receive_answers(bus, now)? {
             return self.fail(bus, &reason);
         }
-        self.beat(bus, now)?;
+        self.publish_progress(bus, now)?;
         if !self.send_queue.deliver(bus)? {
             return Ok(Next::Wait(HOLD));
         }
         let next = match self.stage {
             Stage::Starting => self.start(bus, now),
             Stage::Running => self.exchange(bus, now),
-            Stage::Finished => self.rest(bus),
+            Stage::Finished => self.wait_after_end(bus),
         }?;
         Ok(match next {
             // A message of a reader ends a wait by itself; its absence is found at the end of this time.
@@ -354,7 +352,7 @@ impl Node for DemSimulator {
                 Ok(Exit::Interrupted)
             }
             Stage::Finished => {
-                self.farewell(bus);
+                self.flush_last_messages(bus);
                 Ok(Exit::Done)
             }
         }

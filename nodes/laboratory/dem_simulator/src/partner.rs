@@ -17,7 +17,7 @@ pub(crate) struct Partner {
     ignored: u64,
 }
 
-/// Where an answer comes from.
+/// Source of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AnswerSource {
     /// The servo of the run.
@@ -30,12 +30,12 @@ pub(crate) enum AnswerSource {
     Another { new: bool },
 }
 
-/// Whether two participants are the same process of a launched run, before and after a restart.
+/// True if two participants are the same process of a launched run, before and after a restart.
 pub(crate) fn same_member(a: &Participant, b: &Participant) -> bool {
     run_of(a).is_some() && run_of(a) == run_of(b) && member_of(a) == member_of(b)
 }
 
-/// Whether `b` is the restarted process of `a`. Only processes of a launcher have a member number (1 to 254); without
+/// True if `b` is the restarted process of `a`. Only processes of a launcher have a member number (1 to 254); without
 /// one, two simulators are always two processes.
 pub(crate) fn predecessor(a: &Participant, b: &Participant) -> bool {
     same_member(a, b) && member_of(b) != 0

@@ -39,7 +39,7 @@ impl Question {
         }
     }
 
-    /// Whether these rates, 1/s, are allowed: within the limit, zero where a component is held, and equal to an imposed
+    /// Checks that these rates, 1/s, are allowed: within the limit, zero where a component is held, and equal to an imposed
     /// rate. The servo chooses only the rates of components with a stress target.
     pub(crate) fn check(&self, rate: &[f64; 6]) -> Result<(), Violation> {
         let limit = self.rate_limit;

@@ -100,12 +100,12 @@ impl SendQueue {
         }
     }
 
-    /// Whether all messages were delivered to all active readers.
+    /// True if all messages were delivered to all active readers.
     pub(crate) fn is_empty(&self) -> bool {
         !self.under_way && self.behind.is_empty() && self.waiting.is_empty()
     }
 
-    /// Whether a packing is in transit, so that [`SendQueue::deliver`] must be called again soon.
+    /// True if a packing is in transit, so that [`SendQueue::deliver`] must be called again soon.
     pub(crate) fn is_under_way(&self) -> bool {
         self.under_way || !self.behind.is_empty()
     }

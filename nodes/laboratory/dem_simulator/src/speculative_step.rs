@@ -18,9 +18,9 @@ pub(crate) struct SpeculativeStep {
     rate: [f64; 6],
     /// The advanced run.
     pub(crate) run: Simulation,
-    /// Its outcome.
+    /// Outcome of the step.
     pub(crate) result: Result<StepOutcome, ExperimentError>,
-    /// Computing time.
+    /// Time of the computation.
     pub(crate) took: Duration,
 }
 
@@ -36,7 +36,7 @@ impl SpeculativeStep {
         Some(Self { sequence: request.sequence, rate, run, result, took: now().saturating_sub(began) })
     }
 
-    /// Whether the copy was advanced with exactly `rate` as the answer to request `sequence`.
+    /// True if the copy was advanced with exactly `rate` as the answer to request `sequence`.
     pub(crate) fn matches(&self, sequence: u64, rate: &[f64; 6]) -> bool {
         self.sequence == sequence && self.rate.map(f64::to_bits) == rate.map(f64::to_bits)
     }

@@ -33,7 +33,7 @@ impl DemSimulator {
     }
 
     pub(crate) fn start(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
-        let looked = now.saturating_sub(self.born);
+        let looked = now.saturating_sub(self.created_at);
         if looked < self.settings.look_around {
             return Ok(Next::Wait(self.settings.look_around - looked));
         }
@@ -88,7 +88,7 @@ impl DemSimulator {
                 .map_err(|e| NodeError::new(Exit::PhysicsInvalid, e.to_string()))?;
             self.send_queue.push_packing(to_cdr(&message));
         }
-        self.go_on(bus, now)
+        self.request_next(bus, now)
     }
 
     /// The first condition of the start that is not met.

@@ -12,7 +12,7 @@ use grainlab_msgs::{DecodeError, msg};
 /// The measurement of one packing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// The result.
+    /// Result of the measurement.
     pub report: PackingReport,
     /// The message that is published.
     pub message: msg::PackingReport,
@@ -32,7 +32,7 @@ pub enum MeasureError {
     Analysis {
         /// Step of the packing.
         step: u64,
-        /// The reason.
+        /// Error of the measurement.
         reason: MicroError,
     },
     /// The result is not a valid message.
@@ -40,7 +40,7 @@ pub enum MeasureError {
     Result {
         /// Step of the packing.
         step: u64,
-        /// The reason.
+        /// Error of the measurement.
         reason: BoundaryError,
     },
 }

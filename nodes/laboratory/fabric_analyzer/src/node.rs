@@ -1,4 +1,4 @@
-//! The node.
+//! The analyzer as a node.
 
 use crate::{MeasureError, Measured, Settings, measure};
 use grainlab_msgs::msg::{Packing, PackingReport};
@@ -10,7 +10,7 @@ use grainlab_node_kit::{
 /// The analyzer: measures every packing, one after the other, on a worker thread.
 pub type FabricAnalyzer = PackingNode<Analysis>;
 
-/// The publisher.
+/// Publisher of the reports.
 #[derive(Debug)]
 pub struct Analysis(Publisher<PackingReport>);
 

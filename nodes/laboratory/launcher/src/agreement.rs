@@ -1,4 +1,4 @@
-//! What the processes of a launch file must agree on before anything is started: the names of topics, and the scene, seed and
+//! Agreement of the processes of a launch file before anything is started: on the names of topics, and the scene, seed and
 //! directory of the run.
 
 use crate::nodes::NodeKind;

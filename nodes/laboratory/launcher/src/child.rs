@@ -16,20 +16,20 @@ use tokio::sync::mpsc::UnboundedSender;
 /// A process that ended.
 #[derive(Debug)]
 pub struct Ended {
-    /// Its index in the plan.
+    /// Index in the plan.
     pub index: usize,
-    /// Its exit status.
+    /// Exit status of the process.
     pub status: io::Result<ExitStatus>,
 }
 
 /// A node and the process that runs it.
 #[derive(Debug)]
 pub struct Child {
-    /// Its entry in the plan.
+    /// Entry in the plan.
     pub plan: NodePlan,
     /// Process id while it runs.
     pub pid: Option<u32>,
-    /// Its member number in the run: the same after a restart.
+    /// Member number in the run: the same after a restart.
     pub member: u8,
     /// Process id of the latest process.
     pub last_pid: u32,

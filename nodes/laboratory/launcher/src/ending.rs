@@ -90,12 +90,12 @@ impl Supervisor {
         hurried
     }
 
-    /// Whether the simulator has a state to save: it has published one.
+    /// True if the simulator has a state to save: it has published one.
     fn may_save(&self) -> bool {
         self.first_step.is_some()
     }
 
-    /// Whether an end still waits for this child.
+    /// True if an end still waits for this child.
     fn awaits(&self, child: &Child, ending: Ending) -> bool {
         let [recorder, simulator] = [NodeKind::Recorder, NodeKind::DemSimulator].map(|n| child.plan.is(n));
         match (ending, child.pid) {

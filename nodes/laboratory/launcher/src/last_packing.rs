@@ -12,7 +12,7 @@ pub fn count(directory: &Path) -> u64 {
     packings(&recording).map_or(0, |messages| messages.count() as u64)
 }
 
-/// Whether a recorder finished every file of a recording.
+/// True if a recorder finished every file of a recording.
 pub(crate) fn is_complete(directory: &Path) -> bool {
     Recording::open(directory).is_ok_and(|r| r.warnings().is_empty() && r.unaccounted().is_empty())
 }

@@ -47,11 +47,11 @@ type BuildNode = fn(&mut dyn Bus, &Parameters) -> Result<Box<dyn Node>, NodeErro
 /// A node for viewers.
 #[derive(Debug)]
 pub struct Viewer {
-    /// Its name, which no other node has.
+    /// Name, which no other node has.
     pub name: &'static str,
-    /// Its description in one line.
+    /// Description in one line.
     pub summary: &'static str,
-    /// Its parameters.
+    /// Parameters of the node.
     pub parameters: fn() -> Vec<ParameterSpec>,
     /// The recorded topics that it reads; `None` if it finds topics of any name by itself.
     pub topics: Option<&'static [Topic]>,
@@ -90,7 +90,7 @@ impl NodeKind {
         Self::all(viewers).find(|kind| kind.name() == name).ok_or_else(unknown)
     }
 
-    /// Its name, unless `__node` sets another one.
+    /// Name of the node, unless `__node` sets another one.
     pub fn name(self) -> &'static str {
         match self {
             Self::DemSimulator => "dem_simulator",
@@ -108,7 +108,7 @@ impl NodeKind {
         Self::all(viewers).map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
-    /// Its description in one line.
+    /// Description in one line.
     pub fn summary(self) -> &'static str {
         match self {
             Self::DemSimulator => "advances the run: publishes stress and packings, applies strain rates",
@@ -121,7 +121,7 @@ impl NodeKind {
         }
     }
 
-    /// Its parameters.
+    /// Parameters of the node.
     pub fn parameters(self) -> Vec<ParameterSpec> {
         match self {
             Self::DemSimulator => simulator_parameters(),
@@ -145,7 +145,7 @@ impl NodeKind {
         }
     }
 
-    /// Its arguments.
+    /// Specification for the run loop.
     pub fn spec(self) -> NodeSpec {
         NodeSpec {
             name: self.name(),

@@ -31,7 +31,7 @@ impl fmt::Display for Source {
 struct Kind {
     /// Topic of the data: the `source` of a microstructure.
     topic: &'static str,
-    /// Its source.
+    /// Source of the data.
     source: Source,
     /// Number of sets of data about the packing of each step.
     measured: BTreeMap<u64, usize>,
@@ -49,7 +49,7 @@ impl Kind {
         Self { topic, source, measured, inverted, settled, declined }
     }
 
-    /// Whether the packing is measured: an instrument that sent several sets of data about every other packing sends as many about
+    /// True if the packing is measured: an instrument that sent several sets of data about every other packing sends as many about
     /// this one.
     fn is_measured(&self, step: u64) -> bool {
         let others = self.measured.iter().filter(|(other, _)| **other != step).map(|(_, sets)| *sets).min();
@@ -57,7 +57,7 @@ impl Kind {
         self.settled.contains(&step) || self.measured.get(&step).is_some_and(|sets| *sets >= expected)
     }
 
-    /// Whether so many inversions have answered; those of an instrument each of its sets of data.
+    /// True if so many inversions have answered; those of an instrument each of its sets of data.
     fn is_inverted(&self, step: u64, inversions: usize) -> bool {
         let sets = match self.source {
             Source::Instrument => self.measured.get(&step).copied().unwrap_or(1),
@@ -94,7 +94,7 @@ pub(crate) struct PendingResults {
     /// Number of inversions of the run, each of which inverts every kind of data. 1 for a run without inversion: its
     /// results stay pending.
     inversions: usize,
-    /// Whether third-party programs run, which may publish wave speeds. If they published those of one packing, the run
+    /// True while third-party programs run, which may publish wave speeds. If they published those of one packing, the run
     /// waits for those of its last packing.
     instruments: bool,
     /// Names of those programs.
@@ -179,7 +179,7 @@ impl PendingResults {
         });
     }
 
-    /// Whether a node of the run measures the data of this topic.
+    /// True if a node of the run measures the data of this topic.
     pub(crate) fn is_measured_by_node(&self, topic: &str) -> bool {
         self.kinds.iter().any(|k| k.topic == topic && matches!(k.source, Source::Node(_)))
     }

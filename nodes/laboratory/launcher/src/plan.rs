@@ -127,14 +127,14 @@ pub struct NodePlan {
     pub node: Option<NodeKind>,
     /// The program; for a grainlab node, any `grainlab` means this binary.
     pub program: String,
-    /// Its arguments; for a node: `run`, the node, its ROS arguments.
+    /// Arguments; for a node: `run`, the node, its ROS arguments.
     pub arguments: Vec<String>,
-    /// Whether it is restarted when it ends by itself.
+    /// True if it is restarted when it ends by itself.
     pub respawn: bool,
 }
 
 impl NodePlan {
-    /// Whether it is this node of grainlab.
+    /// True if it is this node of grainlab.
     pub fn is(&self, node: NodeKind) -> bool {
         self.node == Some(node)
     }
@@ -147,7 +147,7 @@ impl NodePlan {
         self.parsed().map(drop)
     }
 
-    /// Its node with the names of its topics and the values of its parameters; `None` for a third-party program.
+    /// The node with the names of its topics and the values of its parameters; `None` for a third-party program.
     pub(crate) fn parsed(&self) -> Result<Option<(NodeKind, Names, Parameters)>, PlanError> {
         let Some(node) = self.node else { return Ok(None) };
         // After `run NODE`.
@@ -192,7 +192,7 @@ impl LaunchFile {
         Ok(Self { text: text.to_owned(), arguments, executables })
     }
 
-    /// Its text.
+    /// Text of the file.
     pub fn text(&self) -> &str {
         &self.text
     }

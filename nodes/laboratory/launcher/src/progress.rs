@@ -18,7 +18,7 @@ pub(crate) struct Progress {
     begin: Instant,
     phases: usize,
     phase: Option<Phase>,
-    /// What is waited for while no phase runs.
+    /// Activity while no phase runs.
     activity: &'static str,
     finished: bool,
     printed_at: Instant,
@@ -32,9 +32,9 @@ struct Phase {
     /// When it was first seen, and the step.
     began: Instant,
     first_step: u64,
-    /// What the simulator noted at its begin.
+    /// Note of the simulator at the begin of the phase.
     note: String,
-    /// What the simulator last reported.
+    /// Last report of the simulator.
     report: PhaseReport,
     pace: Pace,
 }
@@ -53,10 +53,7 @@ impl Progress {
 
     /// Prints a line with the time.
     pub(crate) fn say(&self, text: &str) {
-        match Terminal::on_stderr() {
-            Some(terminal) => say_line(phase_line::wrapped(self.seconds(), text, terminal.width)),
-            None => say!("{} {text}", phase_line::time(self.seconds())),
-        }
+        say!("{} {text}", phase_line::time(self.seconds()));
         self.draw();
     }
 
@@ -78,7 +75,7 @@ impl Progress {
         self.draw();
     }
 
-    /// What is waited for from now on, while no phase runs.
+    /// Sets the activity that is shown while no phase runs.
     pub(crate) fn wait_for(&mut self, activity: &'static str) {
         self.activity = activity;
         self.phase = None;

@@ -5,8 +5,8 @@ use grainlab_node_kit::RunId;
 /// The run that a launcher starts.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
-    /// Its id.
+    /// Id of the run.
     pub id: RunId,
-    /// DDS domain.
+    /// DDS domain of the run.
     pub domain: u16,
 }

@@ -2,10 +2,10 @@
 
 use grainlab_msgs::topics::PACKING_REPORT;
 
-/// What the message of a simulator begins with that waits for other processes.
+/// Begin of the message of a simulator that waits for other processes.
 const WAITS: &str = "waiting for";
 
-/// What a run that has not begun waits for, as far as its simulator has said it; `None` once it computes its first step.
+/// Condition that a run that has not begun waits for, as far as its simulator has said it; `None` once it computes its first step.
 pub(crate) fn awaited(simulator: Option<&str>, first_step: Option<u64>) -> Option<&str> {
     match (simulator, first_step) {
         (Some(says), _) if says.starts_with(WAITS) => Some(says),

@@ -46,12 +46,12 @@ impl Stopped {
         changes
     }
 
-    /// Whether any process was stopped at the last check, or within this time before it.
+    /// True if any process was stopped at the last check, or within this time before it.
     pub(super) fn any_within(&self, time: Duration) -> bool {
         self.any() || self.resumed.is_some_and(|at| at.elapsed() < time)
     }
 
-    /// Whether any process was stopped.
+    /// True if any process was stopped.
     pub(super) fn any(&self) -> bool {
         !self.pids.is_empty()
     }

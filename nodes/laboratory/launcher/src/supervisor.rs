@@ -49,7 +49,7 @@ const SIMULATOR: NodeKind = NodeKind::DemSimulator;
 /// The last packing is being measured by the probe, or is in its queue.
 const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
 
-/// What the launcher knows of the loading path of its run.
+/// Outline of the loading path of the run.
 #[derive(Clone, Copy, Debug)]
 pub struct Outline {
     /// Number of phases.
@@ -76,7 +76,7 @@ pub struct Supervisor {
     pub(super) progress: Progress,
     outline: Outline,
     begun: bool,
-    /// What the simulator last said that it does or waits for.
+    /// Last message of the simulator on what it does or waits for.
     simulator: Option<String>,
     /// The step at which the run began or resumed.
     pub(super) first_step: Option<u64>,
@@ -103,7 +103,7 @@ pub struct Supervisor {
 /// The result of a run.
 #[derive(Debug)]
 pub struct Supervised {
-    /// Its exit.
+    /// Exit of the run.
     pub exit: Exit,
     /// Why it is not [`Exit::Done`], one line each, as printed.
     pub reasons: Vec<String>,
@@ -161,7 +161,7 @@ impl Supervisor {
         })
     }
 
-    /// What a resumed run has recorded before.
+    /// Takes over what a resumed run has recorded before.
     #[must_use]
     pub fn resuming(mut self, recorded: &RecordedSpeeds) -> Self {
         self.pending.remember(recorded);
@@ -176,7 +176,8 @@ impl Supervisor {
         if let Some(event) = events.recv().await {
             self.take(event);
         }
-        let mut exit = match self.start_all() {
+        let started = (0..self.children.len()).try_for_each(|index| self.start(index));
+        let mut exit = match started {
             Ok(()) if self.blind => Exit::Failure,
             Ok(()) => self.attend(&mut events).await,
             Err(failure) => {
@@ -211,10 +212,6 @@ impl Supervisor {
 
     fn member(&self, node: NodeKind) -> Option<u8> {
         self.children.iter().find(|c| c.plan.is(node)).map(|c| c.member)
-    }
-
-    fn start_all(&mut self) -> Result<(), Failure> {
-        (0..self.children.len()).try_for_each(|index| self.start(index))
     }
 
     fn start(&mut self, index: usize) -> Result<(), Failure> {
@@ -388,7 +385,7 @@ impl Supervisor {
         self.stopped.any()
     }
 
-    /// What a run that has not begun waits for, as far as its simulator has said it.
+    /// Prints the condition that a run that has not begun waits for, as far as its simulator has said it.
     fn say_what_is_waited_for(&self) {
         if let Some(what) = said::awaited(self.simulator.as_deref(), self.first_step) {
             self.progress.say(&format!("the run has not begun: {what}"));

@@ -68,9 +68,9 @@ pub(crate) enum Event {
     /// The process with this member number inferred the microstructure of the packing of this step from data of this
     /// topic; or, if no model has an estimate, why.
     Microstructure { source: String, step: u64, member: u8, nothing: Option<String> },
-    /// How far the present phase is.
+    /// Progress of the present phase.
     Phase(PhaseReport),
-    /// What the simulator does or waits for.
+    /// Activity of the simulator, or the condition that it waits for.
     Simulator(String),
     /// The process with this id sent its last report.
     Goodbye(u32),
@@ -82,10 +82,10 @@ pub(crate) enum Event {
     Failed(String),
 }
 
-/// How far a phase is, as the simulator reports it.
+/// Progress of a phase, as the simulator reports it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PhaseReport {
-    /// Its name.
+    /// Name of the phase.
     pub(crate) name: String,
     /// Share that is done, 0 to 1, if its end is known beforehand.
     pub(crate) share: Option<f64>,
@@ -302,7 +302,7 @@ fn without_estimate(found: &Microstructure) -> Option<String> {
     nothing.then(|| why.to_owned())
 }
 
-/// How far the present phase is, if the report is that of a simulator.
+/// Progress of the present phase, if the report is that of a simulator.
 fn phase_of(report: &Report) -> Option<PhaseReport> {
     let share = value_under(PHASE_SHARE, report)?.parse().ok().filter(|s| (0.0..=1.0).contains(s));
     let text = |key| value_under(key, report).map(str::to_owned);

@@ -15,7 +15,7 @@ pub enum Refusal {
     Servo {
         /// Sequence number of the request.
         sequence: u64,
-        /// The reason.
+        /// Error of the control law.
         reason: grainlab_servo::ServoError,
     },
 }

@@ -1,4 +1,4 @@
-//! The node.
+//! The servo as a node.
 
 use crate::{Refusal, Settings, answer};
 use grainlab_msgs::msg::{StrainRate, Stress};
@@ -19,7 +19,7 @@ const BACKLOG: u32 = 16;
 #[derive(Debug)]
 pub struct ServoController {
     settings: Settings,
-    /// Whether the readers to wait for have been present.
+    /// True once the readers to wait for have been present.
     ready: bool,
     /// Stresses received before that.
     early: VecDeque<(Stress, SampleId)>,

@@ -1,4 +1,4 @@
-//! Parameters.
+//! Parameters of the node.
 
 use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 
@@ -8,7 +8,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
     vec![
         ParameterSpec::new(
             "min_readers",
-            Settings::default().min_readers as i64,
+            1_i64,
             "number of readers of strain_rate to wait for before the first answer, 1",
         )
         .within(Range::Integer { min: 0, max: most }),
@@ -22,24 +22,15 @@ pub struct Settings {
     pub min_readers: usize,
 }
 
+/// The declared defaults.
 impl Default for Settings {
     fn default() -> Self {
-        Self { min_readers: 1 }
+        Self::from(&Parameters::defaults(&parameters()))
     }
 }
 
 impl From<&Parameters> for Settings {
     fn from(parameters: &Parameters) -> Self {
         Self { min_readers: parameters.get::<i64>("min_readers").unsigned_abs() as usize }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_declared_defaults_are_the_typed_ones() {
-        assert_eq!(Settings::from(&Parameters::defaults(&parameters())), Settings::default());
     }
 }

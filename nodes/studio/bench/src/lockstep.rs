@@ -10,9 +10,9 @@ use serde::Serialize;
 
 const EXAMPLES: &str = "\
 One process sends a `stress`, another answers with a `strain_rate`, and a recorder writes both to MCAP. Each round is
-followed by one without the recorder (`alone`), and by one with the same two messages over bare ros2-client, also without
-a recorder, so that all run under the same load. The duration depends on the placement of the processes: waking a process on
-another processor takes longer than on the same one. `taskset -c 0` runs all on one processor.
+followed by one without the recorder (`alone`), so that both run under the same load. The duration depends on the placement
+of the processes: waking a process on another processor takes longer than on the same one. `taskset -c 0` runs all on one
+processor.
 
 Examples:
   taskset -c 0 grainlab bench lockstep
@@ -22,7 +22,7 @@ Examples:
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Rounds of each of the three kinds
+    /// Rounds of each of the two kinds
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=100))]
     rounds: u32,
     /// Exchanges per round
@@ -43,7 +43,7 @@ struct Microseconds {
     p99: f64,
 }
 
-/// One round of the three kinds.
+/// One round of the two kinds.
 #[derive(Debug, Serialize)]
 struct Row {
     method: &'static str,
@@ -58,7 +58,6 @@ struct Row {
     microseconds: Microseconds,
     /// Over the bus of grainlab, without a recorder.
     alone_microseconds: Microseconds,
-    bare_microseconds: Microseconds,
     /// Messages of the row that the recorder lost.
     lost: u64,
 }
@@ -76,20 +75,18 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(role) = args.role {
         return round::role(role, args.exchanges);
     }
-    let (mut ours, mut alone, mut bare, mut lost) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let (mut ours, mut alone, mut lost) = (Vec::new(), Vec::new(), 0);
     let mut rows = Vec::new();
     for number in 1..=args.rounds {
         grainlab_console::say!("grainlab: round {number} of {}", args.rounds);
         let recorded = round::recorded(args.exchanges)?;
         let unrecorded = round::unrecorded(args.exchanges)?;
-        let plain = round::bare(args.exchanges)?;
-        rows.push(row(Some(number), [&recorded.micros, &unrecorded, &plain], recorded.lost));
+        rows.push(row(Some(number), [&recorded.micros, &unrecorded], recorded.lost));
         ours.extend(recorded.micros);
         alone.extend(unrecorded);
-        bare.extend(plain);
         lost += recorded.lost;
     }
-    rows.push(row(None, [&ours, &alone, &bare], lost));
+    rows.push(row(None, [&ours, &alone], lost));
     let report = Report { rows };
     args.format.print(
         &report,
@@ -99,7 +96,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if lost > 0 { Exit::DataLoss } else { Exit::Done })
 }
 
-fn row(value: Option<u32>, [ours, alone, bare]: [&[f64]; 3], lost: u64) -> Row {
+fn row(value: Option<u32>, [ours, alone]: [&[f64]; 2], lost: u64) -> Row {
     Row {
         method: "lockstep",
         value,
@@ -109,7 +106,6 @@ fn row(value: Option<u32>, [ours, alone, bare]: [&[f64]; 3], lost: u64) -> Row {
         exchanges: ours.len(),
         microseconds: percentiles(ours),
         alone_microseconds: percentiles(alone),
-        bare_microseconds: percentiles(bare),
         lost,
     }
 }
@@ -126,10 +122,10 @@ fn percentiles(micros: &[f64]) -> Microseconds {
 }
 
 fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
-    let columns = ["round", "exchanges", "p50_us", "p99_us", "alone_p50_us", "alone_p99_us", "bare_p50_us"];
-    let mut t = Table::new(columns.into_iter().chain(["bare_p99_us", "lost"]));
+    let mut t =
+        Table::new(["round", "exchanges", "p50_us", "p99_us", "alone_p50_us", "alone_p99_us", "lost"]);
     for r in rows {
-        let kinds = [r.microseconds, r.alone_microseconds, r.bare_microseconds];
+        let kinds = [r.microseconds, r.alone_microseconds];
         let mut cells =
             vec![r.value.map_or_else(|| "all".to_owned(), |n| n.to_string()), r.exchanges.to_string()];
         cells.extend(kinds.iter().flat_map(|kind| [kind.p50, kind.p99]).map(|v| number(Some(v))));

@@ -4,7 +4,7 @@ use clap::{Arg, ArgMatches, Command, FromArgMatches};
 use grainlab_acoustic_probe::{Settings, methods_with, parameters};
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
-use grainlab_node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range, RosArgs};
+use grainlab_node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range, RosArgs, parameter_text};
 
 const NODE: NodeKind = NodeKind::AcousticProbe;
 
@@ -74,7 +74,7 @@ fn flag(spec: &ParameterSpec) -> Arg {
     };
     let default = match &spec.default {
         ParameterValue::String(text) => text.clone(),
-        other => other.to_string(),
+        other => parameter_text(other),
     };
     let mut help = format!("{} [default: {default}", spec.description);
     if spec.range != Range::Any {
@@ -131,7 +131,7 @@ mod tests {
                 ParameterValue::String(text) => text.clone(),
                 ParameterValue::DoubleArray(list) if list.is_empty() => continue,
                 ParameterValue::Double(v) if v.is_infinite() => "inf".to_owned(),
-                other => other.to_string().replace(['[', ']', ' '], ""),
+                other => parameter_text(other).replace(['[', ']', ' '], ""),
             };
             assert_eq!(settings(&[&flag, &text]).unwrap(), Settings::default(), "{flag} {text}");
         }

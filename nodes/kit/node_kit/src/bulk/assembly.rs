@@ -34,9 +34,11 @@ impl Assembly {
 
     /// Adds a part, already checked on its own. Returns true if it is new.
     pub(super) fn add(&mut self, part: &PackingChunk, shape: &Shape) -> Result<bool, PartError> {
-        let (body, index) = (part.body, part.index);
+        let PackingChunk { body, index, .. } = *part;
         if *shape != self.shape {
-            return Err(PartError::Contradiction { body, index });
+            return Err(PartError(format!(
+                "part {index} of body {body} contradicts earlier parts in length, body_crc, stride or count"
+            )));
         }
         // A part too far ahead is requested again later.
         let Some(ahead) = index.checked_sub(self.next).filter(|ahead| *ahead <= AHEAD) else {
@@ -62,7 +64,7 @@ impl Assembly {
         Ok(true)
     }
 
-    /// Whether every part was received.
+    /// True if every part was received.
     pub(super) fn is_complete(&self) -> bool {
         self.next == self.shape.count
     }

@@ -21,10 +21,10 @@ pub(crate) const SILENCE: Duration = Duration::from_secs(15);
 /// The writer stops waiting for a reader that sends credits, is ready, and makes no progress for this long.
 pub(super) const STALLED: Duration = Duration::from_secs(30);
 
-/// The same two limits for a process that is about to end.
+/// Both limits for a process that is about to end.
 pub(super) const HURRIED: Duration = Duration::from_secs(5);
 
-/// How long a writer waits for the first credit of a reader in the graph.
+/// Time for which a writer waits for the first credit of a reader in the graph.
 pub(super) const FIRST_CREDIT_LIMIT: Duration = Duration::from_secs(3);
 
 /// A part that a reader does not have this long after it was sent counts as lost.

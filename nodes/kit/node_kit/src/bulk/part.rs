@@ -6,76 +6,10 @@ use grainlab_msgs::msg::PackingChunk;
 /// Largest part that a reader accepts, bytes: it holds some dozens of them out of order.
 const LONGEST_PART: u32 = 1 << 20;
 
-/// Errors of a part, or of the body assembled from parts. The part is refused and requested again.
+/// Why a part, or the body assembled from parts, is refused. The part is requested again.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum PartError {
-    /// The part was changed in transit.
-    #[error(
-        "part {index} of body {body} is corrupt: its CRC is {found:08x}, and its field crc is {stated:08x}"
-    )]
-    Corrupt {
-        /// Number of the body, as stated in the part.
-        body: u64,
-        /// Number of the part, as stated in the part.
-        index: u32,
-        /// CRC of the part's bytes.
-        found: u32,
-        /// CRC stated in the part.
-        stated: u32,
-    },
-    /// The length of the body is out of range.
-    #[error("body {body} has length = {length}: it must be 1 to {LONGEST}")]
-    Length {
-        /// Number of the body.
-        body: u64,
-        /// Stated length, bytes.
-        length: u64,
-    },
-    /// A field is inconsistent with the others.
-    #[error("part {index} of body {body} has {field} = {found}: it must be {expected}")]
-    Shape {
-        /// Number of the body.
-        body: u64,
-        /// Number of the part.
-        index: u32,
-        /// Name of the field.
-        field: &'static str,
-        /// Its value.
-        found: u64,
-        /// The value that the other fields imply.
-        expected: String,
-    },
-    /// The part contradicts earlier parts of its body.
-    #[error("part {index} of body {body} contradicts earlier parts in length, body_crc, stride or count")]
-    Contradiction {
-        /// Number of the body.
-        body: u64,
-        /// Number of the part.
-        index: u32,
-    },
-    /// All parts were received, and the body has another CRC.
-    #[error("body {body} is corrupt: its CRC is {found:08x}, and its parts state {stated:08x}; {action}")]
-    Body {
-        /// Number of the body.
-        body: u64,
-        /// CRC of the assembled body.
-        found: u32,
-        /// CRC stated in the parts.
-        stated: u32,
-        /// How the receiver reacts.
-        action: &'static str,
-    },
-    /// The writer began another body.
-    #[error("the writer gave up body {body} after {held} of {count} parts")]
-    GivenUp {
-        /// Number of the body.
-        body: u64,
-        /// Number of parts received.
-        held: u64,
-        /// Number of parts of the body.
-        count: u32,
-    },
-}
+#[error("{0}")]
+pub(crate) struct PartError(pub(super) String);
 
 /// The fields that all parts of one body share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,12 +41,20 @@ impl Shape {
         let (body, index) = (part.body, part.index);
         let found = crc_of(part);
         if found != part.crc {
-            return Err(PartError::Corrupt { body, index, found, stated: part.crc });
+            return Err(PartError(format!(
+                "part {index} of body {body} is corrupt: its CRC is {found:08x}, and its field crc is {:08x}",
+                part.crc
+            )));
         }
         if !(1..=LONGEST).contains(&part.length) {
-            return Err(PartError::Length { body, length: part.length });
+            let length = part.length;
+            return Err(PartError(format!("body {body} has length = {length}: it must be 1 to {LONGEST}")));
         }
-        let shape = |field, found, expected| Err(PartError::Shape { body, index, field, found, expected });
+        let shape = |field: &str, found: u64, expected: String| {
+            Err(PartError(format!(
+                "part {index} of body {body} has {field} = {found}: it must be {expected}"
+            )))
+        };
         if !(1..=LONGEST_PART).contains(&part.stride) {
             return shape("stride", u64::from(part.stride), format!("1 to {LONGEST_PART}"));
         }
@@ -163,7 +105,7 @@ impl Shape {
     }
 }
 
-fn crc_of(part: &PackingChunk) -> u32 {
+pub(super) fn crc_of(part: &PackingChunk) -> u32 {
     let mut crc = crc32fast::Hasher::new();
     crc.update(&part.body.to_le_bytes());
     crc.update(&part.length.to_le_bytes());

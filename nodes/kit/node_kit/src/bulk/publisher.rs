@@ -83,7 +83,7 @@ impl BulkPublisher {
         self.sender.hurry();
     }
 
-    /// The same without waiting for readers that lack the previous message: they never receive it. For the last message
+    /// Publishes without waiting for readers that lack the previous message: they never receive it. For the last message
     /// of a process.
     pub fn supersede(&mut self, bus: &mut dyn Bus, body: &[u8]) -> Result<(), BusError> {
         if body.len() <= LIMIT {
@@ -108,13 +108,11 @@ impl BulkPublisher {
         if now >= self.next_look {
             self.next_look = now + POLL_PERIOD;
             self.present = bus.foreign_writers(&self.credit_topic);
-            for left in self.sender.apply_time_limits(now, &self.present) {
+            for (reader, reason) in self.sender.apply_time_limits(now, &self.present) {
                 self.left_behind += 1;
                 log::warn!(
-                    "{}: not waiting any longer for the reader with credits of writer {}: {}",
-                    self.resolved,
-                    left.reader,
-                    left.reason
+                    "{}: not waiting any longer for the reader with credits of writer {reader}: {reason}",
+                    self.resolved
                 );
             }
         }

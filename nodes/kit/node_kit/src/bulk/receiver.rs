@@ -20,22 +20,14 @@ const ATTEMPTS: u32 = 3;
 /// Minimum time between two credits in response to parts received before.
 const NOT_AGAIN: Duration = Duration::from_millis(10);
 
-/// A complete body.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Whole {
-    /// Sequence number among the bodies that the writer sent in parts.
-    pub(super) number: i64,
-    pub(super) body: Vec<u8>,
-}
-
 /// The result of one received part.
 #[derive(Debug, Default)]
 pub(super) struct PartOutcome {
-    /// The body, if this part completes it.
-    pub(super) whole: Option<Whole>,
+    /// The body, if this part completes it, after its sequence number among those that the writer sent in parts.
+    pub(super) whole: Option<(i64, Vec<u8>)>,
     /// The error, if the part or its body was refused.
     pub(super) fault: Option<PartError>,
-    /// Whether it is the first part of its body.
+    /// True for the first part of a body.
     pub(super) begins: bool,
 }
 
@@ -60,7 +52,7 @@ impl Repetition {
     }
 }
 
-/// One writer.
+/// One writer of parts.
 #[derive(Debug)]
 struct Source {
     latest_part: Duration,
@@ -182,10 +174,9 @@ impl Source {
         }
         if part.body > current {
             let before = self.assembly.take();
-            outcome.fault = before.map(|old| PartError::GivenUp {
-                body: old.shape.body,
-                held: old.parts(),
-                count: old.shape.count,
+            outcome.fault = before.map(|old| {
+                let (held, Shape { body, count, .. }) = (old.parts(), old.shape);
+                PartError(format!("the writer gave up body {body} after {held} of {count} parts"))
             });
             self.attempts = 0;
         }
@@ -209,14 +200,16 @@ impl Source {
         match assembly.into_body() {
             Ok(body) => {
                 self.done = (shape.body, shape.count);
-                outcome.whole = Some(Whole { number: i64::try_from(shape.body).unwrap_or(i64::MAX), body });
+                outcome.whole = Some((i64::try_from(shape.body).unwrap_or(i64::MAX), body));
             }
             Err(found) => {
                 self.attempts += 1;
                 let again = self.attempts < ATTEMPTS;
                 let action = if again { "requested again" } else { "given up" };
-                outcome.fault =
-                    Some(PartError::Body { body: shape.body, found, stated: shape.body_crc, action });
+                outcome.fault = Some(PartError(format!(
+                    "body {} is corrupt: its CRC is {found:08x}, and its parts state {:08x}; {action}",
+                    shape.body, shape.body_crc
+                )));
                 if again {
                     self.assembly = Some(Assembly::new(shape));
                 } else {

@@ -20,17 +20,10 @@ struct Reader {
     next: u32,
     held: u64,
     ready: bool,
-    /// Whether the sender waits for it: false from a time limit until its next credit.
+    /// True while the sender waits for it: false from a time limit until its next credit.
     active: bool,
-    /// Whether it was in the graph.
+    /// True once it was in the graph.
     seen: bool,
-}
-
-/// A reader that the sender does not wait for any longer, and why.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct LeftBehind {
-    pub(super) reader: Guid,
-    pub(super) reason: String,
 }
 
 /// The latest body and its readers. It has no clock and no bus: the caller provides both.
@@ -173,8 +166,8 @@ impl Sender {
 
     /// Removes readers that left the graph (`present`: writers of credits in the graph) and applies the time limits.
     ///
-    /// Returns the readers with missing parts that are not waited for any longer.
-    pub(super) fn apply_time_limits(&mut self, now: Duration, present: &[Guid]) -> Vec<LeftBehind> {
+    /// Returns the readers with missing parts that are not waited for any longer, and why.
+    pub(super) fn apply_time_limits(&mut self, now: Duration, present: &[Guid]) -> Vec<(Guid, String)> {
         let count = self.shape.map_or(0, |shape| shape.count);
         let mut left = Vec::new();
         self.readers.retain(|id, reader| {
@@ -197,13 +190,13 @@ impl Sender {
             reader.active = false;
             if reader.next < count {
                 let reason = format!("{reason}; it has {} of {count} parts", reader.next);
-                left.push(LeftBehind { reader: *id, reason });
+                left.push((*id, reason));
             }
         }
         left
     }
 
-    /// Whether an active reader lacks parts of the latest body. Readers in the graph that have not sent a credit yet
+    /// True if an active reader lacks parts of the latest body. Readers in the graph that have not sent a credit yet
     /// count for a short time: those of `present`, and the number of `matched` readers.
     pub(super) fn is_busy(&self, now: Duration, present: &[Guid], matched: usize) -> bool {
         let Some(shape) = self.shape else { return false };

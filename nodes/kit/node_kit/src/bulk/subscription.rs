@@ -6,7 +6,7 @@ use super::receiver::Receiver;
 use crate::bus::{Bus, SubscriptionId};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
-use crate::sample::Sample;
+use crate::sample::{Sample, SampleInfo};
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use grainlab_msgs::{Topic, topics};
@@ -108,10 +108,9 @@ impl BulkSubscription {
                 bus.count_refused(self.parts.id());
                 log::warn!("{}: from writer {}: {fault}", self.resolved, info.writer);
             }
-            if let Some(whole) = outcome.whole {
+            if let Some((sequence, body)) = outcome.whole {
                 let source_time = self.written.remove(&info.writer).flatten().or(info.source_time);
-                let info = crate::sample::SampleInfo { sequence: whole.number, source_time, ..info };
-                self.push(Sample { body: whole.body, info });
+                self.push(Sample { body, info: SampleInfo { sequence, source_time, ..info } });
             }
         }
         let writers = bus.writers(self.parts.id());

@@ -1,7 +1,7 @@
 //! The bus over DDS.
 
 use super::background_reader::{BackgroundReader, Inboxes};
-use super::direct::{self, Change, DdsTopic, Discovery, Inlet, Outlet};
+use super::direct::{self, Change, DdsTopic, Discovery, RawPublisher, RawSubscription};
 use super::error::create_error;
 use super::gate::Gate;
 use super::graph::Graph;
@@ -11,7 +11,7 @@ use super::lock::lock;
 use super::network::Network;
 use super::writer::Writer;
 use crate::admission::{Participant, Stranger};
-use crate::bus::{Bus, Caller, PublisherId, Sender, SubscriptionId, Wake};
+use crate::bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::{Identity, Scope};
@@ -25,7 +25,7 @@ use crate::watchdog::OpenParticipant;
 use grainlab_console::Signals;
 use grainlab_msgs::{Guid, Published, Received, Topic, TypeInfo};
 use mio::{Events, Interest, Poll, Token, Waker};
-use ros2_client::{Context, Gid, NodeName};
+use ros2_client::{Context, NodeName};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -41,9 +41,9 @@ const FIRST_READER: usize = 3;
 /// One reader of this process, in the waiting thread.
 struct Reader {
     inbox: Arc<Mutex<Inbox>>,
-    gid: Gid,
+    guid: Guid,
     topic: String,
-    /// What its samples are decoded as.
+    /// Type that its samples are decoded as.
     info: TypeInfo,
     /// A notification arrived, and the reader was not found empty since.
     ready: bool,
@@ -68,7 +68,7 @@ pub struct DdsBus {
     declared: Declared,
     sim_time: SimTime,
     background_reader: BackgroundReader,
-    writers: Handles<Arc<Writer>>,
+    writers: Handles<Writer>,
     subscribers: Handles<Subscriber>,
     readers: Handles<Reader>,
     inboxes: Inboxes,
@@ -108,7 +108,7 @@ impl DdsBus {
         Self::declaring(network, names, identity, Declared::new(&[], Parameters::defaults(&[])))
     }
 
-    /// The same as a node with these parameters. [`Self::serve`] starts its services.
+    /// Joins as a node with these parameters. [`Self::serve`] starts its services.
     pub(crate) fn declaring(
         network: Network,
         names: Names,
@@ -117,7 +117,7 @@ impl DdsBus {
     ) -> Result<Self, BusError> {
         let prefix = identity.guid_prefix();
         let gate = Arc::new(Gate::new(identity, prefix));
-        let (context, gid) = direct::context(network, prefix, &gate)?;
+        let context = direct::context(network, prefix, &gate)?;
         let open = OpenParticipant::new();
         let node_error = |reason: String| BusError::Network { what: format!("create node {names}"), reason };
         let name = NodeName::new(names.namespace(), names.node()).map_err(|e| node_error(e.to_string()))?;
@@ -133,7 +133,6 @@ impl DdsBus {
         let waker = Arc::new(Waker::new(poll.registry(), WAKER).map_err(io)?);
         let background_reader =
             BackgroundReader::spawn(Arc::clone(&inboxes), Arc::clone(&waker)).map_err(io)?;
-        let graph = Graph::new(gid);
         Ok(Self {
             services: None,
             declared,
@@ -150,7 +149,7 @@ impl DdsBus {
             events: Events::with_capacity(64),
             topics: BTreeMap::new(),
             discovery,
-            graph,
+            graph: Graph::new(prefix),
             changed: false,
             refused: BTreeSet::new(),
             gate,
@@ -204,20 +203,20 @@ impl DdsBus {
             return Ok(index);
         }
         let dds_topic = self.dds_topic(&resolved, topic)?;
-        let reader = Inlet::new(&mut lock(&self.node), &dds_topic, topic, demand)?;
+        let reader = RawSubscription::new(&mut lock(&self.node), &dds_topic, topic, demand)?;
         self.unannounced = true;
         let mut inbox = Inbox::new(reader, resolved.clone(), demand, self.participant());
         let index = self.readers.next();
         self.poll
             .registry()
-            .register(inbox.reader_mut(), Token(FIRST_READER + index), Interest::READABLE)
+            .register(inbox.source(), Token(FIRST_READER + index), Interest::READABLE)
             .map_err(|e| create_error(&resolved, &e))?;
-        let gid = inbox.gid();
-        self.gate.add_reader(gid, &resolved);
+        let guid = inbox.guid();
+        self.gate.add_reader(guid, &resolved);
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
         let info = topic.info;
-        Ok(self.readers.add(Reader { inbox, gid, topic: resolved, info, ready: false, notified: false }))
+        Ok(self.readers.add(Reader { inbox, guid, topic: resolved, info, ready: false, notified: false }))
     }
 
     /// Processes the events of discovery; true if something changed.
@@ -281,13 +280,6 @@ impl DdsBus {
     }
 }
 
-/// Ends the node's wait from another thread.
-fn wake(waker: &Waker) {
-    if let Err(error) = waker.wake() {
-        log::error!("cannot wake the node: {error}");
-    }
-}
-
 /// The name of a ROS topic in DDS.
 fn wire_name(resolved: &str) -> String {
     format!("rt{resolved}")
@@ -301,10 +293,9 @@ impl Bus for DdsBus {
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let dds_topic = self.dds_topic(&resolved, topic)?;
-        let outlet = Outlet::new(&mut lock(&self.node), &dds_topic, topic)?;
+        let raw = RawPublisher::new(&mut lock(&self.node), &dds_topic, topic)?;
         self.unannounced = true;
-        let writer = Arc::new(Writer::new(outlet, resolved, direct::window(topic)));
-        Ok(PublisherId(self.writers.add(writer)))
+        Ok(PublisherId(self.writers.add(Writer::new(raw, resolved, direct::window(topic)))))
     }
 
     fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError> {
@@ -323,11 +314,11 @@ impl Bus for DdsBus {
             return;
         }
         let Some(reader) = self.readers.remove(ended.reader) else { return };
-        if let Err(error) = self.poll.registry().deregister(lock(&reader.inbox).reader_mut()) {
+        if let Err(error) = self.poll.registry().deregister(lock(&reader.inbox).source()) {
             log::error!("{}: cannot end the subscription in order: {error}", reader.topic);
         }
         lock(&self.inboxes).retain(|inbox| !Arc::ptr_eq(inbox, &reader.inbox));
-        self.gate.remove_reader(reader.gid);
+        self.gate.remove_reader(reader.guid);
         self.unannounced = true;
     }
 
@@ -341,10 +332,10 @@ impl Bus for DdsBus {
         body: &[u8],
         about: Option<SampleId>,
     ) -> Result<i64, BusError> {
-        let writer = self.writers.get(publisher.0).ok_or(BusError::Handle("publish"))?;
+        let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("publish"))?;
         let sequence = writer.write(body, about)?;
         for reader in self.readers.values().filter(|r| r.topic == writer.topic) {
-            lock(&reader.inbox).deliver_own(SampleId { writer: writer.id(), sequence }, about, body);
+            lock(&reader.inbox).deliver_own(SampleId { writer: writer.id, sequence }, about, body);
         }
         Ok(sequence)
     }
@@ -380,52 +371,34 @@ impl Bus for DdsBus {
         let (called, waker) = (Arc::clone(&self.called), Arc::clone(&self.waker));
         Some(Caller(Arc::new(move || {
             called.store(true, Ordering::Release);
-            wake(&waker);
-        })))
-    }
-
-    fn sender(&self, publisher: PublisherId) -> Option<Sender> {
-        let writer = Arc::clone(self.writers.get(publisher.0)?);
-        let (inboxes, waker) = (Arc::clone(&self.inboxes), Arc::clone(&self.waker));
-        Some(Sender(Arc::new(move |body| {
-            let sequence = writer.write(body, None)?;
-            for mut inbox in
-                lock(&inboxes).iter().map(|inbox| lock(inbox)).filter(|i| i.topic() == writer.topic)
-            {
-                inbox.deliver_own(SampleId { writer: writer.id(), sequence }, None, body);
-                wake(&waker);
+            if let Err(error) = waker.wake() {
+                log::error!("cannot wake the node: {error}");
             }
-            Ok(sequence)
         })))
     }
 
     fn readers(&self, publisher: PublisherId) -> usize {
         self.writers
             .get(publisher.0)
-            .map_or(0, |w| self.graph.matches_of(w.gid, |guid| self.gate.admits(guid)))
+            .map_or(0, |w| self.graph.matches_of(w.id, |guid| self.gate.admits(guid)))
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let reader = self.subscribers.get(subscription.0).and_then(|s| self.readers.get(s.reader));
-        reader.map_or(0, |r| self.graph.matches_of(r.gid, |guid| self.counts(guid, &r.info)))
+        reader.map_or(0, |r| self.graph.matches_of(r.guid, |guid| self.counts(guid, &r.info)))
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<Guid> {
-        self.names
-            .resolve(topic.name)
-            .map(|name| self.graph.writers_of(&wire_name(&name), |guid| self.counts(guid, &topic.info)))
-            .unwrap_or_default()
+        self.writers_of(topic, |guid| self.counts(guid, &topic.info))
     }
 
     fn misfits(&self, topic: &Topic) -> Vec<Participant> {
-        self.misfits_on(topic)
+        let misfits = |guid: &Guid| self.graph.misfit(guid, &topic.info).is_some();
+        self.writers_of(topic, misfits).iter().map(Guid::participant).collect()
     }
 
     fn strange_writers(&self, topic: &Topic) -> Vec<Guid> {
-        self.names
-            .resolve(topic.name)
-            .map(|name| self.graph.writers_of(&wire_name(&name), |guid| !self.gate.admits(guid)))
-            .unwrap_or_default()
+        self.writers_of(topic, |guid| !self.gate.admits(guid))
     }
 
     fn offers(&self) -> Vec<Offer> {
@@ -434,7 +407,7 @@ impl Bus for DdsBus {
 
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
         let resolved = self.names.resolve(topic.name)?;
-        let writer = self.writers.get(publisher.0).ok_or(BusError::Handle("count_published"))?;
+        let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("count_published"))?;
         writer.count_whole(resolved);
         Ok(())
     }
@@ -478,10 +451,10 @@ impl Bus for DdsBus {
         let deadline = Instant::now() + timeout;
         // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
         let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand().reliable;
-        let external = |w: &&Arc<Writer>| !self.readers.values().any(|r| own(r, &w.topic));
+        let external = |w: &&Writer| !self.readers.values().any(|r| own(r, &w.topic));
         self.writers.values().filter(external).all(|writer| {
             let left = deadline.saturating_duration_since(Instant::now());
-            writer.outlet.wait_for_acknowledgments(left)
+            writer.raw.wait_for_acknowledgments(left)
         })
     }
 

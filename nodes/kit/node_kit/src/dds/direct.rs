@@ -7,9 +7,9 @@
 //! - [`RawAdapter`]: samples as bytes. Recorder and player know no types, and a node refuses a sample that does not decode
 //!   without losing those behind it.
 //! - [`offered`], [`requested`]: resource limits, which `QosProfile` lacks. The default of 64 samples loses data silently.
-//! - [`Outlet`]: a publisher with the sequence numbers that it wrote, the sample that a message refers to, and waiting for
+//! - [`RawPublisher`]: a publisher with the sequence numbers that it wrote, the sample that a message refers to, and waiting for
 //!   acknowledgements.
-//! - [`Inlet`]: a subscription with sequence numbers and source times.
+//! - [`RawSubscription`]: a subscription with sequence numbers and source times.
 //! - [`Discovery`]: changes of the graph. ros2-client's spinner reports no lost participants, and subscribes to `/clock` with
 //!   a type that is not `rosgraph_msgs/Clock`.
 
@@ -21,7 +21,7 @@ use crate::demand::Demand;
 use crate::offer::{Offer, user_data, wire_type};
 use crate::sample::{Sample, SampleId, SampleInfo};
 use grainlab_msgs::{Guid, Qos, Topic};
-use ros2_client::{Context, Gid, Node};
+use ros2_client::{Context, Node};
 use rustdds::bytes::Bytes;
 use rustdds::dds::{ReadError, WriteError};
 use rustdds::no_key::{
@@ -78,19 +78,15 @@ impl Network {
     }
 }
 
-/// The ros2-client context of one process of a run, and its 16-byte GUID.
-pub(super) fn context(
-    network: Network,
-    prefix: [u8; 12],
-    gate: &Arc<Gate>,
-) -> Result<(Context, Gid), BusError> {
+/// The ros2-client context of one process of a run.
+pub(super) fn context(network: Network, prefix: [u8; 12], gate: &Arc<Gate>) -> Result<Context, BusError> {
     let create = || {
         let [filter, listener, readers] = std::array::from_fn(|_| Arc::clone(gate));
         builder(network)
             .guid_prefix(GuidPrefix::new(&prefix))
-            .data_filter(move |writer, reader| filter.takes(writer.into(), reader.into()))
+            .data_filter(move |writer, reader| filter.takes(Guid(writer.to_bytes()), Guid(reader.to_bytes())))
             .participant_listener(move |peer| {
-                listener.discovered(peer.guid.into(), &peer.metatraffic_unicast_addresses);
+                listener.discovered(Guid(peer.guid.to_bytes()), &peer.metatraffic_unicast_addresses);
             })
             // Readers outside the run receive what is sent, and are not waited for.
             .reader_may_block(move |prefix| readers.admits_prefix(prefix.as_ref()))
@@ -98,10 +94,7 @@ pub(super) fn context(
     };
     // RustDDS gives its threads ten seconds to start; a process that was suspended meanwhile tries once more.
     let participant = create().or_else(|_| create()).map_err(|e| create_error("DDS participant", &e))?;
-    let guid = Gid::from(participant.guid());
-    let context =
-        Context::from_domain_participant(participant).map_err(|e| create_error("ROS context", &e))?;
-    Ok((context, guid))
+    Context::from_domain_participant(participant).map_err(|e| create_error("ROS context", &e))
 }
 
 // ---- Samples as bytes
@@ -192,7 +185,7 @@ impl SerializerAdapter<RawPayload> for RawAdapter {
 
 // ---- QoS with limits
 
-/// How long a reliable write waits while its window is full. Longer than one repair round (10 ms), much shorter than a
+/// Time for which a reliable write waits while its window is full. Longer than one repair round (10 ms), much shorter than a
 /// step of the slowest node, so that a crashed reader delays a writer but never stops it.
 const MAX_BLOCKING: Duration = Duration::from_millis(20);
 
@@ -229,7 +222,7 @@ fn requested(topic: &Topic, demand: Demand) -> QosPolicies {
     policies(demand.reliable, demand.reliable && topic.qos.transient_local, demand.depth, demand.depth)
 }
 
-/// What another process offers. A policy that is not announced has the default of DDS; the depth is announced by few
+/// Offer of another process. A policy that is not announced has the default of DDS; the depth is announced by few
 /// implementations, and 0 if unknown.
 fn offered_by(qos: &QosPolicies) -> Qos {
     let depth = match qos.history() {
@@ -266,29 +259,22 @@ fn policies(reliable: bool, transient_local: bool, depth: u32, max_samples: u32)
 
 // ---- Publisher
 
-/// Why a sample was not written.
-pub(super) enum WriteFailure {
-    /// The window stayed full.
-    Full,
-    /// Another reason, as RustDDS says it.
-    Other(String),
-}
-
 /// A publisher of bytes.
-pub(super) struct Outlet(DataWriter<RawPayload, RawAdapter>);
+pub(super) struct RawPublisher(DataWriter<RawPayload, RawAdapter>);
 
-impl Outlet {
+impl RawPublisher {
     pub(super) fn new(node: &mut Node, dds: &DdsTopic, topic: &Topic) -> Result<Self, BusError> {
         let writer = node.create_datawriter(dds, Some(offered(topic)));
         writer.map(Self).map_err(|e| create_error(topic.name, &e))
     }
 
-    pub(super) fn gid(&self) -> Gid {
-        self.0.guid().into()
+    pub(super) fn guid(&self) -> Guid {
+        Guid(self.0.guid().to_bytes())
     }
 
-    /// Writes a body, in CDR with its encapsulation header, and returns its sequence number.
-    pub(super) fn write(&self, body: &[u8], about: Option<SampleId>) -> Result<i64, WriteFailure> {
+    /// Writes a body, in CDR with its encapsulation header, and returns its sequence number; `None` if the window stayed
+    /// full.
+    pub(super) fn write(&self, body: &[u8], about: Option<SampleId>) -> Result<Option<i64>, String> {
         let (header, payload) = body.split_at(HEADER.min(body.len()));
         let related = about.map(|sample| SampleIdentity {
             writer_guid: GUID::from_bytes(sample.writer.0),
@@ -303,14 +289,9 @@ impl Outlet {
         padded.resize(payload.len().next_multiple_of(4), 0);
         let big_endian = header.starts_with(&CDR_BE);
         match self.0.write_with_options(RawPayload { bytes: Bytes::from(padded), big_endian }, options) {
-            Ok(identity) => Ok(i64::from(identity.sequence_number)),
-            Err(WriteError::WouldBlock { .. }) => Err(WriteFailure::Full),
-            Err(
-                WriteError::Serialization { reason, .. }
-                | WriteError::Poisoned { reason, .. }
-                | WriteError::Internal { reason, .. },
-            ) => Err(WriteFailure::Other(reason)),
-            Err(WriteError::Io(error)) => Err(WriteFailure::Other(error.to_string())),
+            Ok(identity) => Ok(Some(i64::from(identity.sequence_number))),
+            Err(WriteError::WouldBlock { .. }) => Ok(None),
+            Err(error) => Err(error.to_string()),
         }
     }
 
@@ -324,16 +305,16 @@ impl Outlet {
 
 /// Why a sample was not taken.
 pub(super) enum TakeFailure {
-    /// Its representation is not CDR; the next call takes the sample after it.
+    /// The representation is not CDR; the next call takes the sample after it.
     Representation(String),
     /// The reader failed.
     Other(String),
 }
 
 /// A subscription to bytes.
-pub(super) struct Inlet(SimpleDataReader<RawBody, RawAdapter>);
+pub(super) struct RawSubscription(SimpleDataReader<RawBody, RawAdapter>);
 
-impl Inlet {
+impl RawSubscription {
     pub(super) fn new(
         node: &mut Node,
         dds: &DdsTopic,
@@ -344,8 +325,13 @@ impl Inlet {
         reader.map(Self).map_err(|e| create_error(topic.name, &e))
     }
 
-    pub(super) fn gid(&self) -> Gid {
-        self.0.guid().into()
+    pub(super) fn guid(&self) -> Guid {
+        Guid(self.0.guid().to_bytes())
+    }
+
+    /// The source of its notifications.
+    pub(super) fn source(&mut self) -> &mut impl mio::event::Source {
+        &mut self.0
     }
 
     /// Clears the notification, so that the next sample raises a new one. Before reading, never after.
@@ -360,30 +346,6 @@ impl Inlet {
             Err(ReadError::Deserialization { reason }) => Err(TakeFailure::Representation(reason)),
             Err(error) => Err(TakeFailure::Other(error.to_string())),
         }
-    }
-}
-
-impl mio::event::Source for Inlet {
-    fn register(
-        &mut self,
-        registry: &mio::Registry,
-        token: mio::Token,
-        interests: mio::Interest,
-    ) -> io::Result<()> {
-        self.0.register(registry, token, interests)
-    }
-
-    fn reregister(
-        &mut self,
-        registry: &mio::Registry,
-        token: mio::Token,
-        interests: mio::Interest,
-    ) -> io::Result<()> {
-        self.0.reregister(registry, token, interests)
-    }
-
-    fn deregister(&mut self, registry: &mio::Registry) -> io::Result<()> {
-        self.0.deregister(registry)
     }
 }
 
@@ -413,16 +375,16 @@ fn nanos(time: Timestamp) -> u64 {
 /// A change that discovery reports.
 pub(super) enum Change {
     /// A writer of another process, with its DDS topic and what it offers there if that is a topic of ROS.
-    Writer { writer: Gid, topic: String, offer: Option<Offer> },
+    Writer { writer: Guid, topic: String, offer: Option<Offer> },
     /// An endpoint of this process was matched.
-    Matched { local: Gid, remote: Gid },
+    Matched { local: Guid, remote: Guid },
     /// An endpoint is gone.
-    Lost(Gid),
+    Lost(Guid),
     /// A participant is gone: its GUID prefix.
     ParticipantLost([u8; 12]),
     /// Two endpoints do not fit, in words.
     Misfit(String),
-    /// Anything else.
+    /// Any other change.
     Other,
 }
 
@@ -442,6 +404,10 @@ impl Discovery {
 
     /// The next change, if any.
     pub(super) fn next(&self) -> Option<Change> {
+        let matched = |local: GUID, remote: GUID| {
+            let [local, remote] = [local, remote].map(|guid| Guid(guid.to_bytes()));
+            Change::Matched { local, remote }
+        };
         let misfit =
             |remote: GUID, what: &str, requested: &dyn std::fmt::Debug, offered: &dyn std::fmt::Debug| {
                 let remote = Guid(remote.to_bytes());
@@ -452,15 +418,17 @@ impl Discovery {
                 let id = Guid(writer.guid.to_bytes());
                 let qos = offered_by(&writer.qos);
                 let offer = Offer::of_wire(id, &writer.topic_name, &writer.type_name, qos, &writer.user_data);
-                Change::Writer { writer: writer.guid.into(), topic: writer.topic_name, offer }
+                Change::Writer { writer: id, topic: writer.topic_name, offer }
             }
             Event::RemoteReaderMatched { local_writer, remote_reader } => {
-                Change::Matched { local: local_writer.into(), remote: remote_reader.into() }
+                matched(local_writer, remote_reader)
             }
             Event::RemoteWriterMatched { local_reader, remote_writer } => {
-                Change::Matched { local: local_reader.into(), remote: remote_writer.into() }
+                matched(local_reader, remote_writer)
             }
-            Event::WriterLost { guid, .. } | Event::ReaderLost { guid, .. } => Change::Lost(guid.into()),
+            Event::WriterLost { guid, .. } | Event::ReaderLost { guid, .. } => {
+                Change::Lost(Guid(guid.to_bytes()))
+            }
             Event::ParticipantLost { id, .. } => {
                 let mut prefix = [0; 12];
                 prefix.copy_from_slice(id.as_ref());

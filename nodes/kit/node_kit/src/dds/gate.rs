@@ -5,7 +5,6 @@ use super::processes;
 use crate::admission::{Admission, Participant, Stranger};
 use crate::identity::{Identity, Scope};
 use grainlab_msgs::Guid;
-use ros2_client::Gid;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::sync::Mutex;
@@ -16,11 +15,7 @@ pub(super) struct Gate {
     identity: Identity,
     admission: Mutex<Admission>,
     /// The resolved topic of each of our readers.
-    topics: Mutex<BTreeMap<[u8; 16], String>>,
-}
-
-fn prefix(guid: &Gid) -> Participant {
-    Guid(guid.to_bytes16()).participant()
+    topics: Mutex<BTreeMap<Guid, String>>,
 }
 
 impl Gate {
@@ -33,45 +28,45 @@ impl Gate {
     }
 
     /// Registers one of our readers under its topic.
-    pub(super) fn add_reader(&self, reader: Gid, topic: &str) {
-        lock(&self.topics).insert(reader.to_bytes16(), topic.to_owned());
+    pub(super) fn add_reader(&self, reader: Guid, topic: &str) {
+        lock(&self.topics).insert(reader, topic.to_owned());
     }
 
     /// Removes one of our readers.
-    pub(super) fn remove_reader(&self, reader: Gid) {
-        lock(&self.topics).remove(&reader.to_bytes16());
+    pub(super) fn remove_reader(&self, reader: Guid) {
+        lock(&self.topics).remove(&reader);
     }
 
-    /// Whether one of our readers accepts a sample of this writer.
-    pub(super) fn takes(&self, writer: Gid, reader: Gid) -> bool {
+    /// True if one of our readers accepts a sample of this writer.
+    pub(super) fn takes(&self, writer: Guid, reader: Guid) -> bool {
         let mut admission = lock(&self.admission);
-        if admission.admits(&prefix(&writer)) {
+        if admission.admits(&writer.participant()) {
             return true;
         }
         // A reader without a topic is that of a service: anyone may ask.
-        let Some(topic) = lock(&self.topics).get(&reader.to_bytes16()).cloned() else { return true };
-        let (taken, new) = admission.takes(Guid(writer.to_bytes16()), &topic);
+        let Some(topic) = lock(&self.topics).get(&reader).cloned() else { return true };
+        let (taken, new) = admission.takes(writer, &topic);
         if new {
-            let stranger = admission.describe(&prefix(&writer));
+            let stranger = admission.describe(&writer.participant());
             drop(admission);
             log::info!("{topic}: {stranger} is not of this run: its samples are ignored");
         }
         taken
     }
 
-    /// Whether endpoints of this participant count.
-    pub(super) fn admits(&self, guid: &Gid) -> bool {
-        lock(&self.admission).admits(&prefix(guid))
+    /// True if endpoints of this participant count.
+    pub(super) fn admits(&self, guid: &Guid) -> bool {
+        lock(&self.admission).admits(&guid.participant())
     }
 
-    /// The same by its GUID prefix.
+    /// True if endpoints of the participant with this GUID prefix count.
     pub(super) fn admits_prefix(&self, prefix: &[u8]) -> bool {
         <&Participant>::try_from(prefix).is_ok_and(|prefix| lock(&self.admission).admits(prefix))
     }
 
     /// Records a discovered participant and its addresses.
-    pub(super) fn discovered(&self, participant: Gid, addresses: &[SocketAddr]) {
-        let participant = prefix(&participant);
+    pub(super) fn discovered(&self, participant: Guid, addresses: &[SocketAddr]) {
+        let participant = participant.participant();
         // The process of a participant is looked up only where admission or a message needs it.
         let ours = self.identity.run.is_some() && lock(&self.admission).admits(&participant);
         if self.identity.scope == Scope::Everyone || ours {

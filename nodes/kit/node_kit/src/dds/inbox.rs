@@ -1,16 +1,16 @@
 //! One DDS reader and the samples that were read from it but not taken yet.
 
-use super::direct::{Inlet, TakeFailure};
+use super::direct::{RawSubscription, TakeFailure};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::sample::{Sample, SampleId, SampleInfo};
 use crate::wall_clock::wall_nanos;
-use ros2_client::Gid;
+use grainlab_msgs::Guid;
 use std::collections::VecDeque;
 
 /// A reader shared by all subscriptions to its topic, with one queue per subscription.
 pub(super) struct Inbox {
-    reader: Inlet,
+    reader: RawSubscription,
     topic: String,
     demand: Demand,
     /// One for each subscriber; that of one that left is `None`.
@@ -22,14 +22,14 @@ pub(super) struct Inbox {
 }
 
 impl Inbox {
-    pub(super) fn new(reader: Inlet, topic: String, demand: Demand, own: [u8; 12]) -> Self {
+    pub(super) fn new(reader: RawSubscription, topic: String, demand: Demand, own: [u8; 12]) -> Self {
         Self { reader, topic, demand, queues: Vec::new(), own, refused: 0 }
     }
 
     /// Adds a sample that this process published: a participant without multicast does not discover itself, and DDS would
     /// not deliver its own samples.
     pub(super) fn deliver_own(&mut self, id: SampleId, about: Option<SampleId>, body: &[u8]) {
-        // What others published before comes before it. The node's next take returns the error of a failing reader.
+        // Samples that others published before come before it. The node's next take returns the error of a failing reader.
         let _ = self.collect();
         let SampleId { writer, sequence } = id;
         let now = wall_nanos();
@@ -40,21 +40,16 @@ impl Inbox {
         }
     }
 
-    /// Resolved name.
-    pub(super) fn topic(&self) -> &str {
-        &self.topic
-    }
-
-    pub(super) fn gid(&self) -> Gid {
-        self.reader.gid()
+    pub(super) fn guid(&self) -> Guid {
+        self.reader.guid()
     }
 
     pub(super) fn demand(&self) -> Demand {
         self.demand
     }
 
-    pub(super) fn reader_mut(&mut self) -> &mut Inlet {
-        &mut self.reader
+    pub(super) fn source(&mut self) -> &mut impl mio::event::Source {
+        self.reader.source()
     }
 
     /// Adds a subscriber and returns its index.

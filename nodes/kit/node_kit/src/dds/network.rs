@@ -29,9 +29,9 @@ pub const MAX_DOMAIN: u16 = 232;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{variable}={value:?}: {reason}")]
 pub struct NetworkError {
-    /// The variable.
+    /// Name of the variable.
     pub variable: &'static str,
-    /// Its value.
+    /// Value of the variable.
     pub value: String,
     /// Why it is not supported, and what to do.
     pub reason: &'static str,
@@ -48,7 +48,7 @@ impl Network {
         Self::from_variables(|name| std::env::var(name).ok())
     }
 
-    /// The same from any source of variables; an empty one counts as unset.
+    /// Reads them from any source of variables; an empty one counts as unset.
     pub fn from_variables(lookup: impl Fn(&str) -> Option<String>) -> Result<Self, NetworkError> {
         let get =
             |variable: &'static str| lookup(variable).map(|v| v.trim().to_owned()).filter(|v| !v.is_empty());
@@ -69,29 +69,22 @@ impl Network {
             Some(text) => match text.to_ascii_uppercase().as_str() {
                 "LOCALHOST" => Reach::Localhost,
                 "SUBNET" | "SYSTEM_DEFAULT" => Reach::Subnet,
-                "OFF" => {
-                    return Err(refuse(
-                        "ROS_AUTOMATIC_DISCOVERY_RANGE",
-                        &text,
-                        "RustDDS cannot run without discovery, and the processes of one run must find each other; use LOCALHOST",
-                    ));
-                }
-                _ => {
-                    return Err(refuse(
-                        "ROS_AUTOMATIC_DISCOVERY_RANGE",
-                        &text,
-                        "must be LOCALHOST, SUBNET or SYSTEM_DEFAULT",
-                    ));
+                other => {
+                    let reason = if other == "OFF" {
+                        "RustDDS cannot run without discovery, and the processes of one run must find each other; use LOCALHOST"
+                    } else {
+                        "must be LOCALHOST, SUBNET or SYSTEM_DEFAULT"
+                    };
+                    return Err(refuse("ROS_AUTOMATIC_DISCOVERY_RANGE", &text, reason));
                 }
             },
         };
         let peers = match get("ROS_STATIC_PEERS") {
             // ROS_LOCALHOST_ONLY=1 is stronger in ROS 2, too.
-            Some(_) if localhost_only.as_deref() == Some("1") => StaticPeers::default(),
-            None => StaticPeers::default(),
-            Some(text) => {
+            Some(text) if localhost_only.as_deref() != Some("1") => {
                 StaticPeers::read(&text).map_err(|reason| refuse("ROS_STATIC_PEERS", &text, reason))?
             }
+            _ => StaticPeers::default(),
         };
         Ok(Self { domain, reach, peers })
     }

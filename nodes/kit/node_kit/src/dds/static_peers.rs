@@ -28,12 +28,12 @@ impl StaticPeers {
         Ok(peers)
     }
 
-    /// The addresses.
+    /// Addresses of the hosts.
     pub fn iter(&self) -> impl Iterator<Item = Ipv4Addr> + '_ {
         self.hosts.iter().flatten().copied()
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.iter().next().is_none()
     }

@@ -2,7 +2,7 @@
 
 use super::state::{Reader, State, Writer};
 use crate::admission::{Admission, Participant, Stranger};
-use crate::bus::{Bus, Caller, PublisherId, Sender, SubscriptionId, Wake};
+use crate::bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::Identity;
@@ -47,7 +47,7 @@ impl MemoryBus {
         self.interrupted = true;
     }
 
-    /// Whether a sample can be taken now.
+    /// True if a sample can be taken now.
     pub fn has_arrivals(&self) -> bool {
         self.has_data()
     }
@@ -57,11 +57,16 @@ impl MemoryBus {
         self.readers.iter().any(|r| state.readers[*r].has_data(state.now))
     }
 
-    fn endpoints(&self, topic: &str, count: impl Fn(&State, &str) -> usize) -> usize {
-        count(&self.state.borrow(), topic)
+    /// Present writers of a topic, by its resolved name, sorted, of those that count.
+    fn writers_of(&self, topic: &str, counts: impl Fn(Guid) -> bool) -> Vec<Guid> {
+        let state = self.state.borrow();
+        let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == topic);
+        let mut ids: Vec<Guid> = on_topic.map(|w| w.id).filter(|id| counts(*id)).collect();
+        ids.sort();
+        ids
     }
 
-    /// Whether it is an admitted writer of another process.
+    /// True for an admitted writer of another process.
     fn counts(&self, writer: Guid) -> bool {
         let participant = writer.participant();
         participant != self.participant && self.admission.admits(&participant)
@@ -151,47 +156,30 @@ impl Bus for MemoryBus {
         None
     }
 
-    fn sender(&self, _publisher: PublisherId) -> Option<Sender> {
-        None
-    }
-
     fn readers(&self, publisher: PublisherId) -> usize {
-        let Some(writer) = self.writers.get(publisher.0) else { return 0 };
-        let topic = self.state.borrow().writers[*writer].topic.clone();
-        let others = |r: &&Reader| {
-            r.alive && r.participant != self.participant && self.admission.admits(&r.participant)
+        let state = self.state.borrow();
+        let Some(writer) = self.writers.get(publisher.0).map(|w| &state.writers[*w]) else { return 0 };
+        let counts = |r: &&Reader| {
+            let other = r.participant != self.participant && self.admission.admits(&r.participant);
+            r.alive && r.topic == writer.topic && other
         };
-        self.endpoints(&topic, |s, topic| {
-            s.readers.iter().filter(others).filter(|r| r.topic == topic).count()
-        })
+        state.readers.iter().filter(counts).count()
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let Some(reader) = self.readers.get(subscription.0) else { return 0 };
         let topic = self.state.borrow().readers[*reader].topic.clone();
-        let others = |w: &&Writer| w.alive && self.counts(w.id);
-        self.endpoints(&topic, |s, topic| {
-            s.writers.iter().filter(others).filter(|w| w.topic == topic).count()
-        })
+        self.writers_of(&topic, |id| self.counts(id)).len()
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<Guid> {
-        let Ok(resolved) = self.names.resolve(topic.name) else { return Vec::new() };
-        let state = self.state.borrow();
-        let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == resolved);
-        let mut ids: Vec<Guid> = on_topic.map(|w| w.id).filter(|id| self.counts(*id)).collect();
-        ids.sort();
-        ids
+        let name = self.names.resolve(topic.name).unwrap_or_default();
+        self.writers_of(&name, |id| self.counts(id))
     }
 
     fn strange_writers(&self, topic: &Topic) -> Vec<Guid> {
-        let Ok(resolved) = self.names.resolve(topic.name) else { return Vec::new() };
-        let state = self.state.borrow();
-        let strange = |id: &Guid| !self.admission.admits(&id.participant());
-        let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == resolved).map(|w| w.id);
-        let mut ids: Vec<Guid> = on_topic.filter(strange).collect();
-        ids.sort();
-        ids
+        let name = self.names.resolve(topic.name).unwrap_or_default();
+        self.writers_of(&name, |id| !self.admission.admits(&id.participant()))
     }
 
     fn offers(&self) -> Vec<Offer> {

@@ -27,18 +27,19 @@ impl Hub {
         self.bus_as(names, Identity::default())
     }
 
-    /// The same with this identity instead of that of a tool.
+    /// A new participant with this identity instead of that of a tool.
     pub fn bus_as(&self, names: Names, identity: Identity) -> MemoryBus {
-        let participant = participant_of(&identity, self.state.borrow_mut().count_participant());
+        self.state.borrow_mut().participants += 1;
+        let participant = participant_of(&identity, self.state.borrow().participants);
         MemoryBus::new(Rc::clone(&self.state), participant, names, identity)
     }
 
     /// Faults of one topic, by its resolved name, from now on.
     pub fn set_faults(&self, topic: &str, faults: Faults) {
-        self.state.borrow_mut().set_faults(topic, faults);
+        self.state.borrow_mut().faults.insert(topic.into(), faults);
     }
 
-    /// Virtual time.
+    /// Virtual time since the start.
     pub fn now(&self) -> Duration {
         self.state.borrow().now
     }
@@ -50,7 +51,7 @@ impl Hub {
 
     /// Sets the wall clock forward or back; the monotonic time does not change.
     pub fn set_wall_clock(&self, forward_nanos: i64) {
-        self.state.borrow_mut().set_wall_clock(forward_nanos);
+        self.state.borrow_mut().wall_offset += forward_nanos;
     }
 
     /// Time of the next arrival of a sample in transit, if any.

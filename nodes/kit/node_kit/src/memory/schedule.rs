@@ -21,12 +21,12 @@ impl<'a> Actor<'a> {
         Self { node, bus, due: Duration::ZERO, ended: None }
     }
 
-    /// Its exit, if it has ended.
+    /// Exit of the node, if it has ended.
     pub fn ended(&self) -> Option<&Result<Exit, NodeError>> {
         self.ended.as_ref()
     }
 
-    /// Its bus.
+    /// Bus of the node.
     pub fn bus(&mut self) -> &mut MemoryBus {
         &mut self.bus
     }

@@ -15,10 +15,10 @@ const EPOCH_NANOS: u64 = 1_700_000_000_000_000_000;
 pub(super) struct State {
     pub(super) now: Duration,
     /// Offset by which the wall clock was set, ns.
-    wall_offset: i64,
+    pub(super) wall_offset: i64,
     dice: Dice,
-    faults: BTreeMap<String, Faults>,
-    participants: u32,
+    pub(super) faults: BTreeMap<String, Faults>,
+    pub(super) participants: u32,
     pub(super) writers: Vec<Writer>,
     pub(super) readers: Vec<Reader>,
 }
@@ -67,20 +67,6 @@ impl State {
         }
     }
 
-    /// Counts a new participant; its number.
-    pub(super) fn count_participant(&mut self) -> u32 {
-        self.participants += 1;
-        self.participants
-    }
-
-    pub(super) fn set_faults(&mut self, topic: &str, faults: Faults) {
-        self.faults.insert(topic.into(), faults);
-    }
-
-    pub(super) fn set_wall_clock(&mut self, forward_nanos: i64) {
-        self.wall_offset += forward_nanos;
-    }
-
     /// Time of the next arrival of a sample in transit, if any.
     pub(super) fn next_arrival(&self) -> Option<Duration> {
         let next = |r: &Reader| r.queue.iter().map(|(due, _)| *due).find(|due| *due > self.now);
@@ -94,15 +80,8 @@ impl State {
     pub(super) fn add_writer(&mut self, participant: Participant, topic: String, of: &Topic) -> usize {
         let id = writer_id(participant, self.writers.len());
         let (qos, type_name) = (of.qos, of.info.type_name);
-        self.writers.push(Writer {
-            id,
-            topic,
-            type_name,
-            qos,
-            count: 0,
-            latched: VecDeque::new(),
-            alive: true,
-        });
+        let latched = VecDeque::new();
+        self.writers.push(Writer { id, topic, type_name, qos, count: 0, latched, alive: true });
         self.writers.len() - 1
     }
 

@@ -10,7 +10,7 @@ const PARAMETERS_KEY: &str = "ros__parameters";
 /// A parameter of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Given {
-    /// Its name, groups joined by dots.
+    /// Name, groups joined by dots.
     pub(super) name: String,
     pub(super) value: ParameterValue,
     /// It stands under a key with wildcards, which is for several nodes: one that does not declare it leaves it out.
@@ -21,19 +21,21 @@ pub(super) struct Given {
 ///
 /// A file without a key for the node is an error: it would be ignored without a message.
 pub(super) fn read(path: &Path, node: &str) -> Result<Vec<Given>, ParameterError> {
-    let file_error = |reason: String| ParameterError::File { path: path.into(), reason };
-    let text = std::fs::read_to_string(path).map_err(|e| file_error(format!("cannot read: {e}")))?;
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| ParameterError(format!("{}: cannot read: {e}", path.display())))?;
     parse(&text, path, node)
 }
 
 fn parse(text: &str, path: &Path, node: &str) -> Result<Vec<Given>, ParameterError> {
-    let file_error = |reason: String| ParameterError::File { path: path.into(), reason };
+    let file_error = |reason: String| ParameterError(format!("{}: {reason}", path.display()));
     let mut sections = Vec::new();
     collect_sections("", Yaml::parse(text).map_err(file_error)?, &mut sections).map_err(file_error)?;
     if !sections.iter().any(|(key, _)| matches(key, node)) {
         let keys: Vec<&str> = sections.iter().map(|(key, _)| key.as_str()).collect();
         let keys = if keys.is_empty() { "none".into() } else { keys.join(", ") };
-        return Err(ParameterError::NoMatchingKey { path: path.into(), node: node.into(), keys });
+        return Err(file_error(format!(
+            "no key is for node {node}, so the file would be ignored; its keys: {keys}"
+        )));
     }
     let mut given = Vec::new();
     for (key, parameters) in sections.into_iter().filter(|(key, _)| matches(key, node)) {
@@ -83,7 +85,7 @@ fn flatten(prefix: &str, yaml: Yaml, values: &mut Vec<(String, ParameterValue)>)
     Ok(())
 }
 
-/// Whether a node key is for `node`: `*` matches one token, `**` for any number of them.
+/// True if a node key is for `node`: `*` matches one token, `**` for any number of them.
 fn matches(key: &str, node: &str) -> bool {
     fn tokens_match(key: &[&str], node: &[&str]) -> bool {
         match (key, node) {
@@ -94,11 +96,7 @@ fn matches(key: &str, node: &str) -> bool {
             _ => false,
         }
     }
-    let tokens =
-        |text: &str| text.split('/').filter(|t| !t.is_empty()).map(str::to_owned).collect::<Vec<_>>();
-    let (key, node) = (tokens(key), tokens(node));
-    let key: Vec<&str> = key.iter().map(String::as_str).collect();
-    let node: Vec<&str> = node.iter().map(String::as_str).collect();
+    let [key, node] = [key, node].map(|text| text.split('/').filter(|t| !t.is_empty()).collect::<Vec<_>>());
     tokens_match(&key, &node)
 }
 
@@ -142,6 +140,14 @@ mod tests {
                 ("gain".into(), ParameterValue::Integer(3)),
             ]
         );
+    }
+
+    #[test]
+    fn any_scalar_is_a_name() {
+        let text = "/**:\n  ros__parameters: {1: 2, y: 3, on: 4, true: 5, 1.5: 6, null: 7}\n";
+        let names: Vec<String> =
+            read_text(text, "/servo").unwrap().into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["1", "y", "on", "true", "1.5", "null"]);
     }
 
     #[test]

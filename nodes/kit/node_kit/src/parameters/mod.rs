@@ -8,7 +8,7 @@ mod value;
 mod yaml;
 
 pub use error::ParameterError;
-pub use set::{FromParameter, Parameters};
+pub use set::Parameters;
 pub use spec::{ParameterSpec, Range};
-pub use value::ParameterValue;
+pub use value::{FromParameter, IntoParameter, ParameterValue, parameter_text};
 pub use yaml::parse_value;

@@ -2,8 +2,8 @@
 
 use super::error::ParameterError;
 use super::spec::ParameterSpec;
-use super::value::ParameterValue;
-use super::{file, yaml::Yaml};
+use super::value::{FromParameter, ParameterValue, parameter_text, type_name};
+use super::{file, yaml::parse_value};
 use crate::{args::RosArgs, names::Names};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -37,21 +37,19 @@ impl Parameters {
             }
         }
         for assignment in &args.parameters {
-            let origin = "-p".to_owned();
             let name = &assignment.name;
             if let Some(prefix) = assignment.node.as_deref()
                 && ![default_node, names.node(), "*", "/**"].contains(&prefix)
             {
-                return Err(ParameterError::OtherNode {
-                    prefix: prefix.into(),
-                    name: name.clone(),
-                    node: names.fully_qualified(),
-                });
+                return Err(ParameterError(format!(
+                    "-p {prefix}:{name}: this process runs node {}, so the value would be ignored; remove the prefix or \
+                     correct it",
+                    names.fully_qualified()
+                )));
             }
-            let value = Yaml::parse(&assignment.yaml).and_then(Yaml::into_value).map_err(|reason| {
-                ParameterError::Value { origin: origin.clone(), name: name.clone(), reason }
-            })?;
-            set.assign(specs, names, &origin, name, value)?;
+            let value = parse_value(&assignment.yaml)
+                .map_err(|reason| ParameterError(format!("-p: parameter {name:?}: {reason}")))?;
+            set.assign(specs, names, "-p", name, value)?;
         }
         Ok(set)
     }
@@ -76,31 +74,28 @@ impl Parameters {
     ) -> Result<(), ParameterError> {
         let Some(spec) = specs.iter().find(|s| s.name == name) else {
             let known: Vec<&str> = self.lock().keys().copied().collect();
-            return Err(ParameterError::Unknown {
-                origin: origin.into(),
-                node: names.fully_qualified(),
-                name: name.into(),
-                known: if known.is_empty() { "none".into() } else { known.join(", ") },
-            });
+            let known = if known.is_empty() { "none".into() } else { known.join(", ") };
+            let node = names.fully_qualified();
+            return Err(ParameterError(format!(
+                "{origin}: node {node} has no parameter {name:?}; it has: {known}"
+            )));
         };
-        let value = coerce(value, &spec.default).map_err(|found| ParameterError::Type {
-            origin: origin.into(),
-            name: name.into(),
-            expected: spec.default.type_name(),
-            found: found.type_name(),
-            value: found.to_string(),
-            hint: match spec.default {
+        let value = coerce(value, &spec.default).map_err(|found| {
+            let [expected, of] = [&spec.default, &found].map(type_name);
+            let hint = match spec.default {
                 ParameterValue::String(_) => "; put it in quotes: \"'text'\"",
                 _ => "",
-            },
+            };
+            let found = parameter_text(&found);
+            ParameterError(format!(
+                "{origin}: parameter {name:?} is of type {expected}, but {found} is of type {of}{hint}"
+            ))
         })?;
         if !spec.range.contains(&value) {
-            return Err(ParameterError::OutOfRange {
-                origin: origin.into(),
-                name: name.into(),
-                value: value.to_string(),
-                range: spec.range.to_string(),
-            });
+            let (value, range) = (parameter_text(&value), spec.range);
+            return Err(ParameterError(format!(
+                "{origin}: parameter {name:?} = {value} is out of range: {range}"
+            )));
         }
         self.change(spec.name, value);
         Ok(())
@@ -114,7 +109,7 @@ impl Parameters {
     pub fn get<T: FromParameter>(&self, name: &str) -> T {
         let values = self.lock();
         let value = values.get(name).unwrap_or_else(|| panic!("parameter {name:?} is not declared"));
-        T::from_parameter(value).unwrap_or_else(|| panic!("parameter {name:?} is a {}", value.type_name()))
+        T::from_parameter(value).unwrap_or_else(|| panic!("parameter {name:?} is a {}", type_name(value)))
     }
 
     /// The values now.
@@ -138,40 +133,10 @@ fn coerce(value: ParameterValue, like: &ParameterValue) -> Result<ParameterValue
         }
         // An empty list has no type.
         (V::IntegerArray(v), V::StringArray(_)) if v.is_empty() => Ok(V::StringArray(Vec::new())),
-        (V::IntegerArray(v), V::BoolArray(_)) if v.is_empty() => Ok(V::BoolArray(Vec::new())),
-        (value, like) if value.type_name() == like.type_name() => Ok(value),
+        (V::IntegerArray(v), V::BooleanArray(_)) if v.is_empty() => Ok(V::BooleanArray(Vec::new())),
+        (value, like) if type_name(&value) == type_name(like) => Ok(value),
         (value, _) => Err(value),
     }
-}
-
-/// A Rust type that a parameter can be read as.
-pub trait FromParameter: Sized {
-    /// The value, if it is of this type.
-    fn from_parameter(value: &ParameterValue) -> Option<Self>;
-}
-
-macro_rules! from_parameter {
-    ($($variant:ident => $to:ty),* $(,)?) => {$(
-        impl FromParameter for $to {
-            fn from_parameter(value: &ParameterValue) -> Option<Self> {
-                match value {
-                    ParameterValue::$variant(v) => Some(v.clone()),
-                    _ => None,
-                }
-            }
-        }
-    )*};
-}
-
-from_parameter! {
-    Bool => bool,
-    Integer => i64,
-    Double => f64,
-    String => String,
-    BoolArray => Vec<bool>,
-    IntegerArray => Vec<i64>,
-    DoubleArray => Vec<f64>,
-    StringArray => Vec<String>,
 }
 
 #[cfg(test)]
@@ -258,8 +223,8 @@ mod tests {
 
     #[test]
     fn a_prefix_for_another_node_is_an_error_rather_than_a_lost_value() {
-        let error = resolve(&["-p", "servo:dt:=1"]).unwrap_err();
-        assert!(matches!(error, ParameterError::OtherNode { .. }), "{error}");
+        let error = resolve(&["-p", "servo:dt:=1"]).unwrap_err().to_string();
+        assert!(error.contains("remove the prefix"), "{error}");
         assert!(
             resolve(&["-r", "__node:=sim", "-p", "sim:dt:=1"]).is_ok(),
             "the new name of this node is its name"

@@ -1,6 +1,6 @@
 //! The declaration of a parameter: name, type and default, range, description.
 
-use super::value::ParameterValue;
+use super::value::{IntoParameter, ParameterValue, parameter_text, type_name};
 use std::fmt;
 
 /// The valid values of a parameter.
@@ -10,16 +10,16 @@ pub enum Range {
     Any,
     /// An integer or every integer of a list, bounds included.
     Integer {
-        /// Least value.
+        /// Least valid value.
         min: i64,
-        /// Greatest value.
+        /// Greatest valid value.
         max: i64,
     },
     /// A double or every double of a list, bounds included; an infinite bound is no limit.
     Double {
-        /// Least value.
+        /// Least valid value.
         min: f64,
-        /// Greatest value.
+        /// Greatest valid value.
         max: f64,
     },
     /// A double strictly above zero, and finite.
@@ -29,7 +29,7 @@ pub enum Range {
 }
 
 impl Range {
-    /// Whether `value` lies within.
+    /// True if `value` lies within.
     pub fn contains(&self, value: &ParameterValue) -> bool {
         use ParameterValue as V;
         let doubles: &[f64] = match value {
@@ -75,31 +75,31 @@ impl fmt::Display for Range {
 /// One parameter of a node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterSpec {
-    /// Its name, dots separating groups.
+    /// Name, dots separating groups.
     pub name: &'static str,
-    /// Its default value, which also fixes its type.
+    /// Default value, which also fixes its type.
     pub default: ParameterValue,
-    /// Its valid values.
+    /// Range of valid values.
     pub range: Range,
-    /// Its description, with the unit.
+    /// Description, with the unit.
     pub description: &'static str,
-    /// Whether it cannot change while the node runs.
+    /// True if it cannot change while the node runs.
     pub read_only: bool,
 }
 
 impl ParameterSpec {
     /// A read-only parameter that may take any value of its type.
-    pub fn new(name: &'static str, default: impl Into<ParameterValue>, description: &'static str) -> Self {
-        Self { name, default: default.into(), range: Range::Any, description, read_only: true }
+    pub fn new(name: &'static str, default: impl IntoParameter, description: &'static str) -> Self {
+        Self { name, default: default.into_parameter(), range: Range::Any, description, read_only: true }
     }
 
-    /// The same, but it may be set while the node runs. For what changes no result.
+    /// Makes it settable while the node runs. For what changes no result.
     #[must_use]
     pub fn changeable(self) -> Self {
         Self { read_only: false, ..self }
     }
 
-    /// The same with a range.
+    /// Sets its range.
     #[must_use]
     pub fn within(self, range: Range) -> Self {
         Self { range, ..self }
@@ -109,7 +109,7 @@ impl ParameterSpec {
 /// One line of `--help`: `name (type, default …, range): description`.
 impl fmt::Display for ParameterSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} ({}, default {}", self.name, self.default.type_name(), self.default)?;
+        write!(f, "{} ({}, default {}", self.name, type_name(&self.default), parameter_text(&self.default))?;
         if self.range != Range::Any {
             write!(f, ", {}", self.range)?;
         }

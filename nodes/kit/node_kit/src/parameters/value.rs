@@ -1,77 +1,74 @@
-//! Values of parameters.
+//! Values of parameters, which are those of ros2-client. No node declares an array of bytes.
 
-use std::fmt;
+pub use ros2_client::ParameterValue;
 
-/// The value of a parameter, of one of the types of ROS 2.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ParameterValue {
-    /// `true` or `false`.
-    Bool(bool),
-    /// A 64-bit integer.
-    Integer(i64),
-    /// A number; never NaN.
-    Double(f64),
-    /// Text.
-    String(String),
-    /// A list of truth values.
-    BoolArray(Vec<bool>),
-    /// A list of integers.
-    IntegerArray(Vec<i64>),
-    /// A list of numbers.
-    DoubleArray(Vec<f64>),
-    /// A list of texts.
-    StringArray(Vec<String>),
-}
-
-impl ParameterValue {
-    /// The ROS 2 name of the value's type.
-    pub fn type_name(&self) -> &'static str {
-        match self {
-            Self::Bool(_) => "bool",
-            Self::Integer(_) => "integer",
-            Self::Double(_) => "double",
-            Self::String(_) => "string",
-            Self::BoolArray(_) => "bool array",
-            Self::IntegerArray(_) => "integer array",
-            Self::DoubleArray(_) => "double array",
-            Self::StringArray(_) => "string array",
-        }
+/// The ROS 2 name of the value's type.
+pub(crate) fn type_name(value: &ParameterValue) -> &'static str {
+    match value {
+        ParameterValue::NotSet => "nothing",
+        ParameterValue::Boolean(_) => "bool",
+        ParameterValue::Integer(_) => "integer",
+        ParameterValue::Double(_) => "double",
+        ParameterValue::String(_) => "string",
+        ParameterValue::ByteArray(_) => "byte array",
+        ParameterValue::BooleanArray(_) => "bool array",
+        ParameterValue::IntegerArray(_) => "integer array",
+        ParameterValue::DoubleArray(_) => "double array",
+        ParameterValue::StringArray(_) => "string array",
     }
 }
 
-impl fmt::Display for ParameterValue {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Bool(v) => write!(f, "{v}"),
-            Self::Integer(v) => write!(f, "{v}"),
-            Self::Double(v) => write!(f, "{v:?}"),
-            Self::String(v) => write!(f, "{v:?}"),
-            Self::BoolArray(v) => write!(f, "{v:?}"),
-            Self::IntegerArray(v) => write!(f, "{v:?}"),
-            Self::DoubleArray(v) => write!(f, "{v:?}"),
-            Self::StringArray(v) => write!(f, "{v:?}"),
-        }
+/// A Rust type that a parameter is declared by.
+pub trait IntoParameter {
+    /// Converts it to a value.
+    fn into_parameter(self) -> ParameterValue;
+}
+
+/// A Rust type that a parameter can be read as.
+pub trait FromParameter: Sized {
+    /// The value, if it is of this type.
+    fn from_parameter(value: &ParameterValue) -> Option<Self>;
+}
+
+impl IntoParameter for &str {
+    fn into_parameter(self) -> ParameterValue {
+        ParameterValue::String(self.into())
     }
 }
 
-macro_rules! into_value {
-    ($($from:ty => $variant:ident),* $(,)?) => {$(
-        impl From<$from> for ParameterValue {
-            fn from(value: $from) -> Self {
-                ParameterValue::$variant(value.into())
+macro_rules! parameter_types {
+    ($($variant:ident => $type:ty),* $(,)?) => {
+        $(
+            impl IntoParameter for $type {
+                fn into_parameter(self) -> ParameterValue {
+                    ParameterValue::$variant(self)
+                }
+            }
+
+            impl FromParameter for $type {
+                fn from_parameter(value: &ParameterValue) -> Option<Self> {
+                    if let ParameterValue::$variant(v) = value { Some(v.clone()) } else { None }
+                }
+            }
+        )*
+
+        /// A value as text; texts are in quotes.
+        pub fn parameter_text(value: &ParameterValue) -> String {
+            match value {
+                $(ParameterValue::$variant(v) => format!("{v:?}"),)*
+                other => format!("{other:?}"),
             }
         }
-    )*};
+    };
 }
 
-into_value! {
-    bool => Bool,
-    i64 => Integer,
-    f64 => Double,
-    &str => String,
+parameter_types! {
+    Boolean => bool,
+    Integer => i64,
+    Double => f64,
     String => String,
-    Vec<bool> => BoolArray,
-    Vec<i64> => IntegerArray,
-    Vec<f64> => DoubleArray,
-    Vec<String> => StringArray,
+    BooleanArray => Vec<bool>,
+    IntegerArray => Vec<i64>,
+    DoubleArray => Vec<f64>,
+    StringArray => Vec<String>,
 }

@@ -1,8 +1,7 @@
 //! The parameters of a node as ros2-client declares, checks and changes them.
 
-use super::convert::{from_ros, to_ros};
 use super::descriptor::{FIXED, descriptor, unknown};
-use crate::parameters::{ParameterSpec, Parameters};
+use crate::parameters::{ParameterSpec, ParameterValue, Parameters, parameter_text};
 use ros2_client::NodeOptions;
 use ros2_client::parameters::raw::ParameterDescriptor;
 use std::sync::Arc;
@@ -32,7 +31,7 @@ impl Declared {
             .values
             .snapshot()
             .iter()
-            .fold(options, |options, (name, value)| options.declare_parameter(name, to_ros(value)));
+            .fold(options, |options, (name, value)| options.declare_parameter(name, value.clone()));
         declared
             .parameter_validator(Box::new(move |name, value| checks.check(name, value)))
             .parameter_set_action(Box::new(move |name, value| sets.set(name, value)))
@@ -43,35 +42,35 @@ impl Declared {
     }
 
     /// The default of a declared parameter.
-    pub(super) fn default_of(&self, name: &str) -> Option<crate::parameters::ParameterValue> {
+    pub(super) fn default_of(&self, name: &str) -> Option<ParameterValue> {
         self.spec(name).map(|spec| spec.default.clone())
     }
 
-    /// Whether a parameter may take this value now, or the reason why not. The node checks its own initial values with it,
+    /// Checks that a parameter may take this value now; the error is the reason why not. The node checks its own initial values with it,
     /// too.
-    fn check(&self, name: &str, value: &ros2_client::ParameterValue) -> Result<(), String> {
+    fn check(&self, name: &str, value: &ParameterValue) -> Result<(), String> {
         let spec = self.spec(name).ok_or_else(|| format!("no parameter {name:?}"))?;
-        let Some(value) = from_ros(value) else {
+        if matches!(value, ParameterValue::NotSet | ParameterValue::ByteArray(_)) {
             return Err(format!(
                 "{name} is declared and cannot be deleted, or the type is not one of its own"
             ));
-        };
-        if self.values.snapshot().get(name) == Some(&value) {
+        }
+        if self.values.snapshot().get(name) == Some(value) {
             return Ok(());
         }
         if spec.read_only {
             return Err(format!("{name} is {FIXED}"));
         }
-        if !spec.range.contains(&value) {
-            return Err(format!("{name} must be {}, not {value}", spec.range));
+        if !spec.range.contains(value) {
+            return Err(format!("{name} must be {}, not {}", spec.range, parameter_text(value)));
         }
         Ok(())
     }
 
     /// Hands an accepted value to the node.
-    fn set(&self, name: &str, value: &ros2_client::ParameterValue) -> Result<(), String> {
-        if let (Some(spec), Some(value)) = (self.spec(name), from_ros(value)) {
-            self.values.change(spec.name, value);
+    fn set(&self, name: &str, value: &ParameterValue) -> Result<(), String> {
+        if let Some(spec) = self.spec(name) {
+            self.values.change(spec.name, value.clone());
         }
         Ok(())
     }
@@ -81,14 +80,14 @@ impl Declared {
         self.values.snapshot().contains_key(USE_SIM_TIME) && self.values.get(USE_SIM_TIME)
     }
 
-    /// Whether all of these may be set together.
+    /// Checks that all of these may be set together.
     pub(super) fn check_all<'a>(
         &self,
-        values: impl IntoIterator<Item = (&'a str, ros2_client::ParameterValue)>,
+        values: impl IntoIterator<Item = (&'a str, ParameterValue)>,
     ) -> Result<(), String> {
         values.into_iter().try_for_each(|(name, value)| {
-            let declared = self.spec(name).map(|spec| to_ros(&spec.default));
-            if declared.is_some_and(|d| std::mem::discriminant(&d) != std::mem::discriminant(&value)) {
+            let declared = self.spec(name).map(|spec| std::mem::discriminant(&spec.default));
+            if declared.is_some_and(|declared| declared != std::mem::discriminant(&value)) {
                 return Err(format!("{name} has another type"));
             }
             self.check(name, &value)

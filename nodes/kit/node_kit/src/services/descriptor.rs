@@ -1,37 +1,33 @@
 //! Descriptions of parameters, as `describe_parameters` returns them.
 
-use super::convert::to_ros;
 use crate::parameters::{ParameterSpec, Range};
 use ros2_client::ParameterValue;
 use ros2_client::parameters::raw::{FloatingPointRange, IntegerRange, ParameterDescriptor};
 
 /// The description of a declared parameter. A range that is not an interval stands in `additional_constraints`.
 pub(super) fn descriptor(spec: &ParameterSpec) -> ParameterDescriptor {
-    let (mut integer_range, mut floating_point_range) = (Vec::new(), Vec::new());
-    match spec.range {
-        Range::Any | Range::Positive | Range::Choice(_) => {}
-        Range::Integer { min, max } => {
-            integer_range.push(IntegerRange { from_value: min, to_value: max, step: 0 });
-        }
-        Range::Double { min, max } => {
-            floating_point_range.push(FloatingPointRange { from_value: min, to_value: max, step: 0.0 });
-        }
-    }
     let range = match spec.range {
         Range::Any => None,
         range => Some(range.to_string()),
     };
     let fixed = spec.read_only.then(|| FIXED.to_owned());
-    ParameterDescriptor {
-        name: spec.name.into(),
-        r#type: ParameterValue::to_parameter_type_raw(&to_ros(&spec.default)),
+    let mut told = ParameterDescriptor {
+        r#type: ParameterValue::to_parameter_type_raw(&spec.default),
         description: spec.description.into(),
         additional_constraints: range.into_iter().chain(fixed).collect::<Vec<_>>().join("; "),
         read_only: spec.read_only,
-        dynamic_typing: false,
-        floating_point_range,
-        integer_range,
+        ..unknown(spec.name)
+    };
+    match spec.range {
+        Range::Any | Range::Positive | Range::Choice(_) => {}
+        Range::Integer { min, max } => {
+            told.integer_range.push(IntegerRange { from_value: min, to_value: max, step: 0 });
+        }
+        Range::Double { min, max } => {
+            told.floating_point_range.push(FloatingPointRange { from_value: min, to_value: max, step: 0.0 });
+        }
     }
+    told
 }
 
 /// The description of a name that the node does not declare: of no type.

@@ -2,13 +2,11 @@
 //!
 //! - `declared`: the parameters of a node as ros2-client declares them
 //! - `descriptor`: types, ranges and units, as `describe_parameters` returns them
-//! - `convert`: values between this crate and ros2-client
 //! - `servers`: the services; `type_description`: the fields of types; `sim_time`: `use_sim_time`
 //! - `thread`: answers while the node computes
 //!
 //! Anyone may ask, also processes outside the run: what may be set changes no result.
 
-mod convert;
 mod declared;
 mod descriptor;
 mod servers;

@@ -1,6 +1,5 @@
 //! The standard services of one node, served through ros2-client: six of its parameters, and that of type descriptions.
 
-use super::convert::to_ros;
 use super::declared::Declared;
 use super::type_description::{GetTypeDescriptionRequest, GetTypeDescriptionResponse, described};
 use crate::bus_error::BusError;
@@ -148,7 +147,7 @@ impl NodeServers {
     /// An integer for a parameter that is a double, as `ros2 param set` sends one, becomes that double.
     fn adapted(&self, parameter: raw::Parameter) -> Parameter {
         let Parameter { name, value } = Parameter::from(parameter);
-        let value = match (&value, self.declared.default_of(&name).map(|v| to_ros(&v))) {
+        let value = match (&value, self.declared.default_of(&name)) {
             (ParameterValue::Integer(v), Some(ParameterValue::Double(_))) => {
                 ParameterValue::Double(*v as f64)
             }
@@ -183,7 +182,7 @@ fn within(names: &[String]) -> &[String] {
     if names.len() <= NAMES && names.iter().all(|name| name.len() <= NAME) { names } else { &[] }
 }
 
-/// The same for a request to set.
+/// The parameters of a request to set, or none if it has too many or too long names.
 fn bounded(parameters: Vec<raw::Parameter>) -> Vec<raw::Parameter> {
     let fits = parameters.len() <= NAMES && parameters.iter().all(|p| p.name.len() <= NAME);
     if fits { parameters } else { Vec::new() }
@@ -196,7 +195,7 @@ struct SparseLog {
     set: AtomicU64,
 }
 
-/// Whether this one is logged, and its number.
+/// Number of this message if it is logged.
 fn due(counter: &AtomicU64) -> Option<u64> {
     let number = counter.fetch_add(1, Ordering::Relaxed) + 1;
     number.is_power_of_two().then_some(number)

@@ -12,7 +12,7 @@ pub(super) struct GetTypeDescriptionRequest {
     pub(super) include_type_sources: bool,
 }
 
-/// Its response.
+/// Response of the service.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct GetTypeDescriptionResponse {
     pub(super) successful: bool,
@@ -30,7 +30,7 @@ pub(super) struct TypeSource {
     raw_file_contents: String,
 }
 
-/// `type_description_interfaces/msg/KeyValue`.
+/// `type_description_interfaces/msg/KeyValue`: an entry of extra information.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct KeyValue {
     key: String,

@@ -1,12 +1,11 @@
 //! Real processes: signals, exit codes, final counts, a failed DDS thread.
 //!
-//! A child is this test executable again, running one ignored test named by its role.
+//! A child is the example `role`, which `cargo test` builds with the tests, with the name of its role.
 
 mod bystander;
 mod flood;
 mod fuzz;
 mod leaving;
-mod roles;
 mod rtps;
 mod stopping;
 
@@ -15,9 +14,6 @@ use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-
-/// Set for children.
-const CHILD: &str = "NODE_KIT_TEST_CHILD";
 
 /// Far above the time for discovery on an idle machine (0.2 s), so that the test passes on a loaded one.
 const TIME_LIMIT: Duration = Duration::from_secs(30);
@@ -45,9 +41,11 @@ fn collect(mut pipe: impl Read + Send + 'static) -> JoinHandle<String> {
 
 impl Role {
     fn start(name: &'static str, network: Network) -> Self {
-        let mut child = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", &format!("roles::{name}"), "--ignored", "--nocapture", "--test-threads=1"])
-            .env(CHILD, "1")
+        // Cargo names no path of an example: tests are in `deps`, examples in the folder next to it.
+        let tests = std::env::current_exe().unwrap();
+        let role = tests.parent().unwrap().with_file_name("examples").join("role");
+        let mut child = Command::new(role)
+            .arg(name)
             .env("ROS_DOMAIN_ID", network.domain.to_string())
             .env_remove("ROS_AUTOMATIC_DISCOVERY_RANGE")
             .env_remove("ROS_LOCALHOST_ONLY")

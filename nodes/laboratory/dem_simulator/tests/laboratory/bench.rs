@@ -58,7 +58,7 @@ impl Record {
         REPRODUCIBLE.iter().map(|t| t.name).find(|name| self.0.get(name) != other.0.get(name))
     }
 
-    /// Whether a microstructure of the last packing of a finished run exists.
+    /// True if a microstructure of the last packing of a finished run exists.
     pub(crate) fn complete(&self) -> bool {
         let Some(end) = self.last::<RunState>(&topics::RUN_STATE) else { return false };
         let last = self.last::<Microstructure>(&topics::MICROSTRUCTURE).map(|m| m.source_step);
@@ -184,5 +184,5 @@ impl Bench {
 
 /// The end of an actor.
 pub(crate) fn exit_of(actor: &Actor) -> Option<Exit> {
-    actor.ended().map(|end| end.as_ref().map_or_else(NodeError::exit, |exit| *exit))
+    actor.ended().map(|end| end.as_ref().map_or_else(|failure| failure.exit, |exit| *exit))
 }

@@ -56,7 +56,7 @@ fn run_with(honest: u64, lies: u32, lie: f64) -> (Option<Exit>, Record) {
     (exit, record)
 }
 
-/// The same with or without speculative steps, with the number of answers predicted and the total.
+/// A run with or without speculative steps, with the number of answers predicted and the total.
 fn run_ahead_with(honest: u64, lies: u32, lie: f64, ahead: bool) -> (Option<Exit>, Record, [u64; 2]) {
     let bench = Bench::new(0);
     let (mut recorder, recorder_bus) = bench.recorder();

@@ -212,7 +212,7 @@ fn of_two_simulators_that_start_at_once_one_runs() {
     ];
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors.iter().any(|a| a.ended().is_some())));
     assert_eq!(exit_of(&actors[3]), Some(Exit::Failure), "the larger GUID gives way");
-    // Its process ends, and its endpoints leave the graph.
+    // The process ends, and its endpoints leave the graph.
     actors.pop();
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 10));
 }

@@ -1,7 +1,8 @@
 //! A run from beginning to end.
 
 use crate::bench::{Bench, FOREVER, Record, exit_of};
-use grainlab_dem_simulator::{Mode, Settings};
+use grainlab_dem_simulator::Settings;
+use grainlab_emt_inversion::Models;
 use grainlab_msgs::msg::{Estimate, Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::{Actor, Exit, run_until};
@@ -89,24 +90,7 @@ fn loss_repetition_and_delay_change_no_byte() {
     }
 }
 
-#[test]
-fn free_run_does_not_wait_for_each_answer_and_arrives_at_the_same_pressure() {
-    let run = |mode| {
-        let bench = Bench::faulty(5);
-        let hub = bench.hub.clone();
-        let record = bench.whole_run(&Settings { mode, ..Settings::default() }, None);
-        let pressure = pressure(&record.last::<PackingReport>(&topics::PACKING_REPORT).unwrap());
-        (hub.now(), pressure)
-    };
-    let (in_step, _) = run(Mode::Lockstep);
-    // Two requests late are well within the servo's response time of five.
-    let (free, pressure) = run(Mode::FreeRun { lag: 2 });
-    assert!(free < in_step * 3 / 4, "{free:?} and {in_step:?} of virtual time");
-    assert!((pressure - 100e3).abs() < 2e3, "{pressure}");
-    assert!(in_step > Duration::from_secs(1), "the delays put the lockstep to no test");
-}
-
-/// The end of a simulator that awaits inversions from these topics for at most a minute, beside an inversion or without
+/// The end of a simulator that awaits inversions from these topics for at most a minute, with an inversion or without
 /// one: its exit, the time from the last packing to the end, and the record.
 fn end_of_simulator(until_inverted: &[Topic], with_inversion: bool) -> (Option<Exit>, Duration, Record) {
     let bench = Bench::new(0);

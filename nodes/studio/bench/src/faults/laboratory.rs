@@ -186,7 +186,7 @@ impl Laboratory<'_> {
             Ok(Next::Finished(exit)) => process.ended = Some(exit),
             Err(error) => {
                 let text = format!("{:?}: {error}", process.kind);
-                process.ended = Some(error.exit());
+                process.ended = Some(error.exit);
                 return Err(Outcome::Failed(text));
             }
         }

@@ -9,8 +9,4 @@ pub(super) enum Role {
     Ping,
     /// Answers over the bus of grainlab.
     Pong,
-    /// Sends requests over bare ros2-client.
-    BarePing,
-    /// Answers over bare ros2-client.
-    BarePong,
 }

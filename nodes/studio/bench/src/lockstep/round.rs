@@ -83,19 +83,10 @@ pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
 
 /// Two processes without a recorder, in a separate domain.
 pub(super) fn unrecorded(exchanges: u64) -> Result<Vec<f64>, Failure> {
-    pair(["pong", "ping"], exchanges)
-}
-
-/// Two processes over bare ros2-client, in a separate domain.
-pub(super) fn bare(exchanges: u64) -> Result<Vec<f64>, Failure> {
-    pair(["bare-pong", "bare-ping"], exchanges)
-}
-
-fn pair([answers, asks]: [&str; 2], exchanges: u64) -> Result<Vec<f64>, Failure> {
     let domain = FreeDomain::take()?;
-    let _answers = Process::role(&domain, answers, exchanges)?;
+    let _pong = Process::role(&domain, "pong", exchanges)?;
     std::thread::sleep(START);
-    parse(&Process::role(&domain, asks, exchanges)?.output()?)
+    parse(&Process::role(&domain, "ping", exchanges)?.output()?)
 }
 
 fn parse(text: &str) -> Result<Vec<f64>, Failure> {
@@ -109,13 +100,8 @@ pub(super) fn role(role: Role, exchanges: u64) -> Result<Exit, Failure> {
     let failed = Failure::failed;
     let micros = match role {
         Role::Ping => pingpong::bus_ping(&mut bus_in(network.domain, "ping")?, exchanges).map_err(failed)?,
-        Role::BarePing => pingpong::bare_ping(network, exchanges).map_err(failed)?,
         Role::Pong => {
             pingpong::bus_pong(&mut bus_in(network.domain, "pong")?).map_err(failed)?;
-            return Ok(Exit::Done);
-        }
-        Role::BarePong => {
-            pingpong::bare_pong(network).map_err(failed)?;
             return Ok(Exit::Done);
         }
     };

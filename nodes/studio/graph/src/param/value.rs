@@ -1,23 +1,12 @@
 //! Values of parameters as text, YAML and JSON.
 
 use grainlab_console::Failure;
-use grainlab_node_kit::{ParameterValue as Parsed, parse_value};
-use ros2_client::ParameterValue;
+use grainlab_node_kit::{ParameterValue, parse_value};
 use serde_json::{Value, json};
 
 /// A value from a command line, as YAML: `0.5`, `true`, `[1, 2]`, `text`.
 pub(super) fn parse(text: &str) -> Result<ParameterValue, Failure> {
-    let parsed = parse_value(text).map_err(|reason| Failure::usage(format!("value {text:?}: {reason}")))?;
-    Ok(match parsed {
-        Parsed::Bool(v) => ParameterValue::Boolean(v),
-        Parsed::Integer(v) => ParameterValue::Integer(v),
-        Parsed::Double(v) => ParameterValue::Double(v),
-        Parsed::String(v) => ParameterValue::String(v),
-        Parsed::BoolArray(v) => ParameterValue::BooleanArray(v),
-        Parsed::IntegerArray(v) => ParameterValue::IntegerArray(v),
-        Parsed::DoubleArray(v) => ParameterValue::DoubleArray(v),
-        Parsed::StringArray(v) => ParameterValue::StringArray(v),
-    })
+    parse_value(text).map_err(|reason| Failure::usage(format!("value {text:?}: {reason}")))
 }
 
 /// As JSON; numbers that are not finite become text.

@@ -1,18 +1,16 @@
-//! Which writers fit a subscription: messages of another type, or of another definition of the type, are not read by position.
+//! Writers that fit a subscription: messages of another type, or of another definition of the type, are not read by position.
 
 use super::{DdsBus, wire_name};
-use crate::admission::Participant;
 use crate::bus::SubscriptionId;
 use crate::bus_error::BusError;
 use crate::dds::lock::lock;
 use crate::sample::Sample;
 use grainlab_msgs::{Guid, Topic, TypeInfo};
-use ros2_client::Gid;
 
 impl DdsBus {
-    /// Whether a remote writer counts for a reader of this type: it is admitted, and its messages are read.
-    pub(super) fn counts(&self, writer: &Gid, info: &TypeInfo) -> bool {
-        self.gate.admits(writer) && self.graph.misfit(&Guid(writer.to_bytes16()), info).is_none()
+    /// True if a remote writer counts for a reader of this type: it is admitted, and its messages are read.
+    pub(super) fn counts(&self, writer: &Guid, info: &TypeInfo) -> bool {
+        self.gate.admits(writer) && self.graph.misfit(writer, info).is_none()
     }
 
     /// The next sample whose writer fits the type of the subscription; others are counted and said once.
@@ -49,11 +47,9 @@ impl DdsBus {
         Ok(sample)
     }
 
-    /// The participants with a writer on a topic that does not fit.
-    pub(super) fn misfits_on(&self, topic: &Topic) -> Vec<Participant> {
+    /// Writers of other processes on a topic, sorted, of those that count.
+    pub(super) fn writers_of(&self, topic: &Topic, counts: impl Fn(&Guid) -> bool) -> Vec<Guid> {
         let Ok(name) = self.names.resolve(topic.name) else { return Vec::new() };
-        let misfits = |guid: &Gid| self.graph.misfit(&Guid(guid.to_bytes16()), &topic.info).is_some();
-        let found = self.graph.writers_of(&wire_name(&name), misfits);
-        found.iter().map(Guid::participant).collect()
+        self.graph.writers_of(&wire_name(&name), counts)
     }
 }

@@ -1,17 +1,27 @@
-//! The roles of the children. Each is ignored: it runs only when a test starts it by name.
+//! Processes that the tests in `tests/process` start, by the name of their role.
 
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
-use grainlab_node_kit::pingpong::{bus_listen, bus_pong};
+use grainlab_node_kit::pingpong::bus_pong;
 use grainlab_node_kit::{
     Bus, DdsBus, Demand, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs,
     Scope, Subscription, SubscriptionId, run_node,
 };
 use std::time::Duration;
 
-/// Whether this process is a child; `--ignored` without a name must not start the roles.
-fn is_child() -> bool {
-    std::env::var_os(super::CHILD).is_some()
+fn main() {
+    let role = std::env::args().nth(1).expect("the name of a role");
+    match role.as_str() {
+        "talker" => talk("talker", Exit::Done, Duration::ZERO),
+        "incomplete_talker" => talk("incomplete_talker", Exit::Interrupted, Duration::ZERO),
+        "slow_talker" => talk("slow_talker", Exit::Done, Duration::from_secs(60)),
+        "talker_without_dds_thread" => talker_without_dds_thread(),
+        "panicking_node" => panicking_node(),
+        "our_listener" => our_listener(),
+        "answerer" => bus_pong(&mut bus("answerer")).unwrap(),
+        "victim" => victim(),
+        other => panic!("there is no role {other}"),
+    }
 }
 
 /// Publishes a state periodically.
@@ -50,39 +60,7 @@ fn talk(name: &'static str, at_end: Exit, dawdle: Duration) -> ! {
     std::process::exit(i32::from(exit.code()))
 }
 
-#[test]
-#[ignore = "a role, started by other tests"]
-fn talker() {
-    if !is_child() {
-        return;
-    }
-    talk("talker", Exit::Done, Duration::ZERO)
-}
-
-#[test]
-#[ignore = "a role, started by other tests"]
-fn incomplete_talker() {
-    if !is_child() {
-        return;
-    }
-    talk("incomplete_talker", Exit::Interrupted, Duration::ZERO)
-}
-
-#[test]
-#[ignore = "a role, started by other tests"]
-fn slow_talker() {
-    if !is_child() {
-        return;
-    }
-    talk("slow_talker", Exit::Done, Duration::from_secs(60))
-}
-
-#[test]
-#[ignore = "a role, started by other tests"]
 fn talker_without_dds_thread() {
-    if !is_child() {
-        return;
-    }
     std::thread::spawn(|| {
         std::thread::sleep(Duration::from_secs(2));
         end_dds_thread();
@@ -110,12 +88,7 @@ fn end_dds_thread() {
     }
 }
 
-#[test]
-#[ignore = "a role, started by other tests"]
 fn panicking_node() {
-    if !is_child() {
-        return;
-    }
     struct Panics;
     impl Node for Panics {
         fn step(&mut self, _: &mut dyn Bus) -> Result<Next, NodeError> {
@@ -135,23 +108,26 @@ fn bus(name: &str) -> DdsBus {
     DdsBus::open(Network::from_env().unwrap(), Names::new(name).unwrap()).unwrap()
 }
 
-#[test]
-#[ignore = "a role, started by other tests"]
+/// Reads the exchange reliably, as the recorder does, until nothing arrives for some seconds after the first sample.
 fn our_listener() {
-    if !is_child() {
-        return;
+    let mut bus = bus("listener");
+    let demand = Demand::reliable(20_000);
+    let both = [&topics::STRESS, &topics::STRAIN_RATE].map(|topic| bus.subscribe(topic, demand).unwrap());
+    let (mut last, mut received, mut missing) = ([None; 2], 0_u64, 0);
+    let (mut patience, mut heard) = (Duration::from_secs(30), bus.now());
+    while bus.now() - heard <= patience {
+        for (subscription, last) in both.iter().zip(&mut last) {
+            while let Some(sample) = bus.take(*subscription).unwrap() {
+                let sequence = sample.info.sequence;
+                missing += last.map_or(0, |last: i64| (sequence - last - 1).max(0));
+                *last = Some(sequence);
+                received += 1;
+                (patience, heard) = (Duration::from_secs(5), bus.now());
+            }
+        }
+        bus.wait(Duration::from_secs(1));
     }
-    let (received, missing) = bus_listen(&mut bus("listener")).unwrap();
     println!("listener: received {received} missing {missing}");
-}
-
-#[test]
-#[ignore = "a role, started by other tests"]
-fn answerer() {
-    if !is_child() {
-        return;
-    }
-    bus_pong(&mut bus("answerer")).unwrap();
 }
 
 /// Subscribes and advertises every topic of the contract, and answers each stress.
@@ -181,12 +157,7 @@ impl Node for Victim {
     }
 }
 
-#[test]
-#[ignore = "a role, started by other tests"]
 fn victim() {
-    if !is_child() {
-        return;
-    }
     let spec =
         NodeSpec { name: "victim", summary: "answers", scope: Scope::Everyone, parameters: Vec::new() };
     let exit = run_node(&spec, &RosArgs::default(), |bus, _| {
