@@ -1,16 +1,28 @@
 //! One round: its processes.
 
-use super::role::Role;
+use clap::ValueEnum;
 use grainlab_console::{Failure, print};
 use grainlab_node_kit::{Exit, FreeDomain, Network, bus_in, pingpong};
 use grainlab_recorder::tallies::losses;
 use grainlab_recordings::Recording;
-use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 /// Time for a process to start before the next one depends on it.
 const START: Duration = Duration::from_millis(1000);
+
+/// The role of one process of the measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Role {
+    /// Sends requests over the bus of grainlab.
+    Ping,
+    /// Answers over the bus of grainlab.
+    Pong,
+    /// Sends requests over bare ros2-client.
+    BarePing,
+    /// Answers over bare ros2-client.
+    BarePong,
+}
 
 /// Results of a round with a recorder.
 pub(super) struct Recorded {
@@ -65,8 +77,9 @@ impl Drop for Process {
 /// Two processes and a recorder, in a separate domain.
 pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
     let domain = FreeDomain::take()?;
-    let directory = TemporaryDirectory::new()?;
-    let path = directory.0.join("run").to_string_lossy().into_owned();
+    let directory = tempfile::tempdir().map_err(Failure::failed)?;
+    let run = directory.path().join("run");
+    let path = run.to_string_lossy().into_owned();
     let quiet = ["--", "--ros-args", "--log-level", "error"];
     let record = ["bag", "record", "--topics", "stress", "strain_rate", "-o", &path];
     let recorder = Process::start(&domain, &[&record[..], &quiet[..]].concat())?;
@@ -75,7 +88,7 @@ pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
     let micros = parse(&Process::role(&domain, "ping", exchanges)?.output()?)?;
     recorder.interrupt();
     recorder.output()?;
-    let tallies = Recording::open(directory.0.join("run").as_path()).map_err(Failure::failed)?.ledger();
+    let tallies = Recording::open(&run).map_err(Failure::failed)?.ledger();
     // Messages before the recorder was found belong to the warm-up.
     let (_, lost) = losses(&tallies.unwrap_or_default());
     Ok(Recorded { micros, lost })
@@ -125,22 +138,4 @@ pub(super) fn role(role: Role, exchanges: u64) -> Result<Exit, Failure> {
     }
     print(&serde_json::to_string(&micros).map_err(|e| Failure::failed(e.to_string()))?)?;
     Ok(Exit::Done)
-}
-
-/// Removed with its content at the end.
-struct TemporaryDirectory(PathBuf);
-
-impl TemporaryDirectory {
-    fn new() -> Result<Self, Failure> {
-        let path = std::env::temp_dir().join(format!("grainlab-bench-{}", std::process::id()));
-        std::fs::create_dir_all(&path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
-        Ok(Self(path))
-    }
-}
-
-impl Drop for TemporaryDirectory {
-    fn drop(&mut self) {
-        // A folder that remains among temporary files does no harm.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
 }
