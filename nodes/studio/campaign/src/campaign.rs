@@ -15,10 +15,10 @@ const MOST: usize = 100_000;
 /// Largest number of characters of a member's name, which is that of a folder.
 const MAX_NAME_LENGTH: usize = 200;
 
-/// A campaign.
+/// A campaign of runs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Campaign {
-    /// Its name; letters, digits, `_` and `-`.
+    /// Name of the campaign; letters, digits, `_` and `-`.
     pub name: String,
     /// Description in one line.
     pub description: String,

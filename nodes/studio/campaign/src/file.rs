@@ -16,7 +16,7 @@ pub(crate) struct CampaignFile {
     /// Scenes, each run with every combination of `vary` and every seed.
     #[serde(default)]
     pub(crate) scenes: Vec<String>,
-    /// Seeds.
+    /// Seeds of every combination.
     pub(crate) seeds: Option<Seeds>,
     /// Launch file: built in, or a path from this file.
     pub(crate) launch: Option<String>,
@@ -32,7 +32,7 @@ pub(crate) struct CampaignFile {
     /// More combinations, each with scenes, seeds and values of its own.
     #[serde(default)]
     pub(crate) group: Vec<Group>,
-    /// Single runs.
+    /// Single runs, one a table.
     #[serde(default)]
     pub(crate) member: Vec<MemberEntry>,
     /// A table of runs: CSV by its path from this file, with the columns `scene`, `seed`, and keys of scenes.
@@ -69,7 +69,7 @@ impl Seeds {
     }
 }
 
-/// One run.
+/// A single run.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MemberEntry {
