@@ -20,7 +20,7 @@ pub struct Outliers {
 }
 
 impl Outliers {
-    /// Of these values; `None` of fewer than five finite ones.
+    /// Distribution of these values; `None` of fewer than five finite ones.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let finite: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
         if finite.len() < FEWEST {
@@ -38,7 +38,7 @@ impl Outliers {
         if off.abs() <= LEAST * self.median.abs() { 0.0 } else { off / (TO_SIGMA * self.deviation) }
     }
 
-    /// Whether a value is an outlier: its score is beyond 3.5.
+    /// True for an outlier: the score is beyond 3.5.
     pub fn has(&self, value: f64) -> bool {
         self.score(value).abs() > LIMIT
     }
