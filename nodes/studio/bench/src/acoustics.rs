@@ -59,7 +59,10 @@ pub struct Args {
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let packings = load_all(&args.packing)?;
     args.output.ready()?;
-    let found =
-        if args.noise.is_empty() { rows(&packings, &args.plan)? } else { noise::rows(&packings, args)? };
+    let found = if args.noise.is_empty() {
+        rows(&packings, &args.plan)?
+    } else {
+        noise::rows(&packings, args.plan.survey, &args.noise, args.draws)?
+    };
     args.output.finish("acoustics", found)
 }

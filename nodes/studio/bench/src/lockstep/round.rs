@@ -5,6 +5,7 @@ use grainlab_console::{Failure, print};
 use grainlab_node_kit::{Exit, FreeDomain, Network, bus_in, pingpong};
 use grainlab_recorder::tallies::losses;
 use grainlab_recordings::Recording;
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
@@ -77,8 +78,8 @@ impl Drop for Process {
 /// Two processes and a recorder, in a separate domain.
 pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
     let domain = FreeDomain::take()?;
-    let directory = tempfile::tempdir().map_err(Failure::failed)?;
-    let run = directory.path().join("run");
+    let directory = TemporaryDirectory::new()?;
+    let run = directory.0.join("run");
     let path = run.to_string_lossy().into_owned();
     let quiet = ["--", "--ros-args", "--log-level", "error"];
     let record = ["bag", "record", "--topics", "stress", "strain_rate", "-o", &path];
@@ -138,4 +139,22 @@ pub(super) fn role(role: Role, exchanges: u64) -> Result<Exit, Failure> {
     }
     print(&serde_json::to_string(&micros).map_err(|e| Failure::failed(e.to_string()))?)?;
     Ok(Exit::Done)
+}
+
+/// Removed with its content at the end.
+struct TemporaryDirectory(PathBuf);
+
+impl TemporaryDirectory {
+    fn new() -> Result<Self, Failure> {
+        let path = std::env::temp_dir().join(format!("grainlab-bench-{}", std::process::id()));
+        std::fs::create_dir_all(&path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for TemporaryDirectory {
+    fn drop(&mut self) {
+        // A folder that remains among temporary files does no harm.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
 }
