@@ -59,7 +59,6 @@ enum Command {
 /// Commands of the studio: what people look at, and compare with.
 #[cfg(feature = "studio")]
 #[derive(Debug, Subcommand)]
-#[expect(clippy::large_enum_variant, reason = "there is one")]
 enum Studio {
     /// Run many scenes: each a recorded run in a folder of its own, on this machine or a cluster.
     Campaign(campaign::Args),

@@ -17,14 +17,11 @@ fn every_case_has_a_row_and_the_packing_holds_together() {
     let err = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{err}");
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert!(report["machine"]["processor"].is_string());
     let rows = report["rows"].as_array().unwrap();
     assert_eq!(rows.len(), 8);
     for row in rows {
         assert_eq!((row["grains"].as_u64(), row["servo"].as_bool()), (Some(2000), Some(true)));
-        for key in
-            ["particle_steps_per_second", "cpu_particle_steps_per_second", "ns_per_contact", "share_of_peak"]
-        {
+        for key in ["particle_steps_per_second", "cpu_particle_steps_per_second", "ns_per_contact"] {
             assert!(row[key].as_f64().unwrap() > 0.0, "{key}: {row}");
         }
         // 5109 contacts at 99,984 Pa; 55 steps of 3e-8 s at rest have almost no effect.
@@ -35,36 +32,6 @@ fn every_case_has_a_row_and_the_packing_holds_together() {
         let first = rows.iter().find(same).unwrap();
         assert_eq!((&row["pressure"], &row["coordination"]), (&first["pressure"], &first["coordination"]));
     }
-    let operations = |features: &str| {
-        let row = rows.iter().find(|r| r["features"] == features).unwrap();
-        row["operations_per_contact"].as_f64().unwrap()
-    };
-    assert!(operations("coulomb") > operations("stuck"));
-}
-
-#[test]
-fn without_friction_the_grains_are_pressed_anew_to_the_same_pressure() {
-    let output = dem(&[
-        "--grains",
-        "2000",
-        "--threads",
-        "1",
-        "--features",
-        "frictionless",
-        "--steps",
-        "20",
-        "--repetitions",
-        "1",
-        "--format",
-        "json",
-    ]);
-    let err = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{err}");
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let row = &report["rows"][0];
-    // Isostatic without friction: six contacts per non-rattler; some 2 % are rattlers.
-    assert!(row["coordination"].as_f64().unwrap() > 5.5, "{row}");
-    assert!((row["pressure"].as_f64().unwrap() / 1e5 - 1.0).abs() < 0.1, "{row}");
 }
 
 #[test]
@@ -73,6 +40,7 @@ fn wrong_usage_of_the_bench_is_refused_with_what_would_do() {
         (&["--grains", "3000"][..], 2, "2000, 16000, 54000"),
         (&["--simd", "mmx"], 2, "avx512"),
         (&["--features", "sticky"], 2, "coulomb"),
+        (&["--features", "frictionless"], 2, "its own features are coulomb"),
         (&["--threads", "0"], 2, "1..=1024"),
         (&["--packing", "nowhere.data"], 1, "nowhere.data"),
     ] {

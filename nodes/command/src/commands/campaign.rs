@@ -18,9 +18,9 @@ A campaign file:
   vary = { friction = [0.05, 0.1, 0.3] }    # every combination is run with every seed
   launch = \"demo\"                           # launch file; arguments = { simd = \"best\" }
   table = \"runs.csv\"                        # or single runs: columns scene, seed, and keys
-  [[member]]
-  scene = \"s2\"
-  seed = 7
+  [[group]]                                 # other scenes, seeds and values
+  scenes = [\"s2\"]
+  seeds = [7]
   set = { phase.rest.drag = 1e3 }
 
 Each member is a folder with a recorded run. Started again, the command leaves finished members as they are and continues

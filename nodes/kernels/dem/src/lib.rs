@@ -10,8 +10,7 @@
 //! - `observe`: stress, tangent stiffness and force balance of the present contacts; the running energy balance
 //! - `engine`: steps with checks, thermostat and upkeep of the lists of pairs
 //!
-//! Beside the engine: [`gas`] places grains at random and moves hard spheres from collision to collision; [`roofline`] counts
-//! operations for benchmarks.
+//! [`gas`] places grains at random and moves hard spheres from collision to collision.
 //!
 //! Every result is a function of the state alone. Sums run over contacts sorted by (i, j, image), by chunks and parts that
 //! follow from the number of grains. So nothing depends on when neighbours were found, on the instruction set or on the number
@@ -24,7 +23,6 @@ mod force;
 pub mod gas;
 mod observe;
 mod pairs;
-pub mod roofline;
 mod settings;
 mod simd;
 mod step;

@@ -125,6 +125,6 @@ impl ParticleEngine for DemEngine {
     }
 
     fn left_out(&self) -> String {
-        left_out(self.engine.law(), self.engine.settings(), self.engine.equal_sized())
+        left_out(self.engine.settings(), self.engine.equal_sized())
     }
 }

@@ -218,8 +218,7 @@ impl Simulation {
         &*self.engine
     }
 
-    /// Parts of the model that the present phase leaves out, and the operations saved, in one line; empty once the
-    /// path is done.
+    /// Parts of the model that the present phase leaves out, in one line; empty once the path is done.
     pub fn left_out(&self) -> String {
         match self.progress.path.phase(&self.scene) {
             None => String::new(),

@@ -1,54 +1,68 @@
-//! `grainlab bench acoustics`: cost and error of the wave speeds of a packing, by method.
+//! `grainlab bench acoustics`: cost and error of the wave speeds of packings, by method.
 
-mod args;
-mod curves;
-mod judge;
 mod measure;
 mod noise;
-mod plot;
-mod report;
 
-pub(crate) use args::{Args, Method};
-pub(crate) use report::Row;
+pub(crate) use measure::{Method, Plan, rows};
 
-use super::folder;
-use super::packing::load;
-use grainlab_console::{Failure, json};
-use grainlab_core::Packing;
+use crate::numbers::between;
+use crate::output::Output;
+use crate::packing::load_all;
+use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
-use grainlab_page::plot::Theme;
+use std::path::PathBuf;
 
-pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    if !args.noise.is_empty() {
-        return noise::run(args);
-    }
-    if args.judge {
-        return judge::run(args);
-    }
-    let mut packings = args.packing.iter().map(|path| load(Some(path))).collect::<Result<Vec<_>, _>>()?;
-    if packings.is_empty() {
-        packings.push(load(None)?);
-    }
-    folder::ready(args.out.as_deref())?;
-    let mut rows = Vec::new();
-    for packing in &packings {
-        rows.extend(measure::rows(packing, args)?);
-    }
-    let report = report::report(rows);
-    if let Some(folder) = &args.out {
-        folder::write(folder, "acoustics.json", &json(&report)?)?;
-        folder::write(folder, "acoustics.svg", &plot::figure(&report).svg(Theme::Light))?;
-        folder::write(folder, "dispersion.svg", &curves::svg(&packings[0])?)?;
-    }
-    args.format.print(&report, || report::csv(&report), || report::text(&report, &plot::figure(&report)))?;
-    Ok(Exit::Done)
+const EXAMPLES: &str = "\
+The default packing has 2,000 grains and was made by LAMMPS; its file has no tangential forces, so that prepared packings
+are a better test. One row a method and value has the speeds of all packings:
+
+- error, stated: of rho v^2, relative to p Gamma p of the frozen network, root mean squares; stated is the standard deviation
+  of the result, including the density. It is zero for an exact measurement of a frozen network, from which moving grains
+  differ slightly.
+- speed_stated, covered, sigmas_rms, sigmas_mean, sigmas_worst: the speed less that of the frozen network in the same
+  direction and polarization, with the mass that moves with the wave, over the standard deviation stated, and its median;
+  covered is the share within 1.96 of it, .95 for errors that are normally distributed.
+- moduli: largest relative error of C33, C11, C44, C66 and C13 by Christoffel, against the transversely isotropic projection
+  of the stiffness: three rays alone do not give its average over azimuths.
+
+Examples:
+  Every method on the packings of a run along three rays, with plots (some minutes):
+    grainlab bench acoustics --packing recordings/runs/s2-1-1 --out acoustics
+  A full set of speeds by dispersion:
+    grainlab bench acoustics --survey complete --method dispersion
+  Whether stated errors hold, over the packings of many runs:
+    grainlab bench acoustics --method dispersion --tolerances 1e-5 --packing recordings/runs/s2-1-1
+  Microstructure from speeds with errors of 0 to 3 %, and from moduli of the network:
+    grainlab bench acoustics --survey complete --noise 0,0.001,0.003,0.01,0.03 --packing recordings/runs/s2-1-1";
+
+/// The packings to measure.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Packings to measure: CSV with its sidecar, LAMMPS data or dump, or every packing of a recording;
+    /// also as .gz. May be repeated
+    #[arg(long, value_name = "FILE")]
+    packing: Vec<PathBuf>,
+    #[command(flatten)]
+    plan: Plan,
+    /// Instead: infer z and eps from speeds by dispersion with these relative errors, and compare them with
+    /// the counted ones
+    #[arg(long, value_name = "REL", value_delimiter = ',', value_parser = |text: &str| between(text, 0.0, 0.5), conflicts_with = "method")]
+    noise: Vec<f64>,
+    /// Draws of the noise per packing
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    draws: u32,
+    #[command(flatten)]
+    output: Output,
 }
 
-/// Rows of one packing along three rays, by these methods.
-pub(crate) fn measured(
-    packing: &Packing,
-    methods: &[Method],
-    tolerances: &[f64],
-) -> Result<Vec<Row>, Failure> {
-    measure::rows(packing, &Args::of(methods, tolerances))
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let packings = load_all(&args.packing)?;
+    args.output.ready()?;
+    let found = if args.noise.is_empty() {
+        rows(&packings, &args.plan)?
+    } else {
+        noise::rows(&packings, args.plan.survey, &args.noise, args.draws)?
+    };
+    args.output.finish("acoustics", found)
 }

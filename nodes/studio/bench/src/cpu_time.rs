@@ -1,8 +1,25 @@
-//! The clocks of a measurement on a shared machine.
+//! CPU time, which is independent of other load on a shared machine.
 
+use crate::numbers::median;
 use grainlab_console::Failure;
 
-/// CPU time that the calling thread has used, s: independent of other load on the machine.
+/// Result of some work, and the median CPU time of its repetitions by all threads, s. A failure ends them.
+pub(super) fn timed<T, E>(
+    repetitions: u32,
+    work: impl Fn() -> Result<T, E>,
+) -> Result<(f64, Result<T, E>), Failure> {
+    let mut times = Vec::new();
+    loop {
+        let begin = process_seconds()?;
+        let result = work();
+        times.push(process_seconds()? - begin);
+        if times.len() as u32 >= repetitions || result.is_err() {
+            return Ok((median(times), result));
+        }
+    }
+}
+
+/// CPU time that the calling thread has used, s.
 pub(super) fn thread_seconds() -> Result<f64, Failure> {
     seconds(libc::CLOCK_THREAD_CPUTIME_ID)
 }

@@ -1,27 +1,21 @@
 //! `grainlab bench dem`: speed of the particle engine.
 
-mod machine;
-mod peak;
 mod stepping;
 
 use super::numbers::{median, rounded};
 use super::packing;
 use clap::ValueEnum;
-use grainlab_console::{Failure, Format, Table, count, exact, say};
-use grainlab_core::Packing;
+use grainlab_console::{Failure, Format, Table, exact, say};
 use grainlab_dem::Simd;
 use grainlab_node_kit::Exit;
-use grainlab_page::plot::{Bar, Bars};
-use machine::Machine;
 use serde::Serialize;
 use std::path::PathBuf;
-use stepping::{Case, Features, Loop, Packings};
+use stepping::{Case, Features, Loop, pressure};
 
 const EXAMPLES: &str = "\
 A packing at rest is stepped with its own friction, contact law and forces, and damping 0.3; only the stepping is timed. The
 default packing has 2,000 grains of friction 0.1 near 100 kPa, 2.55 contacts per grain, and was made by LAMMPS; its time step
-is 3e-8 s, as is that of a packing that states none. Packings are repeated along each axis for the larger sizes. One with
-friction would collapse without, so that frictionless rows step the same grains compressed again without friction. A packing
+is 3e-8 s, as is that of a packing that states none. Packings are repeated along each axis for the larger sizes. A packing
 whose coordination number changes by more than 2 % has no rate: exit 4. Every repetition runs all cases once; medians are
 reported.
 
@@ -60,14 +54,13 @@ pub struct Args {
     /// Repetitions per case
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     repetitions: u32,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
 #[derive(Debug, Serialize)]
 struct Report {
-    machine: Machine,
     rows: Vec<Row>,
 }
 
@@ -85,16 +78,11 @@ struct Row {
     particle_steps_per_second: f64,
     /// By the CPU time of all threads.
     cpu_particle_steps_per_second: f64,
-    /// CPU time.
+    /// By CPU time.
     ns_per_contact: f64,
     coordination: f64,
     /// Mean stress at the end, Pa.
     pressure: f64,
-    /// Floating-point operations of the contact law per contact, counted by evaluating it.
-    operations_per_contact: f64,
-    /// Fraction of the peak of the cores in use, for independent additions and multiplications, that the
-    /// contact law reaches.
-    share_of_peak: Option<f64>,
     /// Memory of the engine; null if the system does not report it.
     bytes_per_grain: Option<f64>,
 }
@@ -131,32 +119,31 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             }
         }
     }
-    let packings = Packings::new(packing.clone(), &features)?;
-    let machine = Machine::measured(&args.simd)?;
+    if let Some(unfit) = features.iter().find(|f| !f.fits(packing.friction)) {
+        return Err(Failure::usage(format!(
+            "--features {}: the packing has friction {}, which it keeps; its own features are {}",
+            unfit.name(),
+            packing.friction,
+            Features::of(packing.friction).name()
+        )));
+    }
+    let pressure = pressure(&packing)?;
     let mut loops: Vec<Vec<Loop>> = vec![Vec::new(); cases.len()];
     for repetition in 1..=args.repetitions {
         say!("grainlab: repetition {repetition} of {}", args.repetitions);
         for (case, done) in cases.iter().zip(&mut loops) {
-            done.push(stepping::run(&packings, case)?);
+            done.push(stepping::run(&packing, pressure, case)?);
         }
     }
-    let rows = cases.iter().zip(&loops).map(|(case, loops)| row(&packing, case, loops, &machine)).collect();
-    let report = Report { machine, rows };
-    let text = || {
-        let table = report.machine.to_string() + &table(&report.rows, rounded).text();
-        // One case is no series.
-        if report.rows.len() > 1 { table + "\n" + &bars(&report.rows).text() } else { table }
-    };
+    let report = Report { rows: cases.iter().zip(&loops).map(|(case, loops)| row(case, loops)).collect() };
+    let text = || table(&report.rows, rounded).text();
     args.format.print(&report, || table(&report.rows, exact).csv(), text)?;
     Ok(Exit::Done)
 }
 
-fn row(packing: &Packing, case: &Case, loops: &[Loop], machine: &Machine) -> Row {
+fn row(case: &Case, loops: &[Loop]) -> Row {
     let of = |part: &dyn Fn(&Loop) -> f64| median(loops.iter().map(part).collect());
     let work = case.grains as f64 * f64::from(case.steps);
-    let operations = stepping::operations_per_contact(packing, case);
-    let ns_per_contact = of(&|l| 1e9 * l.cpu_seconds / (l.contacts * f64::from(case.steps)));
-    let share = |peak: f64| operations / (1e-9 * ns_per_contact) / peak;
     Row {
         grains: case.grains,
         threads: case.threads,
@@ -167,11 +154,9 @@ fn row(packing: &Packing, case: &Case, loops: &[Loop], machine: &Machine) -> Row
         repetitions: loops.len(),
         particle_steps_per_second: of(&|l| work / l.wall_seconds),
         cpu_particle_steps_per_second: of(&|l| work / l.cpu_seconds),
-        ns_per_contact,
+        ns_per_contact: of(&|l| 1e9 * l.cpu_seconds / (l.contacts * f64::from(case.steps))),
         coordination: of(&|l| 2.0 * l.contacts / case.grains as f64),
         pressure: of(&|l| l.pressure),
-        operations_per_contact: operations,
-        share_of_peak: machine.peak(case.simd).map(share),
         // The first engine allocates fresh memory; later ones reuse memory freed by others.
         bytes_per_grain: loops
             .iter()
@@ -192,7 +177,6 @@ fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
         "cpu_particle_steps_per_second",
         "ns_per_contact",
         "coordination",
-        "share_of_peak",
         "bytes_per_grain",
     ]);
     for r in rows {
@@ -205,30 +189,10 @@ fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
         ];
         let rates = [r.particle_steps_per_second, r.cpu_particle_steps_per_second];
         cells.extend(rates.map(|v| number(Some(v))));
-        cells.extend(
-            [Some(r.ns_per_contact), Some(r.coordination), r.share_of_peak, r.bytes_per_grain].map(&number),
-        );
+        cells.extend([Some(r.ns_per_contact), Some(r.coordination), r.bytes_per_grain].map(&number));
         t.row(cells);
     }
     t
-}
-
-/// The rates by case, those of one size together.
-fn bars(rows: &[Row]) -> Bars {
-    let bar = |r: &Row| Bar {
-        name: format!("{} grains", r.grains),
-        value: r.particle_steps_per_second,
-        text: format!(
-            "{:.1}  {}, {}, {}",
-            1e-6 * r.particle_steps_per_second,
-            r.features.name(),
-            count(r.threads, "thread"),
-            r.simd
-        ),
-        ..Bar::default()
-    };
-    let title = "million particle-steps per second".to_owned();
-    Bars { title, from_zero: true, bars: rows.iter().map(bar).collect(), ..Bars::default() }
 }
 
 #[cfg(test)]

@@ -31,11 +31,11 @@ Examples:
 
 Exit 1 if a run had different results without an error, or did not end.";
 
-/// The runs.
+/// Number and seeds of runs.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Runs
+    /// Number of runs
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
     seeds: u64,
     /// Seed of the first run; the next ones count up
@@ -44,7 +44,7 @@ pub struct Args {
     /// Print the events of each run
     #[arg(long)]
     explain: bool,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }

@@ -2,20 +2,25 @@
 //!
 //! A bench is one file with an `Args` and a `run`, and a variant of [`Command`].
 //!
-//! - `accuracy`, `acoustics`, `dem`, `faults`, `lockstep`, `stiffness`: the benches
-//! - `overview`: time against error of all of them
-//! - `packing`: the packings to measure; `cpu_time`: the clocks; `numbers`, `folder`: reports
+//! - `overview`: time against error of every method; `stiffness`, `acoustics`: those of one packing
+//! - `engine`, `inversion`: runs of the engine and models of the inversion, for `overview`
+//! - `row`, `output`, `plot`: rows of time against error, their table, CSV, JSON and figure
+//! - `dem`, `faults`, `lockstep`: the other benches
+//! - `packing`: the packings to measure; `cpu_time`: the clock; `numbers`: medians and digits
 
-mod accuracy;
 mod acoustics;
 mod cpu_time;
 mod dem;
+mod engine;
 mod faults;
-mod folder;
+mod inversion;
 mod lockstep;
 mod numbers;
+mod output;
 mod overview;
 mod packing;
+mod plot;
+mod row;
 mod stiffness;
 
 use clap::Subcommand;
@@ -25,9 +30,7 @@ use grainlab_node_kit::Exit;
 /// The bench to run.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Time against error of every numerical setting, relative to a converged run, with the Pareto front.
-    Accuracy(accuracy::Args),
-    /// Wave speeds of a packing: time against error of dispersion and time of flight.
+    /// Wave speeds of packings: time against error of dispersion and time of flight.
     Acoustics(acoustics::Args),
     /// The particle engine: particle-steps per second by size, threads, instruction set and features.
     Dem(dem::Args),
@@ -36,7 +39,7 @@ pub enum Command {
     Faults(faults::Args),
     /// One exchange of the lockstep between two processes, with a recorder, compared with bare ros2-client.
     Lockstep(lockstep::Args),
-    /// Time against error of every method of the laboratory, in one table and one figure.
+    /// Time against error of every method and setting of the laboratory, in one table and one figure.
     Overview(overview::Args),
     /// The stiffness of a packing: time against error of every method and tolerance.
     Stiffness(stiffness::Args),
@@ -48,7 +51,6 @@ pub enum Command {
 /// With the exit code and the message for the user.
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
-        Command::Accuracy(args) => accuracy::run(args),
         Command::Acoustics(args) => acoustics::run(args),
         Command::Dem(args) => dem::run(args),
         Command::Faults(args) => faults::run(args),

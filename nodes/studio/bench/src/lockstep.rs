@@ -1,11 +1,10 @@
 //! `grainlab bench lockstep`: duration of one exchange.
 
-mod role;
 mod round;
 
 use grainlab_console::{Failure, Format, Table, exact, fixed};
 use grainlab_node_kit::Exit;
-use role::Role;
+use round::Role;
 use serde::Serialize;
 
 const EXAMPLES: &str = "\
@@ -28,7 +27,7 @@ pub struct Args {
     /// Exchanges per round
     #[arg(long, value_name = "N", default_value_t = 5000, value_parser = clap::value_parser!(u64).range(10..=1_000_000))]
     exchanges: u64,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     /// One process of the measurement
@@ -46,14 +45,10 @@ struct Microseconds {
 /// One round of the two kinds.
 #[derive(Debug, Serialize)]
 struct Row {
-    method: &'static str,
     /// Number of the round; `null` for all rounds together.
     value: Option<u32>,
-    /// Null: there are no grains.
-    grains: Option<u32>,
     /// Duration of the exchanges of the row over the bus of grainlab.
     seconds: f64,
-    error: NoError,
     exchanges: usize,
     microseconds: Microseconds,
     /// Over the bus of grainlab, without a recorder.
@@ -61,10 +56,6 @@ struct Row {
     /// Messages of the row that the recorder lost.
     lost: u64,
 }
-
-/// Null: a duration has no reference value.
-#[derive(Debug, Serialize)]
-struct NoError {}
 
 #[derive(Debug, Serialize)]
 struct Report {
@@ -98,11 +89,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 
 fn row(value: Option<u32>, [ours, alone]: [&[f64]; 2], lost: u64) -> Row {
     Row {
-        method: "lockstep",
         value,
-        grains: None,
         seconds: ours.iter().sum::<f64>() * 1e-6,
-        error: NoError {},
         exchanges: ours.len(),
         microseconds: percentiles(ours),
         alone_microseconds: percentiles(alone),

@@ -1,4 +1,4 @@
-//! Numbers of a report.
+//! Numbers of a report, and of a command line.
 
 use grainlab_console::fixed;
 
@@ -13,10 +13,26 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
     }
 }
 
+/// Mean of at least one number.
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Root mean square of at least one number.
+pub(super) fn rms(values: &[f64]) -> f64 {
+    mean(&values.iter().map(|v| v * v).collect::<Vec<_>>()).sqrt()
+}
+
 /// A number with four significant digits.
 pub(super) fn rounded(value: Option<f64>) -> String {
     let digits = value.map_or(0, |v| (3 - v.abs().max(1e-3).log10().floor() as i32).clamp(0, 6));
     fixed(value, digits as usize)
+}
+
+/// A number of the command line within a range.
+pub(super) fn between(text: &str, least: f64, most: f64) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|v| (least..=most).contains(v));
+    value.ok_or_else(|| format!("a number from {least:e} to {most:e}"))
 }
 
 #[cfg(test)]

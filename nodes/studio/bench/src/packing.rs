@@ -10,24 +10,34 @@ use std::path::{Path, PathBuf};
 /// 2,000 glass spheres from LAMMPS at 100 kPa, z = 5.11: see its README.
 const BUILT_IN: &[u8] = include_bytes!("../../../../tests/golden/packings/packing_2000.data.gz");
 
-/// The first packing of the file, or the built-in one. Glass if a file does not contain the material.
-pub(crate) fn load(path: Option<&Path>) -> Result<Packing, Failure> {
-    let glass = ImportOptions {
+/// Glass with the friction of the built-in packing.
+fn glass() -> ImportOptions {
+    ImportOptions {
         shear_modulus: Some(Material::GLASS.shear_modulus),
         poisson_ratio: Some(Material::GLASS.poisson_ratio),
         density: Some(Material::GLASS.density),
         friction: Some(0.1),
         ..ImportOptions::default()
-    };
+    }
+}
+
+/// The first packing of the file, or the built-in one.
+pub(crate) fn load(path: Option<&Path>) -> Result<Packing, Failure> {
     let Some(path) = path else {
         let mut text = String::new();
         GzDecoder::new(BUILT_IN).read_to_string(&mut text).map_err(Failure::failed)?;
-        return Ok(lammps_data::packing(&text, &glass).map_err(Failure::failed)?.packing);
+        return Ok(lammps_data::packing(&text, &glass()).map_err(Failure::failed)?.packing);
     };
+    Ok(all_of(path)?.swap_remove(0))
+}
+
+/// Every packing of the file, at least one. Glass if it does not contain the material.
+fn all_of(path: &Path) -> Result<Vec<Packing>, Failure> {
     let known = load_file(path, &ImportOptions::default());
-    let loaded = known.or_else(|_| load_file(path, &glass)).map_err(Failure::failed)?;
+    let loaded = known.or_else(|_| load_file(path, &glass())).map_err(Failure::failed)?;
+    let packings: Vec<Packing> = loaded.packings.into_iter().map(|imported| imported.packing).collect();
     let none = || Failure::failed(format!("{}: contains no packing", path.display()));
-    Ok(loaded.packings.into_iter().next().ok_or_else(none)?.packing)
+    if packings.is_empty() { Err(none()) } else { Ok(packings) }
 }
 
 /// Every packing of every file, or the built-in one.
@@ -35,9 +45,7 @@ pub(crate) fn load_all(paths: &[PathBuf]) -> Result<Vec<Packing>, Failure> {
     if paths.is_empty() {
         return Ok(vec![load(None)?]);
     }
-    let all = paths.iter().map(|path| load_file(path, &ImportOptions::default()).map_err(Failure::failed));
-    let loaded = all.collect::<Result<Vec<_>, _>>()?;
-    Ok(loaded.into_iter().flat_map(|l| l.packings).map(|imported| imported.packing).collect())
+    Ok(paths.iter().map(|path| all_of(path)).collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 /// Copies along each axis for these sizes; default 1, 2 and 4.
@@ -60,7 +68,7 @@ pub(crate) fn copies(grains: usize, wanted: &[u64]) -> Result<Vec<u32>, Failure>
 }
 
 /// Cell and centres of a packing repeated `copies` times along each edge of its cell.
-pub(crate) fn repeated(packing: &Packing, copies: u32) -> Option<(Cell, Vec<Vec3>)> {
+fn repeated(packing: &Packing, copies: u32) -> Option<(Cell, Vec<Vec3>)> {
     let matrix = *packing.cell.matrix();
     let cell = Cell::new(matrix * f64::from(copies))?;
     let mut centres = Vec::with_capacity(packing.grains() * (copies as usize).pow(3));
@@ -76,8 +84,9 @@ pub(crate) fn repeated(packing: &Packing, copies: u32) -> Option<(Cell, Vec<Vec3
 }
 
 /// The packing repeated `copies` times along each edge of its cell, with its contacts and their forces.
-pub(crate) fn replicated(packing: &Packing, copies: u32) -> Option<Packing> {
-    let (cell, positions) = repeated(packing, copies)?;
+pub(crate) fn replicated(packing: &Packing, copies: u32) -> Result<Packing, Failure> {
+    let invalid = || Failure::failed("the cell of the copies is invalid");
+    let (cell, positions) = repeated(packing, copies).ok_or_else(invalid)?;
     let (grains, times) = (packing.grains() as u32, copies.pow(3));
     let along = i64::from(copies);
     let mut contacts = Vec::with_capacity(packing.contacts.len() * times as usize);
@@ -98,7 +107,7 @@ pub(crate) fn replicated(packing: &Packing, copies: u32) -> Option<Packing> {
     }
     contacts.sort_unstable_by_key(|c| (c.i, c.j, c.image));
     let times = times as usize;
-    Some(Packing {
+    Ok(Packing {
         cell,
         ids: (0..positions.len() as u32).collect(),
         radii: packing.radii.repeat(times),

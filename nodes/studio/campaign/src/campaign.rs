@@ -15,10 +15,10 @@ const MOST: usize = 100_000;
 /// Largest number of characters of a member's name, which is that of a folder.
 const MAX_NAME_LENGTH: usize = 200;
 
-/// A campaign.
+/// A campaign of runs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Campaign {
-    /// Its name; letters, digits, `_` and `-`.
+    /// Name of the campaign; letters, digits, `_` and `-`.
     pub name: String,
     /// Description in one line.
     pub description: String,
@@ -60,16 +60,11 @@ impl Campaign {
         for group in &file.group {
             members.extend(product(group, &file.set, folder)?);
         }
-        for entry in &file.member {
-            let set = merged(&file.set, &entry.set);
-            let common = flat(&file.set).len();
-            members.push(Member::new(&found(&entry.scene, folder), entry.seed, set, common));
-        }
         if let Some(table) = &file.table {
             members.extend(table_of(&folder.join(table), &file.set, folder)?);
         }
         if members.is_empty() {
-            return Err(Failure::usage("no members: name scenes and seeds, a [[member]], or a table"));
+            return Err(Failure::usage("no members: name scenes and seeds, a [[group]], or a table"));
         }
         if members.len() > MOST {
             return Err(Failure::usage(format!("{} members, more than {MOST}", members.len())));
@@ -130,11 +125,10 @@ fn product(group: &Group, common: &Table, folder: &Path) -> Result<Vec<Member>, 
         && let Some(key) = flat(&group.vary).first().map(|setting| &setting.key)
     {
         return Err(Failure::usage(format!(
-            "vary.{key} has no effect without scenes beside it: name scenes and seeds, or give each row of a table and each \
-             [[member]] its own values"
+            "vary.{key} has no effect without scenes beside it: name scenes and seeds, or give each row of a table its own values"
         )));
     }
-    let mut combinations = vec![merged(&Table::new(), &group.set)];
+    let mut combinations = vec![flat(&group.set)];
     for Setting { key, value } in flat(&group.vary) {
         let values = values(&key, &value)?;
         let with = |old: &Vec<Setting>, value: &String| {
@@ -189,11 +183,6 @@ fn flat(table: &Table) -> Vec<Setting> {
         }
     }
     all
-}
-
-/// The settings of all members, then those of one.
-fn merged(common: &Table, own: &Table) -> Vec<Setting> {
-    flat(common).into_iter().chain(flat(own)).collect()
 }
 
 /// The members in a CSV.

@@ -1,4 +1,4 @@
-//! Where the members of a campaign run.
+//! Engines that run the members of a campaign.
 
 mod cluster;
 mod local;
@@ -16,7 +16,7 @@ use grainlab_console::{Failure, worse};
 use grainlab_msgs::Exit;
 use grainlab_recordings::end_reason;
 
-/// Where the members of a campaign run.
+/// An engine that runs the members of a campaign.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Engine {
     /// On this machine, some at a time

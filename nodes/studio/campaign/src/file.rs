@@ -16,7 +16,7 @@ pub(crate) struct CampaignFile {
     /// Scenes, each run with every combination of `vary` and every seed.
     #[serde(default)]
     pub(crate) scenes: Vec<String>,
-    /// Seeds.
+    /// Seeds of every combination.
     pub(crate) seeds: Option<Seeds>,
     /// Launch file: built in, or a path from this file.
     pub(crate) launch: Option<String>,
@@ -32,9 +32,6 @@ pub(crate) struct CampaignFile {
     /// More combinations, each with scenes, seeds and values of its own.
     #[serde(default)]
     pub(crate) group: Vec<Group>,
-    /// Single runs.
-    #[serde(default)]
-    pub(crate) member: Vec<MemberEntry>,
     /// A table of runs: CSV by its path from this file, with the columns `scene`, `seed`, and keys of scenes.
     pub(crate) table: Option<String>,
 }
@@ -67,14 +64,4 @@ impl Seeds {
             Self::Range { first, count } => (*first..first.saturating_add(*count)).take(most).collect(),
         }
     }
-}
-
-/// One run.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct MemberEntry {
-    pub(crate) scene: String,
-    pub(crate) seed: u64,
-    #[serde(default)]
-    pub(crate) set: Table,
 }

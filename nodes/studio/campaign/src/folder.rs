@@ -9,7 +9,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How far a member came.
+/// Progress of a member.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemberState {
     /// It has not begun.
@@ -18,7 +18,7 @@ pub enum MemberState {
     Interrupted,
     /// It ended with this exit code, and would end so again.
     Failed(u8),
-    /// Its run is finished, and its recording whole.
+    /// The run is finished, and the recording whole.
     Finished,
 }
 
@@ -69,7 +69,7 @@ impl Folder {
         Ok((Self { root }, campaign))
     }
 
-    /// Absolute path.
+    /// Absolute path of the folder.
     pub fn root(&self) -> &Path {
         &self.root
     }
@@ -89,7 +89,7 @@ impl Folder {
         self.members().join(&member.name)
     }
 
-    /// How far a member came.
+    /// Progress of a member.
     pub fn state(&self, member: &Member) -> MemberState {
         let given_up = std::fs::read_to_string(self.given_up(member)).ok();
         if let Some(code) = given_up.and_then(|text| text.trim().parse().ok()) {
@@ -141,7 +141,7 @@ impl Folder {
 /// Time for another process that works in the folder to end.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
 
-/// Whether there is a file of a recording.
+/// True if there is a file of a recording.
 fn has_recording(run: &Path) -> bool {
     let is_recording =
         |e: io::Result<std::fs::DirEntry>| e.is_ok_and(|e| e.path().extension().is_some_and(|x| x == "mcap"));
@@ -151,7 +151,7 @@ fn has_recording(run: &Path) -> bool {
 /// Name of the file of the members.
 const CAMPAIGN: &str = "campaign.json";
 
-/// Whether a run with this exit code depends on its scene alone.
+/// True for an exit code that follows from the scene alone.
 pub(crate) fn will_end_so_again(code: u8) -> bool {
     [Exit::Usage, Exit::PhysicsInvalid].iter().any(|exit| exit.code() == code)
 }

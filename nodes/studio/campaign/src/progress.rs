@@ -18,7 +18,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Of so many members, of which some are finished and some failed before.
+    /// A progress of so many members, of which some are finished and some failed before.
     pub(crate) fn new(members: usize, done: usize, failed: usize) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = ProgressStyle::with_template("{bar:30} {pos} of {len}{msg}");

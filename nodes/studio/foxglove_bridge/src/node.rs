@@ -1,4 +1,4 @@
-//! The node.
+//! The node itself.
 
 use crate::server::Server;
 use crate::settings::Settings;

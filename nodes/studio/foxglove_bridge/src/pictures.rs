@@ -17,12 +17,12 @@ impl Pictures {
         Self(missing.map(channel).collect())
     }
 
-    /// Whether a client wants one.
+    /// True if a client wants one.
     pub(crate) fn wanted(&self) -> bool {
         self.0.iter().any(|(_, channel)| channel.is_wanted())
     }
 
-    /// Whether one of them has this channel.
+    /// True if one of them has this channel.
     pub(crate) fn has(&self, id: u64) -> bool {
         self.0.iter().any(|(_, channel)| channel.id() == id)
     }

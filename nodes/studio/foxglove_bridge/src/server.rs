@@ -215,7 +215,7 @@ impl Channel {
         self.id
     }
 
-    /// Whether a client subscribes to it.
+    /// True if a client subscribes to it.
     pub(crate) fn is_wanted(&self) -> bool {
         self.shared.state().clients.values().any(|client| client.has(self.id))
     }

@@ -15,7 +15,7 @@ pub struct Settings {
     pub address: IpAddr,
     /// Port to listen on; 0 is any free one.
     pub port: u16,
-    /// Where the definitions of message types come from.
+    /// Source of the definitions of message types.
     pub definitions: Definitions,
 }
 

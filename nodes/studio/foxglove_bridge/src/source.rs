@@ -1,4 +1,4 @@
-//! How the samples of a topic are received.
+//! Reception of the samples of a topic.
 
 use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::{BulkSubscription, Bus, BusError, Demand, Sample, SubscriptionId};
@@ -7,7 +7,7 @@ use std::time::Duration;
 /// Samples queued between two steps of the node.
 const BACKLOG: u32 = 1_000;
 
-/// The same of packings, megabytes each.
+/// Packings queued between two steps, megabytes each.
 const PACKINGS: u32 = 8;
 
 /// Samples, or packings, which may come in parts.

@@ -16,7 +16,7 @@ const KEPT: usize = 128;
 struct Bridged {
     topic: Topic,
     channel: Channel,
-    /// Of a topic with packings.
+    /// Pictures beside a topic with packings.
     pictures: Option<Pictures>,
     /// While a client subscribes.
     source: Option<Source>,

@@ -30,13 +30,13 @@ impl Endpoint {
         Self { guid, name, type_name, writes, qos, type_hash, representations: vec![0] }
     }
 
-    /// The same with the data representations that it announces.
+    /// This endpoint with the data representations that it announces.
     pub(crate) fn represented(self, announced: Option<Vec<i16>>) -> Self {
         let representations = announced.filter(|all| !all.is_empty()).unwrap_or_else(|| vec![0]);
         Self { representations, ..self }
     }
 
-    /// The same with the hash in its user data.
+    /// This endpoint with the hash in its user data.
     pub(crate) fn announcing(self, user_data: &[u8]) -> Self {
         Self { type_hash: type_hash(user_data), ..self }
     }
@@ -45,7 +45,7 @@ impl Endpoint {
         self.guid.participant()
     }
 
-    /// Whether CycloneDDS made it: the vendor id, with which every GUID begins.
+    /// True for an endpoint of CycloneDDS: the vendor id, with which every GUID begins.
     pub(crate) fn is_cyclone(&self) -> bool {
         self.guid.0[..2] == [0x01, 0x10]
     }
@@ -54,7 +54,7 @@ impl Endpoint {
 /// A node with its endpoints.
 #[derive(Clone, Debug)]
 pub(crate) struct NodeEntry {
-    /// Fully qualified.
+    /// Fully qualified name.
     pub(crate) name: String,
     pub(crate) participant: Guid,
     pub(crate) endpoints: BTreeSet<Guid>,

@@ -1,5 +1,7 @@
 //! Names of topics, services and types on the wire (ROS 2 design, "Topic and Service name mapping to DDS").
 
+use grainlab_console::Failure;
+
 /// A topic of DDS as ROS knows it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum RosName {
@@ -54,6 +56,15 @@ pub(crate) fn ros_type(dds: &str) -> String {
         }
         _ => dds.clone(),
     }
+}
+
+/// There is no such topic, node or service; with those that there are.
+pub(crate) fn unknown<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'a str>) -> Failure {
+    let known: Vec<&str> = known.collect();
+    let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    Failure::failed(format!(
+        "no {kind} {name} in this domain (ROS_DOMAIN_ID); {kind}s are: {list}. See grainlab doctor"
+    ))
 }
 
 /// A name as typed, with a slash before it.

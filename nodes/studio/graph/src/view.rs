@@ -1,13 +1,16 @@
 //! The output of these commands.
 
+use crate::graph::Graph;
+use crate::observer::Observer;
 use clap::ValueEnum;
 use grainlab_console::{Failure, json, print};
+use grainlab_node_kit::Exit;
 use serde::Serialize;
 
-/// How to print a result.
+/// Format of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum OutputFormat {
-    /// Text.
+    /// Text for readers.
     #[default]
     Text,
     /// One JSON document; the keys are stable.
@@ -16,8 +19,8 @@ pub(crate) enum OutputFormat {
 
 /// The arguments that every command has.
 #[derive(Clone, Copy, Debug, clap::Args)]
-pub(crate) struct Common {
-    /// How to print the result
+pub struct Common {
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: OutputFormat,
     /// Time limit of discovery, s
@@ -26,6 +29,11 @@ pub(crate) struct Common {
 }
 
 impl Common {
+    /// The graph of the domain of the environment.
+    pub(crate) fn graph(&self) -> Result<Graph, Failure> {
+        Ok(Observer::join()?.settled(self.patience()))
+    }
+
     pub(crate) fn patience(&self) -> std::time::Duration {
         std::time::Duration::from_secs_f64(self.spin_time)
     }
@@ -35,11 +43,12 @@ impl Common {
         &self,
         value: &T,
         text: impl FnOnce() -> String,
-    ) -> Result<(), Failure> {
+    ) -> Result<Exit, Failure> {
         print(&match self.format {
             OutputFormat::Text => text(),
             OutputFormat::Json => json(value)?,
-        })
+        })?;
+        Ok(Exit::Done)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Where to look for a run.
+//! Domain in which a run is looked for.
 
 use grainlab_console::Failure;
 use grainlab_node_kit::{Network, is_in_use, is_launched};
@@ -35,7 +35,7 @@ impl Choice {
         }
     }
 
-    /// What is waited for, in words.
+    /// Awaited run, in words.
     pub(crate) fn awaited(&self) -> String {
         if self.is_set {
             format!("in DDS domain {}", self.network.domain)

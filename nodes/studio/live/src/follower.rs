@@ -138,7 +138,7 @@ impl Follower {
         self.others.retain(|_, heard| now.saturating_sub(*heard) < FORGOTTEN);
         if let (Some(simulator), Some(known)) = (self.simulator, laboratory) {
             let present = self.bus.foreign_writers(&topics::RUN_STATE);
-            // Of a restarted simulator, the next one is heard within a moment.
+            // After a restart the next simulator is heard within a moment.
             if known.silence(now) > FORGOTTEN && !present.iter().any(|w| w.participant() == simulator) {
                 known.left();
             }

@@ -1,4 +1,4 @@
-//! What is known of the run that the page shows, in bounded memory.
+//! Knowledge of the run that the page shows, in bounded memory.
 
 use grainlab_console::Pace;
 use grainlab_core::Packing;
@@ -23,7 +23,7 @@ const PHASE_WINDOW: Duration = Duration::from_secs(10);
 /// Most estimates that are kept of one packing.
 const ESTIMATES: usize = 64;
 
-/// How the run ended.
+/// End of the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum End {
     /// The loading path is done.
@@ -34,7 +34,7 @@ pub(crate) enum End {
     Vanished,
 }
 
-/// How far the phase is, as the simulator last reported.
+/// Progress of the phase, as the simulator last reported.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PhaseReport {
     pub(crate) name: String,

@@ -21,7 +21,7 @@ use tokio::sync::{oneshot, watch};
 /// Port that is tried first.
 pub const DEFAULT_PORT: u16 = 8808;
 
-/// What a browser may load: scripts and styles of the page itself, and data of this server.
+/// Content that a browser may load: scripts and styles of the page itself, and data of this server.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src 'self' data: blob:; \
                       connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -126,7 +126,7 @@ async fn guard(request: Request, next: Next) -> Response {
     response
 }
 
-/// Whether a Host header names this host, with or without a port.
+/// True for a Host header that names this host, with or without a port.
 fn is_loopback(host: &str) -> bool {
     let name = match host.rsplit_once(':') {
         Some((name, port)) if port.parse::<u16>().is_ok() => name,

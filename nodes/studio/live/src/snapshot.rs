@@ -1,4 +1,4 @@
-//! What browsers receive: parts of the page, the latest values, and the packings.
+//! Snapshots for browsers: parts of the page, the latest values, and the packings.
 
 use grainlab_page::Html;
 use std::collections::BTreeMap;

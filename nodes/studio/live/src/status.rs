@@ -18,7 +18,7 @@ pub(crate) fn waiting(awaited: &str) -> Html {
 }
 
 impl Laboratory {
-    /// What runs, and whether it does.
+    /// Run and its state.
     pub(crate) fn heading(&self, domain: u16, others: usize, now: Duration) -> Html {
         let run = self.run.map_or_else(|| "started by hand".to_owned(), |run| format!("run {run}"));
         let name = if self.scene.is_empty() { "A run" } else { &self.scene };
@@ -53,7 +53,7 @@ impl Laboratory {
         }
     }
 
-    /// What the report of the simulator says about the end of the present phase: the share that is done and the time left, or
+    /// End of the present phase by the report of the simulator: the share that is done and the time left, or
     /// the conditions that do not hold.
     fn rest_of_phase(&self, name: &str) -> String {
         let report = &self.of_phase;

@@ -1,4 +1,4 @@
-//! The node.
+//! The node itself.
 
 use grainlab_msgs::topics;
 use grainlab_node_kit::{

@@ -28,7 +28,6 @@
       }
       to[n].removeAttribute("class");
     });
-    copy.querySelectorAll("[data-cursor]").forEach((e) => e.remove());
     if (before) root.dataset.theme = before; else delete root.dataset.theme;
     const box = svg.viewBox.baseVal;
     copy.setAttribute("width", box.width);

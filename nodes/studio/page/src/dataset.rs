@@ -29,7 +29,7 @@ impl Dataset {
         self.rows.len()
     }
 
-    /// Whether there are no rows.
+    /// True without rows.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }

@@ -21,7 +21,7 @@ impl Cell {
         Self { content: content.into(), class, note: None, value: None }
     }
 
-    /// A text.
+    /// A cell with text.
     pub fn text(content: impl Into<Html>) -> Self {
         Self::classed(content, "")
     }
@@ -101,7 +101,7 @@ pub fn grid(content: Html) -> Html {
     html!("<div class=\"grid\">\n{{ content }}</div>\n", content)
 }
 
-/// A paragraph.
+/// A paragraph of text.
 pub fn paragraph(content: impl Into<Html>) -> Html {
     html!("<p>{{ content }}</p>\n", content => content.into())
 }

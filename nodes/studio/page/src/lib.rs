@@ -1,9 +1,9 @@
-//! What pages and files of results share: plots, elements of HTML, tables of typed columns.
+//! Common parts of pages and files of results: plots, elements of HTML, tables of typed columns.
 //!
 //! - [`Page`]: the frame of a page, with its [`Section`]s
 //! - [`Html`], [`html!`]: markup, from texts and templates; [`table`], [`figure`], [`card`] and others: elements of pages
 //! - [`fixed`], [`signed`], [`six_digits`]: numbers for readers
-//! - [`plot`]: plots as SVG and as text
+//! - [`plot`]: plots as SVG
 //! - [`Dataset`]: typed columns, as CSV and Parquet
 
 #[macro_use]

@@ -4,7 +4,7 @@ use crate::markup::Html;
 use crate::plot::page_style;
 use serde::Serialize;
 
-/// Style of all pages, beside [`page_style`].
+/// Style of all pages, in addition to [`page_style`].
 const STYLE: &str = include_str!("../assets/page.css");
 /// Script of all pages: theme, saved plots and data, sorted tables.
 const SCRIPT: &str = include_str!("../assets/page.js");
@@ -14,33 +14,33 @@ const SCRIPT: &str = include_str!("../assets/page.js");
 pub struct Section {
     /// Id of the element.
     pub id: &'static str,
-    /// The heading.
+    /// Heading of the section.
     pub title: &'static str,
     /// Elements below the heading.
     pub content: Html,
 }
 
-/// A page.
+/// A whole page.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
     /// Name of the window.
     pub title: String,
     /// Elements before the sections.
     pub heading: Html,
-    /// The parts.
+    /// Parts in their order.
     pub sections: Vec<Section>,
     /// Styles that this page adds to those of all pages.
     pub styles: Vec<&'static str>,
     /// Scripts that this page adds to that of all pages.
     pub scripts: Vec<&'static str>,
-    /// Whether there is a bar with a navigation and a switch between light and dark.
+    /// True with a bar, which has a navigation and a switch between light and dark.
     pub has_bar: bool,
-    /// Whether a server sends the page, of which the browser would request an icon, too.
+    /// True for a page from a server, of which the browser would request an icon, too.
     pub is_served: bool,
 }
 
 impl Page {
-    /// The file.
+    /// Text of the file.
     pub fn text(&self) -> String {
         let fixed = |text: &&'static str| Html::drawn((*text).to_owned());
         let styles: Html = [Html::drawn(page_style()), fixed(&STYLE)]

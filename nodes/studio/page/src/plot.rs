@@ -1,11 +1,11 @@
-//! Plots as SVG and as text: series of points over two axes, linear or logarithmic, with error bars, labels and a legend, in light or
+//! Plots as SVG: series of points over two axes, linear or logarithmic, with error bars, labels and a legend, in light or
 //! dark. Points can have tooltips.
 //!
 //! - [`Figure`]: the contents; [`Theme`]: the colours of a file; `page_style`: those of all plots of a page
 //! - [`Strip`]: one of several plots over a common axis; [`Rose`]: a quantity by direction; [`Bars`]: values by name
 //! - `axis`: positions of values, and the tick marks of an axis
 //! - `labels`: texts beside points, if there is room
-//! - `draw`: the elements; `style`: their colours; `text`: plots for terminals
+//! - `draw`: the elements; `style`: their colours
 
 mod axis;
 mod bars;
@@ -15,7 +15,6 @@ mod labels;
 mod rose;
 mod strip;
 mod style;
-mod text;
 
 pub use bars::{Bar, Bars};
 pub use figure::{Axis, Entry, Figure, Line, Marker, Point, Scale, Series, Theme};
@@ -66,9 +65,6 @@ impl Figure {
             let drawn: Vec<&Point> = series.points.iter().filter(drawable).collect();
             let places: Vec<[f64; 2]> = drawn.iter().map(|p| [x.at(p.x), y.at(p.y)]).collect();
             drawing.line(series, &places);
-            if series.line == Some(Line::Steps) {
-                taken.extend(labels::along_steps(&places));
-            }
             for (point, at) in drawn.iter().zip(&places) {
                 if let Some(error) = point.error {
                     let end = |value: f64| if y.has(value) { y.at(value) } else { frame[3] };
@@ -136,7 +132,7 @@ mod tests {
 
     #[test]
     fn without_any_point_the_axes_still_have_a_range() {
-        let svg = figure(Vec::new()).svg(Theme::Dark);
+        let svg = figure(Vec::new()).svg(Theme::Light);
         assert!(!svg.contains("NaN") && svg.ends_with("</svg>\n"), "{svg}");
     }
 }

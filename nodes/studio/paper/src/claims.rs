@@ -1,4 +1,4 @@
-//! What the paper says in words, and the goals of the reproduction, checked on the means.
+//! Statements of the paper, and the goals of the reproduction, checked on the means.
 
 use crate::compare::Comparison;
 use crate::inversion::{Errors, Judged, of_the_paper};
@@ -10,21 +10,21 @@ use grainlab_emt::Modulus;
 /// A statement and whether it holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
-    /// The statement.
+    /// Statement in words.
     pub text: String,
-    /// The result.
+    /// Result in words.
     pub found: String,
-    /// Whether it holds; `None` if it could not be checked.
+    /// True if it holds; `None` if it could not be checked.
     pub holds: Option<bool>,
 }
 
 /// Largest differences that count as reproduced: coordination relative, the others absolute.
 pub const COORDINATION: f64 = 0.035;
-/// Of ε.
+/// Largest difference of ε.
 pub const EPS: f64 = 0.012;
-/// Of φ.
+/// Largest difference of φ.
 pub const SOLID_FRACTION: f64 = 0.006;
-/// Of γ/Δ.
+/// Largest difference of γ/Δ.
 pub const STRAIN_RATIO: f64 = 0.015;
 /// Change of L^D with pressure over its mean.
 pub const DEVIATORIC_FABRIC: f64 = 0.10;
@@ -36,12 +36,8 @@ const ORDER: [usize; SAMPLES] = [0, 1, 3, 2];
 struct Means<'a>(&'a [Comparison]);
 
 impl Means<'_> {
-    fn get(&self, quantity: Quantity, sample: usize, pressure: usize) -> Option<&Comparison> {
-        self.0.iter().find(|c| c.quantity == quantity && c.sample == sample && c.pressure == pressure)
-    }
-
     fn value(&self, quantity: Quantity, sample: usize, pressure: usize) -> Option<f64> {
-        Some(self.get(quantity, sample, pressure)?.ours.value)
+        Some(Comparison::find(self.0, quantity, sample, pressure)?.ours.value)
     }
 
     /// The largest of `size` over all states of a quantity that the paper has, with its place.
@@ -52,7 +48,7 @@ impl Means<'_> {
     }
 }
 
-/// Every claim.
+/// List of all claims.
 pub fn claims(compared: &[Comparison], judged: &[Judged]) -> Vec<Claim> {
     let means = Means(compared);
     let mut all = vec![
@@ -166,18 +162,10 @@ fn shear_moduli(means: &Means<'_>) -> Claim {
     }
 }
 
-fn way<'a>(judged: &'a [Judged], model: &str, calibration: &str, gamma: Option<&str>) -> Option<&'a Judged> {
-    judged.iter().find(|j| {
-        j.way.model.name() == model
-            && j.way.calibration.name() == calibration
-            && j.way.gamma.map(|g| g.name()) == gamma
-    })
-}
-
 /// The conclusion of the paper: ratios of moduli give k, absolute moduli do not. k by absolute moduli is that of Eq. 14 with
 /// the strain since the reference state, as in Table III.
 fn ratios_beat_absolute_moduli(means: &Means<'_>, judged: &[Judged]) -> Option<Claim> {
-    let ratio = way(judged, "ratio", "paper", Some("total"))?.k?;
+    let ratio = Judged::find(judged, "ratio", Some("total"), "paper")?.k?;
     let mut errors = Vec::new();
     for (sample, pressure) in States::places() {
         let [k, emt] = [Quantity::K, Quantity::KEmt].map(|q| means.value(q, sample, pressure));
@@ -195,10 +183,10 @@ fn ratios_beat_absolute_moduli(means: &Means<'_>, judged: &[Judged]) -> Option<C
     })
 }
 
-/// Our inversion beside the paper's, on the same packings.
+/// Our inversion compared with the paper's, on the same packings.
 fn ours_beats_the_paper(judged: &[Judged]) -> Option<Claim> {
-    let paper = way(judged, "ratio", "paper", Some("total"))?;
-    let ours = way(judged, "relaxed", "grainlab", None)?;
+    let paper = Judged::find(judged, "ratio", Some("total"), "paper")?;
+    let ours = Judged::find(judged, "relaxed", None, "grainlab")?;
     let (theirs, own) = ((paper.eps?, paper.k?), (ours.eps?, ours.k?));
     Some(Claim {
         text: "the inversion of grainlab has at most half the paper's error, on these packings".into(),

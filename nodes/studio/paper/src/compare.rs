@@ -1,4 +1,4 @@
-//! Ours beside the paper's.
+//! Numbers of packings compared with those of the paper.
 
 use crate::mean::Mean;
 use crate::quantity::{Printed, Quantity};
@@ -7,7 +7,7 @@ use crate::sample::States;
 /// One quantity of one state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
-    /// The quantity.
+    /// Quantity that is compared.
     pub quantity: Quantity,
     /// Index of the sample.
     pub sample: usize,
@@ -15,17 +15,22 @@ pub struct Comparison {
     pub pressure: usize,
     /// Mean over seeds.
     pub ours: Mean,
-    /// The paper's.
+    /// Number of the paper.
     pub paper: Option<Printed>,
 }
 
 impl Comparison {
+    /// The one of a quantity of a state.
+    pub fn find(all: &[Self], quantity: Quantity, sample: usize, pressure: usize) -> Option<&Self> {
+        all.iter().find(|c| c.quantity == quantity && c.sample == sample && c.pressure == pressure)
+    }
+
     /// Ours less the paper's.
     pub fn difference(&self) -> Option<f64> {
         Some(self.ours.value - self.paper?.value)
     }
 
-    /// The same over the paper's.
+    /// Relative difference, over the paper's.
     pub fn relative(&self) -> Option<f64> {
         Some(self.difference()? / self.paper?.value)
     }

@@ -1,4 +1,4 @@
-//! How far packings are from the paper, in one number, term by term.
+//! Distance of packings from the paper, in one number, term by term.
 
 use crate::compare::{Comparison, compare};
 use crate::quantity::Quantity;
@@ -25,13 +25,11 @@ pub struct Distance {
 }
 
 impl Distance {
-    /// Of the means over seeds; `None` if a sample is missing.
+    /// Distance of the means over seeds; `None` if a sample is missing.
     pub fn of(states: &States) -> Option<Self> {
         let compared = compare(states);
         let term = |quantity: Quantity, near: f64, size: fn(&Comparison) -> Option<f64>| {
-            let at = |sample: usize| {
-                compared.iter().find(|c| c.quantity == quantity && c.sample == sample && c.pressure == 0)
-            };
+            let at = |sample: usize| Comparison::find(&compared, quantity, sample, 0);
             let squares: Option<Vec<f64>> =
                 (0..SAMPLES).map(|sample| Some((size(at(sample)?)? / near).powi(2))).collect();
             squares.map(|all| all.iter().sum::<f64>() / SAMPLES as f64)

@@ -11,9 +11,9 @@ use grainlab_emt::{
 /// A model with its constants and its γ/Δ.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
-    /// The model.
+    /// Model of the inversion.
     pub model: &'static dyn Model,
-    /// The constants.
+    /// Constants of the model.
     pub calibration: &'static Calibration,
     /// The γ/Δ; `None` for a model without.
     pub gamma: Option<StrainRatioSource>,
@@ -36,7 +36,7 @@ impl Way {
         all
     }
 
-    /// What it infers from the exact moduli of a packing; `None` where it has no answer.
+    /// Quantities inferred from the exact moduli of a packing; `None` where it has no answer.
     fn infer(&self, observed: &Observed) -> Option<[Option<f64>; InferredQuantity::COUNT]> {
         let r = &observed.report;
         let conditions = Conditions {
@@ -62,7 +62,7 @@ impl Way {
 pub struct Errors {
     /// Mean of the magnitude.
     pub magnitude: f64,
-    /// Mean.
+    /// Mean with its sign.
     pub bias: f64,
     /// Root mean square.
     pub rms: f64,
@@ -71,7 +71,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Of these errors; `None` without one.
+    /// Summary of these errors; `None` without one.
     pub fn of(errors: &[f64]) -> Option<Self> {
         let mean = |value: fn(f64) -> f64| Mean::of(errors.iter().map(|e| value(*e))).map(|m| m.value);
         Some(Self {
@@ -83,21 +83,37 @@ impl Errors {
     }
 }
 
-/// How well one way infers all states.
+/// Errors of one way on all states.
 #[derive(Clone, Debug)]
 pub struct Judged {
-    /// The way.
+    /// Way that is judged.
     pub way: Way,
-    /// Errors of k, z and ε; `None` where the model does not infer it.
+    /// Errors of k; `None`, as of z and ε, where the model does not infer it.
     pub k: Option<Errors>,
-    /// Of z.
+    /// Errors of z.
     pub z: Option<Errors>,
-    /// Of ε.
+    /// Errors of ε.
     pub eps: Option<Errors>,
     /// States without an answer.
     pub unanswered: usize,
     /// Inferred k and ε of each state, mean over seeds, by sample and pressure.
     pub rows: Vec<Row>,
+}
+
+impl Judged {
+    /// The errors of a model with a γ/Δ and constants.
+    pub fn find<'a>(
+        judged: &'a [Self],
+        model: &str,
+        gamma: Option<&str>,
+        calibration: &str,
+    ) -> Option<&'a Self> {
+        judged.iter().find(|Self { way, .. }| {
+            way.model.name() == model
+                && way.calibration.name() == calibration
+                && way.gamma.map(|g| g.name()) == gamma
+        })
+    }
 }
 
 /// Means over the seeds of one state.
@@ -107,9 +123,9 @@ pub struct Row {
     pub sample: usize,
     /// Index of the pressure.
     pub pressure: usize,
-    /// Inferred k.
+    /// Inferred k, mean.
     pub k: Option<Mean>,
-    /// Inferred ε.
+    /// Inferred ε, mean.
     pub eps: Option<Mean>,
 }
 

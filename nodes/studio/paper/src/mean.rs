@@ -3,16 +3,16 @@
 /// Mean of independent values, and its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {
-    /// The mean.
+    /// Mean of the values.
     pub value: f64,
-    /// Its standard error, s/√n; `None` for one value.
+    /// Standard error, s/√n; `None` for one value.
     pub error: Option<f64>,
     /// Number of values.
     pub count: usize,
 }
 
 impl Mean {
-    /// Of these values; `None` without one.
+    /// Mean of these values; `None` without one.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let values: Vec<f64> = values.into_iter().collect();
         let count = values.len();

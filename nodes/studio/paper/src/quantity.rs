@@ -1,4 +1,4 @@
-//! What is compared with the paper.
+//! Quantities that are compared with the paper.
 
 use crate::tables::{PAPER, REFERENCE_SOLID_FRACTION};
 use grainlab_core::results::Microstructure;
@@ -8,11 +8,11 @@ use grainlab_emt::{Calibration, Conditions, Eq16Reading, Medium, Modulus, Strain
 /// A number in the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Printed {
-    /// The number.
+    /// Number as printed.
     pub value: f64,
     /// Half a unit of its last digit, or the error that the rounding of its sources causes.
     pub rounding: f64,
-    /// Whether it is printed; else it is computed from what is printed.
+    /// True for a printed number; else it is computed from what is printed.
     pub is_printed: bool,
 }
 
@@ -29,7 +29,7 @@ pub enum Quantity {
     Eps,
     /// Deviatoric fabric L33 − (L11 + L22)/2 (Fig. 1).
     DeviatoricFabric,
-    /// Solid fraction.
+    /// Solid fraction φ.
     SolidFraction,
     /// γ/Δ of the total strain since the reference state.
     StrainTotal,
@@ -39,11 +39,11 @@ pub enum Quantity {
     StrainContact,
     /// A shear or bulk modulus, Pa.
     Modulus(Modulus),
-    /// G13/G12.
+    /// Ratio of shear moduli, G13/G12.
     ShearRatio,
     /// k by the effective medium theory from G12, with the volume strain since the reference state (Eq. 14).
     KEmt,
-    /// q/p.
+    /// Stress ratio q/p.
     StressRatio,
 }
 
@@ -92,7 +92,7 @@ impl Quantity {
         }
     }
 
-    /// Its value in a packing; `None` where it is not defined.
+    /// Value in a packing; `None` where it is not defined.
     pub fn measured(self, r: &PackingReport) -> Option<f64> {
         let modulus = |m: Modulus| {
             let stiffness = r.stiffness()?;
@@ -135,7 +135,7 @@ impl Quantity {
         }
     }
 
-    /// Its value in the paper; `None` where the paper does not have it. z is compared with the paper's k: see the report.
+    /// Value in the paper; `None` where the paper does not have it. z is compared with the paper's k: see the report.
     pub fn in_paper(self, sample: usize, pressure: usize) -> Option<Printed> {
         let (s, state) = (&PAPER[sample], &PAPER[sample].states[pressure]);
         let printed = |value: f64, rounding: f64| Some(Printed { value, rounding, is_printed: true });

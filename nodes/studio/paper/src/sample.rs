@@ -12,7 +12,7 @@ pub struct Observed {
     pub pressure: usize,
     /// Seed of its run.
     pub seed: u64,
-    /// Measured quantities.
+    /// Report of the packing.
     pub report: PackingReport,
 }
 

@@ -77,7 +77,7 @@ pub(crate) fn stiffness<'py>(
     Ok(matrix(py, 6, |i, j| c.0[(i, j)]))
 }
 
-/// What `analyze` reports: by key, symbol, unit and meaning.
+/// Quantities of `analyze`: by key, symbol, unit and meaning.
 #[pyfunction]
 pub(crate) fn quantities(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let dict = PyDict::new(py);

@@ -1,4 +1,4 @@
-//! A packing.
+//! Packings as Python objects.
 
 use crate::arrays::{copied, field, matrix, one, row, scalars, vectors};
 use grainlab_core::contact::ContactLaw;
@@ -26,7 +26,7 @@ impl PyPacking {
         Self { packing, source, notes, position: None }
     }
 
-    /// The same with the run state of its run.
+    /// This packing with the run state of its run.
     pub(crate) fn at(self, run_state: &[u8]) -> Self {
         Self { position: PathPosition::of(run_state), ..self }
     }
@@ -250,7 +250,7 @@ impl PyPacking {
         copied(py, p.contacts.iter().map(|c| p.branch(c)))
     }
 
-    /// Whether each grain carries no force.
+    /// True for each grain that carries no force.
     #[getter]
     fn rattlers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         let carries = grainlab_core::non_rattlers(&self.packing);

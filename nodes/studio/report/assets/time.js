@@ -1,81 +1,62 @@
 // Plots against time: their values under the pointer, and their axis.
 "use strict";
 (() => {
-  // Values of every plot against time at the time under the pointer.
-  const NS = "http://www.w3.org/2000/svg";
-  const grid = document.querySelector("[data-phases]"), begins = grid ? grid.dataset.phases.split(" ").map(Number) : [];
-  const placeOf = (time) => {
-    let phase = 0;
-    while (phase + 2 < begins.length && begins[phase + 1] < time) phase++;
-    return phase + (time - begins[phase]) / (begins[phase + 1] - begins[phase] || 1);
-  };
-  const timeOf = (place) => {
-    const phase = Math.min(Math.max(Math.floor(place), 0), begins.length - 2);
-    return begins[phase] + (place - phase) * (begins[phase + 1] - begins[phase]);
-  };
-  const plots = [...document.querySelectorAll("#time [data-axis]")].map((half) => {
-    const drawing = half.closest(".drawing"), isTime = half.dataset.axis === "time";
-    const svg = half.querySelector("svg"), numbers = (key) => svg.dataset[key].split(" ").map(Number);
-    const [left, top, right, bottom] = numbers("frame"), [low, high] = numbers("x");
-    let series = null;
-    const read = () => {
-      if (series) return series;
-      series = new Map();
-      for (const line of drawing.querySelector("script").textContent.trim().split("\n").slice(1)) {
-        const [name, time, value] = line.split(",");
-        if (!series.has(name)) series.set(name, []);
-        series.get(name).push([1e3 * time, Number(value)]);
+  // Values of the curves under the pointer, read from their paths: a page that follows a run has no other data of them.
+  const readout = document.createElement("div");
+  readout.className = "readout";
+  readout.setAttribute("aria-hidden", "true");
+  readout.hidden = true;
+  document.body.append(readout);
+  const numbers = (text) => text.split(" ").map(Number);
+  const rowsAt = (svg, x) => {
+    const [left, top, right, bottom] = numbers(svg.dataset.frame), [low, high] = numbers(svg.dataset.x);
+    const [lowest, highest, spacing] = svg.dataset.y.split(" ").map((v, n) => (n < 2 ? Number(v) : v));
+    const valueOf = (y) => {
+      const share = (bottom - y) / (bottom - top);
+      // As many digits as a tenth of the unit of the plot gives.
+      if (spacing === "log") return (lowest * (highest / lowest) ** share).toPrecision(2);
+      const digits = Math.min(12, Math.max(0, 3 - Math.ceil(Math.log10(highest - lowest))));
+      return (lowest + share * (highest - lowest)).toFixed(digits);
+    };
+    const at = low + ((x - left) / (right - left)) * (high - low);
+    const isTime = svg.closest("[data-axis]").dataset.axis === "time";
+    const rows = [isTime ? `${at.toPrecision(5)} ms` : `phase ${Math.floor(at) + 1}`], names = new Map();
+    for (const path of svg.querySelectorAll("path[stroke=currentColor]")) {
+      const d = path.getAttribute("d");
+      // The legend is above the frame, each line behind its name; targets are faint.
+      if (d.endsWith("h 12")) names.set(path.getAttribute("class"), path.previousElementSibling.textContent);
+      if (d.endsWith("h 12") || path.hasAttribute("stroke-opacity")) continue;
+      let near = null, first = Infinity, last = -Infinity;
+      for (const corner of d.matchAll(/[ML] ([-\d.]+) ([-\d.]+)/g)) {
+        const far = Math.abs(corner[1] - x);
+        [first, last] = [Math.min(first, corner[1]), Math.max(last, corner[1])];
+        if (near === null || far < near.far) near = { far, y: Number(corner[2]) };
       }
-      return series;
-    };
-    const line = document.createElementNS(NS, "line"), readout = document.createElement("div");
-    line.setAttribute("class", "cursor");
-    line.setAttribute("data-cursor", "");
-    line.setAttribute("y1", top);
-    line.setAttribute("y2", bottom);
-    line.style.display = readout.style.display = "none";
-    readout.className = "readout";
-    readout.setAttribute("aria-hidden", "true");
-    svg.append(line);
-    drawing.append(readout);
-    const show = (time, withText) => {
-      const x = left + (((isTime ? time : placeOf(time)) - low) / (high - low)) * (right - left);
-      const inside = x >= left && x <= right;
-      line.style.display = inside ? "" : "none";
-      readout.style.display = inside && withText ? "" : "none";
-      if (!inside) return;
-      line.setAttribute("x1", x);
-      line.setAttribute("x2", x);
-      if (!withText) return;
-      const rows = [`${time.toPrecision(5)} ms`];
-      for (const [name, points] of read()) {
-        let [from, to] = [0, points.length - 1];
-        while (to - from > 1) { const half = (from + to) >> 1; if (points[half][0] <= time) from = half; else to = half; }
-        const near = Math.abs(points[from][0] - time) < Math.abs(points[to][0] - time) ? from : to;
-        rows.push(`${read().size > 1 ? name + "  " : ""}${points[near][1].toPrecision(5)}`);
-      }
-      readout.textContent = rows.join("\n");
-      const share = svg.clientWidth / svg.viewBox.baseVal.width, at = x * share;
-      readout.style.top = `${top * share + 4}px`;
-      readout.style.left = at > svg.clientWidth / 2 ? "auto" : `${at + 8}px`;
-      readout.style.right = at > svg.clientWidth / 2 ? `${svg.clientWidth - at + 8}px` : "auto";
-    };
-    const hide = () => { line.style.display = readout.style.display = "none"; };
-    const timeAt = (e) => {
-      const box = svg.getBoundingClientRect();
-      const at = low + ((((e.clientX - box.left) / box.width) * svg.viewBox.baseVal.width - left) / (right - left)) * (high - low);
-      return isTime ? at : timeOf(at);
-    };
-    return { svg, show, hide, timeAt };
-  });
-  plots.forEach((plot) => {
-    plot.svg.addEventListener("pointermove", (e) => plots.forEach((p) => p.show(plot.timeAt(e), p === plot)));
-    plot.svg.addEventListener("pointerleave", () => plots.forEach((p) => p.hide()));
-  });
+      // A curve has no value before its first corner and behind its last one, but for a few pixels.
+      if (near && x > first - 4 && x < last + 4) rows.push([path.getAttribute("class"), valueOf(near.y)]);
+    }
+    return rows.map((row) => (typeof row === "string" ? row : `${names.has(row[0]) ? `${names.get(row[0])}  ` : ""}${row[1]}`));
+  };
+  let pointer = null;
+  const showValues = () => {
+    const svg = pointer && document.elementFromPoint(...pointer)?.closest("#curves svg[data-y]");
+    readout.hidden = !svg;
+    if (!svg) return;
+    const box = svg.getBoundingClientRect(), x = ((pointer[0] - box.left) / box.width) * svg.viewBox.baseVal.width;
+    const [left, , right] = numbers(svg.dataset.frame);
+    readout.hidden = x < left || x > right;
+    readout.textContent = rowsAt(svg, x).join("\n");
+    readout.style.top = `${pointer[1] + 14}px`;
+    readout.style.left = `${Math.min(pointer[0] + 14, innerWidth - readout.offsetWidth - 4)}px`;
+  };
+  document.addEventListener("pointermove", (e) => { pointer = [e.clientX, e.clientY]; showValues(); });
+  document.documentElement.addEventListener("pointerleave", () => { pointer = null; showValues(); });
+  addEventListener("scroll", showValues, { passive: true });
+  document.addEventListener("curveschange", showValues);
 
   // The horizontal axis of all plots against time.
   document.querySelectorAll("[data-show]").forEach((button) => button.addEventListener("click", () => {
     document.querySelectorAll("[data-show]").forEach((b) => b.setAttribute("aria-pressed", b === button));
-    grid.classList.toggle("by-time", button.dataset.show === "time");
+    document.getElementById("curves").classList.toggle("by-time", button.dataset.show === "time");
   }));
 })();

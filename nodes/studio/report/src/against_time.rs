@@ -50,13 +50,12 @@ impl Timeline {
             return paragraph("The recording has no stress against time.");
         }
         let plots = self.drawable().iter().map(|p| self.drawn(p, true)).collect();
-        let begins: Vec<String> = self.axis().0.iter().map(|t| six_digits(t * MS)).collect();
         let about = format!(
             "The bands are the phases of the scene, drawn with equal widths, or in simulated time. Of {}, each line has the \
              extremes in bins about a pixel wide.",
             count(self.pressure.count(), "exchange")
         );
-        curves(&about, self.phase_list(), plots, &begins.join(" "))
+        curves(&about, self.phase_list(), plots)
     }
 
     /// The plots without their data, for a page that draws them again and again.
@@ -213,9 +212,9 @@ impl Timeline {
     }
 }
 
-/// Plots over a common axis, which the reader chooses; `begins` are those of the phases and the end of the last one, ms.
-pub fn curves(about: &str, phases: Html, plots: Html, begins: &str) -> Html {
-    html!(include_str!("../assets/curves.html"), about, phases, plots, begins)
+/// Plots over a common axis, which the reader chooses.
+pub fn curves(about: &str, phases: Html, plots: Html) -> Html {
+    html!(include_str!("../assets/curves.html"), about, phases, plots)
 }
 
 /// The last values, for readers who do not see the plot.

@@ -6,7 +6,7 @@ type At = (f64, f64);
 /// A series as the extremes of bins of equal width in time, with at most four points each: first, least, greatest and last.
 /// The width doubles when the series becomes too long for the bins.
 #[derive(Clone, Debug)]
-pub struct Decimated {
+pub(crate) struct Decimated {
     /// Most bins. One is about a pixel of a plot.
     most: usize,
     /// Time of the left end of the first bin.
@@ -39,12 +39,12 @@ impl Bin {
 
 impl Decimated {
     /// Without values, for at most this number of bins, two or more.
-    pub fn new(most: usize) -> Self {
+    pub(crate) fn new(most: usize) -> Self {
         Self { most: most.max(2), start: 0.0, width: 0.0, bins: Vec::new(), count: 0 }
     }
 
     /// Adds a value. Times do not decrease; values that are not finite, and earlier times, are left out.
-    pub fn push(&mut self, time: f64, value: f64) {
+    pub(crate) fn push(&mut self, time: f64, value: f64) {
         let newest = self.bins.iter().rev().find_map(|b| b.as_ref()).map(|b| b.last.0);
         if !time.is_finite() || !value.is_finite() || newest.is_some_and(|t| time < t) {
             return;
@@ -87,12 +87,12 @@ impl Decimated {
     }
 
     /// Number of values that were added.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.count
     }
 
     /// The points in order of time.
-    pub fn points(&self) -> Vec<At> {
+    pub(crate) fn points(&self) -> Vec<At> {
         let mut points = Vec::with_capacity(4 * self.bins.len());
         for bin in self.bins.iter().flatten() {
             let (early, late) = if bin.least.0 <= bin.greatest.0 {

@@ -1,4 +1,4 @@
-//! Where the energy of a run went, where its scene asked for that.
+//! Energy of a run by its losses, where the scene asked for that.
 
 use crate::run::Run;
 use grainlab_msgs::boundary::EnergyReading;

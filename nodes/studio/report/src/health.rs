@@ -1,4 +1,4 @@
-//! Whether the run went well: messages, processes, warnings, time; and how to repeat it.
+//! Health of the run: messages, processes, warnings, time; and the commands that repeat it.
 
 use crate::run::Run;
 use grainlab_console::count;

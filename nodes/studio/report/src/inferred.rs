@@ -1,4 +1,4 @@
-//! What was inferred from moduli and wave speeds, beside what was counted.
+//! Values inferred from moduli and wave speeds, with those that were counted.
 
 use crate::run::{Run, recommended};
 use grainlab_core::results::InferredQuantity;
@@ -89,7 +89,7 @@ impl Run {
         paragraph(about) + grid(figures) + details("Notes of the models", warnings) + self.of_instruments()
     }
 
-    /// What was inferred from data that are not about a packing of the run; empty if nothing was.
+    /// Values inferred from data that are not about a packing of the run; empty if there are none.
     fn of_instruments(&self) -> Html {
         let rows = self.of_instruments.iter().map(|e| {
             let cells = InferredQuantity::countable().map(|q| Cell::fixed(e.values[q], q.digits()));

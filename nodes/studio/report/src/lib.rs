@@ -1,9 +1,9 @@
 //! Reports of runs: one HTML page for a run, with plots and its packings in three dimensions, and one for many runs.
 //!
-//! - [`Run`]: what a report is made of, from the files of a run; `timeline`, `phased`, [`Decimated`]: against time, in one pass
+//! - [`Run`]: what a report is made of, from the files of a run; `timeline`, `phased`, `decimated`: against time, in one pass
 //!   over the recording; `summary_file`: how the run ended
 //! - `page`: the page of a run; `against_time`, `structure`, `moduli`, `inferred`, `waves`, `energy`, `health`: its sections
-//! - [`overview`]: the page of many runs; [`Outliers`]: values far from those of runs alike
+//! - [`overview`]: the page of many runs; `outliers`: values far from those of runs alike
 //! - [`Timeline`], [`curves`], [`STYLE`], [`SCRIPT`]: what the page of a running laboratory has in common with a report
 //! - [`write_report`]: the file
 
@@ -25,9 +25,7 @@ mod waves;
 mod write;
 
 pub use against_time::curves;
-pub use decimated::Decimated;
 pub use many::overview;
-pub use outliers::Outliers;
 pub use page::{SCRIPT, STYLE};
 pub use run::Run;
 pub use timeline::Timeline;

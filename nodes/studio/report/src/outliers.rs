@@ -14,14 +14,14 @@ const LEAST: f64 = 1e-3;
 
 /// The distribution of a quantity over runs alike, by its median and its median absolute deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outliers {
+pub(crate) struct Outliers {
     median: f64,
     deviation: f64,
 }
 
 impl Outliers {
-    /// Of these values; `None` of fewer than five finite ones.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+    /// Distribution of these values; `None` of fewer than five finite ones.
+    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let finite: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
         if finite.len() < FEWEST {
             return None;
@@ -33,13 +33,13 @@ impl Outliers {
 
     /// The robust z-score of a value: its distance from the median over 1.4826 median absolute deviations. Infinite if all
     /// others are equal.
-    pub fn score(&self, value: f64) -> f64 {
+    pub(crate) fn score(&self, value: f64) -> f64 {
         let off = value - self.median;
         if off.abs() <= LEAST * self.median.abs() { 0.0 } else { off / (TO_SIGMA * self.deviation) }
     }
 
-    /// Whether a value is an outlier: its score is beyond 3.5.
-    pub fn has(&self, value: f64) -> bool {
+    /// True for an outlier: the score is beyond 3.5.
+    pub(crate) fn has(&self, value: f64) -> bool {
         self.score(value).abs() > LIMIT
     }
 }

@@ -9,7 +9,7 @@ use grainlab_results::brief::{ended, lost_words, moduli};
 use grainlab_results::read_back::InvertedPacking;
 use grainlab_viewer::PictureError;
 
-/// Style of plots against time and of tables of runs, beside that of all pages.
+/// Style of plots against time and of tables of runs, in addition to that of all pages.
 pub const STYLE: &str = include_str!("../assets/report.css");
 /// Script of plots against time.
 pub const SCRIPT: &str = include_str!("../assets/time.js");
@@ -55,7 +55,7 @@ impl Run {
         Ok(page.text())
     }
 
-    /// What was run, how it ended, and the key results.
+    /// Scene, end and key results of the run.
     fn heading(&self) -> Html {
         let about = self.scene.as_ref().map_or("", |s| s.description.as_str());
         let missing = list(&self.missing);
@@ -82,7 +82,7 @@ impl Run {
         }
     }
 
-    /// How the run ended, in one line, which begins with the damage if there is any.
+    /// End of the run, in one line, which begins with the damage if there is any.
     fn verdict(&self) -> Html {
         let s = &self.summary;
         let (class, mut words) = match s.exit {

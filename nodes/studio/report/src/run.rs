@@ -1,4 +1,4 @@
-//! What a report is made of, from the files of a run. What cannot be read is named, and the report is made of the rest.
+//! Contents of a report, from the files of a run. What cannot be read is named, and the report is made of the rest.
 
 use crate::summary_file::SummaryFile;
 use crate::timeline::Timeline;
@@ -12,7 +12,7 @@ const NO_RECORDING: &str = "No recording";
 
 const NO_SUMMARY: &str = "No summary";
 
-/// A run.
+/// A run with its files.
 #[derive(Debug)]
 pub struct Run {
     /// Directory of the run.
@@ -36,7 +36,7 @@ pub struct Run {
     pub(crate) uncounted_files: usize,
     /// It is unknown which messages of the recording are right; the lines are in the summary or in `missing`.
     disputed: bool,
-    /// What could not be read, one line each.
+    /// Parts that could not be read, one line each.
     pub(crate) missing: Vec<String>,
 }
 
@@ -49,12 +49,12 @@ impl Run {
         (!found).then(|| reason.map_or("it has no summary, no scene and no packing", String::as_str))
     }
 
-    /// Whether something could not be read.
+    /// True if something could not be read.
     pub fn is_incomplete(&self) -> bool {
         !self.missing.is_empty()
     }
 
-    /// Whether it is unknown which messages of the recording are right.
+    /// True if it is unknown which messages of the recording are right.
     pub fn is_disputed(&self) -> bool {
         self.disputed
     }
@@ -178,7 +178,7 @@ impl Run {
         self.several_runs.as_ref()
     }
 
-    /// The same for a table: without series and packings, which are large.
+    /// This run for a table: without series and packings, which are large.
     #[must_use]
     pub fn without_series(self) -> Self {
         Self { timeline: Timeline::of_phases(1), ..self }
@@ -199,7 +199,7 @@ impl Run {
         }
     }
 
-    /// The seed.
+    /// Seed of the run.
     pub(crate) fn seed(&self) -> Option<u64> {
         self.summary.seed.or(self.scene.as_ref().map(|s| s.seed))
     }

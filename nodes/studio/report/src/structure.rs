@@ -1,4 +1,4 @@
-//! How contacts and forces of the last packing are oriented, and how large its forces are.
+//! Orientation of contacts and forces of the last packing, and the sizes of its forces.
 
 use crate::run::Run;
 use grainlab_core::results::{FORCE_BIN_WIDTH, ORIENTATION_BINS, PackingReport};

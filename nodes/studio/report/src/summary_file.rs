@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-/// How a run ended, and what became of its messages.
+/// End of a run, and counts of its messages.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct SummaryFile {

@@ -20,9 +20,9 @@ pub struct Timeline {
     pub(crate) stress: [Phased; 6],
     /// Imposed stress, Pa, in the order of Voigt: no values where a strain rate is imposed.
     pub(crate) targets: [Phased; 6],
-    /// Pa.
+    /// Mean stress, Pa.
     pub(crate) pressure: Phased,
-    /// Pa.
+    /// Deviatoric stress, Pa.
     pub(crate) deviator: Phased,
     /// Logarithmic, positive in extension, in the order of Voigt.
     pub(crate) strain: [Phased; 6],
@@ -33,7 +33,7 @@ pub struct Timeline {
     pub(crate) phases: Vec<(u32, f64)>,
     /// Names of phases.
     pub(crate) names: BTreeMap<u32, String>,
-    /// Last time.
+    /// Last time, s.
     pub(crate) end: f64,
     /// Measured packings: time, z and ε.
     pub(crate) fabrics: Vec<Structure>,
@@ -45,7 +45,7 @@ pub struct Timeline {
     pub(crate) last: Option<Packing>,
     /// Messages that could not be read.
     pub(crate) unreadable: usize,
-    /// What shows that the recording is of several runs: then it was not read to its end.
+    /// Sign that the recording is of several runs: then it was not read to its end.
     pub(crate) several_runs: Option<RunSign>,
     /// Sequence number of the next request.
     next: u64,

@@ -92,7 +92,7 @@ fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffn
     grid(figures + medium(acoustic, stiffness))
 }
 
-/// Moduli from speeds beside those of the contact network.
+/// Moduli from speeds compared with those of the contact network.
 fn medium(acoustic: &AcousticReport, stiffness: Option<&Stiffness>) -> Html {
     let t = stiffness.map(|c| c.transverse_isotropy_about(&acoustic.medium.axis));
     let all = [

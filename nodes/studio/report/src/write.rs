@@ -17,9 +17,9 @@ pub enum ReportError {
     /// The file cannot be written.
     #[error("{}: {source}", path.display())]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Reason of the system.
         source: std::io::Error,
     },
 }

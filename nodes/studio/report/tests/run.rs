@@ -227,7 +227,7 @@ fn the_table_of_many_runs_has_a_row_for_each_and_leads_to_their_pages() {
     });
     let page = overview(&runs);
     assert!(page.contains("2 runs of 1 scene") && page.contains("href=\"one/report.html\""));
-    // Of these runs there is only a summary.
+    // These runs have only a summary.
     assert!(page.contains("two &amp; three</a>") && page.contains("damaged") && !page.contains("complete"));
 }
 

@@ -1,11 +1,11 @@
 //! The inversion: every model judged, and the rows of Table III.
 
 use crate::Reproduction;
-use crate::tables::{head, mean, of_paper, places};
+use crate::tables::{head, mean, of_paper};
 use grainlab_emt::Calibration;
 use grainlab_page::{Cell, Html, code, html, signed, table};
 use grainlab_paper::inversion::{Errors, Judged, Row, of_the_paper};
-use grainlab_paper::{Mean, PAPER, Quantity};
+use grainlab_paper::{Mean, PAPER, Quantity, States};
 
 fn errors(found: Option<&Errors>, digits: usize) -> [Cell; 2] {
     [Cell::fixed(found.map(|e| e.magnitude), digits), Cell::signed(found.map(|e| e.bias), digits)]
@@ -44,7 +44,7 @@ impl Reproduction {
     /// Each row of Table III: the paper's inversion on its packings, on ours, and ours.
     pub(crate) fn rows_table(&self) -> Html {
         let models = [self.judged("ratio", Some("total"), "paper"), self.judged("relaxed", None, "grainlab")];
-        let rows = places().map(|(sample, pressure)| {
+        let rows = States::places().map(|(sample, pressure)| {
             let state = &PAPER[sample].states[pressure];
             let inferred = |value: fn(&Row) -> Option<Mean>, truth: Quantity, digits: usize| {
                 let truth = self.get(truth, sample, pressure).map(|c| c.ours.value);
@@ -74,7 +74,7 @@ impl Reproduction {
         table(caption, header.split(" | "), rows)
     }
 
-    /// Our isotropic calibration beside Eqs. 21 and 22.
+    /// Our isotropic calibration compared with Eqs. 21 and 22.
     pub(crate) fn calibration_table(&self) -> Html {
         let all = ["paper", "grainlab", "grainlab-z"].into_iter().filter_map(Calibration::builtin);
         let rows = all.map(|calibration| {

@@ -19,7 +19,7 @@ use grainlab_paper::claims::{Claim, claims};
 use grainlab_paper::inversion::{Judged, judge};
 use grainlab_paper::{Comparison, States, compare};
 
-/// Where the packings come from.
+/// Origin of the packings.
 #[derive(Clone, Debug)]
 pub struct Provenance {
     /// Version of the program.
@@ -34,7 +34,7 @@ pub struct Provenance {
     pub seeds: Vec<u64>,
 }
 
-/// The packings beside the paper.
+/// The packings compared with the paper.
 #[derive(Clone, Debug)]
 pub struct Reproduction {
     provenance: Provenance,
@@ -54,15 +54,11 @@ impl Reproduction {
 
     /// The errors of a model with a γ/Δ and constants.
     fn judged(&self, model: &str, gamma: Option<&str>, calibration: &str) -> Option<&Judged> {
-        self.judged.iter().find(|Judged { way, .. }| {
-            way.model.name() == model
-                && way.calibration.name() == calibration
-                && way.gamma.map(|g| g.name()) == gamma
-        })
+        Judged::find(&self.judged, model, gamma, calibration)
     }
 
     /// The comparison of one quantity of one state.
     fn get(&self, quantity: grainlab_paper::Quantity, sample: usize, pressure: usize) -> Option<&Comparison> {
-        self.compared.iter().find(|c| c.quantity == quantity && c.sample == sample && c.pressure == pressure)
+        Comparison::find(&self.compared, quantity, sample, pressure)
     }
 }

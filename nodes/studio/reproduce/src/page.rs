@@ -4,7 +4,7 @@ use crate::Reproduction;
 use grainlab_page::{Cell, Html, Page, Section, code, heading, html, lines, list, paragraph, signed, table};
 use grainlab_paper::{PAPER, PRESSURE};
 
-/// What the scenes have that the text of the paper does not have, or has otherwise.
+/// Parts of the scenes that the text of the paper does not have, or has otherwise.
 const DEPARTURES: [&str; 5] = [
     "An early extension at constant volume, before the grains touch. The deviatoric strain of the compression undoes it, so that \
      γ/Δ is that of Table II; the paper does not mention it.",
@@ -16,13 +16,13 @@ const DEPARTURES: [&str; 5] = [
 ];
 
 impl Reproduction {
-    /// The page.
+    /// Text of the page.
     pub fn html(&self) -> String {
         let p = &self.provenance;
         let title = "Contact anisotropy and coordination number: the paper, reproduced";
         let seeds: Vec<String> = p.seeds.iter().map(u64::to_string).collect();
         let about = format!(
-            "La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012), beside packings of {} grains prepared, measured and \
+            "La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012), compared with packings of {} grains prepared, measured and \
              inverted by grainlab {}: four samples at four pressures, {} each ({}). Every number is computed from the \
              recordings of the runs.",
             p.grains,

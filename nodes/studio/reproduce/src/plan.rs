@@ -2,7 +2,7 @@
 
 use grainlab_paper::{PAPER, PRESSURE};
 
-/// How large a reproduction is.
+/// Size of a reproduction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
     /// Grains of each packing.

@@ -1,9 +1,9 @@
-//! Tables I, II and III, and the moduli, ours beside the paper's.
+//! Tables I, II and III, and the moduli, ours compared with the paper's.
 
 use crate::Reproduction;
 use grainlab_emt::Modulus;
 use grainlab_page::{Cell, Html, code, fixed, html, plus_minus, signed, table};
-use grainlab_paper::{Comparison, Mean, PAPER, PRESSURE, PRESSURES, Quantity, SAMPLES};
+use grainlab_paper::{Comparison, Mean, PAPER, PRESSURE, Quantity, States};
 
 /// A mean with its error, in `scale`.
 pub(crate) fn mean(m: Option<&Mean>, scale: f64, digits: usize) -> Cell {
@@ -48,7 +48,7 @@ impl Reproduction {
             (Quantity::Fabric(2), 4),
             (Quantity::SolidFraction, 4),
         ];
-        let names = ["k, all grains", "z, without rattlers (beside the paper's k)", "L11", "L22", "L33", "φ"];
+        let names = ["k, all grains", "z, without rattlers (compared with the paper's k)", "L11", "L22", "L33", "φ"];
         let mut rows = Vec::new();
         for (sample, paper) in PAPER.iter().enumerate() {
             for ((quantity, digits), name) in quantities.iter().zip(names) {
@@ -68,7 +68,7 @@ impl Reproduction {
 
     /// Table II: γ/Δ.
     pub(crate) fn table_two(&self) -> Html {
-        let rows = places().map(|(sample, pressure)| {
+        let rows = States::places().map(|(sample, pressure)| {
             let total = cells(self.get(Quantity::StrainTotal, sample, pressure), 1.0, 4, false);
             let own = [Quantity::StrainElastic, Quantity::StrainContact]
                 .map(|q| mean(self.get(q, sample, pressure).map(|c| &c.ours), 1.0, 4));
@@ -83,7 +83,7 @@ impl Reproduction {
 
     /// The simulated columns of Table III.
     pub(crate) fn table_three(&self) -> Html {
-        let rows = places().map(|(sample, pressure)| {
+        let rows = States::places().map(|(sample, pressure)| {
             let [k, z, eps] =
                 [Quantity::K, Quantity::Z, Quantity::Eps].map(|q| self.get(q, sample, pressure));
             let all = |c, digits| {
@@ -100,9 +100,9 @@ impl Reproduction {
         table(caption, header.split(" | "), rows)
     }
 
-    /// The moduli, beside those that Table III implies.
+    /// The moduli, compared with those that Table III implies.
     pub(crate) fn moduli(&self) -> Html {
-        let rows = places().map(|(sample, pressure)| {
+        let rows = States::places().map(|(sample, pressure)| {
             let mut row: Vec<Cell> = head(sample, pressure).into();
             for modulus in [Modulus::G12, Modulus::G13, Modulus::Theta] {
                 let [ours, paper, difference, _] =
@@ -114,7 +114,7 @@ impl Reproduction {
             row
         });
         let caption = self.caption(
-            "Moduli in MPa, beside those that the paper's k, k̂ and ε of Table III imply by its Eqs. 16–18, 21 and 22; \
+            "Moduli in MPa, compared with those that the paper's k, k̂ and ε of Table III imply by its Eqs. 16–18, 21 and 22; \
              and k by the effective medium theory from G12 with the strain Δ since the reference state (Table III, k_EMT)",
             "g12_pa, g13_pa, theta_pa",
         );
@@ -127,9 +127,4 @@ impl Reproduction {
 /// Sample and pressure.
 pub(crate) fn head(sample: usize, pressure: usize) -> [Cell; 2] {
     [Cell::text(PAPER[sample].name), Cell::number(PRESSURE[pressure] / 1e3)]
-}
-
-/// Every state, sample by sample.
-pub(crate) fn places() -> impl Iterator<Item = (usize, usize)> {
-    (0..SAMPLES).flat_map(|s| (0..PRESSURES).map(move |p| (s, p)))
 }

@@ -2,14 +2,14 @@
 
 use crate::Reproduction;
 use grainlab_console::{Table, fixed};
-use grainlab_paper::{Comparison, PAPER, PRESSURE, Quantity};
+use grainlab_paper::{Comparison, PAPER, PRESSURE, Quantity, States};
 
 impl Reproduction {
     /// A row for each state, and the claims.
     pub fn text(&self) -> String {
         let mut table =
             Table::new(["state", "p/kPa", "z", "paper k", "eps", "paper", "g total", "paper", "phi"]);
-        for (sample, pressure) in crate::tables::places() {
+        for (sample, pressure) in States::places() {
             let get = |q| self.get(q, sample, pressure);
             let ours = |c: Option<&Comparison>, digits| fixed(c.map(|c| c.ours.value), digits);
             let paper =

@@ -21,7 +21,7 @@ pub struct State {
     pub scene: &'static str,
     source: &'static str,
     solid_fraction: f64,
-    /// Without rattlers.
+    /// Coordination number without rattlers.
     coordination: f64,
     coordination_tolerance: f64,
     note: &'static str,
@@ -30,7 +30,7 @@ pub struct State {
 const ABSTRACT: &str = "Agnolin & Roux (2007), abstract";
 const TABLE: &str = "Agnolin & Roux (2007), table at 10 kPa, as quoted by others";
 
-/// The states.
+/// The published states.
 pub const STATES: [State; 4] = [
     State {
         name: "A",
@@ -73,9 +73,9 @@ pub const STATES: [State; 4] = [
 /// Numbers of one packing that are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// φ.
+    /// Solid fraction φ.
     pub solid_fraction: f64,
-    /// z.
+    /// Coordination number z.
     pub coordination: f64,
 }
 

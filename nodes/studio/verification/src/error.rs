@@ -1,4 +1,4 @@
-//! Why a comparison could not be made.
+//! Errors of a comparison.
 
 use grainlab_dem::DemError;
 
@@ -19,7 +19,7 @@ pub enum VerificationError {
     Data {
         /// Name of the file.
         file: &'static str,
-        /// The fault.
+        /// Fault of the data.
         why: String,
     },
     /// A packing could not be measured.

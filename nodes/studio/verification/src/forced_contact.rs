@@ -8,11 +8,11 @@ use grainlab_core::lanes::LaneVec3;
 #[derive(Clone, Debug)]
 pub(crate) struct ForcedContact<S> {
     pub(crate) law: SpringDashpotSlider<S>,
-    /// R*, m.
+    /// Effective radius R*, m.
     pub(crate) effective_radius: f64,
-    /// m*, kg.
+    /// Effective mass m*, kg.
     pub(crate) effective_mass: f64,
-    /// s
+    /// Time step, s.
     pub(crate) time_step: f64,
     history: Vec3,
     contact_radius: f64,
@@ -27,7 +27,7 @@ pub(crate) struct Move {
     pub(crate) normal: Vec3,
     /// 1 over the distance of the centres, 1/m; 0 upon a plane.
     pub(crate) inverse_distance: f64,
-    /// Of the second centre relative to the first, m/s.
+    /// Velocity of the second centre relative to the first, m/s.
     pub(crate) velocity: Vec3,
     /// Distances of the contact from the centres times the spins, summed, m/s.
     pub(crate) spin_velocity: Vec3,

@@ -18,7 +18,7 @@ const TRUTH: [f64; 2] = [9.3, 0.2];
 /// R* of two spheres of radius 1.
 const EFFECTIVE_RADIUS: f64 = 0.5;
 
-/// Every row.
+/// Rows of the suite.
 pub fn rows() -> Result<Vec<Row>, VerificationError> {
     let data = table("grainlearning_collision.csv", include_str!("../data/grainlearning_collision.csv"))?;
     let force = |young: f64, poisson: f64, overlap: f64| {

@@ -9,7 +9,7 @@ pub(crate) struct Impact {
     pub(crate) overlap: f64,
     /// Largest force, N.
     pub(crate) force: f64,
-    /// s
+    /// Duration of contact, s.
     pub(crate) duration: f64,
 }
 

@@ -22,7 +22,7 @@ pub(crate) struct After {
     pub(crate) spin: f64,
 }
 
-/// Every impact.
+/// Table of all impacts.
 pub(crate) struct Impacts(Vec<Vec<f64>>);
 
 impl Impacts {

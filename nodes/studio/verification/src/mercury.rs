@@ -12,20 +12,20 @@ use grainlab_core::{Mat3, Material, Vec3};
 /// The name of the suite.
 pub const NAME: &str = "mercury";
 
-/// Their spheres: radius (m), E* (Pa), Poisson's ratio, friction, mass (kg, of a density of 6/π kg/m³).
+/// Spheres of MercuryDPM: radius (m), E* (Pa), Poisson's ratio, friction, mass (kg, of a density of 6/π kg/m³).
 const RADIUS: f64 = 0.25;
 const YOUNG: f64 = 1e5;
 const POISSON: f64 = 0.3;
 const FRICTION: f64 = 0.1;
 const MASS: f64 = 8.0 * RADIUS * RADIUS * RADIUS;
 
-/// Their dashpot is this times √(m* F/δ).
+/// Dashpot of MercuryDPM over √(m* F/δ).
 const DISSIPATION: f64 = 2.0;
 
 /// Speed of the motions, m/s.
 const SPEED: f64 = 0.01;
 
-/// Every row.
+/// Rows of the suite.
 pub fn rows() -> Result<Vec<Row>, VerificationError> {
     Ok([loading()?, tangential()?, frames()?, vec![restitution()?]].concat())
 }
@@ -58,7 +58,7 @@ fn loading() -> Result<Vec<Row>, VerificationError> {
     let damping = 0.5 * DISSIPATION * (2.0f64 / 3.0).sqrt();
     let points = table(file, include_str!("../data/mercury_loading.csv"))?.into_iter().map(|row| {
         let (time, overlap, theirs) = (row[0], row[1], row[2]);
-        // Of the plane relative to the sphere.
+        // Velocity of the plane relative to the sphere.
         let leaving = if time <= 1.5 + 1e-9 { SPEED } else { -SPEED };
         let mut contact = ForcedContact::new(law(material(), damping), RADIUS, MASS, 0.006);
         let forces = contact.step(&upon_plane(overlap, -Vec3::z() * leaving));
@@ -180,7 +180,7 @@ fn frames() -> Result<Vec<Row>, VerificationError> {
         let along = forces.tangential / forces.tangential.norm();
         direction.extend((0..3).map(|k| Point::new(row[0], row[3 + k], along[k])));
     }
-    // The same test in a frame that is turned: the forces turn with it.
+    // Test in a frame that is turned: the forces turn with it.
     let axis = Vec3::new(1.0, -2.0, 0.5);
     let turn = rotation(axis, 1.1);
     let turned = turned_pair(&turn);

@@ -17,12 +17,12 @@ const STIFFNESS: f64 = 1e7;
 const RATIO: f64 = 0.5;
 const FRICTION: f64 = 0.5;
 
-/// s
+/// Time step, s.
 const STEP: f64 = 6.0 * std::f64::consts::PI / 200.0;
 
 const SOURCE: &str = "ON-DEM WG4 (ON-DEM-WG4-testingInteractions 9299158)";
 
-/// Every row.
+/// Rows of the suite.
 pub fn rows() -> Result<Vec<Row>, VerificationError> {
     Ok([
         elastic()?,
@@ -75,7 +75,7 @@ fn elastic() -> Result<Vec<Row>, VerificationError> {
         let source = format!("{SOURCE}, theoretical_output_test_01.csv");
         Row::new(NAME, name, source, "N", Measure::OfLargest, 1e-9, points)
     };
-    // Their row n has the force after step n + 1.
+    // Row n of the file has the force after step n + 1.
     let stated = forces(oscillation(0.02));
     let points = gold.iter().map(|r| Point::new(r[0], r[2], stated[r[0] as usize])).collect();
     let sent = forces(oscillation(0.02 * DISTANCE));
@@ -109,7 +109,7 @@ fn plastic() -> Row {
 /// A pair sheared at a constant velocity while it turns as a rigid body at 1 rad/s about `axis`: the force turns with it.
 fn turned(what: &str, axis: Vec3) -> Row {
     const VELOCITY: f64 = 0.02;
-    // Their step turns the pair by 0.094 rad; ours is second order in that angle.
+    // A step of ON-DEM turns the pair by 0.094 rad; our law is second order in that angle.
     const PARTS: u32 = 16;
     let mut contact = contact(f64::from(PARTS));
     let dt = STEP / f64::from(PARTS);

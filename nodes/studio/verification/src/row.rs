@@ -5,15 +5,15 @@ use serde::Serialize;
 /// One number of theirs and of ours.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Point {
-    /// Where along the comparison: an angle, an overlap, a step. The row says which.
+    /// Position along the comparison: an angle, an overlap, a step. The row says which.
     pub at: f64,
-    /// Their number.
+    /// Number of the source.
     pub theirs: f64,
-    /// Ours.
+    /// Number of this program.
     pub ours: f64,
-    /// What ours should be for the reason in the note of the row, where it should not be theirs.
+    /// Expected number of this program for the reason in the note of the row, where it should not be theirs.
     pub explained: Option<f64>,
-    /// What theirs should be for that reason, by a computation that is neither theirs nor ours.
+    /// Expected number of the source for that reason, by a computation that is neither theirs nor ours.
     pub reproduced: Option<f64>,
 }
 
@@ -34,7 +34,7 @@ impl Point {
     }
 }
 
-/// How the difference of a row is counted.
+/// Measure of the difference of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
@@ -101,24 +101,24 @@ impl Verdict {
     }
 }
 
-/// One comparison.
+/// One comparison of numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// The suite it belongs to, as in `--only`.
     pub suite: &'static str,
     /// The quantity that is compared.
     pub name: String,
-    /// Where their numbers are from.
+    /// Source of their numbers.
     pub source: String,
     /// Unit of the numbers; empty for a pure number.
     pub unit: &'static str,
     /// The numbers; none if the engine lacks what is needed.
     pub points: Vec<Point>,
-    /// How the difference is counted.
+    /// Measure of the difference.
     pub measure: Measure,
     /// The largest difference that passes.
     pub tolerance: f64,
-    /// What differs and why; empty where nothing does.
+    /// Known difference with its reason; empty where nothing differs.
     pub note: String,
 }
 
@@ -147,7 +147,7 @@ impl Row {
         Self::new(suite, name, source, "", Measure::Relative, 0.0, Vec::new()).with_note(note)
     }
 
-    /// The same row with a note.
+    /// This row with a note.
     #[must_use]
     pub fn with_note(self, note: impl Into<String>) -> Self {
         Self { note: note.into(), ..self }
@@ -171,7 +171,7 @@ impl Row {
         reproduced.then(|| self.against(|p| p.reproduced.unwrap_or(p.theirs), |p| p.theirs)).flatten()
     }
 
-    /// The verdict.
+    /// Verdict on the row.
     pub fn verdict(&self) -> Verdict {
         // A difference that is not a number is no pass.
         let within = |difference: f64| difference <= self.tolerance;
@@ -244,7 +244,7 @@ mod tests {
         assert_eq!(of(Point::new(0.0, 1.0, 1.5)), Verdict::Failed);
         assert_eq!(of(Point::explained(0.0, 1.0, 1.5, 1.501, 1.001)), Verdict::Explained);
         assert_eq!(of(Point::explained(0.0, 1.0, 1.6, 1.501, 1.001)), Verdict::Failed);
-        // What is ours by our own law, or has a reason that does not give theirs, explains nothing.
+        // A number by our own law, or with a reason that does not give theirs, explains nothing.
         assert_eq!(of(Point::by_own_law(0.0, 1.0, 1.5, 1.501)), Verdict::Differs);
         assert_eq!(of(Point::explained(0.0, 1.0, 1.5, 1.501, 1.1)), Verdict::Differs);
         assert_eq!(of(Point::by_own_law(0.0, 1.0, 1.6, 1.501)), Verdict::Failed);

@@ -1,4 +1,4 @@
-//! The stiffness of smooth spheres beside matscipy, which derives it from a pair potential.
+//! The stiffness of smooth spheres compared with matscipy, which derives it from a pair potential.
 
 use crate::error::VerificationError;
 use crate::reference::table;

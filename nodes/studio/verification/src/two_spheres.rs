@@ -14,26 +14,26 @@ pub(crate) const PLANE: f64 = 1e5;
 pub(crate) struct TwoSpheres {
     pub(crate) material: Material,
     pub(crate) law: ContactLaw,
-    /// m
+    /// Radii, m, of both spheres.
     pub(crate) radii: [f64; 2],
-    /// m
+    /// Positions of the centres, m.
     pub(crate) positions: [Vec3; 2],
-    /// m/s
+    /// Velocities of the centres, m/s.
     pub(crate) velocities: [Vec3; 2],
-    /// rad/s
+    /// Spins of both, rad/s.
     pub(crate) spins: [Vec3; 2],
     pub(crate) friction: f64,
-    /// Of the contact, as a fraction of critical.
+    /// Damping of the contact, as a fraction of critical.
     pub(crate) damping: f64,
     pub(crate) tangential: TangentialLaw,
-    /// s
+    /// Time step, s.
     pub(crate) time_step: f64,
 }
 
 /// The two spheres at one time.
 #[derive(Clone, Debug)]
 pub(crate) struct Motion {
-    /// m
+    /// Positions of the centres, m.
     pub(crate) positions: [Vec3; 2],
     /// At the time of the positions, m/s.
     pub(crate) velocities: [Vec3; 2],
@@ -50,7 +50,7 @@ pub(crate) struct Collision {
     pub(crate) spins: [Vec3; 2],
     /// Overlap (m) and elastic normal force (N) of each step.
     pub(crate) path: Vec<[f64; 2]>,
-    /// s
+    /// Duration of contact, s.
     pub(crate) duration: f64,
 }
 
@@ -73,12 +73,12 @@ impl TwoSpheres {
         }
     }
 
-    /// m
+    /// Effective radius, m.
     pub(crate) fn effective_radius(&self) -> f64 {
         grainlab_core::effective_radius(self.radii[0], self.radii[1])
     }
 
-    /// kg
+    /// Effective mass, kg.
     pub(crate) fn effective_mass(&self) -> f64 {
         let [a, b] = self.radii.map(|r| self.material.sphere_mass(r));
         a * b / (a + b)
@@ -90,13 +90,13 @@ impl TwoSpheres {
         (self.velocities[0] - self.velocities[1]).dot(&branch) / branch.norm()
     }
 
-    /// The same with a time step of 1/`steps` of an elastic collision by Hertz.
+    /// This pair with a time step of 1/`steps` of an elastic collision by Hertz.
     pub(crate) fn in_steps(mut self, steps: f64) -> Self {
         self.time_step = self.hertz().duration / steps;
         self
     }
 
-    /// Their elastic collision by Hertz.
+    /// Elastic collision of the pair by Hertz.
     pub(crate) fn hertz(&self) -> crate::hertz::Impact {
         let young = self.material.effective_young();
         crate::hertz::impact(young, self.effective_radius(), self.effective_mass(), self.approach())
@@ -137,7 +137,7 @@ impl TwoSpheres {
             .collect()
     }
 
-    /// Their collision.
+    /// Collision of the pair.
     pub(crate) fn collide(&self) -> Result<Collision, VerificationError> {
         const LONGEST: u32 = 1_000_000;
         let mut engine = self.engine()?;

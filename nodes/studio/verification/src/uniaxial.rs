@@ -1,4 +1,4 @@
-//! Uniaxial compression of 2,000 grains beside LAMMPS, every 200 of 8,000 steps.
+//! Uniaxial compression of 2,000 grains compared with LAMMPS, every 200 of 8,000 steps.
 
 use crate::error::VerificationError;
 use crate::reference::table;

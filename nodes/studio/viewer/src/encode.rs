@@ -12,18 +12,18 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
-/// What the script needs beside the bytes.
+/// Data for the script in addition to the bytes.
 #[derive(Debug, Serialize)]
 pub(crate) struct About<'a> {
     /// Name of saved pictures.
     name: &'a str,
     grains: usize,
-    /// Whether second grains are `u32`.
+    /// True for second grains as `u32`.
     wide: bool,
-    /// Whether every state has ids.
+    /// True if every state has ids.
     ids: bool,
     first_id: u32,
-    /// m.
+    /// Largest radius, m.
     largest_radius: f64,
     ramp: &'static [Colour],
     by_coordination: Vec<Colour>,
@@ -37,21 +37,21 @@ struct State<'a> {
     label: &'a str,
     /// Rows of the matrix whose columns are the cell vectors, m.
     cell: Vec<f64>,
-    /// m³.
+    /// Volume of the cell, m³.
     volume: f64,
     contacts: usize,
-    /// N.
+    /// Largest normal force, N.
     largest_force: f64,
-    /// N.
+    /// Force of the last colour, N.
     force_of_full_colour: f64,
 }
 
-/// Whether ids count up from the first.
+/// True for ids that count up from the first.
 fn count_up(view: &View) -> bool {
     view.ids.iter().enumerate().all(|(n, id)| *id == view.ids[0].wrapping_add(n as u32))
 }
 
-/// Whether the states need ids.
+/// True for states that need ids.
 fn has_ids(views: &[&View]) -> bool {
     views.iter().any(|v| !count_up(v) || v.ids.first() != views[0].ids.first())
 }

@@ -29,7 +29,7 @@ const POSTER: Size = Size { width: 720, height: 540 };
 /// If the picture cannot be written.
 pub fn figure(name: &str, views: &[&View]) -> Result<Html, PictureError> {
     let Some(last) = views.last() else { return Ok(Html::default()) };
-    let poster = STANDARD.encode(Picture::plain(last, Quantity::Coordination, POSTER)?.png()?);
+    let poster = STANDARD.encode(Picture::plain(last, Quantity::Coordination, POSTER).png()?);
     let alt = format!(
         "{} grains in their periodic cell, coloured by the number of their contacts: {}",
         last.grains(),

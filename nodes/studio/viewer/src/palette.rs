@@ -1,4 +1,4 @@
-//! What colours of grains show.
+//! Quantities that the colours of grains show.
 
 use crate::view::View;
 pub(crate) use grainlab_pictures::{Colour, MOST_CONTACTS, RAMP, RATTLER, by_coordination, ramp};
@@ -11,7 +11,7 @@ pub enum Quantity {
     Coordination,
     /// Mean normal force of the contacts.
     Force,
-    /// Whether a grain carries force.
+    /// Grains that carry force, and rattlers.
     Rattlers,
 }
 

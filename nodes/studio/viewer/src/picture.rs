@@ -22,9 +22,9 @@ const LARGEST: usize = 8192;
 /// Width and height, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
-    /// Width.
+    /// Width in pixels.
     pub width: usize,
-    /// Height.
+    /// Height in pixels.
     pub height: usize,
 }
 
@@ -50,7 +50,7 @@ pub enum PictureError {
     Png(#[from] png::EncodingError),
 }
 
-/// Pixels.
+/// Pixels of a picture.
 #[derive(Clone, Debug)]
 pub struct Picture {
     size: Size,
@@ -60,11 +60,8 @@ pub struct Picture {
 
 impl Picture {
     /// The packing without a legend, on a transparent ground.
-    ///
-    /// # Errors
-    /// None so far; callers write the picture, which may fail.
-    pub fn plain(view: &View, quantity: Quantity, size: Size) -> Result<Self, PictureError> {
-        Ok(Self { size, pixels: packing(view, quantity, size, 0.94) })
+    pub fn plain(view: &View, quantity: Quantity, size: Size) -> Self {
+        Self { size, pixels: packing(view, quantity, size, 0.94) }
     }
 
     /// The packing on white, with a legend and the name of the state.

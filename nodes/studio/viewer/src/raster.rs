@@ -168,7 +168,7 @@ fn visible(scene: &Scene) -> (Vec<f32>, Vec<u32>) {
     (depth, owner)
 }
 
-/// How little of the neighbourhood of a sample is nearer, from 0 to 1: gaps between grains are dark.
+/// Share of the neighbourhood of a sample that is not nearer, from 0 to 1: gaps between grains are dark.
 fn openness(scene: &Scene, depth: &[f32], [x, y]: [usize; 2], radius: f64) -> f64 {
     let [width, height] = scene.size;
     let here = f64::from(depth[y * width + x]);

@@ -20,11 +20,11 @@ pub struct View {
     pub(crate) ids: Vec<u32>,
     /// Positions in units of the cell vectors, from 0 to 1.
     pub(crate) places: Vec<Vec3>,
-    /// Radii, m.
+    /// Radii of grains, m.
     pub(crate) radii: Vec<f64>,
     /// Contacts of each grain that are not with rattlers.
     pub(crate) coordination: Vec<u32>,
-    /// Whether each grain is a rattler.
+    /// True for each grain that is a rattler.
     pub(crate) rattler: Vec<bool>,
     /// Mean normal force of the contacts of each grain, N; 0 without contacts.
     pub(crate) force: Vec<f64>,

@@ -63,7 +63,7 @@ fn the_same_packing_gives_the_same_bytes() {
 
 #[test]
 fn grains_cover_some_of_the_picture_and_leave_the_corners_free() {
-    let picture = Picture::plain(&View::new(&chain(), ""), Quantity::Coordination, SIZE).unwrap();
+    let picture = Picture::plain(&View::new(&chain(), ""), Quantity::Coordination, SIZE);
     for (x, y) in [(0, 0), (SIZE.width - 1, 0), (0, SIZE.height - 1), (SIZE.width - 1, SIZE.height - 1)] {
         assert_eq!(picture.pixel(x, y).unwrap()[3], 0, "({x}, {y}) is transparent");
     }
@@ -76,7 +76,7 @@ fn grains_cover_some_of_the_picture_and_leave_the_corners_free() {
 #[test]
 fn a_rattler_is_grey_and_a_grain_that_carries_force_is_not() {
     let greys = |packing: &Packing| {
-        let picture = Picture::plain(&View::new(packing, ""), Quantity::Rattlers, SIZE).unwrap();
+        let picture = Picture::plain(&View::new(packing, ""), Quantity::Rattlers, SIZE);
         let grey =
             |c: &[u8; 4]| c[3] == 255 && c[0] > 90 && c[0].abs_diff(c[1]) < 12 && c[2].abs_diff(c[1]) < 16;
         colours(&picture).iter().filter(|(c, _)| grey(c)).map(|(_, n)| *n).sum::<usize>()
@@ -90,7 +90,7 @@ fn a_rattler_is_grey_and_a_grain_that_carries_force_is_not() {
 #[test]
 fn the_colour_follows_what_is_asked_for() {
     let view = View::new(&chain(), "");
-    let of = |quantity| Picture::plain(&view, quantity, SIZE).unwrap().png().unwrap();
+    let of = |quantity| Picture::plain(&view, quantity, SIZE).png().unwrap();
     let all = Quantity::ALL.map(of);
     assert!(all[0] != all[1] && all[1] != all[2] && all[0] != all[2]);
 }

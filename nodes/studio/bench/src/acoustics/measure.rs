@@ -1,46 +1,129 @@
 //! Each method, timed and compared with the stiffness of the frozen network.
 
-use super::args::{Args, Method};
-use super::report::{Error, Row};
-use crate::cpu_time::process_seconds;
+use crate::cpu_time::timed;
+use crate::numbers::{between, mean, median, rms};
+use crate::row::{Family, Row};
+use clap::ValueEnum;
 use grainlab_acoustics::time_of_flight::{self, ArrivalPick};
-use grainlab_acoustics::{AcousticsError, Measurement, MethodSettings, Settings, dispersion, measure};
+use grainlab_acoustics::{
+    AcousticsError, Measurement, MethodSettings, Settings, Survey, dispersion, measure,
+};
 use grainlab_console::Failure;
 use grainlab_core::{Packing, Stiffness};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
 use grainlab_node_kit::Exit;
-use std::time::Instant;
 
-/// One row per method and value.
-pub(super) fn rows(packing: &Packing, args: &Args) -> Result<Vec<Row>, Failure> {
-    let stiffness = stiffness(packing)?;
+/// Half the width of a 95 % interval, standard deviations.
+pub(super) const INTERVAL: f64 = 1.96;
+
+/// Methods and values to measure.
+#[derive(Debug, Default, clap::Args)]
+pub(crate) struct Plan {
+    /// Methods [default: all]
+    #[arg(long, value_enum, value_name = "METHOD", value_delimiter = ',')]
+    pub(crate) method: Vec<Method>,
+    /// Rays: three (9 speeds) or complete (27)
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) survey: Rays,
+    /// Tolerances of the squared frequencies of a dispersion
+    #[arg(long, value_name = "REL", value_delimiter = ',', default_value = "1e-2,1e-4,1e-6,1e-8", value_parser = |text: &str| between(text, 1e-12, 1e-2))]
+    pub(crate) tolerances: Vec<f64>,
+    /// Measurements of each dispersion; the other methods, which take far longer, are measured once
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) repetitions: u32,
+}
+
+/// A set of rays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Rays {
+    /// Along the axis, across it, and between.
+    #[default]
+    Three,
+    /// With all azimuths for a transversely isotropic average.
+    Complete,
+}
+
+impl From<Rays> for Survey {
+    fn from(rays: Rays) -> Self {
+        match rays {
+            Rays::Three => Survey::Minimal,
+            Rays::Complete => Survey::AzimuthalAverage,
+        }
+    }
+}
+
+/// A method of measuring speeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum Method {
+    /// Modes of the frozen network.
+    Dispersion,
+    /// Onset of a burst.
+    FirstArrival,
+    /// Delay of largest correlation of a burst.
+    CrossCorrelation,
+    /// Delay of the peak of a burst.
+    Peak,
+}
+
+/// One row per method and value, for all packings together.
+pub(crate) fn rows(packings: &[Packing], plan: &Plan) -> Result<Vec<Row>, Failure> {
+    let networks = packings.iter().map(stiffness).collect::<Result<Vec<_>, _>>()?;
+    let methods = if plan.method.is_empty() { Method::value_variants() } else { &plan.method };
     let mut rows = Vec::new();
-    for method in args.methods() {
-        for (value, way) in ways(*method, args) {
-            let settings = Settings { method: way, survey: args.survey.into(), ..Settings::default() };
-            rows.push(row(*method, value, packing, &settings, &stiffness)?);
+    for method in methods {
+        for (value, way) in ways(*method, plan) {
+            let settings = Settings { method: way, survey: plan.survey.into(), ..Settings::default() };
+            let repetitions = if *method == Method::Dispersion { plan.repetitions } else { 1 };
+            let (mut times, mut errors, mut failures) = (Vec::new(), Errors::default(), Vec::new());
+            for (packing, network) in packings.iter().zip(&networks) {
+                let (seconds, found) = timed(repetitions, || measure(packing, &settings))?;
+                times.push(seconds);
+                match found {
+                    Ok(found) => {
+                        errors.add(&found, network, packing);
+                        failures.extend(found.warnings.iter().map(ToString::to_string));
+                    }
+                    Err(reason @ AcousticsError::Setting { .. }) => return Err(Failure::usage(reason)),
+                    Err(reason) => failures.push(format!("step {}: {reason}", packing.step)),
+                }
+            }
+            failures.dedup();
+            let name = method.to_possible_value().map(|v| v.get_name().replace('_', " "));
+            let reference = "frozen network, the same directions and polarizations";
+            rows.push(Row {
+                grains: packings.first().map(Packing::grains),
+                failure: (!failures.is_empty()).then(|| failures.join("; ")),
+                details: errors.details(),
+                ..Row::new(
+                    Family::Waves,
+                    (name.unwrap_or_default(), value),
+                    (median(times), repetitions as usize),
+                    (Some(rms(&errors.found)).filter(|e| e.is_finite()), reference),
+                )
+            });
         }
     }
     Ok(rows)
 }
 
 /// The stiffness of the frozen network.
-pub(super) fn stiffness(packing: &Packing) -> Result<Stiffness, Failure> {
+fn stiffness(packing: &Packing) -> Result<Stiffness, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let analysis = grainlab_micromechanics::analyze(packing, &Default::default()).map_err(|e| invalid(&e))?;
     Ok(analysis.report.elasticity.into_stiffness().map_err(|e| invalid(&e))?.tensor)
 }
 
-fn ways(method: Method, args: &Args) -> Vec<(Option<f64>, MethodSettings)> {
+fn ways(method: Method, plan: &Plan) -> Vec<(String, MethodSettings)> {
     let flight = |pick| {
         let settings = time_of_flight::Settings { pick, ..time_of_flight::Settings::default() };
-        vec![(None, MethodSettings::TimeOfFlight(settings))]
+        vec![(String::new(), MethodSettings::TimeOfFlight(settings))]
     };
     match method {
-        Method::Dispersion => (args.tolerances.iter())
+        Method::Dispersion => (plan.tolerances.iter())
             .map(|tolerance| {
                 let settings = dispersion::Settings { tolerance: *tolerance, ..Default::default() };
-                (Some(*tolerance), MethodSettings::Dispersion(settings))
+                (format!("{tolerance:e}"), MethodSettings::Dispersion(settings))
             })
             .collect(),
         Method::FirstArrival => flight(ArrivalPick::FirstArrival),
@@ -49,62 +132,52 @@ fn ways(method: Method, args: &Args) -> Vec<(Option<f64>, MethodSettings)> {
     }
 }
 
-fn row(
-    method: Method,
-    value: Option<f64>,
-    packing: &Packing,
-    settings: &Settings,
-    stiffness: &Stiffness,
-) -> Result<Row, Failure> {
-    let (wall, cpu) = (Instant::now(), process_seconds()?);
-    let outcome = measure(packing, settings);
-    let seconds = process_seconds()? - cpu;
-    let row = Row {
-        method,
-        value,
-        grains: packing.grains(),
-        speeds: 0,
-        seconds,
-        wall_seconds: wall.elapsed().as_secs_f64(),
-        error: Error::default(),
-        failure: None,
-    };
-    Ok(match outcome {
-        Ok(measurement) => Row {
-            speeds: measurement.waves.len(),
-            error: error(&measurement, stiffness, packing),
-            failure: (!measurement.warnings.is_empty()).then(|| listed(&measurement)),
-            ..row
-        },
-        Err(reason @ AcousticsError::Setting { .. }) => return Err(Failure::usage(reason)),
-        Err(reason) => Row { failure: Some(reason.to_string()), ..row },
-    })
+/// Errors of all speeds by one method.
+#[derive(Debug, Default)]
+struct Errors {
+    /// Errors of ρ v², relative, with the standard deviations stated.
+    found: Vec<f64>,
+    stated: Vec<f64>,
+    /// Standard deviations stated of the speeds, relative, and errors of the speeds in units of them.
+    speed_stated: Vec<f64>,
+    sigmas: Vec<f64>,
+    /// Largest of a modulus; `None` if one is undetermined.
+    moduli: Vec<Option<f64>>,
 }
 
-fn listed(measurement: &Measurement) -> String {
-    measurement.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
-}
-
-fn error(measurement: &Measurement, stiffness: &Stiffness, packing: &Packing) -> Error {
-    let n = measurement.waves.len() as f64;
-    let (mut sum, mut largest, mut stated, mut sigmas) = (0.0, 0.0f64, 0.0, 0.0f64);
-    for measured in &measurement.waves {
-        let (wave, density) = (&measured.wave, measurement.density);
-        let expected = wave.polarization.dot(&(stiffness.christoffel(&wave.direction) * wave.polarization));
-        let error = (density * wave.speed.powi(2) / expected - 1.0).abs();
-        let of_speed = 2.0 * wave.stddev.unwrap_or(f64::NAN) / wave.speed;
-        let sigma = of_speed.hypot(measurement.density_stddev / density);
-        sum += error * error;
-        largest = largest.max(error);
-        stated += sigma * sigma;
-        sigmas = sigmas.max(error / sigma);
+impl Errors {
+    fn add(&mut self, measurement: &Measurement, network: &Stiffness, packing: &Packing) {
+        let density = measurement.density;
+        for measured in &measurement.waves {
+            let wave = &measured.wave;
+            let expected = wave.polarization.dot(&(network.christoffel(&wave.direction) * wave.polarization));
+            self.found.push(density * wave.speed.powi(2) / expected - 1.0);
+            let stated = wave.stddev.unwrap_or(f64::NAN) / wave.speed;
+            self.stated.push((2.0 * stated).hypot(measurement.density_stddev / density));
+            let expected = measurement.effective_density.speed(network, &wave.direction, &wave.polarization);
+            if wave.stddev.is_some() {
+                self.speed_stated.push(stated);
+                self.sigmas.push((wave.speed / expected - 1.0) / stated);
+            }
+        }
+        self.moduli.push(moduli(measurement, network, packing));
     }
-    Error {
-        rms: Some((sum / n).sqrt()),
-        largest: Some(largest),
-        stated: Some((stated / n).sqrt()),
-        worst_sigmas: Some(sigmas),
-        moduli: moduli(measurement, stiffness, packing),
+
+    fn details(&self) -> std::collections::BTreeMap<&'static str, f64> {
+        let covered = self.sigmas.iter().filter(|s| s.abs() <= INTERVAL).count();
+        let moduli = self.moduli.iter().copied().collect::<Option<Vec<f64>>>();
+        let moduli = moduli.unwrap_or_default().into_iter().reduce(f64::max).unwrap_or(f64::NAN);
+        let all = [
+            ("speeds", self.found.len() as f64),
+            ("stated", rms(&self.stated)),
+            ("speed_stated", median(self.speed_stated.clone())),
+            ("covered", covered as f64 / self.sigmas.len() as f64),
+            ("sigmas_rms", rms(&self.sigmas)),
+            ("sigmas_mean", mean(&self.sigmas)),
+            ("sigmas_worst", self.sigmas.iter().fold(f64::NAN, |most, s| most.max(s.abs()))),
+            ("moduli", moduli),
+        ];
+        all.into_iter().filter(|(_, value)| value.is_finite()).collect()
     }
 }
 
@@ -125,4 +198,22 @@ fn moduli(measurement: &Measurement, stiffness: &Stiffness, packing: &Packing) -
     .iter()
     .map(|(modulus, expected)| Some((fitted.observation.moduli.get(*modulus)? / expected - 1.0).abs()))
     .try_fold(0.0, |most: f64, error| Some(most.max(error?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_share_within_two_sigma_and_the_worst_speed_are_counted() {
+        let errors = Errors { sigmas: vec![1.0, -2.0, 0.0, 5.0], ..Errors::default() };
+        let details = errors.details();
+        assert_eq!((details["covered"], details["sigmas_worst"], details["sigmas_mean"]), (0.5, 5.0, 1.0));
+        assert!((details["sigmas_rms"] - 7.5f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_method_without_speeds_has_no_numbers() {
+        assert_eq!(Errors::default().details().into_iter().collect::<Vec<_>>(), [("speeds", 0.0)]);
+    }
 }

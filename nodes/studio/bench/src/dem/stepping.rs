@@ -5,23 +5,20 @@ use crate::cpu_time::process_seconds;
 use clap::ValueEnum;
 use grainlab_console::Failure;
 use grainlab_core::contact::TangentialLaw;
-use grainlab_core::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor};
-use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep, roofline};
+use grainlab_core::{ComponentControl, Packing, ServoLaw, SymTensor};
+use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
 use std::time::Instant;
 
 /// Contact damping, share of critical: a coefficient of restitution of about 0.3.
 const DAMPING: f64 = 0.3;
-/// Of a packing that states none, as in the runs of the other programs, s.
+/// Time step of a packing that states none, as in the runs of the other programs, s.
 const TIME_STEP: f64 = 3e-8;
 /// Relative change of the number of contacts from which the packing counts as another one.
 const CHANGED: f64 = 0.02;
 /// Verlet skin over the largest diameter: a packing at rest does not use it up.
 const SKIN: f64 = 0.01;
-/// Strain rate limit of the compression without friction, 1/s, and its maximum number of steps.
-const PRESS_RATE: f64 = 100.0;
-const PRESS_STEPS: u32 = 1_000_000;
 /// Steps between two returns of the engine without a servo: the control period of the scenes.
 const PERIOD: u32 = 20;
 
@@ -29,7 +26,7 @@ const PERIOD: u32 = 20;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Features {
-    /// No spins, no tangential springs.
+    /// No spins, no tangential springs: a packing without friction.
     Frictionless,
     /// Tangential springs with the Coulomb limit.
     Coulomb,
@@ -55,6 +52,11 @@ impl Features {
         }
     }
 
+    /// True if a packing of this friction can be stepped with them: other grains would collapse.
+    pub(crate) fn fits(self, friction: f64) -> bool {
+        self == Self::Stuck || self == Self::of(friction)
+    }
+
     fn friction(self, packing: &Packing) -> f64 {
         match self {
             Self::Frictionless => 0.0,
@@ -64,7 +66,7 @@ impl Features {
     }
 }
 
-/// One case.
+/// One timed case.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Case {
     /// Copies of the packing along each axis.
@@ -91,39 +93,14 @@ pub(crate) struct Loop {
     pub(crate) bytes: Option<f64>,
 }
 
-/// The packings to step. A frictional packing would collapse without friction, so that each has its own.
-pub(crate) struct Packings {
-    given: Packing,
-    /// The given one compressed to the same pressure without friction, if needed.
-    frictionless: Option<Packing>,
-    /// Pressure of both, Pa: the servo's target.
-    pressure: f64,
-}
-
-impl Packings {
-    /// Compresses the packing again if `features` need it.
-    pub(crate) fn new(given: Packing, features: &[Features]) -> Result<Self, Failure> {
-        let pressure = grainlab_core::stress::stress(&given).tensor.mean();
-        if pressure <= 0.0 {
-            let message = format!("the packing carries no pressure ({pressure} Pa); press it first");
-            return Err(Failure::new(Exit::PhysicsInvalid, message));
-        }
-        let own = Features::of(given.friction);
-        if own != Features::Coulomb && features.contains(&Features::Coulomb) {
-            let (friction, own) = (given.friction, own.name());
-            return Err(Failure::usage(format!(
-                "--features coulomb: the packing has friction {friction}, which it keeps; its own features are {own}"
-            )));
-        }
-        let wanted = own != Features::Frictionless && features.contains(&Features::Frictionless);
-        let frictionless = if wanted { Some(pressed_without_friction(&given, pressure)?) } else { None };
-        Ok(Self { given, frictionless, pressure })
+/// Pressure of the packing, Pa: the servo's target.
+pub(crate) fn pressure(packing: &Packing) -> Result<f64, Failure> {
+    let pressure = grainlab_core::stress::stress(packing).tensor.mean();
+    if pressure <= 0.0 {
+        let message = format!("the packing carries no pressure ({pressure} Pa); press it first");
+        return Err(Failure::new(Exit::PhysicsInvalid, message));
     }
-
-    fn of(&self, features: Features) -> &Packing {
-        let frictionless = self.frictionless.as_ref().filter(|_| features == Features::Frictionless);
-        frictionless.unwrap_or(&self.given)
-    }
+    Ok(pressure)
 }
 
 fn setting(features: Features, packing: &Packing) -> EngineSettings {
@@ -140,34 +117,8 @@ fn setting(features: Features, packing: &Packing) -> EngineSettings {
     }
 }
 
-/// Floating-point operations of the contact law per contact.
-pub(crate) fn operations_per_contact(packing: &Packing, case: &Case) -> f64 {
-    roofline::operations_per_contact(packing.law, &setting(case.features, packing))
-}
-
 fn invalid(error: grainlab_dem::DemError) -> Failure {
     Failure::new(Exit::PhysicsInvalid, error)
-}
-
-fn pressed_without_friction(packing: &Packing, pressure: f64) -> Result<Packing, Failure> {
-    let mut engine =
-        Engine::from_packing(packing, setting(Features::Frictionless, packing)).map_err(invalid)?;
-    engine.initialise().map_err(invalid)?;
-    while engine.steps() - packing.step < u64::from(PRESS_STEPS) {
-        engine.run(PERIOD).map_err(invalid)?;
-        let seen = engine.observables().map_err(invalid)?;
-        let stress = seen.stress.tensor;
-        if (stress.mean() / pressure - 1.0).abs() < 0.01 && seen.unbalanced < 0.05 {
-            return Ok(engine.packing(Mat3::identity()));
-        }
-        let interval = f64::from(PERIOD) * engine.time_step();
-        let rate = answered(stress, pressure, engine.rate(), PRESS_RATE, seen.tangent, interval)?;
-        engine.set_rate(&rate).map_err(invalid)?;
-    }
-    let message = format!(
-        "without friction the packing did not come to rest at {pressure:e} Pa in {PRESS_STEPS} steps"
-    );
-    Err(Failure::new(Exit::PhysicsInvalid, message))
 }
 
 /// The strain rate that leads to an isotropic pressure.
@@ -175,7 +126,6 @@ fn answered(
     stress: SymTensor,
     pressure: f64,
     rate: [f64; 6],
-    rate_limit: f64,
     tangent: [f64; 6],
     control_interval: f64,
 ) -> Result<[f64; 6], Failure> {
@@ -184,7 +134,7 @@ fn answered(
         stress,
         controls: std::array::from_fn(target),
         rate,
-        rate_limit,
+        rate_limit: 1.0,
         law: ServoLaw::Scaled { response_time: 2e-6 },
         tangent: Some(tangent),
         control_interval,
@@ -193,24 +143,22 @@ fn answered(
 }
 
 /// Builds an engine, warms it up for a tenth of the steps, and times it.
-pub(crate) fn run(packings: &Packings, case: &Case) -> Result<Loop, Failure> {
-    let packing = packings.of(case.features);
+pub(crate) fn run(packing: &Packing, pressure: f64, case: &Case) -> Result<Loop, Failure> {
     let compute = Compute::new(case.simd, case.threads as usize).map_err(Failure::usage)?;
-    let copies = replicated(packing, case.copies)
-        .ok_or_else(|| Failure::failed("the cell of the copies is invalid"))?;
-    let before = super::machine::resident_bytes();
+    let copies = replicated(packing, case.copies)?;
+    let before = resident_bytes();
     let mut engine = Engine::from_packing(&copies, setting(case.features, packing)).map_err(invalid)?;
     drop(copies);
     engine.set_compute(compute.clone());
     engine.sort_spatially();
     engine.initialise().map_err(invalid)?;
     let at_first = f64::from(engine.observables().map_err(invalid)?.contacts);
-    advance(&mut engine, &compute, case, packings.pressure, case.steps.div_ceil(10))?;
-    let bytes = before.zip(super::machine::resident_bytes()).map(|(b, a)| (a - b).max(0.0));
+    advance(&mut engine, &compute, case, pressure, case.steps.div_ceil(10))?;
+    let bytes = before.zip(resident_bytes()).map(|(b, a)| (a - b).max(0.0));
 
     let contacts = f64::from(engine.observables().map_err(invalid)?.contacts);
     let (wall, cpu) = (Instant::now(), process_seconds()?);
-    advance(&mut engine, &compute, case, packings.pressure, case.steps)?;
+    advance(&mut engine, &compute, case, pressure, case.steps)?;
     let (wall_seconds, cpu_seconds) = (wall.elapsed().as_secs_f64(), process_seconds()? - cpu);
     let seen = engine.observables().map_err(invalid)?;
     let at_last = f64::from(seen.contacts);
@@ -249,9 +197,36 @@ fn advance(
         for _ in 0..steps {
             let mut stress = SymTensor::isotropic(0.0);
             engine.run_with_stress(1, |s| stress = s).map_err(invalid)?;
-            let rate = answered(stress, pressure, engine.rate(), 1.0, tangent, engine.time_step())?;
+            let rate = answered(stress, pressure, engine.rate(), tangent, engine.time_step())?;
             engine.set_rate(&rate).map_err(invalid)?;
         }
         Ok(())
     })
+}
+
+/// Memory of this process in use, bytes; `None` where the system does not report it.
+fn resident_bytes() -> Option<f64> {
+    #[cfg(target_env = "gnu")]
+    // SAFETY: no pointers are involved; only free memory is returned to the system.
+    unsafe {
+        libc::malloc_trim(0);
+    }
+    // Counted page by page; statm omits memory that a core has not reported yet.
+    let rollup = std::fs::read_to_string("/proc/self/smaps_rollup").ok()?;
+    let line = rollup.lines().find(|l| l.starts_with("Rss:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(1024.0 * kilobytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_that_is_touched_shows() {
+        let Some(before) = resident_bytes() else { return };
+        let block = std::hint::black_box(vec![1u8; 64 << 20]);
+        let after = resident_bytes().unwrap();
+        assert!(after - before > (32 << 20) as f64, "{before} {after} {}", block.len());
+    }
 }

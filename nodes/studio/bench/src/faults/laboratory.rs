@@ -7,8 +7,10 @@ use super::stranger::Stranger;
 use grainlab_node_kit::{Exit, Hub, Next, RunId};
 use grainlab_scene::Scene;
 use std::cell::RefCell;
+use std::iter::Peekable;
 use std::rc::Rc;
 use std::time::Duration;
+use std::vec::IntoIter;
 
 /// Limit of the virtual time of a run.
 const LIMIT: Duration = Duration::from_secs(3600);
@@ -56,8 +58,7 @@ struct Laboratory<'a> {
     record: Rc<RefCell<Record>>,
     processes: Vec<Process>,
     strangers: Vec<Stranger>,
-    events: std::vec::IntoIter<(super::plan::Moment, Event)>,
-    next: Option<(super::plan::Moment, Event)>,
+    events: Peekable<IntoIter<(u64, Event)>>,
     crashes: Vec<usize>,
     done: Done,
     explain: bool,
@@ -69,8 +70,6 @@ pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
     for topic in grainlab_msgs::topics::TOPICS {
         hub.set_faults(&topic.absolute_name(), plan.faults);
     }
-    let mut events = plan.events.clone().into_iter();
-    let next = events.next();
     let mut laboratory = Laboratory {
         hub,
         scene,
@@ -78,8 +77,7 @@ pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
         record: Rc::default(),
         processes: Vec::new(),
         strangers: Vec::new(),
-        events,
-        next,
+        events: plan.events.clone().into_iter().peekable(),
         crashes: Vec::new(),
         done: Done::default(),
         explain,
@@ -114,7 +112,7 @@ impl Laboratory<'_> {
         self.advance(|lab| lab.record.borrow().is_complete(), LIMIT)?;
         // Stopped processes continue, and messages in transit arrive.
         self.processes.iter_mut().for_each(|p| p.stopped_until = Duration::ZERO);
-        self.next = None;
+        self.events = Vec::new().into_iter().peekable();
         let end = self.hub.now() + LAST_CALL;
         match self.advance(|_| false, end) {
             Err(Outcome::Stuck(_)) | Ok(()) => Ok(()),
@@ -213,15 +211,14 @@ impl Laboratory<'_> {
 
     /// Applies the events that are due by the count of samples.
     fn events_due(&mut self) -> Result<(), Outcome> {
-        while let Some((moment, event)) = self.next {
-            if self.record.borrow().seen < moment.recorded {
+        loop {
+            let seen = self.record.borrow().seen;
+            let Some((moment, event)) = self.events.next_if(|(moment, _)| *moment <= seen) else {
                 return Ok(());
-            }
-            self.next = self.events.next();
-            self.say(&format!("at sample {}: {event:?}", moment.recorded));
+            };
+            self.say(&format!("at sample {moment}: {event:?}"));
             self.happen(event)?;
         }
-        Ok(())
     }
 
     fn happen(&mut self, event: Event) -> Result<(), Outcome> {

@@ -1,6 +1,6 @@
 //! The faults of a run, from its seed.
 
-use super::forgery::Forgery;
+use super::forgery::{FORGERIES, Forgery};
 use super::process::Kind;
 use grainlab_node_kit::{Dice, Faults};
 use std::time::Duration;
@@ -23,7 +23,7 @@ pub(super) enum Event {
 pub(super) struct Stranger {
     /// Kind of message that it forges.
     pub(super) forgery: Forgery,
-    /// Whether it claims to belong to another run; otherwise it has no run.
+    /// True if it claims to belong to another run; otherwise it has no run.
     pub(super) of_a_run: bool,
     /// Fraction of the received messages that it forges.
     pub(super) share: f64,
@@ -36,23 +36,17 @@ pub(super) struct Plan {
     pub(super) bus: u64,
     /// Faults of every topic.
     pub(super) faults: Faults,
-    /// By the count of exchanges before it, so that the run is in the same state on every machine.
-    pub(super) events: Vec<(Moment, Event)>,
+    /// By the count of samples that the recorder has received before it, so that the run is in the same state
+    /// on every machine.
+    pub(super) events: Vec<(u64, Event)>,
     pub(super) strangers: Vec<Stranger>,
-}
-
-/// The time of an event.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Moment {
-    /// Samples that the recorder has received.
-    pub(super) recorded: u64,
 }
 
 /// Samples that a run of the scene records, from which times are drawn; some lie after the end.
 const SAMPLES: usize = 700;
 
 impl Plan {
-    /// No faults.
+    /// A plan without faults.
     pub(super) fn quiet() -> Self {
         Self { bus: 0, faults: Faults::default(), events: Vec::new(), strangers: Vec::new() }
     }
@@ -67,9 +61,9 @@ impl Plan {
         let faults =
             Faults { drop: 0.3 * scale, duplicate: 0.4 * scale, delay: ms(&mut dice, 60.0).mul_f64(scale) };
         let count = dice.below(7);
-        let mut events: Vec<(Moment, Event)> = (0..count)
+        let mut events: Vec<(u64, Event)> = (0..count)
             .map(|_| {
-                let moment = Moment { recorded: dice.below(SAMPLES) as u64 };
+                let moment = dice.below(SAMPLES) as u64;
                 let kind = Kind::ALL[dice.below(Kind::ALL.len())];
                 let event = match dice.below(8) {
                     0..=2 => Event::Crash(kind, ms(&mut dice, 500.0)),
@@ -80,10 +74,10 @@ impl Plan {
                 (moment, event)
             })
             .collect();
-        events.sort_by_key(|(moment, _)| moment.recorded);
+        events.sort_by_key(|(moment, _)| *moment);
         let strangers = (0..dice.below(4))
             .map(|_| Stranger {
-                forgery: Forgery::ALL[dice.below(Forgery::ALL.len())],
+                forgery: FORGERIES[dice.below(FORGERIES.len())],
                 of_a_run: dice.below(2) == 0,
                 share: dice.unit(),
             })

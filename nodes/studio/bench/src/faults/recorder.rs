@@ -38,7 +38,7 @@ impl Record {
         self.bodies.get(topics::PACKING.name).map_or(0, Vec::len)
     }
 
-    /// Whether the path is done and its last packing is inverted.
+    /// True if the path is done and the last packing is inverted.
     pub(super) fn is_complete(&self) -> bool {
         let Some(state) = self.state.as_ref().filter(|s| s.status == RunStatus::Finished) else {
             return false;

@@ -1,12 +1,8 @@
 //! A process that is not part of the run and publishes forged messages on its topics.
 
-use super::forgery::Forgery;
 use super::plan;
-use grainlab_msgs::msg::{Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
-use grainlab_msgs::{Message, from_cdr, to_cdr};
 use grainlab_node_kit::{
-    Bus, BusError, Demand, Dice, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId,
-    run_of,
+    Bus, BusError, Demand, Dice, Hub, Identity, MemoryBus, Names, PublisherId, RunId, SubscriptionId, run_of,
 };
 
 /// One stranger on its bus.
@@ -29,17 +25,11 @@ impl Stranger {
             false => Identity::default(),
         };
         let mut bus = hub.bus_as(Names::new("stranger")?, identity);
-        let (from, to) = plan.forgery.topics();
-        let input = bus.subscribe(&from, Demand::best_effort(1000))?;
-        let output = bus.advertise(&to)?;
-        let early = match plan.forgery {
-            Forgery::StrainRate => Some(to_cdr(&StrainRate::default())),
-            Forgery::Finished => Some(to_cdr(&RunState { state: RunState::FINISHED, ..RunState::default() })),
-            _ => None,
-        };
+        let input = bus.subscribe(&plan.forgery.from, Demand::best_effort(1000))?;
+        let output = bus.advertise(&plan.forgery.to)?;
         let mut stranger = Self { plan, bus, input, output, run, dice: Dice::new(seed), forged: 0 };
-        if let Some(body) = early {
-            stranger.publish(&body, None)?;
+        if let Some(early) = plan.forgery.early {
+            stranger.publish(&early(), None)?;
         }
         Ok(stranger)
     }
@@ -60,7 +50,7 @@ impl Stranger {
                 continue;
             }
             let by = 0.5 + self.dice.unit();
-            if let Some(body) = forged(self.plan.forgery, &sample, by) {
+            if let Some(body) = (self.plan.forgery.forged)(&sample.body, by) {
                 // Refers to the request, like the answer of a servo.
                 let about = (self.dice.below(2) == 0).then(|| sample.info.id());
                 self.publish(&body, about)?;
@@ -68,50 +58,4 @@ impl Stranger {
         }
         Ok(received)
     }
-}
-
-fn decoded<T: Message>(sample: &Sample) -> Option<T> {
-    from_cdr(&sample.body).ok()
-}
-
-/// A message that differs from this one by a factor.
-fn forged(forgery: Forgery, sample: &Sample, by: f64) -> Option<Vec<u8>> {
-    let scale = |values: &mut [f64]| values.iter_mut().for_each(|v| *v *= by);
-    Some(match forgery {
-        Forgery::StrainRate => {
-            let mut answer = grainlab_servo_controller::answer(&decoded::<Stress>(sample)?).ok()?;
-            scale(&mut answer.rate);
-            to_cdr(&answer)
-        }
-        Forgery::Stress => {
-            let mut stress: Stress = decoded(sample)?;
-            stress.stress.zz *= by;
-            to_cdr(&stress)
-        }
-        Forgery::Packing => {
-            let mut packing: Packing = decoded(sample)?;
-            scale(&mut packing.contact_normal_force);
-            to_cdr(&packing)
-        }
-        Forgery::Report => {
-            let mut report: PackingReport = decoded(sample)?;
-            report.stiffness.iter_mut().for_each(|s| s.stiffness[35] *= by);
-            to_cdr(&report)
-        }
-        Forgery::Microstructure => {
-            let source_step = decoded::<PackingReport>(sample)?.source_step;
-            to_cdr(&Microstructure {
-                source_step,
-                source: "packing_report".to_owned(),
-                ..Microstructure::default()
-            })
-        }
-        Forgery::Finished => to_cdr(&RunState { state: RunState::FINISHED, ..RunState::default() }),
-        Forgery::Failed => to_cdr(&RunState { state: RunState::FAILED, ..RunState::default() }),
-        Forgery::Garbage => {
-            let mut body = sample.body.clone();
-            body.truncate(4 + (by * 40.0) as usize);
-            body
-        }
-    })
 }

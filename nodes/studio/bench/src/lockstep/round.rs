@@ -1,6 +1,6 @@
 //! One round: its processes.
 
-use super::role::Role;
+use clap::ValueEnum;
 use grainlab_console::{Failure, print};
 use grainlab_node_kit::{Exit, FreeDomain, Network, bus_in, pingpong};
 use grainlab_recorder::tallies::losses;
@@ -11,6 +11,19 @@ use std::time::Duration;
 
 /// Time for a process to start before the next one depends on it.
 const START: Duration = Duration::from_millis(1000);
+
+/// The role of one process of the measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Role {
+    /// Sends requests over the bus of grainlab.
+    Ping,
+    /// Answers over the bus of grainlab.
+    Pong,
+    /// Sends requests over bare ros2-client.
+    BarePing,
+    /// Answers over bare ros2-client.
+    BarePong,
+}
 
 /// Results of a round with a recorder.
 pub(super) struct Recorded {
@@ -66,7 +79,8 @@ impl Drop for Process {
 pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
     let domain = FreeDomain::take()?;
     let directory = TemporaryDirectory::new()?;
-    let path = directory.0.join("run").to_string_lossy().into_owned();
+    let run = directory.0.join("run");
+    let path = run.to_string_lossy().into_owned();
     let quiet = ["--", "--ros-args", "--log-level", "error"];
     let record = ["bag", "record", "--topics", "stress", "strain_rate", "-o", &path];
     let recorder = Process::start(&domain, &[&record[..], &quiet[..]].concat())?;
@@ -75,7 +89,7 @@ pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
     let micros = parse(&Process::role(&domain, "ping", exchanges)?.output()?)?;
     recorder.interrupt();
     recorder.output()?;
-    let tallies = Recording::open(directory.0.join("run").as_path()).map_err(Failure::failed)?.ledger();
+    let tallies = Recording::open(&run).map_err(Failure::failed)?.ledger();
     // Messages before the recorder was found belong to the warm-up.
     let (_, lost) = losses(&tallies.unwrap_or_default());
     Ok(Recorded { micros, lost })

@@ -48,7 +48,7 @@ fn single_runs_and_tables_add_members() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("runs.csv"), "seed,scene,friction\n1,s3,0.2\n2,mine.toml,\n").unwrap();
     std::fs::write(folder.path().join("mine.toml"), "base = 's1'").unwrap();
-    let text = "name = 'x'\ntable = 'runs.csv'\nset = { name = 'n' }\n[[member]]\nscene = 's1'\nseed = 7\nset = { phase.rest.drag = 1e3 }";
+    let text = "name = 'x'\ntable = 'runs.csv'\nset = { name = 'n' }\n[[group]]\nscenes = ['s1']\nseeds = [7]\nset = { phase.rest.drag = 1e3 }";
     let campaign = Campaign::parse(text, folder.path()).unwrap();
     assert_eq!(names(&campaign), ["s1-phase.rest.drag=1000.0-7", "s3-friction=0.2-1", "mine-2"]);
     assert_eq!(campaign.members[2].sets(), ["name=n"]);

@@ -15,14 +15,14 @@ use std::time::{Duration, Instant};
 /// Period of the checks of the members.
 const POLL_PERIOD: Duration = Duration::from_millis(500);
 
-/// A scheduler.
+/// A scheduler of jobs.
 pub(super) struct Scheduler {
     name: &'static str,
     /// The number of a task, in a shell.
     task: &'static str,
     /// Program and arguments that submit an array and wait for its end.
     submit: fn(&Array<'_>) -> Result<Vec<String>, Failure>,
-    /// How to get it.
+    /// Advice where it is missing.
     advice: &'static str,
 }
 
@@ -38,7 +38,7 @@ struct Array<'a> {
     script: String,
 }
 
-/// Slurm.
+/// The scheduler Slurm.
 pub(super) const SLURM: Scheduler = Scheduler {
     name: "Slurm",
     task: "$SLURM_ARRAY_TASK_ID",

@@ -1,11 +1,11 @@
-//! How a campaign is run.
+//! Options of a campaign.
 
-/// How a campaign is run.
+/// Options of a campaign.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Members at a time on this machine; `None`: one more than there are cores, since each waits at its start and end.
     pub jobs: Option<usize>,
-    /// How often a member that was interrupted is tried again; the last time anew.
+    /// Number of times that an interrupted member is tried again; the last time anew.
     pub retries: usize,
     /// Run members again that failed.
     pub redo_failed: bool,

@@ -1,9 +1,9 @@
-//! One finding.
+//! A finding and its severity.
 
 use serde::Serialize;
 use std::fmt;
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Severity {
@@ -11,19 +11,19 @@ pub(super) enum Severity {
     Error,
     /// They may not, or not as expected.
     Warning,
-    /// For information.
+    /// Information without a fault.
     Note,
 }
 
-/// What was found, where, and what to do.
+/// Fault, its place, and a remedy.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Finding {
     pub(super) severity: Severity,
     /// A stable name of the kind of finding.
     pub(super) kind: &'static str,
-    /// What is wrong, and where.
+    /// Fault and its place.
     pub(super) what: String,
-    /// The remedy.
+    /// Remedy of the fault.
     pub(super) advice: String,
 }
 

@@ -56,7 +56,7 @@ pub(super) fn environment(get: impl Fn(&str) -> Option<String>) -> Vec<Finding> 
     found
 }
 
-/// What this host's network does with datagrams of the domain.
+/// Findings about the datagrams of the domain in the network of this host.
 pub(super) fn network(network: Network) -> Vec<Finding> {
     let mut found = Vec::new();
     let interface = match network.reach {
@@ -128,7 +128,7 @@ fn arrives_by_multicast(interface: Ipv4Addr) -> Result<(), String> {
     }
 }
 
-/// Whether a datagram to this port of this host arrives. A port in use is not checked: its owner receives.
+/// True if a datagram to this port of this host arrives. A port in use is not checked: its owner receives.
 fn arrives(port: u16) -> bool {
     let Ok(receiver) = UdpSocket::bind((Ipv4Addr::LOCALHOST, port)) else { return true };
     let word = word();

@@ -1,24 +1,36 @@
-//! `grainlab node`.
+//! The command `grainlab node`.
 
 mod info;
-mod list;
 mod state;
 
 pub(crate) use info::find;
 
+use crate::view::Common;
 use clap::Subcommand;
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 
-/// What to do with nodes.
+/// Commands about nodes.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// List the nodes of the domain.
-    List(list::Args),
+    #[command(after_help = "Example:\n  grainlab node list --format json")]
+    List(Common),
     /// Show the publishers, subscriptions and services of a node.
-    Info(info::Args),
+    #[command(after_help = "Example:\n  grainlab node info /dem_simulator")]
+    Info {
+        /// Fully qualified name of the node
+        node: String,
+        /// Format of the output and time limit.
+        #[command(flatten)]
+        common: Common,
+    },
     /// Show what each node does or waits for, by its latest report.
-    State(state::Args),
+    #[command(
+        after_help = "Example:\n  grainlab node state --format json\n\nListens to the reports on /diagnostics for 2.5 s. Exit 1 \
+                      if a node reports an error, or does not report."
+    )]
+    State(Common),
 }
 
 /// Runs the command.
@@ -27,8 +39,12 @@ pub enum Command {
 /// With the exit code and the message for the user.
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
-        Command::List(args) => list::run(args),
-        Command::Info(args) => info::run(args),
-        Command::State(args) => state::run(args),
+        Command::List(common) => {
+            let graph = common.graph()?;
+            let names: Vec<&str> = graph.nodes.iter().map(|n| n.name.as_str()).collect();
+            common.show(&names, || names.iter().map(|name| format!("{name}\n")).collect())
+        }
+        Command::Info { node, common } => info::run(node, common),
+        Command::State(common) => state::run(common),
     }
 }

@@ -8,17 +8,6 @@ use grainlab_node_kit::{Exit, Level, Report};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Arguments of `grainlab node state`.
-#[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Example:\n  grainlab node state --format json\n\nListens to the reports on /diagnostics for 2.5 s. Exit 1 if a \
-                        node reports an error, or does not report."
-)]
-pub struct Args {
-    #[command(flatten)]
-    common: Common,
-}
-
 #[derive(Serialize)]
 struct Row {
     node: String,
@@ -41,9 +30,9 @@ fn row(report: &Report) -> Row {
     Row { node: report.node.clone(), level, state, pid: Some(report.pid), values }
 }
 
-pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+pub(super) fn run(common: &Common) -> Result<Exit, Failure> {
     let mut observer = Observer::join()?;
-    let graph = observer.settled(args.common.patience());
+    let graph = observer.settled(common.patience());
     let heard = latest_reports(&mut observer)?;
     let mut rows: BTreeMap<String, Row> =
         heard.iter().map(|(node, report)| (node.clone(), row(report))).collect();
@@ -57,7 +46,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         });
     }
     let rows: Vec<Row> = rows.into_values().collect();
-    args.common.show(&rows, || {
+    common.show(&rows, || {
         let mut table = Table::new(["node", "level", "pid", "state"]);
         for r in &rows {
             let pid = r.pid.map_or_else(|| "-".to_owned(), |pid| pid.to_string());

@@ -11,17 +11,12 @@ use ros2_client::rcl_interfaces::{
     DescribeParametersRequest, DescribeParametersResponse, GetParametersRequest, GetParametersResponse,
     ListParametersRequest, ListParametersResponse, SetParametersRequest, SetParametersResponse,
 };
-use ros2_client::{Parameter, ParameterValue};
+use ros2_client::{Message, Parameter, ParameterValue};
 
 /// A connection to the domain.
 pub(super) struct Client {
     observer: Observer,
     pub(super) graph: Graph,
-}
-
-/// A service of the package `rcl_interfaces`.
-fn of_interfaces(name: &str) -> (&str, &str) {
-    ("rcl_interfaces", name)
 }
 
 impl Client {
@@ -31,29 +26,37 @@ impl Client {
         Ok(Self { observer, graph })
     }
 
-    /// The full name of a node that is there.
-    pub(super) fn node(&self, name: &str) -> Result<String, Failure> {
-        find(&self.graph, name).map(|node| node.name.clone())
+    /// A connection, and the full name of a node that is there.
+    pub(super) fn of(common: &Common, name: &str) -> Result<(Self, String), Failure> {
+        let client = Self::new(common)?;
+        let name = find(&client.graph, name)?.name.clone();
+        Ok((client, name))
     }
 
-    /// Whether a node offers parameters.
+    /// True for a node that offers parameters.
     pub(super) fn has_parameters(&self, node: &str) -> bool {
         self.graph.services().contains_key(format!("{node}/list_parameters").as_str())
+    }
+
+    fn ask<Req: Message + Clone + 'static, Resp: Message + 'static>(
+        &mut self,
+        service: &str,
+        kind: &str,
+        request: &Req,
+    ) -> Result<Resp, Failure> {
+        call(&mut self.observer, &self.graph, service, ("rcl_interfaces", kind), request)
     }
 
     pub(super) fn list(&mut self, node: &str) -> Result<Vec<String>, Failure> {
         let request = ListParametersRequest { prefixes: Vec::new(), depth: 0 };
         let service = format!("{node}/list_parameters");
-        let kind = of_interfaces("ListParameters");
-        let answer: ListParametersResponse = call(&mut self.observer, &self.graph, &service, kind, &request)?;
-        Ok(answer.result.names)
+        self.ask(&service, "ListParameters", &request).map(|a: ListParametersResponse| a.result.names)
     }
 
     pub(super) fn get(&mut self, node: &str, names: &[String]) -> Result<Vec<ParameterValue>, Failure> {
         let request = GetParametersRequest { names: names.to_vec() };
-        let service = format!("{node}/get_parameters");
-        let kind = of_interfaces("GetParameters");
-        let answer: GetParametersResponse = call(&mut self.observer, &self.graph, &service, kind, &request)?;
+        let answer: GetParametersResponse =
+            self.ask(&format!("{node}/get_parameters"), "GetParameters", &request)?;
         Ok(answer.values.into_iter().map(Into::into).collect())
     }
 
@@ -64,10 +67,7 @@ impl Client {
     ) -> Result<Vec<ParameterDescriptor>, Failure> {
         let request = DescribeParametersRequest { names: names.to_vec() };
         let service = format!("{node}/describe_parameters");
-        let kind = of_interfaces("DescribeParameters");
-        let answer: DescribeParametersResponse =
-            call(&mut self.observer, &self.graph, &service, kind, &request)?;
-        Ok(answer.values)
+        self.ask(&service, "DescribeParameters", &request).map(|a: DescribeParametersResponse| a.values)
     }
 
     pub(super) fn set(
@@ -79,8 +79,7 @@ impl Client {
         let parameter = Parameter { name: name.to_owned(), value };
         let request = SetParametersRequest { parameter: vec![parameter.into()] };
         let service = format!("{node}/set_parameters");
-        let kind = of_interfaces("SetParameters");
-        let answer: SetParametersResponse = call(&mut self.observer, &self.graph, &service, kind, &request)?;
+        let answer: SetParametersResponse = self.ask(&service, "SetParameters", &request)?;
         let missing = || Failure::failed(format!("{service} answered without a result"));
         answer.results.into_iter().next().ok_or_else(missing)
     }

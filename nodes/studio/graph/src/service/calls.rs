@@ -2,7 +2,7 @@
 
 use crate::call::call;
 use crate::graph::Graph;
-use crate::names::absolute;
+use crate::names::{absolute, unknown};
 use crate::observer::Observer;
 use crate::view::Common;
 use grainlab_console::{Failure, json, print};
@@ -56,18 +56,21 @@ struct Call<'a> {
     observer: &'a mut Observer,
     graph: &'a Graph,
     service: &'a str,
+    kind: &'a str,
     request: &'a str,
 }
 
 impl Call<'_> {
-    fn make<Req, Resp>(self, package: &str, name: &str) -> Result<String, Failure>
+    fn make<Req, Resp>(self) -> Result<String, Failure>
     where
         Req: Message + Clone + for<'de> Deserialize<'de> + 'static,
         Resp: Message + Serialize + 'static,
     {
+        let kind = self.kind;
         let request: Req = request(self.request)
-            .map_err(|e| Failure::usage(format!("the request is not one of {package}/srv/{name}: {e}")))?;
-        let answer: Resp = call(self.observer, self.graph, self.service, (package, name), &request)?;
+            .map_err(|e| Failure::usage(format!("the request is not one of {kind}: {e}")))?;
+        let kind = kind.split_once("/srv/").unwrap_or(("", kind));
+        let answer: Resp = call(self.observer, self.graph, self.service, kind, &request)?;
         json(&answer)
     }
 }
@@ -92,11 +95,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let services = graph.services();
     let Some(kind) = services.get(service.as_str()).and_then(|s| s.first()).map(|s| s.type_name.clone())
     else {
-        let known: Vec<&str> = services.keys().copied().collect();
-        return Err(Failure::failed(format!(
-            "no service {service} in this domain; services are: {}",
-            known.join(", ")
-        )));
+        return Err(unknown("service", &service, services.keys().copied()));
     };
     let empty = match kind.as_str() {
         "rcl_interfaces/srv/ListParameters" => "{prefixes: [], depth: 0}",
@@ -104,28 +103,23 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         _ => "{}",
     };
     let request = args.request.as_deref().unwrap_or(empty);
-    let call = Call { observer: &mut observer, graph: &graph, service: &service, request };
+    let call = Call { observer: &mut observer, graph: &graph, service: &service, kind: &kind, request };
     let answer = match kind.as_str() {
-        "rcl_interfaces/srv/ListParameters" => call
-            .make::<rcl::ListParametersRequest, rcl::ListParametersResponse>(
-                "rcl_interfaces",
-                "ListParameters",
-            ),
-        "rcl_interfaces/srv/GetParameters" => call
-            .make::<rcl::GetParametersRequest, rcl::GetParametersResponse>("rcl_interfaces", "GetParameters"),
-        "rcl_interfaces/srv/GetParameterTypes" => call
-            .make::<rcl::GetParameterTypesRequest, rcl::GetParameterTypesResponse>(
-                "rcl_interfaces",
-                "GetParameterTypes",
-            ),
-        "rcl_interfaces/srv/DescribeParameters" => call
-            .make::<rcl::DescribeParametersRequest, rcl::DescribeParametersResponse>(
-                "rcl_interfaces",
-                "DescribeParameters",
-            ),
-        "std_srvs/srv/Empty" => call.make::<Nothing, Nothing>("std_srvs", "Empty"),
-        "std_srvs/srv/Trigger" => call.make::<Nothing, Outcome>("std_srvs", "Trigger"),
-        "std_srvs/srv/SetBool" => call.make::<Switch, Outcome>("std_srvs", "SetBool"),
+        "rcl_interfaces/srv/ListParameters" => {
+            call.make::<rcl::ListParametersRequest, rcl::ListParametersResponse>()
+        }
+        "rcl_interfaces/srv/GetParameters" => {
+            call.make::<rcl::GetParametersRequest, rcl::GetParametersResponse>()
+        }
+        "rcl_interfaces/srv/GetParameterTypes" => {
+            call.make::<rcl::GetParameterTypesRequest, rcl::GetParameterTypesResponse>()
+        }
+        "rcl_interfaces/srv/DescribeParameters" => {
+            call.make::<rcl::DescribeParametersRequest, rcl::DescribeParametersResponse>()
+        }
+        "std_srvs/srv/Empty" => call.make::<Nothing, Nothing>(),
+        "std_srvs/srv/Trigger" => call.make::<Nothing, Outcome>(),
+        "std_srvs/srv/SetBool" => call.make::<Switch, Outcome>(),
         "rcl_interfaces/srv/SetParameters" | "rcl_interfaces/srv/SetParametersAtomically" => {
             Err(Failure::usage("use grainlab param set, which knows the types of values"))
         }

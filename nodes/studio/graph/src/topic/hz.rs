@@ -14,9 +14,9 @@ const ENCAPSULATION: usize = 4;
 /// Stamps before 2017, ns since 1970, are simulated times.
 const WALL_TIME: u64 = 1_500_000_000_000_000_000;
 
-/// Arguments that all three have.
+/// Arguments of all three.
 #[derive(Debug, clap::Args)]
-struct Window {
+pub struct Window {
     /// Name of the topic
     topic: String,
     /// Measure for this time and print one result, s [default: a line each second until Ctrl-C]
@@ -26,46 +26,7 @@ struct Window {
     common: Common,
 }
 
-/// Arguments of `grainlab topic hz`.
-#[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Example:\n  grainlab topic hz /stress --duration 5\n\nThe rate follows from the publishers' sequence \
-                        numbers and times: it is right even if this process\nreceives a part of the samples only."
-)]
-pub struct RateArgs {
-    #[command(flatten)]
-    window: Window,
-}
-
-/// Arguments of `grainlab topic bw`.
-#[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  grainlab topic bw /packing_chunk --duration 5")]
-pub struct BandwidthArgs {
-    #[command(flatten)]
-    window: Window,
-}
-
-/// Arguments of `grainlab topic delay`.
-#[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  grainlab topic delay /stress --duration 5")]
-pub struct DelayArgs {
-    #[command(flatten)]
-    window: Window,
-}
-
-pub(super) fn rate(args: &RateArgs) -> Result<Exit, Failure> {
-    measure(&args.window, rate_line)
-}
-
-pub(super) fn bandwidth(args: &BandwidthArgs) -> Result<Exit, Failure> {
-    measure(&args.window, bandwidth_line)
-}
-
-pub(super) fn delay(args: &DelayArgs) -> Result<Exit, Failure> {
-    measure(&args.window, delay_line)
-}
-
-fn rate_line(s: &Summary) -> String {
+pub(super) fn rate_line(s: &Summary) -> String {
     let Some(rate) = s.rate_hz else { return few(s) };
     let interval = s.interval.map_or_else(String::new, |i| {
         let [min, max, deviation] = [i.min, i.max, s.interval_stddev.unwrap_or(0.0)].map(|v| 1e3 * v);
@@ -78,12 +39,12 @@ fn rate_line(s: &Summary) -> String {
     format!("{rate:.3} Hz{publishers}, {} samples{missed}{interval}", s.received + s.missed)
 }
 
-fn bandwidth_line(s: &Summary) -> String {
+pub(super) fn bandwidth_line(s: &Summary) -> String {
     let (Some(rate), Some(size)) = (s.bandwidth, s.mean_size) else { return few(s) };
     format!("{:.1} kB/s, {} samples of {size:.0} bytes on average", rate / 1e3, s.received)
 }
 
-fn delay_line(s: &Summary) -> String {
+pub(super) fn delay_line(s: &Summary) -> String {
     if s.received == 0 {
         return few(s);
     }
@@ -103,7 +64,7 @@ fn few(s: &Summary) -> String {
     format!("{}: too few to measure", count(s.received, "sample"))
 }
 
-fn measure(window: &Window, line: fn(&Summary) -> String) -> Result<Exit, Failure> {
+pub(super) fn measure(window: &Window, line: fn(&Summary) -> String) -> Result<Exit, Failure> {
     let mut listener = Listener::open(&window.topic, false, window.common.patience())?;
     let stamped = begins_with_header(listener.topic.info.type_name);
     let each = Duration::from_secs_f64(window.duration.unwrap_or(1.0));
@@ -133,7 +94,7 @@ fn measure(window: &Window, line: fn(&Summary) -> String) -> Result<Exit, Failur
     }
 }
 
-/// Whether messages of this type, one of those that this program knows, begin with a `std_msgs/Header`.
+/// True for a type, among those that this program knows, whose messages begin with a `std_msgs/Header`.
 fn begins_with_header(type_name: &str) -> bool {
     TypeInfo::by_name(type_name).is_some_and(|info| {
         let mut lines = info.definition.lines().map(|l| l.split('#').next().unwrap_or("").trim());

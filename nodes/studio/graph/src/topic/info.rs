@@ -1,22 +1,11 @@
 //! `grainlab topic info`.
 
 use crate::graph::{Endpoint, Graph, QosView};
-use crate::names::absolute;
-use crate::observer::Observer;
+use crate::names::{absolute, unknown};
 use crate::view::Common;
 use grainlab_console::{Failure, Table};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
-
-/// Arguments of `grainlab topic info`.
-#[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  grainlab topic info /stress")]
-pub struct Args {
-    /// Name of the topic
-    topic: String,
-    #[command(flatten)]
-    common: Common,
-}
 
 #[derive(Serialize)]
 struct View {
@@ -46,12 +35,12 @@ fn view(graph: &Graph, endpoint: &Endpoint) -> EndpointView {
     }
 }
 
-pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let graph = Observer::join()?.settled(args.common.patience());
-    let name = absolute(&args.topic);
+pub(super) fn run(topic: &str, common: &Common) -> Result<Exit, Failure> {
+    let graph = common.graph()?;
+    let name = absolute(topic);
     let topics = graph.topics();
     let Some(topic) = topics.get(name.as_str()) else {
-        return Err(super::listen::unknown(&name, topics.keys().copied()));
+        return Err(unknown("topic", &name, topics.keys().copied()));
     };
     let endpoints = topic.publishers.iter().chain(&topic.subscriptions);
     let shown = View {
@@ -59,12 +48,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         types: topic.types().into_iter().map(str::to_owned).collect(),
         endpoints: endpoints.map(|e| view(&graph, e)).collect(),
     };
-    args.common.show(&shown, || {
+    common.show(&shown, || {
         let mut table = Table::new(["node", "kind", "reliability", "durability", "guid"]);
         for e in &shown.endpoints {
             table.row([&e.node, e.kind, e.qos.reliability, e.qos.durability, &e.guid].map(str::to_owned));
         }
         format!("{}: {}\n{}", shown.name, shown.types.join(" and "), table.text())
-    })?;
-    Ok(Exit::Done)
+    })
 }

@@ -1,21 +1,9 @@
 //! `grainlab topic list`.
 
-use crate::observer::Observer;
 use crate::view::Common;
 use grainlab_console::{Failure, Table};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
-
-/// Arguments of `grainlab topic list`.
-#[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  grainlab topic list --types")]
-pub struct Args {
-    /// Print the types, and the numbers of publishers and subscriptions
-    #[arg(short = 't', long, visible_alias = "show-types")]
-    types: bool,
-    #[command(flatten)]
-    common: Common,
-}
 
 #[derive(Serialize)]
 struct Row {
@@ -26,8 +14,8 @@ struct Row {
     subscriptions: usize,
 }
 
-pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let graph = Observer::join()?.settled(args.common.patience());
+pub(super) fn run(types: bool, common: &Common) -> Result<Exit, Failure> {
+    let graph = common.graph()?;
     let topics = graph.topics();
     let rows: Vec<Row> = topics
         .iter()
@@ -38,8 +26,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             subscriptions: topic.subscriptions.len(),
         })
         .collect();
-    args.common.show(&rows, || {
-        if !args.types {
+    common.show(&rows, || {
+        if !types {
             return rows.iter().map(|row| format!("{}\n", row.name)).collect();
         }
         let mut table = Table::new(["topic", "type", "publishers", "subscriptions"]);
@@ -48,6 +36,5 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             table.row([row.name.clone(), row.types.join(" and ")].into_iter().chain(counts));
         }
         table.text()
-    })?;
-    Ok(Exit::Done)
+    })
 }

@@ -1,7 +1,7 @@
 //! Subscribes to a topic of any type.
 
 use crate::graph::{is_reliable, is_transient_local};
-use crate::names::absolute;
+use crate::names::{absolute, unknown};
 use crate::observer::Observer;
 use grainlab_console::Failure;
 use grainlab_msgs::{Qos, Topic, topics};
@@ -37,7 +37,7 @@ impl Source {
         }
     }
 
-    /// How long this process may wait at most.
+    /// Longest wait of this process.
     fn patience(&self, bus: &DdsBus) -> Duration {
         match self {
             Self::Samples(_) => Duration::MAX,
@@ -54,15 +54,6 @@ pub(crate) struct Listener {
     pub(crate) topic: Topic,
 }
 
-/// The topic does not exist, with what is there.
-pub(super) fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Failure {
-    let known: Vec<&str> = known.collect();
-    let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-    Failure::failed(format!(
-        "no topic {name} in this domain (ROS_DOMAIN_ID); topics are: {list}. See grainlab doctor"
-    ))
-}
-
 impl Listener {
     /// Finds the topic and its type, and subscribes with what its publishers offer.
     ///
@@ -73,7 +64,7 @@ impl Listener {
         let graph = Observer::join()?.settled(patience);
         let all = graph.topics();
         let Some(entry) = all.get(name.as_str()) else {
-            return Err(unknown(&name, all.keys().copied()));
+            return Err(unknown("topic", &name, all.keys().copied()));
         };
         let types = entry.types();
         let type_name = match types.first() {

@@ -1,4 +1,4 @@
-//! Apache Parquet.
+//! Tables as Apache Parquet.
 
 use grainlab_any_message::Primitive;
 use grainlab_console::{Cell, Failure};

@@ -62,7 +62,7 @@ impl Range {
         [self.low, self.high]
     }
 
-    /// Whether a value is on the axis.
+    /// True for a value on the axis.
     pub(super) fn has(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }

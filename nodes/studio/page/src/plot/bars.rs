@@ -23,16 +23,16 @@ const LINE: f64 = 17.0;
 /// Room below the values of a name.
 const GAP: f64 = 8.0;
 
-/// One value.
+/// One value with its name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bar {
-    /// Its name; the same one in a row is written once.
+    /// Name; equal ones in a row are written once.
     pub name: String,
     /// Number of its colour.
     pub colour: usize,
-    /// The value.
+    /// Length or position.
     pub value: f64,
-    /// Its interval, low and high.
+    /// Interval of the value, low and high.
     pub interval: Option<[f64; 2]>,
     /// The value as text, with what belongs to it.
     pub text: String,
@@ -41,11 +41,11 @@ pub struct Bar {
 /// Values by name, from top to bottom.
 #[derive(Clone, Debug, Default)]
 pub struct Bars {
-    /// The title.
+    /// Title of the plot.
     pub title: String,
     /// Bars that begin at zero, instead of points.
     pub from_zero: bool,
-    /// The values.
+    /// Values in their order.
     pub bars: Vec<Bar>,
     /// A value to compare with, drawn as a line, and its name.
     pub reference: Option<(f64, String)>,

@@ -5,7 +5,7 @@ use super::figure::{Entry, Line, Marker, Series, Theme};
 use super::labels::Area;
 use super::style::style;
 use crate::markup::{Html, escaped};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// Width and height of the plot.
@@ -93,7 +93,7 @@ impl Drawing {
         self.other_axes(along, (y, up));
     }
 
-    /// The same without the marks of the horizontal axis.
+    /// Both axes without the marks of the horizontal one.
     pub(super) fn other_axes(&mut self, along: &str, (y, up): (&Range, &str)) {
         let [left, top, right, bottom] = self.frame;
         for (value, text) in y.marks() {
@@ -118,15 +118,11 @@ impl Drawing {
         let (Some(line), Some((first, rest))) = (series.line, places.split_first()) else { return };
         let mut path = format!("M {:.1} {:.1}", first[0], first[1]);
         for [x, y] in rest {
-            let _ = match line {
-                Line::Straight | Line::Faint => write!(path, " L {x:.1} {y:.1}"),
-                Line::Steps => write!(path, " H {x:.1} V {y:.1}"),
-            };
+            let _ = write!(path, " L {x:.1} {y:.1}");
         }
         let opacity = match line {
             Line::Straight => "",
             Line::Faint => " stroke-opacity=\"0.35\"",
-            Line::Steps => " stroke-opacity=\"0.6\" stroke-width=\"1.5\"",
         };
         let class = class(series.colour);
         let _ = writeln!(
@@ -147,11 +143,7 @@ impl Drawing {
 
     /// A point with its tooltip.
     pub(super) fn marker(&mut self, [x, y]: [f64; 2], key: Key, tooltip: &str) {
-        let class = match (key.marker, key.hollow) {
-            (Marker::Star, _) => "star".to_owned(),
-            (_, true) => format!("{} hollow", class(key.colour)),
-            (_, false) => format!("{} full", class(key.colour)),
-        };
+        let class = format!("{} {}", class(key.colour), if key.hollow { "hollow" } else { "full" });
         let title =
             if tooltip.is_empty() { String::new() } else { format!("<title>{}</title>", escaped(tooltip)) };
         let (element, shape) = match corners(key.marker) {
@@ -171,7 +163,7 @@ impl Drawing {
         self.text(at, "start", &more, text);
     }
 
-    /// The legend.
+    /// Lines of the legend.
     pub(super) fn legend(&mut self, entries: &[Entry]) {
         let [x, beside] = LEGEND;
         let mut y = FRAME[1] + 10.0;
@@ -234,14 +226,6 @@ fn corners(marker: Marker) -> Option<Vec<[f64; 2]>> {
         Marker::TriangleDown => polygon(3, 0.5),
         Marker::Pentagon => polygon(5, 0.0),
         Marker::Hexagon => polygon(6, 0.0),
-        Marker::Star => {
-            let radius = |k: u32| if k.is_multiple_of(2) { 11.0 } else { 4.5 };
-            let corner = |k: u32| {
-                let angle = PI * f64::from(k) / 5.0;
-                [radius(k) * angle.sin(), -radius(k) * angle.cos()]
-            };
-            (0..10).map(corner).collect()
-        }
     })
 }
 

@@ -3,9 +3,9 @@
 /// A plot: series over two axes, and a legend beside them.
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
-    /// The title.
+    /// Title of the plot.
     pub title: String,
-    /// The subtitle.
+    /// Line below the title.
     pub subtitle: String,
     /// The horizontal axis.
     pub x: Axis,
@@ -55,7 +55,7 @@ pub struct Series {
     pub colour: Option<usize>,
     /// Shape of the points; `None` for a line alone.
     pub marker: Option<Marker>,
-    /// Whether points are drawn as outlines.
+    /// True for points drawn as outlines.
     pub hollow: bool,
     /// The line through the points, if any.
     pub line: Option<Line>,
@@ -68,7 +68,7 @@ impl Series {
     pub const COLOURS: usize = 9;
 }
 
-/// One point.
+/// One point of a series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
     /// Value on the horizontal axis.
@@ -99,10 +99,10 @@ impl Point {
     }
 }
 
-/// A shape.
+/// Shape of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
-    /// A disc.
+    /// A filled disc.
     Circle,
     /// A square standing on a side.
     Square,
@@ -112,12 +112,10 @@ pub enum Marker {
     Diamond,
     /// A triangle standing on a corner.
     TriangleDown,
-    /// A pentagon.
+    /// A regular pentagon.
     Pentagon,
-    /// A hexagon.
+    /// A regular hexagon.
     Hexagon,
-    /// A large red star, for the reference point.
-    Star,
 }
 
 impl Marker {
@@ -143,31 +141,27 @@ pub enum Line {
     Straight,
     /// By faint straight lines that only guide the eye.
     Faint,
-    /// By steps, first across and then up or down.
-    Steps,
 }
 
 /// One line of the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Entry {
-    /// A colour.
+    /// A colour with its meaning.
     Colour(usize, String),
     /// A shape, filled or hollow, in a colour or grey.
     Shape(Marker, Option<usize>, bool, String),
-    /// Only text.
+    /// Text without a symbol.
     Note(String),
     /// An empty line.
     Gap,
 }
 
-/// The theme.
+/// Colours of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Theme {
     /// Dark on white.
     #[default]
     Light,
-    /// Light on dark.
-    Dark,
     /// That of the reader's system.
     System,
 }

@@ -21,17 +21,6 @@ pub(super) fn around([x, y]: [f64; 2]) -> Area {
     [x - MARKER, y - MARKER, x + MARKER, y + MARKER]
 }
 
-/// The free areas along steps through these positions.
-pub(super) fn along_steps(places: &[[f64; 2]]) -> Vec<Area> {
-    let between = |a: f64, b: f64| (a.min(b) - 1.0, a.max(b) + 1.0);
-    let areas = places.windows(2).flat_map(|pair| {
-        let [[x0, y0], [x1, y1]] = [pair[0], pair[1]];
-        let ((left, right), (top, bottom)) = (between(x0, x1), between(y0, y1));
-        [[left, y0 - 1.0, right, y0 + 1.0], [x1 - 1.0, top, x1 + 1.0, bottom]]
-    });
-    areas.collect()
-}
-
 /// The labels that fit into `frame`, each with its lower left corner; `taken` are the areas of markers.
 pub(super) fn place<'a, T: Copy>(
     labels: &[([f64; 2], &'a str, T)],

@@ -20,7 +20,7 @@ const CORNERS: usize = 45;
 /// Values by x = |cos θ|, relative to their mean: 1 everywhere if no direction stands out.
 #[derive(Clone, Debug, Default)]
 pub struct Rose {
-    /// The title.
+    /// Title of the plot.
     pub title: String,
     /// Values in bins of equal width in x, from 0 to 1, hence of equal solid angle.
     pub bins: Vec<f64>,

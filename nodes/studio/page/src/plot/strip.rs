@@ -19,7 +19,7 @@ const LETTER: f64 = 6.4;
 pub struct Band {
     /// Begin and end, in the unit of the axis.
     pub range: [f64; 2],
-    /// Its number or short name, left out if there is no room.
+    /// Number or short name, left out if there is no room.
     pub label: String,
     /// Text of its tooltip.
     pub tooltip: String,
@@ -32,7 +32,7 @@ pub struct Strip {
     pub figure: Figure,
     /// Drawn behind the series.
     pub bands: Vec<Band>,
-    /// Whether the bands are the horizontal axis, which then has their labels instead of values.
+    /// True for bands as the horizontal axis, which then has their labels instead of values.
     pub by_band: bool,
 }
 

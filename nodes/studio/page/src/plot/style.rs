@@ -7,7 +7,7 @@ use std::fmt::Write;
 const ON_WHITE: [&str; Series::COLOURS] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f", "#6a3d9a"];
 
-/// The same, light enough on dark.
+/// Colours of the same hues, light enough on dark.
 const ON_DARK: [&str; Series::COLOURS] =
     ["#4aa3df", "#ff8a3d", "#2fc79b", "#e3a1c6", "#f2b632", "#8fd0f5", "#f0f0f0", "#c9a64a", "#b08fe0"];
 
@@ -17,7 +17,7 @@ pub(super) fn style(theme: Theme) -> String {
         let mut css = format!(
             ".paper{{fill:{paper}}}.ink{{fill:{ink}}}.faint{{fill:{faint}}}.axis{{stroke:{ink}}}.grid{{stroke:{grid}}}\
              .full{{fill:currentColor;stroke:currentColor;stroke-width:1.4}}\
-             .hollow{{fill:{paper};stroke:currentColor;stroke-width:1.4}}.grey{{color:{faint}}}.star{{fill:#e00000;stroke:{paper}}}"
+             .hollow{{fill:{paper};stroke:currentColor;stroke-width:1.4}}.grey{{color:{faint}}}"
         );
         for (n, colour) in colours.iter().enumerate() {
             let _ = write!(css, ".c{n}{{color:{colour}}}");
@@ -28,7 +28,6 @@ pub(super) fn style(theme: Theme) -> String {
     let dark = || sheet("#1b1b1f", "#e6e6e6", "#a8a8a8", "#38383e", &ON_DARK);
     match theme {
         Theme::Light => light(),
-        Theme::Dark => dark(),
         Theme::System => format!("{}@media (prefers-color-scheme: dark){{{}}}", light(), dark()),
     }
 }

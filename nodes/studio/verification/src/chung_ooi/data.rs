@@ -26,15 +26,15 @@ pub(super) struct Data {
     pub(super) counter_spinning: CounterSpinning,
 }
 
-/// A material.
+/// Material of a sphere.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct Solid {
     #[serde(rename = "material")]
     pub(super) name: String,
-    /// Pa
+    /// Young's modulus, Pa.
     pub(super) young: f64,
     pub(super) poisson: f64,
-    /// kg/m³
+    /// Density of the material, kg/m³.
     pub(super) density: f64,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Elastic {
     pub(super) path: Curve,
 }
 
-/// Test 4.
+/// Curves of test 4.
 #[derive(Deserialize)]
 pub(super) struct Oblique {
     #[serde(flatten)]
@@ -57,7 +57,7 @@ pub(super) struct Oblique {
     /// Degrees from the normal.
     pub(super) angles: Vec<f64>,
     pub(super) tangential_restitution: Vec<f64>,
-    /// rad/s
+    /// Spin after, rad/s.
     #[serde(default)]
     pub(super) spin: Vec<f64>,
     /// Degrees, of the surface.
@@ -65,7 +65,7 @@ pub(super) struct Oblique {
     pub(super) rebound_angle: Vec<f64>,
 }
 
-/// The experiment beside test 4.
+/// The experiment compared with test 4.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Measured {
@@ -73,7 +73,7 @@ pub(super) struct Measured {
     pub(super) spin: Curve,
 }
 
-/// Test 5.
+/// Curves of test 5.
 #[derive(Deserialize)]
 pub(super) struct Microscopic {
     #[serde(flatten)]
@@ -101,12 +101,12 @@ pub(super) struct Spinning {
     pub(super) beta: Curve,
 }
 
-/// Test 7.
+/// Spins of test 7.
 #[derive(Deserialize)]
 pub(super) struct CounterSpinning {
     #[serde(flatten)]
     pub(super) solid: Solid,
-    /// rad/s
+    /// Spins before, rad/s.
     pub(super) spins: Vec<f64>,
 }
 

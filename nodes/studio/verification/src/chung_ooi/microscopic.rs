@@ -77,7 +77,7 @@ pub(super) fn rows(
     Ok(rows)
 }
 
-/// The rows beside finite elements, for the first material, which is theirs.
+/// Comparisons with finite elements, for the first material, which is theirs.
 pub(super) fn finite_elements(
     cases: &[Microscopic],
     theirs: &FiniteElements,

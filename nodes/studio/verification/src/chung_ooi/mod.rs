@@ -19,7 +19,7 @@ use crate::row::Row;
 use data::Data;
 use std::collections::BTreeMap;
 
-/// Every row.
+/// Rows of the suite.
 pub fn rows() -> Result<Vec<Row>, VerificationError> {
     let data: Data = parse("chung_ooi.toml", include_str!("../../data/chung_ooi.toml"))?;
     let mut rows = Vec::new();

@@ -25,7 +25,7 @@ enum Quantity {
     Restitution,
     /// rad/s, as the paper counts it.
     Spin,
-    /// Of the surface, degrees.
+    /// Angle of the rebounding surface, degrees.
     Angle,
 }
 
@@ -39,7 +39,7 @@ impl Quantity {
         }
     }
 
-    /// Its value after an impact at this angle of incidence, degrees. Spin about +y moves the lowest point towards -x; the paper
+    /// Value after an impact at this angle of incidence, degrees. Spin about +y moves the lowest point towards -x; the paper
     /// counts it the other way.
     fn of(self, after: After, angle: f64) -> f64 {
         match self {

@@ -7,7 +7,7 @@ use crate::row::{Measure, Point, Row};
 use crate::two_spheres::{PLANE, TwoSpheres};
 use grainlab_core::Vec3;
 
-/// m/s
+/// Speed of approach, m/s.
 const SPEED: f64 = 3.9;
 
 /// Coefficients of restitution that are set; lower ones take more than critical damping.

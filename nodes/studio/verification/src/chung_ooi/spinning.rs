@@ -26,7 +26,7 @@ pub(super) fn rows(
     impacts: &Impacts,
 ) -> Result<Vec<Row>, VerificationError> {
     let damping = damping_for(RESTITUTION);
-    // What slides changes the velocity of its surface by 3.5 μ times the impulse of the elastic force over the mass.
+    // A sliding surface changes its velocity by 3.5 μ times the impulse of the elastic force over the mass.
     let share = Damped::new(Springs::Hertz, damping).elastic_impulse / (1.0 + RESTITUTION);
     let (mut sliding, mut all, mut by_lammps) = (Vec::new(), Vec::new(), Vec::new());
     for [slip, theirs] in &case.beta {
@@ -65,7 +65,7 @@ pub(super) fn rows(
     ])
 }
 
-/// Test 7.
+/// Rows of test 7.
 pub(super) fn counter_spinning(case: &CounterSpinning) -> Result<Vec<Row>, VerificationError> {
     let (mut spins, mut tangential) = (Vec::new(), Vec::new());
     for spin in &case.spins {

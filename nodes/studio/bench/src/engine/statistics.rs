@@ -4,73 +4,45 @@
 //! therefore the sum of the effect of the setting and of chance. The mean of the differences over seeds is
 //! the effect, within its standard error.
 
-use serde::Serialize;
+use crate::numbers::{mean, rms};
 
-/// The quantities measured on the packing at the end of a path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub(crate) struct Observables<T> {
-    /// Coordination number, all grains.
-    pub(crate) k: T,
-    /// Anisotropy ε of the contacts about e3 (Eq. 20).
-    pub(crate) eps: T,
-    /// Solid fraction.
-    pub(crate) phi: T,
-    /// Shear modulus G12 of the frozen network.
-    pub(crate) g12: T,
-    /// Bulk modulus Θ of the frozen network.
-    pub(crate) theta: T,
-}
-
-impl<T: Copy> Observables<T> {
-    /// Names, in the order of [`Observables::array`].
-    pub(crate) const NAMES: [&str; 5] = ["k", "eps", "phi", "g12", "theta"];
-
-    pub(crate) fn from_array([k, eps, phi, g12, theta]: [T; 5]) -> Self {
-        Self { k, eps, phi, g12, theta }
-    }
-
-    pub(crate) fn array(&self) -> [T; 5] {
-        [self.k, self.eps, self.phi, self.g12, self.theta]
-    }
-
-    pub(crate) fn map<U: Copy>(&self, f: impl FnMut(T) -> U) -> Observables<U> {
-        Observables::from_array(self.array().map(f))
-    }
-}
+/// Measured on the packing at the end of a path: coordination k of all grains, anisotropy ε of the contacts about e3 (Eq. 20),
+/// solid fraction φ, shear modulus G12 and bulk modulus Θ of the frozen network.
+pub(super) type Observables = [f64; 5];
 
 /// A mean over seeds with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Estimate {
-    /// Mean.
-    pub(crate) mean: f64,
+pub(super) struct Estimate {
+    /// Mean of the samples.
+    pub(super) mean: f64,
     /// Standard error of the mean: standard deviation over √n.
-    pub(crate) standard_error: f64,
+    pub(super) standard_error: f64,
     /// Number of samples n, at least two.
-    pub(crate) samples: usize,
+    pub(super) samples: usize,
 }
 
 impl Estimate {
     /// From at least two samples; a single sample has no standard error.
-    pub(crate) fn of(samples: &[f64]) -> Option<Self> {
+    pub(super) fn of(samples: &[f64]) -> Option<Self> {
         let n = samples.len();
         let standard_error = deviation(samples)? / (n as f64).sqrt();
-        Some(Self { mean: samples.iter().sum::<f64>() / n as f64, standard_error, samples: n })
+        Some(Self { mean: mean(samples), standard_error, samples: n })
     }
 
     /// Half width of the 95 % interval of the mean: two standard errors with many samples, more with few.
-    pub(crate) fn half_width(&self) -> f64 {
+    pub(super) fn half_width(&self) -> f64 {
         student(self.samples - 1) * self.standard_error
     }
 
-    /// Whether zero lies outside the 95 % interval. A mean without scatter is resolved, even if it is zero:
+    /// True if zero lies outside the 95 % interval. A mean without scatter is resolved, even if it is zero:
     /// then every sample is exactly zero.
-    pub(crate) fn resolved(&self) -> bool {
+    pub(super) fn resolved(&self) -> bool {
         self.mean.abs() >= self.half_width()
     }
 
     /// The magnitude for further use: that of the mean if it is resolved, else the half width, its upper
     /// bound.
-    pub(crate) fn bound(&self) -> f64 {
+    pub(super) fn bound(&self) -> f64 {
         self.mean.abs().max(self.half_width())
     }
 }
@@ -85,48 +57,37 @@ fn student(freedom: usize) -> f64 {
 }
 
 /// Standard deviation of at least two samples, with n − 1.
-pub(crate) fn deviation(samples: &[f64]) -> Option<f64> {
+pub(super) fn deviation(samples: &[f64]) -> Option<f64> {
     if samples.len() < 2 {
         return None;
     }
-    let n = samples.len() as f64;
-    let mean = samples.iter().sum::<f64>() / n;
-    Some((samples.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt())
+    let mean = mean(samples);
+    let squares = samples.iter().map(|s| (s - mean).powi(2)).sum::<f64>();
+    Some((squares / (samples.len() as f64 - 1.0)).sqrt())
 }
 
 /// The difference of two settings at the same seeds, over the seeds at which both succeeded; `None` with
 /// fewer than two of them.
-pub(crate) fn paired(
-    of: &[Option<Observables<f64>>],
-    from: &[Option<Observables<f64>>],
-) -> Option<Observables<Estimate>> {
+pub(super) fn paired(of: &[Option<Observables>], from: &[Option<Observables>]) -> Option<[Estimate; 5]> {
     let both: Vec<_> = of.iter().zip(from).filter_map(|(a, b)| Some((a.as_ref()?, b.as_ref()?))).collect();
-    let estimate = |q: usize| {
-        let differences: Vec<f64> = both.iter().map(|(a, b)| a.array()[q] - b.array()[q]).collect();
-        Estimate::of(&differences)
-    };
-    Some(Observables::from_array([estimate(0)?, estimate(1)?, estimate(2)?, estimate(3)?, estimate(4)?]))
+    let of = |q: usize| Estimate::of(&both.iter().map(|(a, b)| a[q] - b[q]).collect::<Vec<_>>());
+    Some([of(0)?, of(1)?, of(2)?, of(3)?, of(4)?])
 }
 
 /// One number for five errors: the root mean square of their bounds, each over the seed scatter of its
 /// quantity, so that 1 is the random error of one packing. `None` without scatter.
-pub(crate) fn combined(errors: &Observables<Estimate>, scatter: &Observables<f64>) -> Option<f64> {
-    let squares: Vec<f64> = errors
-        .array()
-        .iter()
-        .zip(scatter.array())
-        .filter(|(_, s)| *s > 0.0)
-        .map(|(e, s)| (e.bound() / s).powi(2))
-        .collect();
-    (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+pub(super) fn combined(errors: &[Estimate; 5], scatter: &Observables) -> Option<f64> {
+    let shares: Vec<f64> =
+        errors.iter().zip(scatter).filter(|(_, s)| **s > 0.0).map(|(e, s)| e.bound() / s).collect();
+    (!shares.is_empty()).then(|| rms(&shares))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn all(value: f64) -> Observables<f64> {
-        Observables::from_array([value; 5])
+    fn all(value: f64) -> Observables {
+        [value; 5]
     }
 
     #[test]
@@ -159,7 +120,7 @@ mod tests {
     fn equal_results_have_an_error_of_exactly_zero_that_counts_as_known() {
         let runs = [Some(all(5.1)), Some(all(4.9)), Some(all(5.3))];
         let none = paired(&runs, &runs).unwrap();
-        assert!(none.array().iter().all(|e| e.resolved() && e.mean == 0.0 && e.standard_error == 0.0));
+        assert!(none.iter().all(|e| e.resolved() && e.mean == 0.0 && e.standard_error == 0.0));
         assert_eq!(combined(&none, &all(0.1)), Some(0.0));
     }
 
@@ -167,7 +128,7 @@ mod tests {
     fn pairing_takes_the_scatter_of_the_seeds_out_of_a_difference() {
         let from: Vec<_> = [4.0, 5.0, 6.0].map(|v| Some(all(v))).into();
         let of: Vec<_> = [4.1, 5.2, 6.3].map(|v| Some(all(v))).into();
-        let k = paired(&of, &from).unwrap().k;
+        let k = paired(&of, &from).unwrap()[0];
         assert!((k.mean - 0.2).abs() < 1e-12 && (k.standard_error - 0.1 / 3f64.sqrt()).abs() < 1e-12);
     }
 
@@ -175,16 +136,16 @@ mod tests {
     fn only_seeds_at_which_both_settings_ended_count() {
         let from = [Some(all(1.0)), None, Some(all(1.0)), Some(all(1.0))];
         let of = [Some(all(2.0)), Some(all(9.0)), None, Some(all(4.0))];
-        assert_eq!(paired(&of, &from).unwrap().phi.mean, 2.0);
+        assert_eq!(paired(&of, &from).unwrap()[2].mean, 2.0);
         assert_eq!(paired(&of[..3], &from[..3]), None);
     }
 
     #[test]
     fn the_combined_error_is_in_units_of_the_scatter_and_quantities_without_scatter_stay_out() {
         let error = Estimate { mean: 0.3, standard_error: 0.0, samples: 8 };
-        let errors = Observables::from_array([error; 5]);
+        let errors = [error; 5];
         assert!((combined(&errors, &all(0.1)).unwrap() - 3.0).abs() < 1e-12);
-        let one = Observables { k: 0.1, ..all(0.0) };
+        let one = [0.1, 0.0, 0.0, 0.0, 0.0];
         assert!((combined(&errors, &one).unwrap() - 3.0).abs() < 1e-12);
         assert_eq!(combined(&errors, &all(0.0)), None);
     }
