@@ -3,7 +3,6 @@
 
 use crate::simd::instruction_set::Simd;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -116,23 +115,6 @@ impl Compute {
             Some(pool) => {
                 let pieces = pieces.collect();
                 pool.install(|| fork_join(pieces, &work))
-            }
-        }
-    }
-
-    /// Does all work items on any threads, and joins the results in the order of the items.
-    pub(crate) fn map_join<T: Send, R: Send>(
-        &self,
-        items: impl Iterator<Item = T>,
-        work: impl Fn(T) -> R + Sync + Send,
-        join: impl FnMut(R),
-    ) {
-        match &self.pool {
-            None => items.map(work).for_each(join),
-            Some(pool) => {
-                let items: Vec<T> = items.collect();
-                let results: Vec<R> = pool.install(|| items.into_par_iter().map(work).collect());
-                results.into_iter().for_each(join);
             }
         }
     }

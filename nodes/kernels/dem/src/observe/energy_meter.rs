@@ -2,6 +2,7 @@
 
 use super::contact_works::{ContactWork, contact_works};
 use super::energy::EnergyBalance;
+use super::pair_motion::vec3;
 use super::path_works::PathWorks;
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
@@ -34,7 +35,7 @@ impl EnergyMeter {
         let half = kick(state, settings, &list, 0.5 * state.time_step);
         let mut works = EnergyBalance::default();
         add(&mut works, &half.works, -1.0);
-        works.start = half.kinetic + list.iter().map(ContactWork::energy).sum::<f64>();
+        works.start = half.kinetic + list.iter().map(|c| c.energies.iter().sum::<f64>()).sum::<f64>();
         Self { works, before: Vec::new(), rate: state.rate }
     }
 
@@ -80,9 +81,8 @@ impl EnergyMeter {
         let mut balance = self.works;
         add(&mut balance, &half.works, 1.0);
         balance.kinetic = half.kinetic;
-        balance.normal_springs = list.iter().map(|c| c.normal_energy).sum();
-        balance.tangential_springs = list.iter().map(|c| c.tangential_energy).sum();
-        balance.rolling_springs = list.iter().map(|c| c.rolling_energy).sum();
+        [balance.normal_springs, balance.tangential_springs, balance.rolling_springs] =
+            [0, 1, 2].map(|spring| list.iter().map(|c| c.energies[spring]).sum());
         balance
     }
 }
@@ -102,13 +102,15 @@ fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f
     let n = state.len();
     let (mut force, mut torque) = (vec![Vec3::zeros(); n], vec![Vec3::zeros(); n]);
     for c in contacts {
-        let f = c.normal * c.normal_force - c.tangential_force;
-        let moment = c.normal.cross(&c.tangential_force);
-        force[c.i] -= f;
-        force[c.j] += f;
-        let rolling = c.normal.cross(&c.rolling_force) * c.r_eff;
-        torque[c.i] += moment * c.levers[0] + rolling;
-        torque[c.j] += moment * c.levers[1] - rolling;
+        let (m, i, j) = (&c.motion, c.pair.i as usize, c.pair.j as usize);
+        let (normal, tangential) = (vec3(m.contact.normal), vec3(c.forces.tangential));
+        let f = normal * c.forces.normal - tangential;
+        let moment = normal.cross(&tangential);
+        force[i] -= f;
+        force[j] += f;
+        let rolling = normal.cross(&c.rolling_force) * m.r_eff;
+        torque[i] += moment * m.levers[0] + rolling;
+        torque[j] += moment * m.levers[1] - rolling;
     }
     let has_spins = settings.features() != Features::Frictionless;
     let keep = |drag: f64| (1.0 - drag * h).max(0.0);
@@ -132,19 +134,22 @@ fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f
         spin.push(0.5 * (w + r));
     }
     for c in contacts {
-        let affine = state.rate * c.branch;
-        let relative = velocity[c.j] - velocity[c.i] + affine;
-        let separation = relative.dot(&c.normal);
-        let spins = spin[c.i] * c.levers[0] + spin[c.j] * c.levers[1];
-        let slip = relative - c.normal * separation - spins.cross(&c.normal);
-        let f = c.normal * c.normal_force - c.tangential_force;
+        let (m, i, j) = (&c.motion, c.pair.i as usize, c.pair.j as usize);
+        let (normal, tangential, history) =
+            (vec3(m.contact.normal), vec3(c.forces.tangential), &c.pair.history);
+        let affine = state.rate * m.branch;
+        let relative = velocity[j] - velocity[i] + affine;
+        let separation = relative.dot(&normal);
+        let spins = spin[i] * m.levers[0] + spin[j] * m.levers[1];
+        let slip = relative - normal * separation - spins.cross(&normal);
+        let f = normal * c.forces.normal - tangential;
         works.strain_work -= h * f.dot(&affine);
-        works.normal_damping -= h * (c.normal_force - c.elastic) * separation;
-        let rolling = (spin[c.j] - spin[c.i]).cross(&c.normal) * c.r_eff;
-        works.tangential_damping += h * (c.tangential_force - c.history.tangential).dot(&slip);
-        works.rolling_damping += h * (c.rolling_force - c.history.rolling).dot(&rolling);
+        works.normal_damping -= h * (c.forces.normal - c.forces.elastic) * separation;
+        let rolling = (spin[j] - spin[i]).cross(&normal) * m.r_eff;
+        works.tangential_damping += h * (tangential - history.tangential).dot(&slip);
+        works.rolling_damping += h * (c.rolling_force - history.rolling).dot(&rolling);
         let elastic =
-            c.elastic * separation - c.history.tangential.dot(&slip) - c.history.rolling.dot(&rolling);
+            c.forces.elastic * separation - history.tangential.dot(&slip) - history.rolling.dot(&rolling);
         works.integration += h * elastic;
     }
     Kick { works, kinetic }
