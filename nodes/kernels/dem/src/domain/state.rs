@@ -2,7 +2,7 @@
 
 use crate::simd::simd_f64::{F64x4, F64x8};
 use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Cell, Mat3, Material, Vec3};
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
 /// A vector as a row of a table.
 #[inline(always)]
@@ -17,7 +17,7 @@ pub(crate) fn vector(row: &F64x4) -> Vec3 {
 }
 
 /// Velocity and spin as a row.
-pub(crate) fn twist(velocity: &Vec3, spin: &Vec3) -> F64x8 {
+fn twist(velocity: &Vec3, spin: &Vec3) -> F64x8 {
     F64x8([velocity.x, velocity.y, velocity.z, 0.0, spin.x, spin.y, spin.z, 0.0])
 }
 
@@ -49,31 +49,26 @@ pub(crate) struct State {
 }
 
 impl State {
-    pub(crate) fn new(
-        cell: Cell,
-        material: Material,
-        ids: Vec<u32>,
-        radius: Vec<f64>,
-        position: &[Vec3],
-    ) -> Self {
-        let n = radius.len();
-        let mass = |r: &f64| material.sphere_mass(*r);
+    /// The grains of a packing.
+    pub(crate) fn of(packing: &Packing) -> Self {
+        let radius = &packing.radii;
+        let mass = |r: &f64| packing.material.sphere_mass(*r);
         Self {
-            step: 0,
-            time: 0.0,
-            time_step: 0.0,
-            cell,
+            step: packing.step,
+            time: packing.time,
+            time_step: packing.time_step,
+            cell: packing.cell,
             rate: Mat3::zeros(),
-            material,
-            law: ContactLaw::default(),
-            ids,
+            material: packing.material,
+            law: packing.law,
+            ids: packing.ids.clone(),
             inverse_mass: radius.iter().map(|r| 1.0 / mass(r)).collect(),
             inverse_inertia: radius.iter().map(|r| 1.0 / (0.4 * mass(r) * r * r)).collect(),
             largest_radius: radius.iter().copied().fold(0.0, f64::max),
             smallest_radius: radius.iter().copied().fold(f64::INFINITY, f64::min),
-            radius,
-            position: position.iter().map(row).collect(),
-            twist: vec![F64x8::default(); n],
+            radius: radius.clone(),
+            position: packing.positions.iter().map(row).collect(),
+            twist: packing.velocities.iter().zip(&packing.spins).map(|(v, w)| twist(v, w)).collect(),
         }
     }
 

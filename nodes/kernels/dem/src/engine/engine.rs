@@ -4,7 +4,7 @@ use super::checkpoint::Checkpoint;
 use super::spatial_order;
 use crate::domain::compute::Compute;
 use crate::domain::distributed_state::DistributedState;
-use crate::domain::state::{State, twist, vector};
+use crate::domain::state::{State, vector};
 use crate::error::DemError;
 use crate::observe::energy::EnergyBalance;
 use crate::observe::energy_meter::EnergyMeter;
@@ -94,26 +94,10 @@ impl Engine {
         if packing.radii.is_empty() {
             return Err(DemError::NoGrains);
         }
-        let mut state = State::new(
-            packing.cell,
-            packing.material,
-            packing.ids.clone(),
-            packing.radii.clone(),
-            &packing.positions,
-        );
-        state.twist = packing.velocities.iter().zip(&packing.spins).map(|(v, w)| twist(v, w)).collect();
-        state.law = packing.law;
-        state.step = packing.step;
-        state.time = packing.time;
-        state.time_step = packing.time_step;
-        let contacts = Contacts::from_packing(packing, &state);
-        Ok(Self::from_state(state, contacts, settings))
-    }
-
-    fn from_state(state: State, contacts: Contacts, settings: EngineSettings) -> Self {
+        let state = State::of(packing);
         let mut engine = Self {
+            contacts: Contacts::from_packing(packing, &state),
             state,
-            contacts,
             copies: DistributedState::default(),
             settings,
             compute: Compute::default(),
@@ -125,7 +109,7 @@ impl Engine {
             energy: None,
         };
         engine.adopt(settings);
-        engine
+        Ok(engine)
     }
 
     /// Sets instruction set and threads. Results do not depend on them.
@@ -300,7 +284,8 @@ impl Engine {
 
     /// A state to return to.
     pub fn checkpoint(&self) -> Checkpoint {
-        Checkpoint::new(&self.current_state(), &self.contacts)
+        let contacts = self.contacts.saved().collect();
+        Checkpoint { state: self.current_state().into_owned(), contacts }
     }
 
     /// Returns to a checkpoint, with the energy balance off. Call [`Engine::initialise`] before the next step.
@@ -308,12 +293,13 @@ impl Engine {
     /// # Errors
     /// A checkpoint of another number of grains; nothing has changed.
     pub fn restore(&mut self, checkpoint: Checkpoint) -> Result<(), DemError> {
-        let (expected, found) = (self.state.len(), checkpoint.grains());
+        let (expected, found) = (self.state.len(), checkpoint.state.len());
         if expected != found {
             return Err(PackingError::Length { field: "position", expected, found }.into());
         }
         self.reclaim_state();
-        self.contacts = checkpoint.restore(&mut self.state);
+        self.contacts = Contacts::from_saved(&checkpoint.state, checkpoint.contacts);
+        self.state = checkpoint.state;
         self.energy = None;
         (self.has_neighbours, self.has_forces) = (false, false);
         Ok(())

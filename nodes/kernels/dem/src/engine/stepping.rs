@@ -162,19 +162,13 @@ impl Engine {
         }
         self.gather();
         // The bound adds the largest components of different grains, so it may be too large.
-        let fast = |v: Vec3| {
-            let speed = v.norm();
-            !speed.is_finite() || speed > limit
-        };
-        if self.state.velocities().any(fast) { Err(self.unstable_error()) } else { Ok(()) }
+        let too_fast = |v: Vec3| !v.norm().is_finite() || v.norm() > limit;
+        let first = self.state.velocities().position(too_fast);
+        first.map_or(Ok(()), |grain| Err(self.unstable_error(grain)))
     }
 
-    fn unstable_error(&self) -> DemError {
+    fn unstable_error(&self, grain: usize) -> DemError {
         let s = &self.state;
-        // The first grain that is too fast, or not finite.
-        let limit = 0.1 * s.smallest_radius / s.time_step;
-        let too_fast = |v: Vec3| !v.norm().is_finite() || v.norm() > limit;
-        let grain = s.velocities().position(too_fast).unwrap_or(0);
         let at_grain = self.contacts.touching().filter(|p| p.i as usize == grain || p.j as usize == grain);
         let largest = at_grain.max_by(|a, b| a.history.contact_radius.total_cmp(&b.history.contact_radius));
         let cause = largest.map_or(String::new(), |p| {
