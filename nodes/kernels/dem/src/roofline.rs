@@ -2,7 +2,7 @@
 
 use crate::engine::engine::Engine;
 use crate::force::geometry::ForceInput;
-use crate::force::kernel::{FrictionalKernel, FrictionlessKernel};
+use crate::force::kernel::{ForceKernel, Frictional, Frictionless};
 use crate::settings::{EngineSettings, Features, TimeStep};
 use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
@@ -172,13 +172,13 @@ impl LawVisitor for CountOperations<'_> {
         OPERATIONS.set(0);
         macro_rules! frictional {
             ($sliding:literal, $rescaled:literal) => {
-                FrictionalKernel::<P, true, $sliding, $rescaled, false> { input, chunk, with_virial }
+                ForceKernel::<Frictional<P, true, $sliding, $rescaled, false>> { input, chunk, with_virial }
                     .run::<Counted>()
             };
         }
         match (settings.features(), rescaled) {
             (Features::Frictionless, _) => {
-                FrictionlessKernel::<P, false> { input, chunk, with_virial }.run::<Counted>()
+                ForceKernel::<Frictionless<P, false>> { input, chunk, with_virial }.run::<Counted>()
             }
             (Features::Sliding, true) => frictional!(true, true),
             (Features::Sliding, false) => frictional!(true, false),

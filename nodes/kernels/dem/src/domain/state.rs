@@ -1,6 +1,6 @@
 //! Grains and cell.
 
-use crate::simd::simd_f64::{F64x4, F64x8};
+use crate::simd::simd_f64::{CHUNK_SIZE, F64x4, F64x8};
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
@@ -113,11 +113,7 @@ pub(crate) struct GrainsMut<'a> {
     pub(crate) twist: &'a mut [F64x8],
 }
 
-impl<'a> GrainsMut<'a> {
-    pub(crate) fn new(position: &'a mut [F64x4], twist: &'a mut [F64x8]) -> Self {
-        Self { position, twist }
-    }
-
+impl GrainsMut<'_> {
     /// Splits off the first `count` grains; the others stay.
     pub(crate) fn split_off_front(&mut self, count: usize) -> Self {
         let (position, positions) = std::mem::take(&mut self.position).split_at_mut(count);
@@ -132,9 +128,9 @@ impl<'a> GrainsMut<'a> {
         self.twist.copy_from_slice(twist);
     }
 
-    /// Chunk `c` of `size` grains.
-    pub(crate) fn chunk(self, c: usize, size: usize) -> Self {
-        let range = c * size..((c + 1) * size).min(self.position.len());
-        Self { position: &mut self.position[range.clone()], twist: &mut self.twist[range] }
+    /// Grains of chunk `c`.
+    pub(crate) fn chunk(&mut self, c: usize) -> GrainsMut<'_> {
+        let range = c * CHUNK_SIZE..((c + 1) * CHUNK_SIZE).min(self.position.len());
+        GrainsMut { position: &mut self.position[range.clone()], twist: &mut self.twist[range] }
     }
 }

@@ -116,7 +116,7 @@ impl Engine {
 
     fn pass(&mut self, kind: PassKind, with_virial: bool) -> (Virial, SpeedStats) {
         let Self { state, copies, contacts, settings, compute, .. } = self;
-        Pass { state, copies, contacts, settings, compute }.run(kind, with_virial)
+        Pass { state, copies, contacts, settings, compute, kind, with_virial }.run()
     }
 
     /// After all grains have moved: checks, thermostat, cell, lists of pairs.
