@@ -27,7 +27,7 @@ pub struct Settings {
     /// ([`grainlab_core::results::Fabric::reference_axis`] keeps it). Of any length above zero. The stiffnesses stay in the frame of
     /// the cell.
     pub axis: Vec3,
-    /// Which springs the frozen network has; a probe has its own friction.
+    /// Springs of the frozen network; a probe has its own friction.
     pub springs: Springs,
     /// With a probe, the stiffness is measured by straining the packing instead of solving the frozen
     /// network.

@@ -1,4 +1,4 @@
-//! What a step is computed with: instruction set and threads, neither of which changes a bit of the result; and a flag that
+//! Means of computing a step: instruction set and threads, neither of which changes a bit of the result; and a flag that
 //! ends a computation early.
 
 use crate::simd::instruction_set::Simd;
@@ -32,7 +32,7 @@ pub enum ComputeError {
     Threads {
         /// Threads asked for.
         threads: usize,
-        /// Why not.
+        /// Reason in words.
         reason: String,
     },
 }
@@ -67,13 +67,13 @@ impl Compute {
         Ok(Self { simd, threads, pool, stop: None })
     }
 
-    /// The same with a flag that another thread may set: computations then end with
+    /// Adds a flag that another thread may set: computations then end with
     /// [`DemError::Stopped`](crate::DemError::Stopped) within about a step.
     pub fn stopping_on(self, flag: Arc<AtomicBool>) -> Self {
         Self { stop: Some(flag), ..self }
     }
 
-    /// Whether the flag is set.
+    /// True if the flag is set.
     pub fn is_stopped(&self) -> bool {
         self.stop.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
@@ -84,12 +84,12 @@ impl Compute {
         (grains / GRAINS_PER_THREAD).clamp(1, cores.max(1))
     }
 
-    /// Instruction set.
+    /// Instruction set in use.
     pub fn simd(&self) -> Simd {
         self.simd
     }
 
-    /// Threads.
+    /// Number of threads.
     pub fn threads(&self) -> usize {
         self.threads
     }

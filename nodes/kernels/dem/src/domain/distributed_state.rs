@@ -16,7 +16,7 @@ pub(crate) struct DistributedState {
     copies: Vec<SubdomainState>,
     /// The halo: grains that other subdomains reach to, in ascending order.
     halo: Vec<u32>,
-    /// Their state as last sent, and the buffer for the next exchange.
+    /// State of the halo as last sent, and the buffer for the next exchange.
     sent: Vec<HaloRow>,
     sending: Vec<HaloRow>,
     /// Whether the copies hold the present state.

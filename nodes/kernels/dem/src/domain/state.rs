@@ -77,17 +77,17 @@ impl State {
         self.radius.len()
     }
 
-    /// Whether all grains are of one size.
+    /// True if all grains are of one size.
     pub(crate) fn is_monodisperse(&self) -> bool {
         self.smallest_radius == self.largest_radius
     }
 
-    /// Velocities, m/s.
+    /// Velocities of the grains, m/s.
     pub(crate) fn velocities(&self) -> impl Iterator<Item = Vec3> {
         self.twist.iter().map(|t| Vec3::new(t.0[0], t.0[1], t.0[2]))
     }
 
-    /// Spins, rad/s.
+    /// Spins of the grains, rad/s.
     pub(crate) fn spins(&self) -> impl Iterator<Item = Vec3> {
         self.twist.iter().map(|t| Vec3::new(t.0[4], t.0[5], t.0[6]))
     }

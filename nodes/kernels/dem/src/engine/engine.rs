@@ -26,12 +26,12 @@ pub struct Engine {
     pub(super) settings: EngineSettings,
     pub(super) compute: Compute,
     pub(super) neighbours: Neighbours,
-    /// How much closer any pair may have come since the neighbours were found.
+    /// Bound on the approach of any pair since the neighbours were found.
     pub(super) since_search: DisplacementBound,
     /// And since they were pruned to the pairs of the force kernel.
     pub(super) since_pruning: DisplacementBound,
     pub(super) has_neighbours: bool,
-    /// Whether the forces are those of the present state.
+    /// True if the forces are those of the present state.
     pub(super) has_forces: bool,
     /// Sums the energy balance, if it is switched on.
     pub(super) energy: Option<Box<EnergyMeter>>,
@@ -70,7 +70,7 @@ impl Engine {
         Self::from_packing(&at_rest, settings)
     }
 
-    /// The same grains under another contact law, before the first step.
+    /// Sets another contact law, before the first step.
     ///
     /// # Errors
     /// A law with parameters out of their range, and an engine with contacts or forces.
@@ -223,7 +223,7 @@ impl Engine {
         &self.state.cell
     }
 
-    /// Whether all grains are of one size.
+    /// True if all grains are of one size.
     pub fn equal_sized(&self) -> bool {
         self.state.is_monodisperse()
     }

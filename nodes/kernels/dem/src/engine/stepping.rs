@@ -212,11 +212,11 @@ impl Engine {
     /// Prunes the neighbours to the pairs of the force kernel, with a skin that lasts for a while at the present speed.
     fn prune_neighbours(&mut self, images: Images) {
         self.gather();
-        // How much closer pairs come in one step: now, and on average since the last pruning.
+        // Approach of pairs in one step: now, and on average since the last pruning.
         let (dt, last) = (self.state.time_step, self.since_pruning);
         let now = 2.0 * self.state.largest_speed() * dt + self.state.rate.norm() * dt * self.reach();
         let average = (2.0 * last.displacement + last.strain * self.reach()) / last.steps.max(1) as f64;
-        // What is left of the Verlet skin bounds the new skin. The neighbours are found again before that matters.
+        // The rest of the Verlet skin bounds the new skin. The neighbours are found again before that matters.
         let left = self.settings.skin
             - 2.0 * self.since_search.displacement
             - self.since_search.strain * self.reach();

@@ -1,4 +1,4 @@
-//! Where pairs are and whether they touch.
+//! Positions of pairs, and the test for contact.
 
 use crate::domain::state::State;
 use crate::pairs::types::{PairBlock, PairSizes};
@@ -8,7 +8,7 @@ use grainlab_core::contact::{ContactSprings, SpringDashpotSlider};
 use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
 
-/// What the force kernel reads of the state and the settings.
+/// Input of the force kernel from the state and the settings.
 #[derive(Clone, Copy)]
 pub(crate) struct ForceInput<'a, S> {
     pub(crate) position: &'a [F64x4],
@@ -92,7 +92,7 @@ pub(crate) struct Geometry<L: SimdF64> {
     pub(crate) normal: LaneVec3<L>,
     pub(crate) distance: L,
     pub(crate) inverse_distance: L,
-    /// Never negative.
+    /// Overlap, never negative, m.
     pub(crate) overlap: L,
     pub(crate) touching: L::Mask,
 }

@@ -71,7 +71,7 @@ struct LaneContact<'a, L: SimdF64> {
     contact_radius: L,
     /// Affine part included, m/s.
     relative_velocity: LaneVec3<L>,
-    /// rad/s.
+    /// Sum of both spins, rad/s.
     spin_sum: LaneVec3<L>,
 }
 

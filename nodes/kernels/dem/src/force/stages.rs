@@ -54,11 +54,11 @@ pub(crate) type Rolling<'a> = (&'a mut RollingBlock, &'a mut BlockVectors);
 
 /// The law stage of a phase.
 pub(crate) trait LawStage {
-    /// Whether contacts exert moments.
+    /// True if contacts exert moments.
     const MOMENTS: bool;
-    /// Whether grains differ in size.
+    /// True if grains differ in size.
     const SIZES: bool;
-    /// Whether contacts resist rolling.
+    /// True if contacts resist rolling.
     const ROLLS: bool = Self::MOMENTS && <Self::Springs as ContactSprings>::ROLLS;
     /// The springs of the contact law.
     type Springs: ContactSprings;

@@ -9,9 +9,9 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 /// Randomly placed grains without overlap, in a cubic cell.
 #[derive(Clone, Debug)]
 pub struct Gas {
-    /// The cell.
+    /// The periodic cell.
     pub cell: Cell,
-    /// Centres, m.
+    /// Centres of the grains, m.
     pub positions: Vec<Vec3>,
     /// Velocities with zero sum, m/s.
     pub velocities: Vec<Vec3>,

@@ -29,7 +29,7 @@ pub(super) type SlotForces = [[f64; BLOCK_SIZE]; 3];
 pub(super) struct ContactSums {
     /// Σ f ⊗ l (xx, yy, zz, yz, xz, xy, zy, zx, yx; J), Σ |f| (N), and the energy of each unit strain component (J).
     pub(super) values: [f64; 16],
-    /// Whether a contact overlaps by more than [`OVERLAP_LIMIT`].
+    /// True if a contact overlaps by more than [`OVERLAP_LIMIT`].
     pub(super) too_deep: bool,
 }
 

@@ -14,7 +14,7 @@ pub(super) struct ContactWork {
     pub(super) motion: PairMotion,
     pub(super) forces: ContactForces<f64>,
     pub(super) rolling_force: Vec3,
-    /// Of the normal, tangential and rolling spring, J.
+    /// Energies of the normal, tangential and rolling spring, J.
     pub(super) energies: [f64; 3],
 }
 

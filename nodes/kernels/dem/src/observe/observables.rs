@@ -15,14 +15,14 @@ use grainlab_core::contact::{ContactSprings, LawVisitor};
 use grainlab_core::stress::Stress;
 use grainlab_core::{Mat3, effective_radius, min_contacts};
 
-/// What the present contacts show.
+/// Observed state of the present contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observables {
     /// Love–Weber stress of the elastic contact forces.
     pub stress: Stress,
     /// Affine tangent stiffness of the present contacts, Pa: C_iiii for xx, yy, zz and C_ijij for yz, xz, xy.
     pub tangent: [f64; 6],
-    /// Solid fraction.
+    /// Solid fraction of the packing.
     pub solid_fraction: f64,
     /// Number of contacts.
     pub contacts: u32,

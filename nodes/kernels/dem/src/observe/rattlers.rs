@@ -7,7 +7,7 @@ use grainlab_core::backbone;
 
 /// Forces on grains, and which grains are rattlers.
 pub(super) struct NetForces {
-    /// Whether each grain is no rattler.
+    /// True for each grain that is no rattler.
     backbone: Vec<bool>,
     /// Number of contacts, those of rattlers included.
     pub(super) contacts: u32,

@@ -22,12 +22,12 @@ use crate::simd::simd_f64::CHUNK_SIZE;
 use grainlab_core::contact::{ContactSprings, LawVisitor, TangentialLaw};
 use std::mem::take;
 
-/// What a pass does.
+/// Work of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PassKind {
     /// Evaluates forces at the present positions.
     Forces,
-    /// The same, with the tangential history as it is instead of one step further (after a resume).
+    /// Evaluates forces with the tangential history as it is instead of one step further (after a resume).
     ForcesAsSaved,
     /// Moves all grains over one step, under the forces last evaluated.
     Motion,
@@ -43,7 +43,7 @@ pub(crate) struct Pass<'a> {
     pub(crate) settings: &'a EngineSettings,
     pub(crate) compute: &'a Compute,
     pub(crate) kind: PassKind,
-    /// Whether to sum the virial, where forces are evaluated.
+    /// True if the virial is summed, where forces are evaluated.
     pub(crate) with_virial: bool,
 }
 

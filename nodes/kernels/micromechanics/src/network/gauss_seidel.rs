@@ -16,7 +16,7 @@ use super::spring_network::{Spring, SpringNetwork};
 /// φ_x, φ_y, φ_z.
 pub(crate) type Rows<T> = [[T; WIDTH]; 6];
 
-/// No motion.
+/// A grain at rest.
 pub(crate) const fn still<T: Real>() -> Rows<T> {
     [[T::ZERO; WIDTH]; 6]
 }
@@ -33,9 +33,9 @@ pub(crate) struct Sweeps<T, const G: bool> {
     springs: Vec<Half<T>>,
     /// Springs of grain g to later grains: `springs[first[g]..first[g + 1]]`.
     first: Vec<u32>,
-    /// D.
+    /// Diagonal blocks D.
     blocks: Vec<Packed<T>>,
-    /// D⁻¹.
+    /// Generalised inverses D⁻¹.
     inverse: Vec<Packed<T>>,
     /// Grain of the packing at each place.
     pub(crate) order: Vec<u32>,
@@ -59,7 +59,7 @@ struct Half<T> {
     later: u32,
     /// Towards the later grain.
     normal: [T; 3],
-    /// Of the earlier and the later grain.
+    /// Levers of the earlier and the later grain.
     levers: [T; 2],
     tangential: T,
     kn_minus_kt: T,
@@ -303,7 +303,7 @@ pub(crate) fn store<V: Lanes>(v: V, x: &Six<V>, to: &mut Rows<V::T>) {
     }
 }
 
-/// m x.
+/// Product m x.
 #[inline(always)]
 fn product<V: Lanes>(v: V, m: &Packed<V::T>, x: &Six<V>) -> Six<V> {
     [

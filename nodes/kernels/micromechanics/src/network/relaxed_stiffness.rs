@@ -38,7 +38,7 @@ pub struct NetworkStiffness {
     pub stddev: Stiffness,
     /// Affine (Voigt) stiffness: every grain moves with the mean deformation.
     pub affine: Stiffness,
-    /// The same with a uniform rotation of all grains: between relaxed and affine.
+    /// Affine stiffness with a uniform rotation of all grains: between relaxed and affine.
     pub uniform_rotation: Stiffness,
     /// Relative residual of the solve, maximum over the six columns.
     pub residual: f64,
@@ -106,7 +106,7 @@ pub fn relaxed_stiffness(
     }
     let left = match solver {
         Solver::Iterative => left_by_iterations(network, &loads, &norms, &solution, max_iterations),
-        // Its residual is at no right angle to the motion.
+        // The residual is at no right angle to the motion.
         Solver::Direct => (relaxed - by_stress).abs(),
     };
     let stddev = left.map(|left| left.max(ROUNDING * scale));

@@ -34,10 +34,10 @@ const ROUNDING: f64 = 1e-12;
 /// Method of the solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Solver {
-    /// By [`solve()`].
+    /// Iterations, by [`solve()`].
     #[default]
     Iterative,
-    /// By [`super::solve_directly()`].
+    /// Factorisation, by [`super::solve_directly()`].
     Direct,
 }
 
@@ -49,7 +49,7 @@ pub struct Solution<const L: usize> {
     /// Norm of the residual of each load, recomputed from the motion, over its scale; maximum over the
     /// columns.
     pub residual: f64,
-    /// Iterations done.
+    /// Number of iterations done.
     pub iterations: u32,
 }
 
@@ -93,7 +93,7 @@ pub(crate) struct Refinement<'a, const L: usize> {
     tolerance: f64,
     max_iterations: u32,
     motion: Vec<GrainDofs<L>>,
-    /// K x.
+    /// Product K x.
     image: Vec<GrainDofs<L>>,
     /// Squared norms of load − K x.
     squares: [f64; L],
@@ -130,7 +130,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
         Ok(new)
     }
 
-    /// The residual.
+    /// Computes the residual.
     fn look(&mut self) {
         self.squares = [0.0; L];
         for (load, image) in self.load.iter().zip(&self.image) {
@@ -173,7 +173,6 @@ impl<'a, const L: usize> Refinement<'a, L> {
         self.load.iter().zip(&self.image).map(grain).collect()
     }
 
-    /// One iteration: moves by `length` times `step`, column by column, and updates the residual.
     pub(crate) fn advance(&mut self, network: &SpringNetwork, step: &[GrainDofs<L>], length: &[f64; L]) {
         add(length, step, &mut self.motion);
         self.iterations += 1;
@@ -186,7 +185,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
         self.look();
     }
 
-    /// Whether more iterations are needed and allowed.
+    /// True if more iterations are needed and allowed.
     pub(crate) fn goes_on(&self) -> bool {
         self.residual > self.tolerance && self.iterations < self.max_iterations
     }
@@ -265,7 +264,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
     }
 }
 
-/// Whether a grain with this block, moved alone, has a negative stiffness.
+/// True if a grain with this block, moved alone, has a negative stiffness.
 fn gives_way(block: &Block) -> bool {
     let eigenvalues = Matrix6::from_fn(|i, j| block[i][j]).symmetric_eigenvalues();
     eigenvalues.min() < -ROUNDING * eigenvalues.max()

@@ -44,7 +44,7 @@ pub struct ProbeColumn {
 }
 
 impl ProbeColumn {
-    /// Whether the network changes under strain: C is then not only that of the packing at rest. One weak
+    /// True if the network changes under strain: C is then not only that of the packing at rest. One weak
     /// contact suffices; [`ProbeColumn::forward_backward`] shows the effect.
     pub fn network_changed(&self) -> bool {
         self.opened + self.closed > 0

@@ -1,4 +1,4 @@
-//! Fourth-order fabric.
+//! Fabric tensor of fourth order.
 
 use grainlab_core::results::FourthOrderFabric;
 use grainlab_core::{Packing, SymTensor};

@@ -119,7 +119,7 @@ fn forward_probe_at_1e_6_is_that_of_lammps() {
 fn homogeneous_strain_enters_the_tangential_springs() {
     let found = strain_probe(&reference(), &StrainProbe::default()).unwrap().stiffness.0;
     assert!((found[(5, 5)] / 137.9e6 - 1.0).abs() < 1e-3, "{}", found[(5, 5)]);
-    // The same strain as a jump of positions, which tangential springs do not follow.
+    // A jump of positions by this strain, which tangential springs do not follow.
     let blind = |strain: f64| {
         let mut p = reference();
         let mut f = Mat3::identity();
