@@ -60,39 +60,7 @@ pub struct StiffnessBounds {
 }
 
 /// The stiffness of a packing, or why it has none.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Elasticity {
-    /// The contact network resists strain.
-    Jammed(Box<ElasticStiffness>),
-    /// It does not.
-    NotJammed(NotJammed),
-}
-
-impl Elasticity {
-    /// The stiffness, if there is one.
-    pub fn stiffness(&self) -> Option<&ElasticStiffness> {
-        match self {
-            Self::Jammed(stiffness) => Some(stiffness),
-            Self::NotJammed(_) => None,
-        }
-    }
-
-    /// The reason why a packing has no stiffness; `None` if it has one.
-    pub fn not_jammed(&self) -> Option<&NotJammed> {
-        match self {
-            Self::Jammed(_) => None,
-            Self::NotJammed(why) => Some(why),
-        }
-    }
-
-    /// The stiffness. The error is the reason why the packing has none.
-    pub fn into_stiffness(self) -> Result<ElasticStiffness, NotJammed> {
-        match self {
-            Self::Jammed(stiffness) => Ok(*stiffness),
-            Self::NotJammed(why) => Err(why),
-        }
-    }
-}
+pub type Elasticity = Result<Box<ElasticStiffness>, NotJammed>;
 
 /// Why a packing has no stiffness. Not a fault: a gas has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

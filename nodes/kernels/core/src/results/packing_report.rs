@@ -85,7 +85,7 @@ impl PackingReport {
 
     /// The stiffness, if there is one.
     pub fn stiffness(&self) -> Option<&ElasticStiffness> {
-        self.elasticity.stiffness()
+        self.elasticity.as_deref().ok()
     }
 
     /// Notes on the springs of the stiffness; none without one.

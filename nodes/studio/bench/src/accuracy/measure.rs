@@ -80,6 +80,6 @@ fn observe(run: &Simulation) -> Result<Observables<f64>, String> {
     let settings = grainlab_micromechanics::Settings::default();
     let r = grainlab_micromechanics::analyze(&run.packing(), &settings).map_err(|e| e.to_string())?.report;
     let (k, eps, phi) = (r.contacts.coordination, r.fabric.contact_anisotropy, r.solid_fraction);
-    let c = r.elasticity.into_stiffness().map_err(|e| e.to_string())?.tensor;
+    let c = r.elasticity.map_err(|e| e.to_string())?.tensor;
     Ok(Observables { k, eps, phi, g12: c.transverse_isotropy().g12, theta: c.bulk_voigt() })
 }
