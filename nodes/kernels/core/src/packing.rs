@@ -303,7 +303,7 @@ impl Packing {
 
     /// Contact stiffnesses (k_n, k_t) at the present overlap, N/m.
     pub fn contact_stiffness(&self, c: &Contact) -> (f64, f64) {
-        self.law.stiffnesses(&self.material, self.effective_radius(c), c.overlap)
+        self.law.springs.stiffnesses(&self.material, self.effective_radius(c), c.overlap)
     }
 }
 

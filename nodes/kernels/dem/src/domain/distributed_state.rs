@@ -19,10 +19,10 @@ pub(crate) struct DistributedState {
     /// State of the halo as last sent, and the buffer for the next exchange.
     sent: Vec<HaloRow>,
     sending: Vec<HaloRow>,
-    /// Whether the copies hold the present state.
-    is_current: bool,
-    /// Whether only the copies hold it.
-    is_authoritative: bool,
+    /// True if the copies hold the present state.
+    pub(crate) is_current: bool,
+    /// True if only the copies hold it.
+    pub(crate) is_authoritative: bool,
 }
 
 /// Position and twist of a grain.
@@ -60,11 +60,6 @@ impl DistributedState {
         if !self.copies.is_empty() {
             *self = Self::default();
         }
-    }
-
-    /// Whether the copies hold the present state.
-    pub(crate) fn is_current(&self) -> bool {
-        self.is_current
     }
 
     /// Copies the state to the subdomains. Each subdomain comes with its ghosts, which may repeat.
@@ -106,11 +101,6 @@ impl DistributedState {
         let scale = |t: &mut F64x8| t.0[..4].iter_mut().for_each(|v| *v *= factor);
         self.copies.iter_mut().for_each(|copy| copy.twist[copy.owned.clone()].iter_mut().for_each(scale));
         self.sent.iter_mut().for_each(|(_, twist)| scale(twist));
-    }
-
-    /// Whether only the copies hold the present state.
-    pub(crate) fn is_authoritative(&self) -> bool {
-        self.is_authoritative
     }
 
     /// Copies back to the state what only the copies hold.

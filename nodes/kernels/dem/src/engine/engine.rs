@@ -276,7 +276,7 @@ impl Engine {
     /// The present state, wherever it is stored.
     fn current_state(&self) -> Cow<'_, State> {
         let mut state = Cow::Borrowed(&self.state);
-        if self.copies.is_authoritative() {
+        if self.copies.is_authoritative {
             self.copies.copy_to(state.to_mut(), &self.compute);
         }
         state

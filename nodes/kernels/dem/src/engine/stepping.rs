@@ -145,7 +145,7 @@ impl Engine {
         if let Some(meter) = &mut self.energy {
             meter.add_thermostat(&self.state, factor);
         }
-        if self.copies.is_authoritative() {
+        if self.copies.is_authoritative {
             self.copies.scale_velocities(factor);
         } else {
             self.reclaim_state();

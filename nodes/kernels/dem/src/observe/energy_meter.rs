@@ -21,12 +21,6 @@ pub(crate) struct EnergyMeter {
     rate: Mat3,
 }
 
-/// The works of one kick.
-struct Kick {
-    works: EnergyBalance,
-    kinetic: f64,
-}
-
 impl EnergyMeter {
     /// Starts the balance at the present state, with its forces evaluated.
     pub(crate) fn new(state: &State, contacts: &Contacts, settings: &EngineSettings) -> Self {
@@ -34,7 +28,7 @@ impl EnergyMeter {
         // The first kick begins half a step before the positions: what is before the start is taken off.
         let half = kick(state, settings, &list, 0.5 * state.time_step);
         let mut works = EnergyBalance::default();
-        add(&mut works, &half.works, -1.0);
+        add(&mut works, &half, -1.0);
         works.start = half.kinetic + list.iter().map(|c| c.energies.iter().sum::<f64>()).sum::<f64>();
         Self { works, before: Vec::new(), rate: state.rate }
     }
@@ -42,7 +36,7 @@ impl EnergyMeter {
     /// Adds the works of the next kick. Call it before the grains move.
     pub(crate) fn add_kick(&mut self, state: &State, contacts: &Contacts, settings: &EngineSettings) {
         let list = contact_works(state, contacts, settings, &self.rate);
-        add(&mut self.works, &kick(state, settings, &list, state.time_step).works, 1.0);
+        add(&mut self.works, &kick(state, settings, &list, state.time_step), 1.0);
     }
 
     /// Adds what a thermostat removes that scales the present velocities by `factor`.
@@ -79,7 +73,7 @@ impl EnergyMeter {
         let list = contact_works(state, contacts, settings, &self.rate);
         let half = kick(state, settings, &list, 0.5 * state.time_step);
         let mut balance = self.works;
-        add(&mut balance, &half.works, 1.0);
+        add(&mut balance, &half, 1.0);
         balance.kinetic = half.kinetic;
         [balance.normal_springs, balance.tangential_springs, balance.rolling_springs] =
             [0, 1, 2].map(|spring| list.iter().map(|c| c.energies[spring]).sum());
@@ -98,7 +92,7 @@ fn add(sum: &mut EnergyBalance, kick: &EnergyBalance, factor: f64) {
 }
 
 /// A kick over `h` (s): its works, and the kinetic energy after it.
-fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f64) -> Kick {
+fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f64) -> EnergyBalance {
     let n = state.len();
     let (mut force, mut torque) = (vec![Vec3::zeros(); n], vec![Vec3::zeros(); n]);
     for c in contacts {
@@ -116,7 +110,6 @@ fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f
     let keep = |drag: f64| (1.0 - drag * h).max(0.0);
     let (keep_v, keep_w) = (keep(settings.drag), keep(settings.spin_drag));
     let mut works = EnergyBalance::default();
-    let mut kinetic = 0.0;
     let (mut velocity, mut spin) = (Vec::with_capacity(n), Vec::with_capacity(n));
     for (g, (v, w)) in state.velocities().zip(state.spins()).enumerate() {
         let (mass, inertia) = (1.0 / state.inverse_mass[g], 1.0 / state.inverse_inertia[g]);
@@ -129,7 +122,7 @@ fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f
         let after =
             0.5 * (mass * keep_v * keep_v * u.norm_squared() + inertia * keep_w * keep_w * r.norm_squared());
         works.drag += before - after;
-        kinetic += after;
+        works.kinetic += after;
         velocity.push(mean);
         spin.push(0.5 * (w + r));
     }
@@ -152,5 +145,5 @@ fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f
             c.forces.elastic * separation - history.tangential.dot(&slip) - history.rolling.dot(&rolling);
         works.integration += h * elastic;
     }
-    Kick { works, kinetic }
+    works
 }

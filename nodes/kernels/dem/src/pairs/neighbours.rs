@@ -125,7 +125,7 @@ impl<'a> HistoryCursor<'a> {
     /// For the pairs of subdomain `k`.
     fn new(old: &'a Contacts, k: usize, subdomain: &Subdomain) -> Self {
         let blocks = match old.subdomains.get(k) {
-            Some(pairs) if pairs.subdomain() == subdomain => vec![(&pairs.blocks[..], &pairs.rolling[..])],
+            Some(pairs) if pairs.subdomain == *subdomain => vec![(&pairs.blocks[..], &pairs.rolling[..])],
             _ => old.subdomains.iter().map(|s| (s.owned_blocks(), s.owned_rolling())).collect(),
         };
         Self { images: &old.images, blocks, run: 0, slot: 0 }

@@ -74,9 +74,9 @@ impl LawVisitor for Pass<'_> {
             (state.position, state.twist) = (position, twist);
             return results;
         }
-        if !copies.is_current() {
+        if !copies.is_current {
             let subdomains: Vec<_> =
-                contacts.subdomains.iter().map(|p| (p.subdomain(), p.ghosts())).collect();
+                contacts.subdomains.iter().map(|p| (&p.subdomain, &p.ghosts[..])).collect();
             copies.scatter(state, &subdomains, compute);
         }
         let (input, motion) =
@@ -146,7 +146,7 @@ impl<S: ContactSprings> SubdomainPass<S> {
         if self.kind == PassKind::Motion {
             return self.motion(pairs, grains);
         }
-        let owned = pairs.subdomain().parts();
+        let owned = pairs.subdomain.parts();
         for part in 0..owned.start {
             self.earlier_part(pairs, part, grains);
         }
@@ -154,7 +154,7 @@ impl<S: ContactSprings> SubdomainPass<S> {
     }
 
     fn motion(&self, pairs: &SubdomainPairs, grains: &mut Grains<'_, S>) -> PartResults {
-        let subdomain = pairs.subdomain();
+        let subdomain = &pairs.subdomain;
         let mut parts = vec![(Virial::default(), SpeedStats::default()); subdomain.parts().len()];
         for (chunk, forces) in subdomain.chunks().zip(pairs.stored_forces()) {
             let part = subdomain.part_of(chunk) - subdomain.parts().start;
@@ -179,7 +179,7 @@ impl<S: ContactSprings> SubdomainPass<S> {
         part: usize,
         grains: &mut Grains<'_, S>,
     ) -> (Virial, SpeedStats) {
-        let first = pairs.subdomain().chunks_of(part).start;
+        let first = pairs.subdomain.chunks_of(part).start;
         let mut pairs = pairs.part_mut(part);
         let (mut periodic, mut inner) = (Virial::default(), Virial::default());
         let mut stats = SpeedStats::default();

@@ -114,7 +114,7 @@ impl Factor {
                 }
             }
         }
-        for s in network.springs().iter().filter(|s| s.i != s.j) {
+        for s in network.springs.iter().filter(|s| s.i != s.j) {
             for (row, entries) in s.coupling().iter().enumerate() {
                 for (column, entry) in entries.iter().enumerate() {
                     enter((s.i as usize, row), (s.j as usize, column), *entry);

@@ -68,7 +68,7 @@ struct Half<T> {
 
 impl<T: Real, const G: bool> Sweeps<T, G> {
     pub(crate) fn new(network: &SpringNetwork) -> Self {
-        let order = network.order().to_vec();
+        let order = network.order.clone();
         let mut places = vec![0u32; order.len()];
         for (at, grain) in order.iter().enumerate() {
             places[*grain as usize] = at as u32;
@@ -78,7 +78,7 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
         let unit = if traces > 0.0 { traces / (3 * blocks.len()) as f64 } else { 1.0 };
         let between = |s: &&Spring| s.i != s.j;
         let mut springs: Vec<(u32, Half<T>)> =
-            network.springs().iter().filter(between).map(|s| Half::of(s, &places, unit)).collect();
+            network.springs.iter().filter(between).map(|s| Half::of(s, &places, unit)).collect();
         springs.sort_by_key(|(earlier, half)| (*earlier, half.later));
         let mut first = vec![0u32; order.len() + 1];
         springs.iter().for_each(|(earlier, _)| first[*earlier as usize + 1] += 1);

@@ -2,7 +2,7 @@
 
 use super::bounds::uniform_rotation_stiffness;
 use super::direct;
-use super::solve::{Solution, Solver, solve};
+use super::solve::{Solution, Solver, left, solve};
 use super::spring_network::{GrainDofs, SpringNetwork};
 use crate::error::MicroError;
 use grainlab_core::Stiffness;
@@ -129,13 +129,9 @@ fn left_by_iterations(
     solution: &Solution<6>,
     max_iterations: u32,
 ) -> Matrix6<f64> {
-    let mut rest = vec![[[0.0; 6]; 6]; loads.len()];
-    network.apply(&solution.motion, &mut rest);
-    for (rest, load) in rest.iter_mut().zip(loads) {
-        for (rest, load) in rest.iter_mut().zip(load) {
-            (0..6).for_each(|l| rest[l] = if norms[l] > 0.0 { load[l] - rest[l] } else { 0.0 });
-        }
-    }
+    let mut image = vec![[[0.0; 6]; 6]; loads.len()];
+    network.apply(&solution.motion, &mut image);
+    let rest = left(loads, &image, norms);
     let square = |x: &[GrainDofs<6>], y: &[GrainDofs<6>], l: usize| -> f64 {
         x.iter().zip(y).map(|(x, y)| (0..6).map(|k| x[k][l] * y[k][l]).sum::<f64>()).sum()
     };

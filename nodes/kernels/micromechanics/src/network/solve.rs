@@ -86,6 +86,17 @@ pub(crate) fn add<const L: usize>(share: &[f64; L], x: &[GrainDofs<L>], sum: &mu
     }
 }
 
+/// Loads less the forces that answer a motion, where there is a scale.
+pub(crate) fn left<const L: usize>(
+    load: &[GrainDofs<L>],
+    image: &[GrainDofs<L>],
+    scale: &[f64; L],
+) -> Vec<GrainDofs<L>> {
+    let left = |load: f64, image: f64, l: usize| if scale[l] > 0.0 { load - image } else { 0.0 };
+    let row = |load: &[f64; L], image: &[f64; L]| std::array::from_fn(|l| left(load[l], image[l], l));
+    load.iter().zip(image).map(|(load, image)| std::array::from_fn(|k| row(&load[k], &image[k]))).collect()
+}
+
 /// Solution and residual so far, in double precision.
 pub(crate) struct Refinement<'a, const L: usize> {
     load: &'a [GrainDofs<L>],
@@ -166,11 +177,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
 
     /// The residual; zero in columns that stay at zero.
     pub(crate) fn left(&self) -> Vec<GrainDofs<L>> {
-        let left = |load: &f64, image: &f64, l: usize| if self.scale[l] > 0.0 { load - image } else { 0.0 };
-        let row = |load: &[f64; L], image: &[f64; L]| std::array::from_fn(|l| left(&load[l], &image[l], l));
-        let grain =
-            |(load, image): (&GrainDofs<L>, &GrainDofs<L>)| std::array::from_fn(|k| row(&load[k], &image[k]));
-        self.load.iter().zip(&self.image).map(grain).collect()
+        left(self.load, &self.image, self.scale)
     }
 
     pub(crate) fn advance(&mut self, network: &SpringNetwork, step: &[GrainDofs<L>], length: &[f64; L]) {

@@ -97,12 +97,12 @@ pub struct ContactSpring {
 /// The frozen contact network of a packing: grains, springs, volume.
 #[derive(Clone, Debug)]
 pub struct SpringNetwork {
-    springs: Vec<Spring>,
+    pub(crate) springs: Vec<Spring>,
     grains: usize,
     volume: f64,
     spin_scale: f64,
     /// Grains along a space-filling curve.
-    order: Vec<u32>,
+    pub(crate) order: Vec<u32>,
     prestressed: bool,
 }
 
@@ -209,15 +209,6 @@ impl SpringNetwork {
             tangential: s.tangential,
             kn_minus_kt: s.kn_minus_kt,
         })
-    }
-
-    pub(crate) fn springs(&self) -> &[Spring] {
-        &self.springs
-    }
-
-    /// Grains in an order that keeps neighbours close in memory; depends only on the positions.
-    pub(crate) fn order(&self) -> &[u32] {
-        &self.order
     }
 
     /// The length a that scales rotations, m: θ = φ/a.

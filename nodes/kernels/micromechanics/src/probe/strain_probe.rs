@@ -158,9 +158,9 @@ fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engi
             relaxation.step()?;
         }
         steps += STEPS_PER_EVALUATION;
-        unbalanced = relaxation.engines()[0].observables()?.unbalanced;
+        unbalanced = relaxation.engines[0].observables()?.unbalanced;
     }
-    let mut engine = relaxation.engines()[0].clone();
+    let mut engine = relaxation.engines[0].clone();
     engine.set_velocities(&still)?;
     engine.set_spins(&still)?;
     Ok((engine, steps))

@@ -66,11 +66,11 @@ fn prepared(grains: usize, spread: f64, pressure: f64, seed: u64) -> Packing {
     let mut relaxation = Relaxation::new(vec![engine]);
     for _ in 0..400 {
         (0..100).for_each(|_| relaxation.step().unwrap());
-        if relaxation.engines()[0].observables().unwrap().unbalanced < 1e-8 {
+        if relaxation.engines[0].observables().unwrap().unbalanced < 1e-8 {
             break;
         }
     }
-    let mut p = relaxation.engines()[0].packing(Mat3::identity());
+    let mut p = relaxation.engines[0].packing(Mat3::identity());
     p.velocities.fill(Vec3::zeros());
     p.spins.fill(Vec3::zeros());
     (p.time_step, p.friction) = (0.0, setting.friction);
