@@ -23,7 +23,7 @@ pub fn packing_report_message(
     header: Header,
     report: &PackingReport,
 ) -> Result<msg::PackingReport, BoundaryError> {
-    let (jamming, floppy_contacts) = match report.elasticity.not_jammed() {
+    let (jamming, floppy_contacts) = match report.elasticity.as_ref().err() {
         None => (msg::PackingReport::JAMMED, 0),
         Some(NotJammed::NoContacts { .. }) => (msg::PackingReport::NO_CONTACTS, 0),
         Some(NotJammed::OnlyRattlers { .. }) => (msg::PackingReport::ONLY_RATTLERS, 0),
@@ -66,7 +66,7 @@ impl TryFrom<&msg::PackingReport> for PackingReport {
         let friction = CHECK.that(m.friction >= 0.0, "friction", m.friction, "0 or more")?;
         let (elasticity, symmetry) =
             (elasticity(m)?, CHECK.optional("symmetry", &m.symmetry, |_, s| symmetry(s))?);
-        if let (Elasticity::Jammed(stiffness), Some(symmetry)) = (&elasticity, &symmetry) {
+        if let (Ok(stiffness), Some(symmetry)) = (&elasticity, &symmetry) {
             let found = symmetry.moduli.stiffness().bulk_voigt();
             let (expected, largest) = (stiffness.tensor.bulk_voigt(), symmetry.moduli.c11.abs());
             let same = (found - expected).abs() <= 1e-6 * largest.max(expected.abs());
@@ -100,8 +100,8 @@ impl TryFrom<&msg::PackingReport> for PackingReport {
 fn elasticity(m: &msg::PackingReport) -> Result<Elasticity, BoundaryError> {
     let stiffness = CHECK.optional("stiffness", &m.stiffness, |_, s| elastic_stiffness(s))?;
     let grains = m.contacts.grains as usize;
-    Ok(Elasticity::NotJammed(match (stiffness, m.jamming) {
-        (Some(stiffness), msg::PackingReport::JAMMED) => return Ok(Elasticity::Jammed(Box::new(stiffness))),
+    Ok(Err(match (stiffness, m.jamming) {
+        (Some(stiffness), msg::PackingReport::JAMMED) => return Ok(Ok(Box::new(stiffness))),
         (None, msg::PackingReport::NO_CONTACTS) => NotJammed::NoContacts { grains },
         (None, msg::PackingReport::ONLY_RATTLERS) => {
             NotJammed::OnlyRattlers { grains, needed: min_contacts(m.friction) }

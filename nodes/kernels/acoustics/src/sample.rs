@@ -68,7 +68,7 @@ impl Sample {
         engine.set_settings(setting)?;
         let mut rest = Relaxation::new(vec![engine]);
         let not_at_rest = |rest: &Relaxation| {
-            let now = rest.engines()[0].packing(Mat3::identity());
+            let now = rest.engines[0].packing(Mat3::identity());
             unbalanced_force_ratio(&now, &present).filter(|u| u.is_nan() || *u >= AT_REST)
         };
         for step in 0..REST_STEPS {
@@ -78,7 +78,7 @@ impl Sample {
             rest.step()?;
         }
         let unbalanced = not_at_rest(&rest);
-        let mut rested = rest.engines()[0].packing(packing.deformation);
+        let mut rested = rest.engines[0].packing(packing.deformation);
         rested.velocities.fill(Vec3::zeros());
         rested.spins.fill(Vec3::zeros());
         let present = carrying(&rested)?;

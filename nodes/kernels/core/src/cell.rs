@@ -36,7 +36,7 @@ impl Cell {
         &self.inverse
     }
 
-    /// Volume, m³.
+    /// Volume of the cell, m³.
     pub fn volume(&self) -> f64 {
         self.volume
     }

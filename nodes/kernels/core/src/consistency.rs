@@ -1,4 +1,4 @@
-//! Whether the contacts of a packing are those of its positions and radii.
+//! Contacts of a packing compared with its positions and radii.
 
 use crate::packing::{Contact, Packing, PackingError};
 
@@ -24,7 +24,7 @@ impl Packing {
         self.check_consistency().map(|()| self)
     }
 
-    /// Whether its numbers belong together, as [`consistent`](Self::consistent) says: the first fault found.
+    /// Checks that the numbers belong together, as [`consistent`](Self::consistent) says: the first fault found.
     pub fn check_consistency(&self) -> Result<(), PackingError> {
         self.check_ids()?;
         let solid_fraction = self.solid_fraction();

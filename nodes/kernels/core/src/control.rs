@@ -1,9 +1,9 @@
-//! What a loading path asks of each strain component, and the law that answers.
+//! Targets of a loading path for each strain component, and the law that answers.
 
-/// What is imposed on one component of the strain rate (Voigt order xx, yy, zz, yz, xz, xy, tensor components).
+/// Control of one component of the strain rate (Voigt order xx, yy, zz, yz, xz, xy, tensor components).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ComponentControl {
-    /// No strain.
+    /// No strain of this component.
     Held,
     /// The servo drives this stress component to the setpoint, Pa, positive in compression.
     Stress(f64),
@@ -11,7 +11,7 @@ pub enum ComponentControl {
     StrainRate(f64),
 }
 
-/// How a stress error becomes a strain rate.
+/// Law from a stress error to a strain rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ServoLaw {
     /// Rate = (σ − σ*)/(K τ): the error divided by the present tangent stiffness and by the response time τ.

@@ -17,7 +17,7 @@ pub trait Lanes:
     /// One truth value per lane.
     type Mask: Copy;
 
-    /// The same number in every lane.
+    /// One number in every lane.
     fn splat(value: f64) -> Self;
     /// `self` × `factor` + `addend`, rounded once.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
@@ -25,15 +25,15 @@ pub trait Lanes:
     fn mul_sub(self, factor: Self, subtrahend: Self) -> Self;
     /// `addend` − `self` × `factor`, rounded once.
     fn neg_mul_add(self, factor: Self, addend: Self) -> Self;
-    /// Square root.
+    /// Square root of each lane.
     fn sqrt(self) -> Self;
     /// 1/√x for positive x, to one part in 28: a start for Newton's method. Large and finite where x is zero.
     fn rsqrt_estimate(self) -> Self;
     /// The larger of two; the second where they do not compare.
     fn max(self, other: Self) -> Self;
-    /// Where `self` exceeds `other`.
+    /// Mask of the lanes in which `self` exceeds `other`.
     fn gt(self, other: Self) -> Self::Mask;
-    /// Whether the mask holds in any lane.
+    /// True if the mask holds in any lane.
     fn any(mask: Self::Mask) -> bool;
     /// `a` where the mask holds, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
@@ -100,28 +100,28 @@ pub fn rsqrt<L: Lanes>(x: L) -> L {
 /// A vector in each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaneVec3<L> {
-    /// First component.
+    /// First component of the vector.
     pub x: L,
-    /// Second component.
+    /// Second component of the vector.
     pub y: L,
-    /// Third component.
+    /// Third component of the vector.
     pub z: L,
 }
 
 impl<L: Lanes> LaneVec3<L> {
-    /// From components.
+    /// Vector of three components.
     #[inline(always)]
     pub fn new(x: L, y: L, z: L) -> Self {
         Self { x, y, z }
     }
 
-    /// The same vector in every lane.
+    /// One vector in every lane.
     #[inline(always)]
     pub fn splat_vector(v: &[f64; 3]) -> Self {
         Self::new(L::splat(v[0]), L::splat(v[1]), L::splat(v[2]))
     }
 
-    /// The same number in every component and lane.
+    /// One number in every component and lane.
     #[inline(always)]
     pub fn splat(value: f64) -> Self {
         Self::new(L::splat(value), L::splat(value), L::splat(value))
@@ -133,13 +133,13 @@ impl<L: Lanes> LaneVec3<L> {
         Self::new(self.x * factor, self.y * factor, self.z * factor)
     }
 
-    /// Scalar product.
+    /// Scalar product in each lane.
     #[inline(always)]
     pub fn dot(self, other: Self) -> L {
         self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
-    /// Vector product.
+    /// Vector product in each lane.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
         Self::new(

@@ -41,7 +41,7 @@ pub use cell::Cell;
 pub use control::{ComponentControl, ServoLaw};
 pub use material::{Material, effective_radius};
 pub use packing::{Contact, Packing, PackingError};
-pub use rattlers::{min_contacts, non_rattlers};
+pub use rattlers::{backbone, min_contacts, non_rattlers};
 pub use stiffness::{Stiffness, TransverseIsotropy};
 pub use symmetry::{Symmetry, SymmetryClass, symmetry};
 pub use tensor::{Mat3, SymTensor, Vec3};

@@ -31,7 +31,7 @@ pub struct Contact {
 const SLIDING: f64 = 0.999;
 
 impl Contact {
-    /// Whether the contact is at the Coulomb limit: |F_t| ≥ 0.999 μ F_n. Never true where there is no such limit
+    /// True if the contact is at the Coulomb limit: |F_t| ≥ 0.999 μ F_n. Never true where there is no such limit
     /// (μ = 0 or infinite).
     pub fn slides(&self, friction: f64) -> bool {
         let limited = friction > 0.0 && friction.is_finite();
@@ -56,7 +56,7 @@ pub struct Packing {
     pub deformation: Mat3,
     /// Persistent ids of the grains.
     pub ids: Vec<u32>,
-    /// Radii, m.
+    /// Radii of the grains, m.
     pub radii: Vec<f64>,
     /// Positions as held: unwrapped, not folded into the cell, m.
     pub positions: Vec<Vec3>,
@@ -68,7 +68,7 @@ pub struct Packing {
     pub contacts: Vec<Contact>,
     /// Material of every grain.
     pub material: Material,
-    /// Contact law.
+    /// Contact law of the grains.
     pub law: ContactLaw,
     /// Friction coefficient in force; may be infinite.
     pub friction: f64,
@@ -97,7 +97,7 @@ pub enum PackingError {
     /// A per-grain array has the wrong length.
     #[error("{field} has {found} entries, but there are {expected} grains")]
     Length {
-        /// Which array.
+        /// Name of the array.
         field: &'static str,
         /// Entries it should have.
         expected: usize,
@@ -107,7 +107,7 @@ pub enum PackingError {
     /// A number is not finite.
     #[error("{field}[{index}] is not finite ({value})")]
     NotFinite {
-        /// Which quantity.
+        /// Name of the quantity.
         field: &'static str,
         /// Index of the grain or contact.
         index: usize,
@@ -117,13 +117,13 @@ pub enum PackingError {
     /// A number is out of its range.
     #[error("{field}[{index}] = {value:e} is out of range: {requirement}")]
     Range {
-        /// Which quantity.
+        /// Name of the quantity.
         field: &'static str,
         /// Index of the grain or contact; 0 for a quantity of the whole packing.
         index: usize,
         /// The value found.
         value: f64,
-        /// What is required.
+        /// Range that is required.
         requirement: &'static str,
     },
     /// A contact names a grain that does not exist.
@@ -139,7 +139,7 @@ pub enum PackingError {
     /// An id occurs twice.
     #[error("grains {first} and {second} have the same id {id} (indices count from 0)")]
     DuplicateId {
-        /// The id.
+        /// The id that both have.
         id: u32,
         /// Index of the first grain with it.
         first: u32,
@@ -156,7 +156,7 @@ pub enum PackingError {
         i: u32,
         /// Id of the second grain.
         j: u32,
-        /// What disagrees, with its unit.
+        /// Quantity that disagrees, with its unit.
         quantity: &'static str,
         /// As the contact has it.
         given: f64,
@@ -179,7 +179,7 @@ impl Packing {
         self.check().map(|()| self)
     }
 
-    /// Whether it is one: the first fault found.
+    /// Checks that it is a packing: the first fault found.
     pub fn check(&self) -> Result<(), PackingError> {
         let n = self.radii.len();
         for (field, found) in [
@@ -303,7 +303,7 @@ impl Packing {
 
     /// Contact stiffnesses (k_n, k_t) at the present overlap, N/m.
     pub fn contact_stiffness(&self, c: &Contact) -> (f64, f64) {
-        self.law.stiffnesses(&self.material, self.effective_radius(c), c.overlap)
+        self.law.springs.stiffnesses(&self.material, self.effective_radius(c), c.overlap)
     }
 }
 

@@ -9,17 +9,17 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// One quantity of results of type `R`: a row of a table.
 #[derive(Debug)]
 pub struct Quantity<R: 'static> {
-    /// Its name in JSON, in CSV and on command lines, with the unit at its end where there is one.
+    /// Name in JSON, in CSV and on command lines, with the unit at its end where there is one.
     pub key: &'static str,
-    /// Its symbol in formulas.
+    /// Symbol in formulas; empty if there is none.
     pub symbol: &'static str,
-    /// Its unit; `1` if it is dimensionless, empty if it is no number.
+    /// Unit; `1` if it is dimensionless, empty if it is no number.
     pub unit: &'static str,
-    /// What it is, in a line.
+    /// Meaning, in a line.
     pub meaning: &'static str,
-    /// How many numbers it has.
+    /// Number and names of its columns.
     pub shape: Shape,
-    /// Its value in a result.
+    /// Value in a result.
     pub value: fn(&R) -> Value,
     /// Other names under which a table may have it.
     pub aliases: &'static [Alias],
@@ -28,13 +28,13 @@ pub struct Quantity<R: 'static> {
 /// Another name of a quantity in a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alias {
-    /// The name.
+    /// The other name.
     pub name: &'static str,
     /// One unit of the column named so, in the unit of the quantity.
     pub factor: f64,
 }
 
-/// How many numbers a quantity has, and how its columns are called.
+/// Number and names of the columns of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// One: the column is the key.
@@ -56,15 +56,15 @@ pub enum Shape {
 pub enum Value {
     /// Undefined, or not known.
     Unknown,
-    /// A number.
+    /// A floating-point number.
     Number(f64),
-    /// A count.
+    /// A whole number.
     Count(u64),
     /// Yes or no.
     Flag(bool),
     /// One of some words.
     Word(&'static str),
-    /// Any text.
+    /// A text of any length.
     Text(String),
     /// As many numbers as the shape has, in its order.
     Numbers(Vec<Option<f64>>),

@@ -7,36 +7,38 @@ pub fn min_contacts(friction: f64) -> u32 {
     if friction > 0.0 { 2 } else { 4 }
 }
 
-/// For each grain, whether it is part of the contact network: grains with fewer than [`min_contacts`]
-/// contacts with remaining grains are removed, again and again. A contact with an own image counts twice,
-/// because it touches the grain on two sides.
+/// For each grain, whether it is part of the contact network of a packing; see [`backbone`].
 ///
 /// # Panics
 /// If a contact names a grain that does not exist, which [`Packing::check`] refuses.
 pub fn non_rattlers(packing: &Packing) -> Vec<bool> {
-    let needed = min_contacts(packing.friction);
-    let n = packing.grains();
-    let mut neighbours = vec![Vec::new(); n];
-    let mut degree = vec![0u32; n];
-    for c in &packing.contacts {
-        for (grain, other) in [(c.i, c.j), (c.j, c.i)] {
-            neighbours[grain as usize].push(other as usize);
-            degree[grain as usize] += 1;
+    let contacts = packing.contacts.iter().map(|c| [c.i, c.j]).collect();
+    backbone(packing.grains(), contacts, min_contacts(packing.friction))
+}
+
+/// For each grain, whether it is left when grains with fewer than `needed` contacts with remaining grains are removed, again
+/// and again. A contact with an own image counts twice, because it touches the grain on two sides.
+pub fn backbone(grains: usize, mut contacts: Vec<[u32; 2]>, needed: u32) -> Vec<bool> {
+    let mut count = vec![0u32; grains];
+    contacts.iter().flatten().for_each(|grain| count[*grain as usize] += 1);
+    let mut left = vec![true; grains];
+    loop {
+        let mut removed = false;
+        for (left, count) in left.iter_mut().zip(&count) {
+            removed |= *left && *count < needed;
+            *left &= *count >= needed;
         }
-    }
-    let mut left = vec![true; n];
-    let mut queue: Vec<usize> = (0..n).filter(|&g| degree[g] < needed).collect();
-    for &g in &queue {
-        left[g] = false;
-    }
-    while let Some(g) = queue.pop() {
-        for &other in &neighbours[g] {
-            degree[other] = degree[other].saturating_sub(1);
-            if left[other] && degree[other] < needed {
-                left[other] = false;
-                queue.push(other);
+        if !removed {
+            return left;
+        }
+        contacts.retain(|contact| {
+            let [i, j] = contact.map(|grain| grain as usize);
+            let stays = left[i] && left[j];
+            if !stays {
+                count[i] -= 1;
+                count[j] -= 1;
             }
-        }
+            stays
+        });
     }
-    left
 }

@@ -15,11 +15,11 @@ pub struct Stiffness(pub Matrix6<f64>);
 pub struct TransverseIsotropy {
     /// (C11 + C22)/2 made invariant: C12 + 2 G12.
     pub c11: f64,
-    /// Projected C12.
+    /// Projected modulus C12.
     pub c12: f64,
     /// (C13 + C23)/2.
     pub c13: f64,
-    /// C33.
+    /// Projected modulus C33.
     pub c33: f64,
     /// G13 = (C44 + C55)/2.
     pub g13: f64,

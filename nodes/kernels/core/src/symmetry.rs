@@ -1,4 +1,4 @@
-//! Which symmetry a stiffness has, and about which axes.
+//! Symmetry of a stiffness, and its axes.
 //!
 //! A stiffness is compared with the nearest one of each class, in the frame in which that is nearest: the residual of a
 //! class is |C − P C|/|C| with P the projection on the class and |·| the norm of the tensor (Mandel norm). Frames are
@@ -14,19 +14,19 @@ use frame::{Search, nearest};
 /// Classes of elastic symmetry, the highest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SymmetryClass {
-    /// 2 constants.
+    /// Isotropic: 2 constants.
     Isotropic,
-    /// 3 constants.
+    /// Cubic: 3 constants.
     Cubic,
     /// 5 constants; a hexagonal crystal is one too.
     TransverselyIsotropic,
-    /// 9 constants.
+    /// Orthotropic: 9 constants.
     Orthotropic,
     /// More constants than 9: tetragonal and trigonal ones with 6 or 7 that are not orthotropic, monoclinic, triclinic.
     Lower,
 }
 
-/// What [`symmetry`] finds.
+/// Result of [`symmetry`]: class, residuals and axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Symmetry {
     /// The highest class whose residual is at most [`Symmetry::tolerance`]. Cubic and transversely isotropic, neither of
@@ -36,11 +36,11 @@ pub struct Symmetry {
     pub tolerance: f64,
     /// Relative residual of the nearest isotropic stiffness.
     pub isotropic: f64,
-    /// Of the nearest cubic one.
+    /// Residual of the nearest cubic one.
     pub cubic: f64,
-    /// Of the nearest transversely isotropic one.
+    /// Residual of the nearest transversely isotropic one.
     pub transversely_isotropic: f64,
-    /// Of the nearest orthotropic one.
+    /// Residual of the nearest orthotropic one.
     pub orthotropic: f64,
     /// Axis of the nearest transversely isotropic stiffness; unit, z ≥ 0. It means nothing where the class is isotropic.
     pub axis: Vec3,

@@ -114,7 +114,7 @@ impl SymTensor {
         self.xx * other.xx + self.yy * other.yy + self.zz * other.zz + 2.0 * off
     }
 
-    /// Whether every component is finite.
+    /// True if every component is finite.
     pub fn is_finite(&self) -> bool {
         self.voigt().iter().all(|v| v.is_finite())
     }

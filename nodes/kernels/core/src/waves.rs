@@ -24,7 +24,7 @@ pub struct WaveSpeed {
     pub stddev: Option<f64>,
 }
 
-/// How a speed was measured.
+/// Method of measurement of a speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WaveMethod {
     /// Onset of the first arrival.
@@ -61,7 +61,7 @@ impl WaveMethod {
 pub struct MeasuredWave {
     /// Direction, particle motion, speed and its standard deviation.
     pub wave: WaveSpeed,
-    /// How it was measured.
+    /// Method of measurement.
     pub method: WaveMethod,
     /// Dominant frequency, Hz; `None` if the speed is extrapolated to zero frequency.
     pub frequency: Option<f64>,

@@ -1,4 +1,4 @@
-//! Which symmetry a stiffness has, found without being told the axes.
+//! Symmetry of a stiffness, found without being told the axes.
 
 use grainlab_core::{Mat3, Stiffness, TransverseIsotropy, Vec3};
 use grainlab_core::{Symmetry, SymmetryClass, symmetry};

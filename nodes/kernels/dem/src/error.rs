@@ -12,11 +12,11 @@ pub enum DemError {
          {time_step:e} s{cause}; lower the time step (in a scene: numerics.time_step_safety) or the strain rates"
     )]
     Unstable {
-        /// Solver step.
+        /// Number of the solver step.
         step: u64,
         /// Persistent id of the grain.
         grain: u32,
-        /// Its speed, m/s; not finite if the state is lost.
+        /// Speed of the grain, m/s; not finite if the state is lost.
         speed: f64,
         /// Time step, s.
         time_step: f64,
@@ -29,11 +29,11 @@ pub enum DemError {
          lower the strain rates, the stress targets or the gas speed"
     )]
     Overlap {
-        /// Solver step.
+        /// Number of the solver step.
         step: u64,
-        /// Persistent id.
+        /// Persistent id of the first grain.
         first: u32,
-        /// Persistent id.
+        /// Persistent id of the second grain.
         second: u32,
         /// Full overlap, m.
         overlap: f64,
@@ -41,7 +41,7 @@ pub enum DemError {
     /// The cell degenerated.
     #[error("the cell lost its volume at step {step}: the strain path leads nowhere")]
     Cell {
-        /// Solver step.
+        /// Number of the solver step.
         step: u64,
     },
     /// A grain moved too many cell lengths for image numbers.
@@ -50,7 +50,7 @@ pub enum DemError {
          lower its speed), or the cell is sheared too far"
     )]
     Image {
-        /// Persistent id.
+        /// Persistent id of the grain.
         grain: u32,
     },
     /// The grains do not fit at the solid fraction asked for.
@@ -76,7 +76,7 @@ pub enum DemError {
     Jammed {
         /// Solid fraction reached.
         solid_fraction: f64,
-        /// What shows that it is jammed.
+        /// Sign that it is jammed.
         cause: String,
     },
     /// The flag of [`Compute::stopping_on`](crate::Compute::stopping_on) was set.
@@ -97,11 +97,11 @@ pub enum DemError {
     /// A setting out of its range.
     #[error("{name} is {value:e}; it must be {requirement}")]
     Setting {
-        /// Which setting.
+        /// Name of the setting.
         name: &'static str,
         /// The value found.
         value: f64,
-        /// What is required.
+        /// Range that is required.
         requirement: &'static str,
     },
     /// The strain rate is not finite.
@@ -109,7 +109,7 @@ pub enum DemError {
     Rate {
         /// Voigt component name.
         component: &'static str,
-        /// The value.
+        /// The value found.
         value: f64,
     },
 }

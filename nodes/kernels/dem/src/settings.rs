@@ -1,4 +1,4 @@
-//! What the engine is set to during a phase.
+//! Settings of the engine during a phase.
 
 use crate::error::DemError;
 use grainlab_core::contact::TangentialLaw;
@@ -14,7 +14,7 @@ pub enum Features {
     NoSlip,
 }
 
-/// How the time step is chosen.
+/// Choice of the time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeStep {
     /// This fraction of the stability bound, followed as contacts stiffen.
@@ -23,7 +23,7 @@ pub enum TimeStep {
     Fixed(f64),
 }
 
-/// What the engine is set to during a phase.
+/// Settings of the engine during a phase.
 ///
 /// The default is frictionless and without any dissipation, at 0.8 of the stable time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,9 +36,9 @@ pub struct EngineSettings {
     pub drag: f64,
     /// Drag on spins, 1/s.
     pub spin_drag: f64,
-    /// How the tangential force follows a change of normal stiffness.
+    /// Response of the tangential force to a change of normal stiffness.
     pub tangential: TangentialLaw,
-    /// How the time step is chosen.
+    /// Choice of the time step.
     pub time_step: TimeStep,
     /// Verlet skin, m. Zero is valid: the neighbours are then found in every step.
     pub skin: f64,

@@ -113,9 +113,9 @@ fn the_normal_force_is_the_derivative_of_its_energy_and_the_stiffness_that_of_th
                 assert!((stiffness / k - 1.0).abs() < 1e-8, "{law:?}: {stiffness} {k}");
                 assert!((k_t / k / springs.stiffness_ratio() - 1.0).abs() < 1e-14, "{law:?}");
                 assert!((springs.dashpot_ratio().powi(2) / springs.stiffness_ratio() - 1.0).abs() < 1e-14);
-                // What packings report is what the engine applies.
+                // Packings report the forces that the engine applies.
                 assert!((law.normal_force(&GLASS, r_eff, d) / f - 1.0).abs() < 1e-14, "{law:?}");
-                let (k_n, k_s) = law.stiffnesses(&GLASS, r_eff, d);
+                let (k_n, k_s) = law.springs.stiffnesses(&GLASS, r_eff, d);
                 assert!((k_n / k - 1.0).abs() < 1e-14 && (k_s / k_t - 1.0).abs() < 1e-14, "{law:?}");
             }
         }
@@ -139,7 +139,7 @@ fn the_tangential_force_is_elastic_without_slip_and_coulomb_with() {
         fn check<S: ContactSprings>(springs: S, law: ContactLaw) {
             let d = 4e-8;
             let mut pair = Pair::new(springs, 0.2, d);
-            let (_, k_t) = law.stiffnesses(&GLASS, RADIUS / 2.0, d);
+            let (_, k_t) = law.springs.stiffnesses(&GLASS, RADIUS / 2.0, d);
             let limit = 0.2 * law.normal_force(&GLASS, RADIUS / 2.0, d);
             let mut s = 0.0;
             // A thousand steps to the limit, a thousand beyond it.

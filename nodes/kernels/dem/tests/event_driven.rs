@@ -50,7 +50,7 @@ fn deepest(s: &HardSpheres, radii: &[f64]) -> f64 {
     deepest
 }
 
-/// The same mechanics with nothing clever: all pairs and images, one collision after the other.
+/// Mechanics of the gas with nothing clever: all pairs and images, one collision after the other.
 fn brute_force(s: &HardSpheres, radii: &[f64], rate: f64, interval: f64) -> (Vec<Vec3>, Vec<Vec3>, u32) {
     let (mut x, mut v) = (s.positions().to_vec(), s.velocities().to_vec());
     let end = (-rate * interval).exp_m1() / -rate;

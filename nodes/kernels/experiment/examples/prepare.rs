@@ -66,7 +66,7 @@ fn report(packing: &grainlab_core::Packing) -> Result<(), Box<dyn std::error::Er
         f.contact_anisotropy,
         r.strain_ratios
     );
-    let (stiffness, begin) = (r.elasticity.into_stiffness()?, Instant::now());
+    let (stiffness, begin) = (r.elasticity?, Instant::now());
     let (relaxed, affine) = (stiffness.tensor, stiffness.bounds.affine);
     let (t, v) = (relaxed.transverse_isotropy(), affine.transverse_isotropy());
     println!(

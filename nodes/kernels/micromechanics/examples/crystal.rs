@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let report = analyze(&engine.packing(Mat3::identity()), &Settings::default())?.report;
     println!("z {}, pressure {:.1} kPa", report.contacts.mechanical_coordination, report.pressure() / 1e3);
-    let stiffness = report.elasticity.into_stiffness().map_err(|why| why.to_string())?;
+    let stiffness = report.elasticity.map_err(|why| why.to_string())?;
     let c = stiffness.tensor.row_major();
     println!("C11 {:.2} GPa, C12 {:.2} GPa, C44 {:.2} GPa", c[0] / 1e9, c[1] / 1e9, c[21] / 1e9);
     Ok(())

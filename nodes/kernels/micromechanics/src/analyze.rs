@@ -27,7 +27,7 @@ pub struct Settings {
     /// ([`grainlab_core::results::Fabric::reference_axis`] keeps it). Of any length above zero. The stiffnesses stay in the frame of
     /// the cell.
     pub axis: Vec3,
-    /// Which springs the frozen network has; a probe has its own friction.
+    /// Springs of the frozen network; a probe has its own friction.
     pub springs: Springs,
     /// With a probe, the stiffness is measured by straining the packing instead of solving the frozen
     /// network.
@@ -71,7 +71,10 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
     let contacts = contact_statistics(&view);
     let strain_ratios = StrainRatios {
         total: total_strain_ratio(packing, &axis),
-        elastic: elasticity.stiffness().and_then(|s| strain_ratio(&s.tensor.isotropic_compression()?, &axis)),
+        elastic: elasticity
+            .as_deref()
+            .ok()
+            .and_then(|s| strain_ratio(&s.tensor.isotropic_compression()?, &axis)),
         contact: fabric.orientation.overlap_fit.map(|fit| fit.g),
     };
     let tolerance = sampling_tolerance(contacts.grains);
@@ -85,7 +88,7 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
         strain: packing.strain(),
         stress: view.stress,
         unbalanced_force_ratio: unbalanced_force_ratio(packing, &view.non_rattlers),
-        symmetry: elasticity.stiffness().and_then(|s| symmetry(&s.tensor, tolerance)),
+        symmetry: elasticity.as_deref().ok().and_then(|s| symmetry(&s.tensor, tolerance)),
         contacts,
         stress_decomposition: stress_decomposition(&view, &fabric),
         strain_ratios,
@@ -102,7 +105,7 @@ fn elasticity(
 ) -> Result<(Elasticity, Option<StrainProbeResult>), MicroError> {
     let packing = view.packing;
     let grains = packing.grains();
-    let not_jammed = |why| Ok((Elasticity::NotJammed(why), None));
+    let not_jammed = |why| Ok((Err(why), None));
     if packing.contacts.is_empty() {
         return not_jammed(NotJammed::NoContacts { grains });
     }
@@ -144,7 +147,7 @@ fn elasticity(
             bounds,
         },
     };
-    Ok((Elasticity::Jammed(Box::new(stiffness)), probe))
+    Ok((Ok(Box::new(stiffness)), probe))
 }
 
 impl Settings {

@@ -1,4 +1,4 @@
-//! Errors.
+//! Errors of the measurements.
 
 use grainlab_core::results::NotJammed;
 
@@ -21,17 +21,17 @@ pub enum MicroError {
     Loads {
         /// Grains of the network.
         grains: usize,
-        /// Loads given.
+        /// Number of loads.
         loads: usize,
     },
     /// A setting is out of its range.
     #[error("setting {name} = {value:e} is out of range: {requirement}")]
     Setting {
-        /// Which setting.
+        /// Name of the setting.
         name: &'static str,
         /// The value found.
         value: f64,
-        /// What is required.
+        /// Range that is required.
         requirement: &'static str,
     },
     /// The normal of a contact does not point along its branch vector.
@@ -42,9 +42,9 @@ pub enum MicroError {
     Normal {
         /// Index of the contact.
         contact: usize,
-        /// First grain.
+        /// Index of the first grain.
         i: u32,
-        /// Second grain.
+        /// Index of the second grain.
         j: u32,
         /// Cosine of the angle between them; not a number if the centres coincide.
         cosine: f64,
@@ -59,7 +59,7 @@ pub enum MicroError {
         residual: f64,
         /// The tolerance set.
         tolerance: f64,
-        /// Iterations done.
+        /// Number of iterations done.
         iterations: u32,
     },
     /// Prestress gives the network a direction of negative stiffness.
@@ -115,11 +115,11 @@ pub enum ProbeError {
     /// A setting is out of its range.
     #[error("probe setting {name} = {value:e} is out of range: {requirement}")]
     Setting {
-        /// Which setting.
+        /// Name of the setting.
         name: &'static str,
         /// The value found.
         value: f64,
-        /// What is required.
+        /// Range that is required.
         requirement: &'static str,
     },
     /// The packing has no contact network.
@@ -135,7 +135,7 @@ pub enum ProbeError {
         unbalanced: f64,
         /// The largest value allowed.
         target: f64,
-        /// Steps done.
+        /// Number of steps done.
         steps: u32,
     },
     /// The stress under strain did not settle.
@@ -146,13 +146,13 @@ pub enum ProbeError {
     NotConverged {
         /// Voigt component of the strain.
         component: &'static str,
-        /// See [`crate::probe::ProbeColumn::residual`].
+        /// Residual force; see [`crate::probe::ProbeColumn::residual`].
         residual: f64,
-        /// See [`crate::probe::ProbeColumn::drift`].
+        /// Drift of the stress; see [`crate::probe::ProbeColumn::drift`].
         drift: f64,
         /// The tolerance set.
         tolerance: f64,
-        /// Steps done.
+        /// Number of steps done.
         steps: u32,
     },
     /// The engine failed.

@@ -6,7 +6,7 @@ use grainlab_core::{Packing, PackingError, Vec3, non_rattlers};
 /// A packing with the data common to all measurements.
 #[derive(Clone, Debug)]
 pub struct PackingView<'a> {
-    /// The packing.
+    /// The packing seen.
     pub packing: &'a Packing,
     /// For each grain, whether it is part of the contact network ([`non_rattlers`]).
     pub non_rattlers: Vec<bool>,
@@ -44,7 +44,7 @@ impl<'a> PackingView<'a> {
         self.non_rattlers.iter().filter(|carries| **carries).count()
     }
 
-    /// Whether neither of two grains is a rattler.
+    /// True if neither of two grains is a rattler.
     pub fn carries_force(&self, i: u32, j: u32) -> bool {
         self.non_rattlers[i as usize] && self.non_rattlers[j as usize]
     }

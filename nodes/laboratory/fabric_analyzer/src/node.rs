@@ -40,7 +40,7 @@ impl Measure for Analysis {
         let step = report.step;
         self.0.publish_about(bus, &measured.message, about)?;
         tally.count(step);
-        match report.elasticity.not_jammed() {
+        match report.elasticity.as_ref().err() {
             None => {
                 for note in report.spring_notes() {
                     log::warn!("packing of step {step}: {note}");

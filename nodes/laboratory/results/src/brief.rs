@@ -106,11 +106,11 @@ fn row(name: &str, text: &str) -> String {
 fn one(state: &InvertedPacking) -> Vec<String> {
     let r = &state.packing.report;
     let mut lines = vec![row("Prepared", &prepared(r)), row("Counted", &counted(r))];
-    match r.elasticity.not_jammed() {
+    match r.elasticity.as_ref().err() {
         None => lines.push(row("Measured", &measured(r))),
         Some(why) => lines.push(row("Measured", &format!("no stiffness: {why}"))),
     }
-    let told = r.elasticity.not_jammed().map(ToString::to_string);
+    let told = r.elasticity.as_ref().err().map(ToString::to_string);
     let notes = state.packing.warnings.iter().filter(|w| Some(*w) != told.as_ref()).take(MOST_NOTES);
     lines.extend(notes.map(|note| row("Note", note)));
     let groups = by_origin(&state.results);

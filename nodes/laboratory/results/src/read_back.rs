@@ -200,7 +200,7 @@ pub fn read(recording: &Recording) -> ReadBack {
                 let mut measured = MeasuredPacking::new(source.clone(), report).at(about.position);
                 let report = &measured.report;
                 measured.warnings =
-                    report.elasticity.not_jammed().map(ToString::to_string).into_iter().collect();
+                    report.elasticity.as_ref().err().map(ToString::to_string).into_iter().collect();
                 measured.warnings.extend(of_springs(report));
                 measured.warnings.extend(notes);
                 let (grains, density) = (report.contacts.grains, report.bulk_density());

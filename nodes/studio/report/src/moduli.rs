@@ -20,7 +20,7 @@ impl Run {
             return paragraph("No packing was measured.");
         };
         let Some(stiffness) = report.stiffness() else {
-            let why = report.elasticity.not_jammed().map(ToString::to_string).unwrap_or_default();
+            let why = report.elasticity.as_ref().err().map(ToString::to_string).unwrap_or_default();
             return paragraph(format!("No stiffness: {why}."));
         };
         let axis = &report.fabric.reference_axis;

@@ -23,7 +23,7 @@ pub fn rows(packing: &Packing, matscipy: &str) -> Result<Vec<Row>, VerificationE
         let settings = Settings { springs, solver: Solver::Direct, ..Settings::default() };
         let report =
             analyze(packing, &settings).map_err(|e| VerificationError::Measurement(e.to_string()))?.report;
-        let found = report.elasticity.into_stiffness();
+        let found = report.elasticity;
         let found = found.map_err(|why| VerificationError::Measurement(format!("smooth spheres: {why}")))?;
         let points = theirs.iter().flatten().zip(found.tensor.row_major()).enumerate();
         let points = points.map(|(n, (t, o))| Point::new(n as f64, *t, o)).collect();

@@ -85,7 +85,7 @@ impl Measure for Analysis {
         }
         let mut warnings = imported.notes.clone();
         warnings.extend(state_warnings(packing, report, measured.position, &imported.notes));
-        warnings.extend(report.elasticity.not_jammed().map(ToString::to_string));
+        warnings.extend(report.elasticity.as_ref().err().map(ToString::to_string));
         warnings.extend(probe.and_then(one_sided));
         measured.warnings = warnings;
         let message =

@@ -8,16 +8,16 @@ pub struct LawParameter {
     pub key: &'static str,
     /// Unit; empty for none.
     pub unit: &'static str,
-    /// Meaning.
+    /// Meaning in words.
     pub meaning: &'static str,
     /// Value in scenes that do not give it; `None` if they must.
     pub default: Option<f64>,
-    /// Whether zero is valid.
+    /// True if zero is valid.
     pub may_be_zero: bool,
 }
 
 impl LawParameter {
-    /// Whether `value` is valid.
+    /// True if `value` is valid.
     pub fn admits(&self, value: f64) -> bool {
         value.is_finite() && (value > 0.0 || (self.may_be_zero && value == 0.0))
     }

@@ -139,11 +139,6 @@ impl ContactLaw {
     pub fn normal_force(&self, material: &Material, r_eff: f64, overlap: f64) -> f64 {
         self.springs.normal_force(material, r_eff, overlap)
     }
-
-    /// Stiffnesses (k_n, k_t), N/m, for effective radius `r_eff` (m) and full overlap `overlap` (m, ≥ 0).
-    pub fn stiffnesses(&self, material: &Material, r_eff: f64, overlap: f64) -> (f64, f64) {
-        self.springs.stiffnesses(material, r_eff, overlap)
-    }
 }
 
 impl fmt::Display for ContactLaw {

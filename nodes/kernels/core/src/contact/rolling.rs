@@ -26,7 +26,7 @@ pub struct RollingSprings<S> {
 pub struct RollingForce<L> {
     /// The rolling force, dashpot included, N. The torque on `i` is R* n × this, that on `j` the opposite.
     pub total: LaneVec3<L>,
-    /// Its elastic part, N: the history.
+    /// Elastic part of the rolling force, N: the history.
     pub history: LaneVec3<L>,
 }
 

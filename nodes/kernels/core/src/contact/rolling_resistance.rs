@@ -14,7 +14,7 @@ pub struct RollingResistance {
 }
 
 impl RollingResistance {
-    /// No resistance.
+    /// No resistance to rolling.
     pub const NONE: Self = Self { stiffness: 0.0, damping: 0.0, friction: 0.0 };
 
     /// Parameters in scenes and messages, in the order of the fields.

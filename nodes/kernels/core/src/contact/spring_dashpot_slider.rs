@@ -62,12 +62,12 @@ pub struct HistoryStep<L> {
     pub elastic: LaneVec3<L>,
 }
 
-/// Springs with dashpots beside them, and a slider in series with the tangential ones: a contact law in one phase.
+/// Springs with dashpots in parallel, and a slider in series with the tangential ones: a contact law in one phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringDashpotSlider<S> {
-    /// The springs.
+    /// Springs of the law.
     pub springs: S,
-    /// Friction coefficient.
+    /// Friction coefficient of the phase.
     pub friction: f64,
     /// Damping, as a fraction of critical.
     pub damping: f64,

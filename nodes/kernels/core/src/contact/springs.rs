@@ -1,4 +1,4 @@
-//! What a contact law provides: its springs.
+//! Springs of a contact law.
 
 use super::rolling_resistance::RollingResistance;
 use crate::lanes::Lanes;
@@ -8,7 +8,7 @@ use crate::lanes::Lanes;
 /// Written for any number of lanes: with `f64` it is the scalar specification; the force kernel runs it in the lanes of an
 /// instruction set. The contact radius is a = √(R* δ) for every law, with δ the full overlap.
 pub trait ContactSprings: Copy + Send + Sync {
-    /// Whether contacts resist rolling.
+    /// True if contacts resist rolling.
     const ROLLS: bool = false;
 
     /// The resistance to rolling; without effect unless [`ContactSprings::ROLLS`].
@@ -29,7 +29,7 @@ pub trait ContactSprings: Copy + Send + Sync {
     /// `factor` times the tangential stiffness k_t, N/m, from the contact radius, m.
     fn tangential_stiffness<L: Lanes>(&self, contact_radius: L, factor: f64) -> L;
 
-    /// k_t/k_n.
+    /// Ratio of stiffnesses k_t/k_n.
     fn stiffness_ratio(&self) -> f64;
 
     /// Ratio of the dashpots, c_t/c_n = √(k_t/k_n).
@@ -45,7 +45,7 @@ pub trait ContactSprings: Copy + Send + Sync {
 
 /// Work that is compiled for each law.
 pub trait LawVisitor {
-    /// The result.
+    /// Result of the work.
     type Output;
     /// Does the work.
     fn visit<S: ContactSprings>(self, springs: S) -> Self::Output;

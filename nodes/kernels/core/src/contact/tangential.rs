@@ -1,6 +1,6 @@
-//! How a tangential spring follows the normal stiffness.
+//! Response of a tangential spring to a change of normal stiffness.
 
-/// How the tangential force follows a change of normal stiffness.
+/// Response of the tangential force to a change of normal stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TangentialLaw {
     /// Scaled down with the tangential stiffness on unloading: a closed cycle never creates energy.

@@ -1,4 +1,4 @@
-//! How many contacts there are, and what they carry.
+//! Number of contacts, and the forces that they carry.
 
 /// Bins of f = F_n/⟨F_n⟩ in [`ForceStatistics`].
 pub const FORCE_BINS: usize = 20;
@@ -33,13 +33,13 @@ pub struct ContactStatistics {
 /// Distribution of normal forces, f = F_n/⟨F_n⟩.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ForceStatistics {
-    /// ⟨F_n⟩, N.
+    /// Mean normal force ⟨F_n⟩, N.
     pub mean_normal: f64,
-    /// ⟨|F_t|⟩, N.
+    /// Mean tangential force ⟨|F_t|⟩, N.
     pub mean_tangential: f64,
     /// ⟨f²⟩, ⟨f³⟩, ⟨f⁴⟩. An exponential distribution has 2, 6, 24.
     pub moments: [f64; 3],
-    /// Largest f.
+    /// Largest value of f.
     pub largest: f64,
     /// Number of contacts by f, in bins of [`FORCE_BIN_WIDTH`] from 0; the last bin has no upper end, the first no lower one.
     pub histogram: [u32; FORCE_BINS],
@@ -48,7 +48,7 @@ pub struct ForceStatistics {
 /// Mobilised friction m = min(|F_t|/(μ F_n), 1).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MobilisedFriction {
-    /// ⟨m⟩.
+    /// Mean value ⟨m⟩.
     pub mean: f64,
     /// Number of contacts by m, in tenths; the last bin also holds those at the limit.
     pub histogram: [u32; MOBILISATION_BINS],

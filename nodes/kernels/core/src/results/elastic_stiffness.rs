@@ -2,13 +2,13 @@
 
 use crate::stiffness::Stiffness;
 
-/// How a stiffness was found.
+/// Method by which a stiffness was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StiffnessMethod {
     /// Linear response of the frozen contact network: normal springs and, unless it is smooth, tangential ones; no rolling
     /// springs.
     FrozenNetwork,
-    /// The same with the prestress term.
+    /// The frozen network with the prestress term.
     PrestressedNetwork,
     /// Small strains imposed on the packing with its whole contact law.
     StrainProbe,
@@ -31,7 +31,7 @@ impl StiffnessMethod {
 /// The elastic stiffness of a packing, in the frame of the cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticStiffness {
-    /// How [`ElasticStiffness::tensor`] was found.
+    /// Method by which [`ElasticStiffness::tensor`] was found.
     pub method: StiffnessMethod,
     /// No contact has a tangential spring: that of smooth grains.
     pub smooth: bool,
@@ -44,7 +44,7 @@ pub struct ElasticStiffness {
     pub residual: f64,
     /// Iterations of the solve, or steps of the probe; 0 for a direct solve.
     pub iterations: u32,
-    /// What the contact network says in closed form, whatever the method.
+    /// Stiffnesses of the contact network in closed form, whatever the method.
     pub bounds: StiffnessBounds,
 }
 
@@ -53,46 +53,14 @@ pub struct ElasticStiffness {
 pub struct StiffnessBounds {
     /// Affine (Voigt) stiffness: every grain moves with the mean deformation.
     pub affine: Stiffness,
-    /// The same where all grains also rotate alike: between relaxed and affine.
+    /// Affine stiffness where all grains also rotate alike: between relaxed and affine.
     pub uniform_rotation: Stiffness,
     /// Lower bound of the bulk modulus under isotropic stress, Pa; `None` without forces.
     pub bulk_reuss: Option<f64>,
 }
 
 /// The stiffness of a packing, or why it has none.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Elasticity {
-    /// The contact network resists strain.
-    Jammed(Box<ElasticStiffness>),
-    /// It does not.
-    NotJammed(NotJammed),
-}
-
-impl Elasticity {
-    /// The stiffness, if there is one.
-    pub fn stiffness(&self) -> Option<&ElasticStiffness> {
-        match self {
-            Self::Jammed(stiffness) => Some(stiffness),
-            Self::NotJammed(_) => None,
-        }
-    }
-
-    /// The reason why a packing has no stiffness; `None` if it has one.
-    pub fn not_jammed(&self) -> Option<&NotJammed> {
-        match self {
-            Self::Jammed(_) => None,
-            Self::NotJammed(why) => Some(why),
-        }
-    }
-
-    /// The stiffness. The error is the reason why the packing has none.
-    pub fn into_stiffness(self) -> Result<ElasticStiffness, NotJammed> {
-        match self {
-            Self::Jammed(stiffness) => Ok(*stiffness),
-            Self::NotJammed(why) => Err(why),
-        }
-    }
-}
+pub type Elasticity = Result<Box<ElasticStiffness>, NotJammed>;
 
 /// Why a packing has no stiffness. Not a fault: a gas has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

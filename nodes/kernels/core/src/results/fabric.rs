@@ -1,4 +1,4 @@
-//! How contacts are oriented.
+//! Orientation of the contacts.
 
 use crate::tensor::{SymTensor, Vec3};
 
@@ -14,7 +14,7 @@ pub struct Fabric {
     pub reference_axis: Vec3,
     /// Fabric tensor L = ⟨n n⟩, trace 1 (Eq. 2).
     pub contact_fabric: SymTensor,
-    /// The same weighted by normal force, trace 1.
+    /// Fabric tensor weighted by normal force, trace 1.
     pub normal_force_fabric: SymTensor,
     /// Σ |F_t| t⊗t / Σ |F_t| with t = F_t/|F_t|: where tangential forces point. Trace 1, or zero without tangential forces.
     pub tangential_force_fabric: SymTensor,
@@ -24,7 +24,7 @@ pub struct Fabric {
     pub contact_anisotropy: f64,
     /// Coefficient of P4(n·h) in the contact distribution.
     pub p4_coefficient: f64,
-    /// Fourth-order fabric.
+    /// Fabric tensor of fourth order.
     pub fourth_order: FourthOrderFabric,
     /// The principal axis of L that stands out most.
     pub principal_axis: PrincipalAxis,
@@ -60,7 +60,7 @@ pub struct PrincipalAxis {
     /// Standard deviation of the direction, rad (root mean square angle); `None` where it cannot be estimated, or would
     /// exceed 1 rad.
     pub angle_stddev: Option<f64>,
-    /// Whether the anisotropy exceeds its noise and one axis stands out. Where it is `false`, any axis is as good.
+    /// True if the anisotropy exceeds its noise and one axis stands out. Where it is `false`, any axis is as good.
     pub determined: bool,
 }
 
@@ -95,7 +95,7 @@ pub struct OrientationHistogram {
 pub struct OrientationFit {
     /// ε, within [−1/2, 1], where A is nowhere negative.
     pub eps: f64,
-    /// Its standard error if contacts were independent: an upper bound in a jammed packing, see
+    /// Standard error of ε if contacts were independent: an upper bound in a jammed packing, see
     /// [`PrincipalAxis::contact_anisotropy_stddev`].
     pub eps_stddev: f64,
     /// Pearson's χ² of the histogram over its 8 degrees of freedom. About 1 for independent contacts drawn from A(d); use it
@@ -108,6 +108,6 @@ pub struct OrientationFit {
 pub struct OverlapAnisotropyFit {
     /// g, the ratio γ/Δ fitted to the contacts.
     pub g: f64,
-    /// Its standard error for independent contacts; `None` with fewer than three contacts.
+    /// Standard error of g for independent contacts; `None` with fewer than three contacts.
     pub g_stddev: Option<f64>,
 }

@@ -97,7 +97,7 @@ impl InferredQuantity {
         Self::ALL.into_iter().filter(|q| *q != InferredQuantity::KHat)
     }
 
-    /// Whether its errors are given relative to it: true for coordination numbers, false for anisotropies.
+    /// True if errors are given relative to the value: for coordination numbers, and not for anisotropies.
     pub const fn is_coordination(self) -> bool {
         matches!(self, InferredQuantity::K | InferredQuantity::KHat | InferredQuantity::Z)
     }
@@ -115,7 +115,7 @@ impl Microstructure {
         Self { k: Some(k), k_hat: Some(k_hat), z: None, eps: Some(eps), eps_stiffness: None }
     }
 
-    /// The same with this quantity.
+    /// This microstructure with another value of one quantity.
     #[must_use]
     pub const fn with(self, quantity: InferredQuantity, value: f64) -> Self {
         let mut values = self.values();
@@ -123,7 +123,7 @@ impl Microstructure {
         Self::of_values(values)
     }
 
-    /// One quantity.
+    /// Value of one quantity.
     pub const fn get(&self, quantity: InferredQuantity) -> Option<f64> {
         self.values()[quantity as usize]
     }

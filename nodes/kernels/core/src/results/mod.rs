@@ -1,4 +1,4 @@
-//! What is measured on a packing, and what is inferred from it: one type for each, which kernels, messages and printers share.
+//! Quantities measured on a packing, and inferred from it: one type for each, which kernels, messages and printers share.
 //!
 //! - [`ContactStatistics`]: coordination, rattlers, forces, mobilised friction
 //! - [`Fabric`]: how contacts are oriented

@@ -40,7 +40,7 @@ pub struct PackingReport {
     pub contacts: ContactStatistics,
     /// Orientation of the contacts.
     pub fabric: Fabric,
-    /// Which forces and which contacts carry the stress.
+    /// Shares of the stress that kinds of forces and of contacts carry.
     pub stress_decomposition: StressDecomposition,
     /// The three ratios γ/Δ.
     pub strain_ratios: StrainRatios,
@@ -51,7 +51,7 @@ pub struct PackingReport {
 }
 
 impl PackingReport {
-    /// Pressure, Pa.
+    /// Pressure on the packing, Pa.
     pub fn pressure(&self) -> f64 {
         self.stress.tensor.mean()
     }
@@ -85,7 +85,7 @@ impl PackingReport {
 
     /// The stiffness, if there is one.
     pub fn stiffness(&self) -> Option<&ElasticStiffness> {
-        self.elasticity.stiffness()
+        self.elasticity.as_deref().ok()
     }
 
     /// Notes on the springs of the stiffness; none without one.

@@ -1,4 +1,4 @@
-//! What a reader of a stiffness should know about its springs.
+//! Notes for the reader of a stiffness, about its springs.
 
 use super::elastic_stiffness::StiffnessMethod;
 use crate::contact::ContactLaw;

@@ -6,9 +6,9 @@
 /// `contact` to the overlaps. `None` where one is not defined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrainRatios {
-    /// Of the logarithmic strain since the reference state.
+    /// Ratio of the logarithmic strain since the reference state.
     pub total: Option<f64>,
-    /// Of the strain that an isotropic stress increment causes in the frozen network.
+    /// Ratio of the strain that an isotropic stress increment causes in the frozen network.
     pub elastic: Option<f64>,
     /// Least squares of the contacts' √overlap to A(1 + g − 3 g x²), x = n·h.
     pub contact: Option<f64>,

@@ -1,4 +1,4 @@
-//! Which forces and which contacts carry the stress.
+//! Shares of the stress that kinds of forces and of contacts carry.
 
 use crate::tensor::{SymTensor, Vec3};
 

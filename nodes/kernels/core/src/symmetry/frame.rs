@@ -18,10 +18,10 @@ const REFINED: usize = 6;
 /// Steps of a refinement.
 const STEPS: usize = 60;
 
-/// What is sought.
+/// Unknown of the search.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Search {
-    /// Three axes.
+    /// All three axes.
     Frames,
     /// The third axis alone.
     Axes,
@@ -57,7 +57,7 @@ fn candidates(c: &Matrix6<f64>, search: Search) -> Vec<Rotation3<f64>> {
     let mut frames = vec![Rotation3::identity()];
     for tensor in [dilatational(c), voigt(c)] {
         let axes = tensor.symmetric_eigen().eigenvectors;
-        // Which axis is the third matters to a class with an axis; the order of all three to none.
+        // A class with an axis depends on which of the three is the third, other classes on no order.
         let orders = if search == Search::Axes { 3 } else { 1 };
         for last in 0..orders {
             let (a, b) = (axes.column((last + 1) % 3).into_owned(), axes.column((last + 2) % 3).into_owned());
@@ -130,12 +130,12 @@ fn refine(c: &Matrix6<f64>, projection: Projection, start: Rotation3<f64>) -> (f
     (square, frame)
 }
 
-/// C_ijkk.
+/// Dilatational tensor C_ijkk.
 fn dilatational(c: &Matrix6<f64>) -> Mat3 {
     symmetric(std::array::from_fn(|a| c[(a, 0)] + c[(a, 1)] + c[(a, 2)]))
 }
 
-/// C_ikjk.
+/// Voigt tensor C_ikjk.
 fn voigt(c: &Matrix6<f64>) -> Mat3 {
     let of = |a: usize, b: usize| c[(a, b)];
     // Mandel entries of two shears are twice the tensor's, of one √2 times.

@@ -33,8 +33,8 @@ pub(crate) struct ForceAccumulator {
 
 /// The sums of one part.
 pub(crate) struct PartAccumulator<'a> {
-    /// The rows of all parts.
-    rows: &'a mut [F64x8],
+    /// Rows that the pairs of a chunk add to. Those of grains are zero at the start of a chunk.
+    pub(crate) rows: &'a mut [F64x8],
     /// The rows for grains of later parts.
     later: Range<usize>,
     zero: usize,
@@ -47,11 +47,6 @@ pub(crate) struct PartAccumulator<'a> {
 }
 
 impl PartAccumulator<'_> {
-    /// The rows that the pairs of a chunk add to. Those of grains are zero at the start of a chunk.
-    pub(crate) fn rows(&mut self) -> &mut [F64x8] {
-        self.rows
-    }
-
     /// Zeroes the rows of later parts. Call it before the first chunk.
     pub(crate) fn begin(&mut self) {
         self.rows[self.later.clone()].fill(F64x8::default());
@@ -220,8 +215,8 @@ impl Kernel for StoreChunk<'_> {
 #[derive(Debug)]
 pub(crate) struct AccumulatorBuilder {
     accumulator: ForceAccumulator,
-    /// Owned grains.
-    grains: Range<usize>,
+    /// Grains of the subdomain.
+    pub(crate) grains: Range<usize>,
     /// Grains of the present part.
     part: Range<usize>,
     rows: u32,
@@ -245,11 +240,6 @@ impl AccumulatorBuilder {
             row_of,
             remote: Vec::new(),
         }
-    }
-
-    /// Owned grains.
-    pub(crate) fn grains(&self) -> Range<usize> {
-        self.grains.clone()
     }
 
     /// Row that sums the forces of the next pair, of chunk `chunk`, on grain `j`.

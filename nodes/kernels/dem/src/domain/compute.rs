@@ -1,9 +1,8 @@
-//! What a step is computed with: instruction set and threads, neither of which changes a bit of the result; and a flag that
+//! Means of computing a step: instruction set and threads, neither of which changes a bit of the result; and a flag that
 //! ends a computation early.
 
 use crate::simd::instruction_set::Simd;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -33,7 +32,7 @@ pub enum ComputeError {
     Threads {
         /// Threads asked for.
         threads: usize,
-        /// Why not.
+        /// Reason in words.
         reason: String,
     },
 }
@@ -68,13 +67,13 @@ impl Compute {
         Ok(Self { simd, threads, pool, stop: None })
     }
 
-    /// The same with a flag that another thread may set: computations then end with
+    /// Adds a flag that another thread may set: computations then end with
     /// [`DemError::Stopped`](crate::DemError::Stopped) within about a step.
     pub fn stopping_on(self, flag: Arc<AtomicBool>) -> Self {
         Self { stop: Some(flag), ..self }
     }
 
-    /// Whether the flag is set.
+    /// True if the flag is set.
     pub fn is_stopped(&self) -> bool {
         self.stop.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
@@ -85,12 +84,12 @@ impl Compute {
         (grains / GRAINS_PER_THREAD).clamp(1, cores.max(1))
     }
 
-    /// Instruction set.
+    /// Instruction set in use.
     pub fn simd(&self) -> Simd {
         self.simd
     }
 
-    /// Threads.
+    /// Number of threads.
     pub fn threads(&self) -> usize {
         self.threads
     }
@@ -116,23 +115,6 @@ impl Compute {
             Some(pool) => {
                 let pieces = pieces.collect();
                 pool.install(|| fork_join(pieces, &work))
-            }
-        }
-    }
-
-    /// Does all work items on any threads, and joins the results in the order of the items.
-    pub(crate) fn map_join<T: Send, R: Send>(
-        &self,
-        items: impl Iterator<Item = T>,
-        work: impl Fn(T) -> R + Sync + Send,
-        join: impl FnMut(R),
-    ) {
-        match &self.pool {
-            None => items.map(work).for_each(join),
-            Some(pool) => {
-                let items: Vec<T> = items.collect();
-                let results: Vec<R> = pool.install(|| items.into_par_iter().map(work).collect());
-                results.into_iter().for_each(join);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! How grains are divided: into chunks, chunks into parts, and parts among the subdomains of the threads.
+//! Division of grains: into chunks, chunks into parts, and parts among the subdomains of the threads.
 //!
 //! Chunks and parts depend on the number of grains alone, because they fix the order of sums. How parts are divided among
 //! subdomains is free.
@@ -47,17 +47,17 @@ impl Subdomain {
         })
     }
 
-    /// Its parts.
+    /// Parts of the subdomain.
     pub(crate) fn parts(&self) -> Range<usize> {
         self.parts.clone()
     }
 
-    /// Its chunks.
+    /// Chunks of the subdomain.
     pub(crate) fn chunks(&self) -> Range<usize> {
         self.chunks_of(self.parts.start).start..self.chunks_of(self.parts.end - 1).end
     }
 
-    /// Its grains.
+    /// Grains of the subdomain.
     pub(crate) fn grains(&self) -> Range<usize> {
         self.grains_of(self.parts.start).start..self.grains_of(self.parts.end - 1).end
     }

@@ -11,18 +11,18 @@ use crate::simd::simd_f64::{F64x4, F64x8};
 use std::ops::Range;
 
 /// The copies of all subdomains. They take 96 bytes per grain and subdomain.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct DistributedState {
     copies: Vec<SubdomainState>,
     /// The halo: grains that other subdomains reach to, in ascending order.
     halo: Vec<u32>,
-    /// Their state as last sent, and the buffer for the next exchange.
+    /// State of the halo as last sent, and the buffer for the next exchange.
     sent: Vec<HaloRow>,
     sending: Vec<HaloRow>,
-    /// Whether the copies hold the present state.
-    is_current: bool,
-    /// Whether only the copies hold it.
-    is_authoritative: bool,
+    /// True if the copies hold the present state.
+    pub(crate) is_current: bool,
+    /// True if only the copies hold it.
+    pub(crate) is_authoritative: bool,
 }
 
 /// Position and twist of a grain.
@@ -37,23 +37,6 @@ struct SubdomainState {
     owned: Range<usize>,
     /// Grains of other subdomains that its pairs reach to, each with its row in the halo.
     ghosts: Vec<(u32, u32)>,
-}
-
-impl Clone for DistributedState {
-    /// Copies that the state holds as well are not worth cloning.
-    fn clone(&self) -> Self {
-        if !self.is_authoritative {
-            return Self::default();
-        }
-        Self {
-            copies: self.copies.clone(),
-            halo: self.halo.clone(),
-            sent: self.sent.clone(),
-            sending: self.sending.clone(),
-            is_current: self.is_current,
-            is_authoritative: self.is_authoritative,
-        }
-    }
 }
 
 /// One subdomain's copy, for its thread.
@@ -77,11 +60,6 @@ impl DistributedState {
         if !self.copies.is_empty() {
             *self = Self::default();
         }
-    }
-
-    /// Whether the copies hold the present state.
-    pub(crate) fn is_current(&self) -> bool {
-        self.is_current
     }
 
     /// Copies the state to the subdomains. Each subdomain comes with its ghosts, which may repeat.
@@ -125,11 +103,6 @@ impl DistributedState {
         self.sent.iter_mut().for_each(|(_, twist)| scale(twist));
     }
 
-    /// Whether only the copies hold the present state.
-    pub(crate) fn is_authoritative(&self) -> bool {
-        self.is_authoritative
-    }
-
     /// Copies back to the state what only the copies hold.
     pub(crate) fn gather(&mut self, state: &mut State, compute: &Compute) {
         if std::mem::take(&mut self.is_authoritative) {
@@ -139,7 +112,7 @@ impl DistributedState {
 
     /// Overwrites a state with the one that the copies hold.
     pub(crate) fn copy_to(&self, state: &mut State, compute: &Compute) {
-        let mut all = GrainsMut::new(&mut state.position, &mut state.twist);
+        let mut all = GrainsMut { position: &mut state.position, twist: &mut state.twist };
         let copies = self.copies.iter().map(|copy| (all.split_off_front(copy.owned.len()), copy));
         compute.map_subdomains(copies, |(mut grains, copy)| {
             grains.copy_from(&copy.position[copy.owned.clone()], &copy.twist[copy.owned.clone()]);
@@ -179,18 +152,8 @@ impl SubdomainView<'_> {
         }
     }
 
-    /// Positions of all grains; only those of the subdomain and its ghosts are up to date.
-    pub(crate) fn positions(&self) -> &[F64x4] {
-        &self.copy.position
-    }
-
-    /// Twists of all grains; only those of the subdomain and its ghosts are up to date.
-    pub(crate) fn twists(&self) -> &[F64x8] {
-        &self.copy.twist
-    }
-
-    /// All grains, to be moved.
+    /// All grains; only those of the subdomain and its ghosts are up to date.
     pub(crate) fn grains_mut(&mut self) -> GrainsMut<'_> {
-        GrainsMut::new(&mut self.copy.position, &mut self.copy.twist)
+        GrainsMut { position: &mut self.copy.position, twist: &mut self.copy.twist }
     }
 }

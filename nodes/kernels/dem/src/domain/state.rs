@@ -1,8 +1,8 @@
 //! Grains and cell.
 
-use crate::simd::simd_f64::{F64x4, F64x8};
+use crate::simd::simd_f64::{CHUNK_SIZE, F64x4, F64x8};
 use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Cell, Mat3, Material, Vec3};
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
 /// A vector as a row of a table.
 #[inline(always)]
@@ -17,7 +17,7 @@ pub(crate) fn vector(row: &F64x4) -> Vec3 {
 }
 
 /// Velocity and spin as a row.
-pub(crate) fn twist(velocity: &Vec3, spin: &Vec3) -> F64x8 {
+fn twist(velocity: &Vec3, spin: &Vec3) -> F64x8 {
     F64x8([velocity.x, velocity.y, velocity.z, 0.0, spin.x, spin.y, spin.z, 0.0])
 }
 
@@ -49,31 +49,26 @@ pub(crate) struct State {
 }
 
 impl State {
-    pub(crate) fn new(
-        cell: Cell,
-        material: Material,
-        ids: Vec<u32>,
-        radius: Vec<f64>,
-        position: &[Vec3],
-    ) -> Self {
-        let n = radius.len();
-        let mass = |r: &f64| material.sphere_mass(*r);
+    /// The grains of a packing.
+    pub(crate) fn of(packing: &Packing) -> Self {
+        let radius = &packing.radii;
+        let mass = |r: &f64| packing.material.sphere_mass(*r);
         Self {
-            step: 0,
-            time: 0.0,
-            time_step: 0.0,
-            cell,
+            step: packing.step,
+            time: packing.time,
+            time_step: packing.time_step,
+            cell: packing.cell,
             rate: Mat3::zeros(),
-            material,
-            law: ContactLaw::default(),
-            ids,
+            material: packing.material,
+            law: packing.law,
+            ids: packing.ids.clone(),
             inverse_mass: radius.iter().map(|r| 1.0 / mass(r)).collect(),
             inverse_inertia: radius.iter().map(|r| 1.0 / (0.4 * mass(r) * r * r)).collect(),
             largest_radius: radius.iter().copied().fold(0.0, f64::max),
             smallest_radius: radius.iter().copied().fold(f64::INFINITY, f64::min),
-            radius,
-            position: position.iter().map(row).collect(),
-            twist: vec![F64x8::default(); n],
+            radius: radius.clone(),
+            position: packing.positions.iter().map(row).collect(),
+            twist: packing.velocities.iter().zip(&packing.spins).map(|(v, w)| twist(v, w)).collect(),
         }
     }
 
@@ -82,17 +77,17 @@ impl State {
         self.radius.len()
     }
 
-    /// Whether all grains are of one size.
+    /// True if all grains are of one size.
     pub(crate) fn is_monodisperse(&self) -> bool {
         self.smallest_radius == self.largest_radius
     }
 
-    /// Velocities, m/s.
+    /// Velocities of the grains, m/s.
     pub(crate) fn velocities(&self) -> impl Iterator<Item = Vec3> {
         self.twist.iter().map(|t| Vec3::new(t.0[0], t.0[1], t.0[2]))
     }
 
-    /// Spins, rad/s.
+    /// Spins of the grains, rad/s.
     pub(crate) fn spins(&self) -> impl Iterator<Item = Vec3> {
         self.twist.iter().map(|t| Vec3::new(t.0[4], t.0[5], t.0[6]))
     }
@@ -118,11 +113,7 @@ pub(crate) struct GrainsMut<'a> {
     pub(crate) twist: &'a mut [F64x8],
 }
 
-impl<'a> GrainsMut<'a> {
-    pub(crate) fn new(position: &'a mut [F64x4], twist: &'a mut [F64x8]) -> Self {
-        Self { position, twist }
-    }
-
+impl GrainsMut<'_> {
     /// Splits off the first `count` grains; the others stay.
     pub(crate) fn split_off_front(&mut self, count: usize) -> Self {
         let (position, positions) = std::mem::take(&mut self.position).split_at_mut(count);
@@ -137,9 +128,9 @@ impl<'a> GrainsMut<'a> {
         self.twist.copy_from_slice(twist);
     }
 
-    /// Chunk `c` of `size` grains.
-    pub(crate) fn chunk(self, c: usize, size: usize) -> Self {
-        let range = c * size..((c + 1) * size).min(self.position.len());
-        Self { position: &mut self.position[range.clone()], twist: &mut self.twist[range] }
+    /// Grains of chunk `c`.
+    pub(crate) fn chunk(&mut self, c: usize) -> GrainsMut<'_> {
+        let range = c * CHUNK_SIZE..((c + 1) * CHUNK_SIZE).min(self.position.len());
+        GrainsMut { position: &mut self.position[range.clone()], twist: &mut self.twist[range] }
     }
 }

@@ -4,7 +4,7 @@ use super::checkpoint::Checkpoint;
 use super::spatial_order;
 use crate::domain::compute::Compute;
 use crate::domain::distributed_state::DistributedState;
-use crate::domain::state::{State, twist, vector};
+use crate::domain::state::{State, vector};
 use crate::error::DemError;
 use crate::observe::energy::EnergyBalance;
 use crate::observe::energy_meter::EnergyMeter;
@@ -26,12 +26,12 @@ pub struct Engine {
     pub(super) settings: EngineSettings,
     pub(super) compute: Compute,
     pub(super) neighbours: Neighbours,
-    /// How much closer any pair may have come since the neighbours were found.
+    /// Bound on the approach of any pair since the neighbours were found.
     pub(super) since_search: DisplacementBound,
     /// And since they were pruned to the pairs of the force kernel.
     pub(super) since_pruning: DisplacementBound,
     pub(super) has_neighbours: bool,
-    /// Whether the forces are those of the present state.
+    /// True if the forces are those of the present state.
     pub(super) has_forces: bool,
     /// Sums the energy balance, if it is switched on.
     pub(super) energy: Option<Box<EnergyMeter>>,
@@ -70,7 +70,7 @@ impl Engine {
         Self::from_packing(&at_rest, settings)
     }
 
-    /// The same grains under another contact law, before the first step.
+    /// Sets another contact law, before the first step.
     ///
     /// # Errors
     /// A law with parameters out of their range, and an engine with contacts or forces.
@@ -94,26 +94,10 @@ impl Engine {
         if packing.radii.is_empty() {
             return Err(DemError::NoGrains);
         }
-        let mut state = State::new(
-            packing.cell,
-            packing.material,
-            packing.ids.clone(),
-            packing.radii.clone(),
-            &packing.positions,
-        );
-        state.twist = packing.velocities.iter().zip(&packing.spins).map(|(v, w)| twist(v, w)).collect();
-        state.law = packing.law;
-        state.step = packing.step;
-        state.time = packing.time;
-        state.time_step = packing.time_step;
-        let contacts = Contacts::from_packing(packing, &state);
-        Ok(Self::from_state(state, contacts, settings))
-    }
-
-    fn from_state(state: State, contacts: Contacts, settings: EngineSettings) -> Self {
+        let state = State::of(packing);
         let mut engine = Self {
+            contacts: Contacts::from_packing(packing, &state),
             state,
-            contacts,
             copies: DistributedState::default(),
             settings,
             compute: Compute::default(),
@@ -125,7 +109,7 @@ impl Engine {
             energy: None,
         };
         engine.adopt(settings);
-        engine
+        Ok(engine)
     }
 
     /// Sets instruction set and threads. Results do not depend on them.
@@ -239,7 +223,7 @@ impl Engine {
         &self.state.cell
     }
 
-    /// Whether all grains are of one size.
+    /// True if all grains are of one size.
     pub fn equal_sized(&self) -> bool {
         self.state.is_monodisperse()
     }
@@ -292,7 +276,7 @@ impl Engine {
     /// The present state, wherever it is stored.
     fn current_state(&self) -> Cow<'_, State> {
         let mut state = Cow::Borrowed(&self.state);
-        if self.copies.is_authoritative() {
+        if self.copies.is_authoritative {
             self.copies.copy_to(state.to_mut(), &self.compute);
         }
         state
@@ -300,7 +284,8 @@ impl Engine {
 
     /// A state to return to.
     pub fn checkpoint(&self) -> Checkpoint {
-        Checkpoint::new(&self.current_state(), &self.contacts)
+        let contacts = self.contacts.saved().collect();
+        Checkpoint { state: self.current_state().into_owned(), contacts }
     }
 
     /// Returns to a checkpoint, with the energy balance off. Call [`Engine::initialise`] before the next step.
@@ -308,12 +293,13 @@ impl Engine {
     /// # Errors
     /// A checkpoint of another number of grains; nothing has changed.
     pub fn restore(&mut self, checkpoint: Checkpoint) -> Result<(), DemError> {
-        let (expected, found) = (self.state.len(), checkpoint.grains());
+        let (expected, found) = (self.state.len(), checkpoint.state.len());
         if expected != found {
             return Err(PackingError::Length { field: "position", expected, found }.into());
         }
         self.reclaim_state();
-        self.contacts = checkpoint.restore(&mut self.state);
+        self.contacts = Contacts::from_saved(&checkpoint.state, checkpoint.contacts);
+        self.state = checkpoint.state;
         self.energy = None;
         (self.has_neighbours, self.has_forces) = (false, false);
         Ok(())

@@ -43,6 +43,5 @@ pub(super) fn reorder(state: &mut State, contacts: &Contacts, order: &[u32]) -> 
     };
     let mut pairs: Vec<SavedContact> = contacts.saved().map(renumbered).collect();
     pairs.sort_unstable_by_key(|p| (p.i, p.j, p.image));
-    let count = pairs.len();
-    Contacts::from_saved(state, pairs.into_iter(), count)
+    Contacts::from_saved(state, pairs)
 }

@@ -116,7 +116,7 @@ impl Engine {
 
     fn pass(&mut self, kind: PassKind, with_virial: bool) -> (Virial, SpeedStats) {
         let Self { state, copies, contacts, settings, compute, .. } = self;
-        Pass { state, copies, contacts, settings, compute }.run(kind, with_virial)
+        Pass { state, copies, contacts, settings, compute, kind, with_virial }.run()
     }
 
     /// After all grains have moved: checks, thermostat, cell, lists of pairs.
@@ -145,7 +145,7 @@ impl Engine {
         if let Some(meter) = &mut self.energy {
             meter.add_thermostat(&self.state, factor);
         }
-        if self.copies.is_authoritative() {
+        if self.copies.is_authoritative {
             self.copies.scale_velocities(factor);
         } else {
             self.reclaim_state();
@@ -162,19 +162,13 @@ impl Engine {
         }
         self.gather();
         // The bound adds the largest components of different grains, so it may be too large.
-        let fast = |v: Vec3| {
-            let speed = v.norm();
-            !speed.is_finite() || speed > limit
-        };
-        if self.state.velocities().any(fast) { Err(self.unstable_error()) } else { Ok(()) }
+        let too_fast = |v: Vec3| !v.norm().is_finite() || v.norm() > limit;
+        let first = self.state.velocities().position(too_fast);
+        first.map_or(Ok(()), |grain| Err(self.unstable_error(grain)))
     }
 
-    fn unstable_error(&self) -> DemError {
+    fn unstable_error(&self, grain: usize) -> DemError {
         let s = &self.state;
-        // The first grain that is too fast, or not finite.
-        let limit = 0.1 * s.smallest_radius / s.time_step;
-        let too_fast = |v: Vec3| !v.norm().is_finite() || v.norm() > limit;
-        let grain = s.velocities().position(too_fast).unwrap_or(0);
         let at_grain = self.contacts.touching().filter(|p| p.i as usize == grain || p.j as usize == grain);
         let largest = at_grain.max_by(|a, b| a.history.contact_radius.total_cmp(&b.history.contact_radius));
         let cause = largest.map_or(String::new(), |p| {
@@ -218,11 +212,11 @@ impl Engine {
     /// Prunes the neighbours to the pairs of the force kernel, with a skin that lasts for a while at the present speed.
     fn prune_neighbours(&mut self, images: Images) {
         self.gather();
-        // How much closer pairs come in one step: now, and on average since the last pruning.
+        // Approach of pairs in one step: now, and on average since the last pruning.
         let (dt, last) = (self.state.time_step, self.since_pruning);
         let now = 2.0 * self.state.largest_speed() * dt + self.state.rate.norm() * dt * self.reach();
         let average = (2.0 * last.displacement + last.strain * self.reach()) / last.steps.max(1) as f64;
-        // What is left of the Verlet skin bounds the new skin. The neighbours are found again before that matters.
+        // The rest of the Verlet skin bounds the new skin. The neighbours are found again before that matters.
         let left = self.settings.skin
             - 2.0 * self.since_search.displacement
             - self.since_search.strain * self.reach();

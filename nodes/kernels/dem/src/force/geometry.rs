@@ -1,4 +1,4 @@
-//! Where pairs are and whether they touch.
+//! Positions of pairs, and the test for contact.
 
 use crate::domain::state::State;
 use crate::pairs::types::{PairBlock, PairSizes};
@@ -8,7 +8,7 @@ use grainlab_core::contact::{ContactSprings, SpringDashpotSlider};
 use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
 
-/// What the force kernel reads of the state and the settings.
+/// Input of the force kernel from the state and the settings.
 #[derive(Clone, Copy)]
 pub(crate) struct ForceInput<'a, S> {
     pub(crate) position: &'a [F64x4],
@@ -46,6 +46,25 @@ pub(crate) struct CommonSize {
     pub(crate) m_eff: f64,
 }
 
+/// Radii, R* and effective mass of some lanes of a block; `sizes` where grains differ in size.
+#[inline(always)]
+pub(crate) fn sizes_of<P, L: SimdF64>(
+    input: &ForceInput<'_, P>,
+    sizes: Option<&PairSizes>,
+    lane: usize,
+) -> ([L; 2], L, L) {
+    match sizes {
+        Some(s) => {
+            let radius = [L::load(&s.radius_i, lane), L::load(&s.radius_j, lane)];
+            (radius, L::load(&s.r_eff, lane), L::load(&s.m_eff, lane))
+        }
+        None => {
+            let c = &input.common;
+            ([L::splat(c.radius); 2], L::splat(c.r_eff), L::splat(c.m_eff))
+        }
+    }
+}
+
 /// The grains of some lanes of a block.
 #[derive(Clone, Copy)]
 pub(crate) struct GrainIndices<'a, L> {
@@ -73,7 +92,7 @@ pub(crate) struct Geometry<L: SimdF64> {
     pub(crate) normal: LaneVec3<L>,
     pub(crate) distance: L,
     pub(crate) inverse_distance: L,
-    /// Never negative.
+    /// Overlap, never negative, m.
     pub(crate) overlap: L,
     pub(crate) touching: L::Mask,
 }
@@ -81,7 +100,7 @@ pub(crate) struct Geometry<L: SimdF64> {
 impl<L: SimdF64> Geometry<L> {
     /// `None` where no lane touches.
     #[inline(always)]
-    pub(crate) fn new<S, const SIZES: bool>(
+    pub(crate) fn new<S>(
         input: &ForceInput<'_, S>,
         block: &PairBlock,
         sizes: Option<&PairSizes>,
@@ -89,10 +108,7 @@ impl<L: SimdF64> Geometry<L> {
     ) -> Option<Self> {
         let grains = GrainIndices::new(input, &block.i, &block.j, lane);
         let image = CheckedIndices::new(&block.image, lane, input.offset.len());
-        let radius = match sizes {
-            Some(s) if SIZES => [L::load(&s.radius_i, lane), L::load(&s.radius_j, lane)],
-            _ => [L::splat(input.common.radius); 2],
-        };
+        let (radius, ..) = sizes_of::<S, L>(input, sizes, lane);
         let difference = L::gather_difference(input.position, grains.j, grains.i);
         let branch = difference + L::gather(input.offset, image);
         let reach = radius[0] + radius[1];

@@ -1,54 +1,52 @@
 //! The force kernel: forces and torques of the pairs of a chunk of grains, summed on the grains.
 
-use super::geometry::{ForceInput, GrainIndices};
+use super::geometry::{ForceInput, GrainIndices, sizes_of};
 use super::stages::{BlockScratch, LawStage, Rolling, run_stages};
 use super::virial::Virial;
 use crate::pairs::types::{PairBlock, PairChunk, PairSizes};
+use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
 use crate::simd::simd_f64::{SimdF64, load_vector, store_vector};
 use grainlab_core::contact::{ContactKinematics, ContactSprings};
 use grainlab_core::lanes::{LaneVec3, Lanes};
+use std::marker::PhantomData;
 
 /// Contacts without friction: no spins, no tangential springs.
-pub(crate) struct FrictionlessKernel<'a, P, const SIZES: bool> {
-    pub(crate) input: ForceInput<'a, P>,
-    pub(crate) chunk: PairChunk<'a>,
-    /// Whether to sum the virial of periodic pairs.
-    pub(crate) with_virial: bool,
-}
+pub(crate) struct Frictionless<P, const SIZES: bool>(PhantomData<P>);
 
 /// Contacts with friction; see [`full_force`](grainlab_core::contact::SpringDashpotSlider::full_force) for the switches.
 /// `SIZES`: grains differ in size.
-pub(crate) struct FrictionalKernel<
-    'a,
+pub(crate) struct Frictional<
     P,
     const ADVANCE: bool,
     const SLIDING: bool,
     const RESCALED: bool,
     const SIZES: bool,
-> {
-    pub(crate) input: ForceInput<'a, P>,
+>(PhantomData<P>);
+
+/// Forces of the pairs of a chunk, added to its sums. Returns the virial of periodic pairs, if it is asked for.
+pub(crate) fn forces<S: LawStage>(
+    simd: Simd,
+    input: ForceInput<'_, S::Springs>,
+    chunk: PairChunk<'_>,
+    with_virial: bool,
+) -> Virial {
+    simd.run(ForceKernel::<S> { input, chunk, with_virial })
+}
+
+/// A law stage, run over a chunk.
+pub(crate) struct ForceKernel<'a, S: LawStage> {
+    pub(crate) input: ForceInput<'a, S::Springs>,
     pub(crate) chunk: PairChunk<'a>,
-    /// Whether to sum the virial of periodic pairs.
     pub(crate) with_virial: bool,
 }
 
-/// Radii, R* and effective mass of some lanes of a block.
-#[inline(always)]
-fn sizes_of<P, L: SimdF64, const SIZES: bool>(
-    input: &ForceInput<'_, P>,
-    sizes: Option<&PairSizes>,
-    lane: usize,
-) -> ([L; 2], L, L) {
-    match sizes {
-        Some(s) if SIZES => {
-            let radius = [L::load(&s.radius_i, lane), L::load(&s.radius_j, lane)];
-            (radius, L::load(&s.r_eff, lane), L::load(&s.m_eff, lane))
-        }
-        _ => {
-            let c = &input.common;
-            ([L::splat(c.radius); 2], L::splat(c.r_eff), L::splat(c.m_eff))
-        }
+impl<S: LawStage> Kernel for ForceKernel<'_, S> {
+    type Output = Virial;
+
+    #[inline(always)]
+    fn run<L: SimdF64>(self) -> Virial {
+        run_stages::<S, L>(&self.input, self.chunk, self.with_virial)
     }
 }
 
@@ -73,20 +71,20 @@ struct LaneContact<'a, L: SimdF64> {
     contact_radius: L,
     /// Affine part included, m/s.
     relative_velocity: LaneVec3<L>,
-    /// rad/s.
+    /// Sum of both spins, rad/s.
     spin_sum: LaneVec3<L>,
 }
 
 impl<'a, L: SimdF64> LaneContact<'a, L> {
     #[inline(always)]
-    fn new<P, const SIZES: bool>(
+    fn new<P>(
         input: &ForceInput<'_, P>,
         block: &'a PairBlock,
         sizes: Option<&PairSizes>,
         scratch: &BlockScratch,
         lane: usize,
     ) -> Self {
-        let (radius, r_eff, m_eff) = sizes_of::<P, L, SIZES>(input, sizes, lane);
+        let (radius, r_eff, m_eff) = sizes_of::<P, L>(input, sizes, lane);
         let (normal, overlap) = (load_vector::<L>(&scratch.normal, lane), L::load(&scratch.overlap, lane));
         let grains = GrainIndices::<L>::new(input, &block.i, &block.j, lane);
         let distance = radius[0] + radius[1] - overlap;
@@ -105,7 +103,7 @@ impl<'a, L: SimdF64> LaneContact<'a, L> {
     }
 }
 
-impl<P: ContactSprings, const SIZES: bool> LawStage for FrictionlessKernel<'_, P, SIZES> {
+impl<P: ContactSprings, const SIZES: bool> LawStage for Frictionless<P, SIZES> {
     const MOMENTS: bool = false;
     const SIZES: bool = SIZES;
     type Springs = P;
@@ -119,7 +117,7 @@ impl<P: ContactSprings, const SIZES: bool> LawStage for FrictionlessKernel<'_, P
         scratch: &mut BlockScratch,
         lane: usize,
     ) {
-        let c = LaneContact::<L>::new::<P, SIZES>(input, block, sizes, scratch, lane);
+        let c = LaneContact::<L>::new(input, block, sizes, scratch, lane);
         let separation_speed = c.relative_velocity.dot(c.normal);
         let force = input.law.normal_force(c.overlap, c.contact_radius, c.m_eff, separation_speed);
         let touching = c.overlap.gt(L::splat(0.0));
@@ -129,17 +127,8 @@ impl<P: ContactSprings, const SIZES: bool> LawStage for FrictionlessKernel<'_, P
     }
 }
 
-impl<P: ContactSprings, const SIZES: bool> Kernel for FrictionlessKernel<'_, P, SIZES> {
-    type Output = Virial;
-
-    #[inline(always)]
-    fn run<L: SimdF64>(self) -> Virial {
-        run_stages::<Self, L>(&self.input, self.chunk, self.with_virial)
-    }
-}
-
 impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool>
-    LawStage for FrictionalKernel<'_, P, ADVANCE, SLIDING, RESCALED, SIZES>
+    LawStage for Frictional<P, ADVANCE, SLIDING, RESCALED, SIZES>
 {
     const MOMENTS: bool = true;
     const SIZES: bool = SIZES;
@@ -155,7 +144,7 @@ impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const RESCALED
         lane: usize,
     ) {
         let (half, zero) = (L::splat(0.5), LaneVec3::splat(0.0));
-        let c = LaneContact::<L>::new::<P, SIZES>(input, block, sizes, scratch, lane);
+        let c = LaneContact::<L>::new(input, block, sizes, scratch, lane);
         let (grains, normal, contact_radius) = (c.grains, c.normal, c.contact_radius);
         let lever = [half.neg_mul_add(c.overlap, c.radius[0]), half.neg_mul_add(c.overlap, c.radius[1])];
         let spins = || [L::gather_spins(input.twist, grains.i), L::gather_spins(input.twist, grains.j)];
@@ -213,16 +202,5 @@ impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const RESCALED
         } else {
             store_vector(moment.scale(lever[0]), &mut scratch.moment, lane);
         }
-    }
-}
-
-impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool>
-    Kernel for FrictionalKernel<'_, P, ADVANCE, SLIDING, RESCALED, SIZES>
-{
-    type Output = Virial;
-
-    #[inline(always)]
-    fn run<L: SimdF64>(self) -> Virial {
-        run_stages::<Self, L>(&self.input, self.chunk, self.with_virial)
     }
 }

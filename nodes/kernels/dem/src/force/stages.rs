@@ -23,7 +23,7 @@ pub(super) type BlockVectors = [BlockScalars; 3];
 /// Intermediate results of a block between stages.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
-pub(super) struct BlockScratch {
+pub(crate) struct BlockScratch {
     pub(super) normal: BlockVectors,
     pub(super) overlap: BlockScalars,
     pub(super) inverse_distance: BlockScalars,
@@ -50,15 +50,15 @@ impl BlockScratch {
 
 /// The rolling forces of a block, N, and the moments on the first grain of each pair that they make, N m; the opposite ones
 /// are on the second grains.
-pub(super) type Rolling<'a> = (&'a mut RollingBlock, &'a mut BlockVectors);
+pub(crate) type Rolling<'a> = (&'a mut RollingBlock, &'a mut BlockVectors);
 
 /// The law stage of a phase.
-pub(super) trait LawStage {
-    /// Whether contacts exert moments.
+pub(crate) trait LawStage {
+    /// True if contacts exert moments.
     const MOMENTS: bool;
-    /// Whether grains differ in size.
+    /// True if grains differ in size.
     const SIZES: bool;
-    /// Whether contacts resist rolling.
+    /// True if contacts resist rolling.
     const ROLLS: bool = Self::MOMENTS && <Self::Springs as ContactSprings>::ROLLS;
     /// The springs of the contact law.
     type Springs: ContactSprings;
@@ -82,6 +82,7 @@ pub(super) fn run_stages<S: LawStage, L: SimdF64>(
     with_virial: bool,
 ) -> Virial {
     let PairChunk { blocks, rolling, sizes, mut periodic, sums } = chunk;
+    let sizes = if S::SIZES { sizes } else { &[] };
     let mut virial = Virial::default();
     let prefetch = input.position.len() > PREFETCH_MIN_GRAINS;
     let units_per_block = BLOCK_SIZE / L::WIDTH;
@@ -143,12 +144,7 @@ fn geometry<S: LawStage, L: SimdF64>(
     let units_per_block = BLOCK_SIZE / L::WIDTH;
     let (b, lane) = (u / units_per_block, u % units_per_block * L::WIDTH);
     let (block, scratch) = (&mut blocks[b], &mut scratch[b % 2]);
-    let geometry = if S::SIZES {
-        Geometry::<L>::new::<_, true>(input, block, sizes.get(b), lane)
-    } else {
-        Geometry::<L>::new::<_, false>(input, block, None, lane)
-    };
-    match geometry {
+    match Geometry::<L>::new(input, block, sizes.get(b), lane) {
         Some(g) => {
             store_vector(g.normal, &mut scratch.normal, lane);
             g.overlap.store(&mut scratch.overlap, lane);

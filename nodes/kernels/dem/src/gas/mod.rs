@@ -2,8 +2,10 @@
 //!
 //! - `placement`: random placement with thermal velocities
 //! - `event_driven`: hard spheres, moved from collision to collision
+//! - `grid`: a grid of cells to find near grains, for both
 
 mod event_driven;
+mod grid;
 mod placement;
 
 pub use event_driven::spheres::{Collisions, HardSpheres, mean_free_time};

@@ -1,5 +1,6 @@
 //! Random placement of grains, with thermal velocities.
 
+use super::grid::{Grid, Neighbour};
 use crate::error::DemError;
 use grainlab_core::{Cell, Vec3};
 use rand_pcg::Pcg64Mcg;
@@ -8,9 +9,9 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 /// Randomly placed grains without overlap, in a cubic cell.
 #[derive(Clone, Debug)]
 pub struct Gas {
-    /// The cell.
+    /// The periodic cell.
     pub cell: Cell,
-    /// Centres, m.
+    /// Centres of the grains, m.
     pub positions: Vec<Vec3>,
     /// Velocities with zero sum, m/s.
     pub velocities: Vec<Vec3>,
@@ -63,68 +64,24 @@ fn solid_volume(radii: &[f64]) -> f64 {
 /// Centres without overlap in a cube of this edge (m); the number placed if there is no room for the next one.
 fn place(radii: &[f64], edge: f64, random: &mut Pcg64Mcg) -> Result<Vec<Vec3>, u32> {
     let widest = 2.0 * radii.iter().copied().fold(0.0, f64::max);
-    let mut bins = Bins::new(edge, widest, radii.len());
-    let mut placed: Vec<Vec3> = Vec::with_capacity(radii.len());
+    let mut grid = Grid::new(Vec3::repeat(edge), widest, radii.len());
+    let (mut placed, mut near) = (Vec::<Vec3>::with_capacity(radii.len()), Vec::new());
     let fold = |d: f64| d - edge * (d / edge).round();
     for (count, radius) in radii.iter().enumerate() {
-        let mut found = false;
-        for _ in 0..ATTEMPTS {
-            let x = Vec3::from_fn(|_, _| uniform(random) * edge);
-            let overlaps = |other: usize| {
-                let contact = radius + radii[other];
-                (placed[other] - x).map(fold).norm_squared() < contact * contact
+        let is_free = |x: &Vec3| {
+            grid.around(&(*x).into(), &mut near);
+            let overlaps = |other: &Neighbour| {
+                let contact = radius + radii[other.grain as usize];
+                (placed[other.grain as usize] - x).map(fold).norm_squared() < contact * contact
             };
-            if 2.0 * radius <= edge && !bins.any_near(&x, overlaps) {
-                bins.add(&x, count);
-                placed.push(x);
-                found = true;
-                break;
-            }
-        }
-        if !found {
-            return Err(count as u32);
-        }
+            2.0 * radius <= edge && !near.iter().any(overlaps)
+        };
+        let mut attempts = (0..ATTEMPTS).map(|_| Vec3::from_fn(|_, _| uniform(random) * edge));
+        let x = attempts.find(is_free).ok_or(count as u32)?;
+        grid.place(count, &x.into());
+        placed.push(x);
     }
     Ok(placed)
-}
-
-/// Spheres by the bin of a periodic cube that their centre is in; a bin is at least as wide as the largest of them.
-struct Bins {
-    along: usize,
-    width: f64,
-    members: Vec<Vec<u32>>,
-}
-
-impl Bins {
-    fn new(edge: f64, widest: f64, grains: usize) -> Self {
-        // More bins than grains only cost memory.
-        let limit = (grains as f64).cbrt().ceil() as usize + 1;
-        let along = ((edge / widest) as usize).clamp(1, limit);
-        Self { along, width: edge / along as f64, members: vec![Vec::new(); along.pow(3)] }
-    }
-
-    fn bin_of(&self, x: &Vec3) -> [usize; 3] {
-        std::array::from_fn(|k| ((x[k] / self.width) as usize).min(self.along - 1))
-    }
-
-    fn index(&self, [a, b, c]: [usize; 3]) -> usize {
-        (a * self.along + b) * self.along + c
-    }
-
-    fn add(&mut self, x: &Vec3, sphere: usize) {
-        let index = self.index(self.bin_of(x));
-        self.members[index].push(sphere as u32);
-    }
-
-    /// Whether `meets` holds of any sphere in the bin of `x` or in one beside it.
-    fn any_near(&self, x: &Vec3, meets: impl Fn(usize) -> bool) -> bool {
-        let own = self.bin_of(x);
-        // Where there are fewer than three bins, those on both sides are the same.
-        let beside =
-            |k: usize| (0..self.along.min(3)).map(move |d| (own[k] + self.along + d - 1) % self.along);
-        let near = |index: usize| self.members[index].iter().any(|other| meets(*other as usize));
-        beside(0).any(|a| beside(1).any(|b| beside(2).any(|c| near(self.index([a, b, c])))))
-    }
 }
 
 /// Velocities of root mean square `speed` without momentum, of equal mean energy for spheres of unequal mass.

@@ -1,6 +1,6 @@
 //! Sums over the contacts of a chunk: stress, mean force and tangent stiffness.
 
-use crate::force::geometry::{ForceInput, Geometry};
+use crate::force::geometry::{ForceInput, Geometry, sizes_of};
 use crate::pairs::types::{PairBlock, PairSizes};
 use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
@@ -29,7 +29,7 @@ pub(super) type SlotForces = [[f64; BLOCK_SIZE]; 3];
 pub(super) struct ContactSums {
     /// Σ f ⊗ l (xx, yy, zz, yz, xz, xy, zy, zx, yx; J), Σ |f| (N), and the energy of each unit strain component (J).
     pub(super) values: [f64; 16],
-    /// Whether a contact overlaps by more than [`OVERLAP_LIMIT`].
+    /// True if a contact overlaps by more than [`OVERLAP_LIMIT`].
     pub(super) too_deep: bool,
 }
 
@@ -62,18 +62,16 @@ impl<S: ContactSprings, const SIZES: bool> Kernel for SumKernel<'_, S, SIZES> {
         let ChunkContacts { input, blocks, sizes, force, friction } = self.chunk;
         let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
         let mut too_deep = false;
+        let sizes = if SIZES { sizes } else { &[] };
         let zero = L::splat(0.0);
         for (b, block) in blocks.iter().enumerate() {
             let mut lane = 0;
             while lane < BLOCK_SIZE {
-                if let Some(g) = Geometry::<L>::new::<S, SIZES>(&input, block, sizes.get(b), lane) {
+                if let Some(g) = Geometry::<L>::new(&input, block, sizes.get(b), lane) {
                     // The smaller of two is the larger of their negatives.
                     let smaller = zero - (zero - g.radius[0]).max(zero - g.radius[1]);
                     too_deep |= L::any(g.overlap.gt(smaller * L::splat(2.0 * OVERLAP_LIMIT)));
-                    let r_eff = match sizes.get(b) {
-                        Some(s) if SIZES => L::load(&s.r_eff, lane),
-                        _ => L::splat(input.common.r_eff),
-                    };
+                    let (_, r_eff, _) = sizes_of::<S, L>(&input, sizes.get(b), lane);
                     let contact_radius = (r_eff * g.overlap).sqrt();
                     let k_n = input.law.springs.normal_stiffness(contact_radius);
                     let elastic = input.law.springs.normal_force(k_n, g.overlap);

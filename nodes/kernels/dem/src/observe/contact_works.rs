@@ -1,37 +1,21 @@
 //! Forces and energies of the present contacts, by the scalar contact law.
 
-use super::pair_motion::{kinematics, lanes, law, vec3};
+use super::pair_motion::{PairMotion, kinematics, lanes, law, vec3};
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
-use crate::pairs::types::{History, Pair};
+use crate::pairs::types::Pair;
 use crate::settings::{EngineSettings, Features};
-use grainlab_core::contact::{ContactSprings, LawVisitor};
+use grainlab_core::contact::{ContactForces, ContactSprings, LawVisitor};
 use grainlab_core::{Mat3, Vec3};
 
 /// A contact with its forces.
 pub(super) struct ContactWork {
-    pub(super) i: usize,
-    pub(super) j: usize,
-    pub(super) normal: Vec3,
-    pub(super) branch: Vec3,
-    /// R − δ/2 of both grains, m.
-    pub(super) levers: [f64; 2],
-    pub(super) elastic: f64,
-    pub(super) normal_force: f64,
-    pub(super) tangential_force: Vec3,
-    /// R*, m.
-    pub(super) r_eff: f64,
+    pub(super) pair: Pair,
+    pub(super) motion: PairMotion,
+    pub(super) forces: ContactForces<f64>,
     pub(super) rolling_force: Vec3,
-    pub(super) history: History,
-    pub(super) normal_energy: f64,
-    pub(super) tangential_energy: f64,
-    pub(super) rolling_energy: f64,
-}
-
-impl ContactWork {
-    pub(super) fn energy(&self) -> f64 {
-        self.normal_energy + self.tangential_energy + self.rolling_energy
-    }
+    /// Energies of the normal, tangential and rolling spring, J.
+    pub(super) energies: [f64; 3],
 }
 
 /// `rate` is the strain rate that the forces were evaluated with, 1/s.
@@ -76,22 +60,12 @@ impl LawVisitor for ContactWorks<'_> {
             } else {
                 Vec3::zeros()
             };
-            ContactWork {
-                i: p.i as usize,
-                j: p.j as usize,
-                normal: vec3(c.normal),
-                branch: m.branch,
-                levers: m.levers,
-                elastic: f.elastic,
-                normal_force: f.normal,
-                tangential_force: vec3(f.tangential),
-                r_eff: m.r_eff,
-                rolling_force: rolling,
-                history: p.history,
-                normal_energy: springs.normal_energy(f.elastic, c.overlap),
-                tangential_energy: tangential_energy(&springs, &p.history.tangential, c.contact_radius),
-                rolling_energy: rolling_energy(&springs, &p.history.rolling),
-            }
+            let energies = [
+                springs.normal_energy(f.elastic, c.overlap),
+                tangential_energy(&springs, &p.history.tangential, c.contact_radius),
+                rolling_energy(&springs, &p.history.rolling),
+            ];
+            ContactWork { pair: p, forces: f, rolling_force: rolling, energies, motion: m }
         };
         contacts.touching().map(work).collect()
     }

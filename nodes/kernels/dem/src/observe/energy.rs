@@ -64,7 +64,7 @@ impl EnergyBalance {
             + self.thermostat
     }
 
-    /// What the balance misses, J: start + work of the strain + integration − stored − dissipated. Rounding, in a correct run.
+    /// Gap of the balance, J: start + work of the strain + integration − stored − dissipated. Rounding, in a correct run.
     pub fn residual(&self) -> f64 {
         self.start + self.strain_work + self.integration - self.stored() - self.dissipated()
     }

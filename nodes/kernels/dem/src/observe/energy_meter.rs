@@ -2,6 +2,7 @@
 
 use super::contact_works::{ContactWork, contact_works};
 use super::energy::EnergyBalance;
+use super::pair_motion::vec3;
 use super::path_works::PathWorks;
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
@@ -20,12 +21,6 @@ pub(crate) struct EnergyMeter {
     rate: Mat3,
 }
 
-/// The works of one kick.
-struct Kick {
-    works: EnergyBalance,
-    kinetic: f64,
-}
-
 impl EnergyMeter {
     /// Starts the balance at the present state, with its forces evaluated.
     pub(crate) fn new(state: &State, contacts: &Contacts, settings: &EngineSettings) -> Self {
@@ -33,15 +28,15 @@ impl EnergyMeter {
         // The first kick begins half a step before the positions: what is before the start is taken off.
         let half = kick(state, settings, &list, 0.5 * state.time_step);
         let mut works = EnergyBalance::default();
-        add(&mut works, &half.works, -1.0);
-        works.start = half.kinetic + list.iter().map(ContactWork::energy).sum::<f64>();
+        add(&mut works, &half, -1.0);
+        works.start = half.kinetic + list.iter().map(|c| c.energies.iter().sum::<f64>()).sum::<f64>();
         Self { works, before: Vec::new(), rate: state.rate }
     }
 
     /// Adds the works of the next kick. Call it before the grains move.
     pub(crate) fn add_kick(&mut self, state: &State, contacts: &Contacts, settings: &EngineSettings) {
         let list = contact_works(state, contacts, settings, &self.rate);
-        add(&mut self.works, &kick(state, settings, &list, state.time_step).works, 1.0);
+        add(&mut self.works, &kick(state, settings, &list, state.time_step), 1.0);
     }
 
     /// Adds what a thermostat removes that scales the present velocities by `factor`.
@@ -78,11 +73,10 @@ impl EnergyMeter {
         let list = contact_works(state, contacts, settings, &self.rate);
         let half = kick(state, settings, &list, 0.5 * state.time_step);
         let mut balance = self.works;
-        add(&mut balance, &half.works, 1.0);
+        add(&mut balance, &half, 1.0);
         balance.kinetic = half.kinetic;
-        balance.normal_springs = list.iter().map(|c| c.normal_energy).sum();
-        balance.tangential_springs = list.iter().map(|c| c.tangential_energy).sum();
-        balance.rolling_springs = list.iter().map(|c| c.rolling_energy).sum();
+        [balance.normal_springs, balance.tangential_springs, balance.rolling_springs] =
+            [0, 1, 2].map(|spring| list.iter().map(|c| c.energies[spring]).sum());
         balance
     }
 }
@@ -98,23 +92,24 @@ fn add(sum: &mut EnergyBalance, kick: &EnergyBalance, factor: f64) {
 }
 
 /// A kick over `h` (s): its works, and the kinetic energy after it.
-fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f64) -> Kick {
+fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f64) -> EnergyBalance {
     let n = state.len();
     let (mut force, mut torque) = (vec![Vec3::zeros(); n], vec![Vec3::zeros(); n]);
     for c in contacts {
-        let f = c.normal * c.normal_force - c.tangential_force;
-        let moment = c.normal.cross(&c.tangential_force);
-        force[c.i] -= f;
-        force[c.j] += f;
-        let rolling = c.normal.cross(&c.rolling_force) * c.r_eff;
-        torque[c.i] += moment * c.levers[0] + rolling;
-        torque[c.j] += moment * c.levers[1] - rolling;
+        let (m, i, j) = (&c.motion, c.pair.i as usize, c.pair.j as usize);
+        let (normal, tangential) = (vec3(m.contact.normal), vec3(c.forces.tangential));
+        let f = normal * c.forces.normal - tangential;
+        let moment = normal.cross(&tangential);
+        force[i] -= f;
+        force[j] += f;
+        let rolling = normal.cross(&c.rolling_force) * m.r_eff;
+        torque[i] += moment * m.levers[0] + rolling;
+        torque[j] += moment * m.levers[1] - rolling;
     }
     let has_spins = settings.features() != Features::Frictionless;
     let keep = |drag: f64| (1.0 - drag * h).max(0.0);
     let (keep_v, keep_w) = (keep(settings.drag), keep(settings.spin_drag));
     let mut works = EnergyBalance::default();
-    let mut kinetic = 0.0;
     let (mut velocity, mut spin) = (Vec::with_capacity(n), Vec::with_capacity(n));
     for (g, (v, w)) in state.velocities().zip(state.spins()).enumerate() {
         let (mass, inertia) = (1.0 / state.inverse_mass[g], 1.0 / state.inverse_inertia[g]);
@@ -127,25 +122,28 @@ fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f
         let after =
             0.5 * (mass * keep_v * keep_v * u.norm_squared() + inertia * keep_w * keep_w * r.norm_squared());
         works.drag += before - after;
-        kinetic += after;
+        works.kinetic += after;
         velocity.push(mean);
         spin.push(0.5 * (w + r));
     }
     for c in contacts {
-        let affine = state.rate * c.branch;
-        let relative = velocity[c.j] - velocity[c.i] + affine;
-        let separation = relative.dot(&c.normal);
-        let spins = spin[c.i] * c.levers[0] + spin[c.j] * c.levers[1];
-        let slip = relative - c.normal * separation - spins.cross(&c.normal);
-        let f = c.normal * c.normal_force - c.tangential_force;
+        let (m, i, j) = (&c.motion, c.pair.i as usize, c.pair.j as usize);
+        let (normal, tangential, history) =
+            (vec3(m.contact.normal), vec3(c.forces.tangential), &c.pair.history);
+        let affine = state.rate * m.branch;
+        let relative = velocity[j] - velocity[i] + affine;
+        let separation = relative.dot(&normal);
+        let spins = spin[i] * m.levers[0] + spin[j] * m.levers[1];
+        let slip = relative - normal * separation - spins.cross(&normal);
+        let f = normal * c.forces.normal - tangential;
         works.strain_work -= h * f.dot(&affine);
-        works.normal_damping -= h * (c.normal_force - c.elastic) * separation;
-        let rolling = (spin[c.j] - spin[c.i]).cross(&c.normal) * c.r_eff;
-        works.tangential_damping += h * (c.tangential_force - c.history.tangential).dot(&slip);
-        works.rolling_damping += h * (c.rolling_force - c.history.rolling).dot(&rolling);
+        works.normal_damping -= h * (c.forces.normal - c.forces.elastic) * separation;
+        let rolling = (spin[j] - spin[i]).cross(&normal) * m.r_eff;
+        works.tangential_damping += h * (tangential - history.tangential).dot(&slip);
+        works.rolling_damping += h * (c.rolling_force - history.rolling).dot(&rolling);
         let elastic =
-            c.elastic * separation - c.history.tangential.dot(&slip) - c.history.rolling.dot(&rolling);
+            c.forces.elastic * separation - history.tangential.dot(&slip) - history.rolling.dot(&rolling);
         works.integration += h * elastic;
     }
-    Kick { works, kinetic }
+    works
 }

@@ -1,4 +1,4 @@
-//! What the present contacts show: stress, tangent stiffness, force balance; and the running energy balance.
+//! Observation of the present contacts: stress, tangent stiffness, force balance; and the running energy balance.
 
 mod contact_sums;
 mod contact_works;

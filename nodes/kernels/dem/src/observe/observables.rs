@@ -11,19 +11,18 @@ use crate::pairs::subdomain_pairs::SubdomainPairs;
 use crate::pairs::types::Pair;
 use crate::settings::EngineSettings;
 use crate::simd::simd_f64::BLOCK_SIZE;
-use grainlab_core::Mat3;
 use grainlab_core::contact::{ContactSprings, LawVisitor};
-use grainlab_core::effective_radius;
 use grainlab_core::stress::Stress;
+use grainlab_core::{Mat3, effective_radius, min_contacts};
 
-/// What the present contacts show.
+/// Observed state of the present contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observables {
     /// Love–Weber stress of the elastic contact forces.
     pub stress: Stress,
     /// Affine tangent stiffness of the present contacts, Pa: C_iiii for xx, yy, zz and C_ijij for yz, xz, xy.
     pub tangent: [f64; 6],
-    /// Solid fraction.
+    /// Solid fraction of the packing.
     pub solid_fraction: f64,
     /// Number of contacts.
     pub contacts: u32,
@@ -40,7 +39,6 @@ pub(crate) fn observe(
     settings: &EngineSettings,
     compute: &Compute,
 ) -> Result<Observables, DemError> {
-    let friction = settings.friction > 0.0;
     let mut forces: Vec<SlotForces> = vec![[[0.0; BLOCK_SIZE]; 3]; contacts.blocks().count()];
     let total = state
         .law
@@ -51,7 +49,7 @@ pub(crate) fn observe(
     let volume = state.cell.volume();
     let [xx, yy, zz, yz, xz, xy, zy, zx, yx, ..] = total.values;
     let virial = Mat3::new(xx, xy, xz, yx, yy, yz, zx, zy, zz);
-    let net_forces = NetForces::new(contacts, &forces, state.len(), if friction { 2 } else { 4 });
+    let net_forces = NetForces::new(contacts, &forces, state.len(), min_contacts(settings.friction));
     let mean_force = total.values[9] / f64::from(net_forces.contacts);
     let solid: f64 = state.radius.iter().map(|r| r * r * r).sum();
     Ok(Observables {
@@ -87,7 +85,8 @@ impl LawVisitor for SumContacts<'_> {
                 rest = after;
                 ChunkContacts { input, blocks, sizes, force, friction: settings.friction > 0.0 }
             });
-        compute.map_join(chunks, |chunk| sum_chunk(chunk, compute.simd()), |sums| total.add(&sums));
+        let sums = compute.map_subdomains(chunks, |chunk| sum_chunk(chunk, compute.simd()));
+        sums.iter().for_each(|sums| total.add(sums));
         total
     }
 }

@@ -1,4 +1,4 @@
-//! How a pair of grains stands and moves, as the scalar contact law needs it.
+//! Position and motion of a pair of grains, as the scalar contact law needs them.
 
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
@@ -18,7 +18,7 @@ pub(super) fn law<S: ContactSprings>(settings: &EngineSettings, springs: S) -> S
     SpringDashpotSlider { springs, friction: settings.friction, damping: settings.damping }
 }
 
-/// How a pair stands and moves.
+/// Position and motion of a pair.
 pub(super) struct PairMotion {
     pub(super) contact: ContactKinematics<f64>,
     /// R* (ω_j − ω_i) × n, m/s.
@@ -26,7 +26,7 @@ pub(super) struct PairMotion {
     pub(super) branch: Vec3,
     /// R − δ/2 of both grains, m.
     pub(super) levers: [f64; 2],
-    /// R*, m.
+    /// Effective radius R*, m.
     pub(super) r_eff: f64,
 }
 

@@ -10,7 +10,7 @@ use crate::settings::{EngineSettings, Features};
 use grainlab_core::Vec3;
 use grainlab_core::contact::{ContactSprings, HistoryStep, LawVisitor, TangentialLaw};
 
-/// What springs and sliders do from the positions of one evaluation to those of the next, under any law.
+/// Works of springs and sliders from the positions of one evaluation to those of the next, under any law.
 pub(super) struct PathWorks<'a> {
     pub(super) state: &'a State,
     pub(super) contacts: &'a Contacts,

@@ -3,10 +3,11 @@
 use super::contact_sums::SlotForces;
 use crate::pairs::contacts::Contacts;
 use crate::simd::simd_f64::BLOCK_SIZE;
+use grainlab_core::backbone;
 
 /// Forces on grains, and which grains are rattlers.
 pub(super) struct NetForces {
-    /// Whether each grain is no rattler.
+    /// True for each grain that is no rattler.
     backbone: Vec<bool>,
     /// Number of contacts, those of rattlers included.
     pub(super) contacts: u32,
@@ -19,7 +20,6 @@ impl NetForces {
     /// grain of each slot.
     pub(super) fn new(contacts: &Contacts, force: &[SlotForces], grains: usize, min_contacts: u32) -> Self {
         let mut net_force = vec![[0.0; 3]; grains];
-        let mut count = vec![0u32; grains];
         let mut pairs = vec![[0u32; 2]; contacts.slots()];
         let mut touching = 0;
         for (block, force) in contacts.blocks().zip(force) {
@@ -31,26 +31,12 @@ impl NetForces {
                     net_force[j][k] += f[lane];
                 }
                 let touches = block.contact_radius[lane] > 0.0;
-                count[i] += u32::from(touches);
-                count[j] += u32::from(touches);
                 pairs[touching] = [block.i[lane], block.j[lane]];
                 touching += usize::from(touches);
             }
         }
         pairs.truncate(touching);
-        let mut backbone = vec![true; grains];
-        while remove_rattlers(&mut backbone, &count, min_contacts) {
-            // Contacts of rattlers bear no load.
-            pairs.retain(|pair| {
-                let [i, j] = pair.map(|grain| grain as usize);
-                let in_backbone = backbone[i] && backbone[j];
-                if !in_backbone {
-                    count[i] -= 1;
-                    count[j] -= 1;
-                }
-                in_backbone
-            });
-        }
+        let backbone = backbone(grains, pairs, min_contacts);
         Self { backbone, contacts: touching as u32, net_force }
     }
 
@@ -62,14 +48,4 @@ impl NetForces {
         let sum: f64 = backbone.map(|(n, _)| size(n)).sum();
         (count > 0).then(|| sum / count as f64)
     }
-}
-
-/// Removes all grains with fewer than `min_contacts`. Returns whether there were any.
-fn remove_rattlers(backbone: &mut [bool], count: &[u32], min_contacts: u32) -> bool {
-    let mut removed = false;
-    for (backbone, count) in backbone.iter_mut().zip(count) {
-        removed |= *backbone && *count < min_contacts;
-        *backbone &= *count >= min_contacts;
-    }
-    removed
 }

@@ -23,13 +23,9 @@ pub(crate) struct Contacts {
 
 impl Contacts {
     /// These contacts, which must come sorted, in one subdomain.
-    pub(crate) fn from_saved(
-        state: &State,
-        saved: impl Iterator<Item = SavedContact>,
-        expected: usize,
-    ) -> Self {
+    pub(crate) fn from_saved(state: &State, saved: Vec<SavedContact>) -> Self {
         let mut images = Images::new(state);
-        let mut pairs = PairsBuilder::new(state, Subdomain::whole(state.len()), expected);
+        let mut pairs = PairsBuilder::new(state, Subdomain::whole(state.len()), saved.len());
         for SavedContact { i, j, image, history } in saved {
             let image = images.index(image, &state.cell);
             pairs.push(state, &images, Pair { i, j, image, history });
@@ -39,7 +35,7 @@ impl Contacts {
 
     /// The contacts of a packing.
     pub(crate) fn from_packing(packing: &Packing, state: &State) -> Self {
-        let saved = packing.contacts.iter().map(|c| {
+        let saved = |c: &Contact| {
             let (r_i, r_j) = (state.radius[c.i as usize], state.radius[c.j as usize]);
             let history = History {
                 contact_radius: (effective_radius(r_i, r_j) * c.overlap).sqrt(),
@@ -47,8 +43,8 @@ impl Contacts {
                 rolling: c.rolling_force,
             };
             SavedContact { i: c.i, j: c.j, image: c.image, history }
-        });
-        Self::from_saved(state, saved, packing.contacts.len())
+        };
+        Self::from_saved(state, packing.contacts.iter().map(saved).collect())
     }
 
     /// All blocks, in the order of the sum.

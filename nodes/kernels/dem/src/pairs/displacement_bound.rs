@@ -1,4 +1,4 @@
-//! How long a list of pairs stays valid.
+//! Time for which a list of pairs stays valid.
 
 /// A bound on how much closer pairs have come since a list was made.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ impl DisplacementBound {
         self.steps += 1;
     }
 
-    /// Whether a pair missing from the list could touch. The list holds pairs closer than S + skin. The affine motion brings
+    /// True if a pair missing from the list could touch. The list holds pairs closer than S + skin. The affine motion brings
     /// the others no closer than (1 − strain)(S + skin), and each grain of a pair moved by at most `displacement`.
     pub(crate) fn is_stale(&self, reach: f64) -> bool {
         (1.0 - self.strain) * (reach + self.skin) - 2.0 * self.displacement <= reach

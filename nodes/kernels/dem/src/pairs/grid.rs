@@ -23,7 +23,7 @@ pub(super) struct Grid {
     end: Vec<u32>,
     /// Grains, bin after bin, in ascending order in each.
     members: Vec<u32>,
-    /// Their centres, folded into the cell, and radii, m.
+    /// Centres of the members, folded into the cell, and radii, m.
     spheres: Vec<F64x4>,
 }
 

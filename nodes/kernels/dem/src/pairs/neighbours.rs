@@ -94,7 +94,7 @@ impl Neighbours {
                 range = range.start + from..range.start + to;
             }
             let (here, radius) = (vector(&state.position[i]), state.radius[i]);
-            // Which of them are near is unpredictable: count without a branch.
+            // Near pairs cannot be predicted: count them without a branch.
             let mut count = 0;
             for (q, (j, image)) in range.clone().zip(self.j[range.clone()].iter().zip(&self.image[range])) {
                 let branch = vector(&state.position[*j as usize]) - here + vector(&offsets[*image as usize]);
@@ -125,13 +125,13 @@ impl<'a> HistoryCursor<'a> {
     /// For the pairs of subdomain `k`.
     fn new(old: &'a Contacts, k: usize, subdomain: &Subdomain) -> Self {
         let blocks = match old.subdomains.get(k) {
-            Some(pairs) if pairs.subdomain() == subdomain => vec![(&pairs.blocks[..], &pairs.rolling[..])],
+            Some(pairs) if pairs.subdomain == *subdomain => vec![(&pairs.blocks[..], &pairs.rolling[..])],
             _ => old.subdomains.iter().map(|s| (s.owned_blocks(), s.owned_rolling())).collect(),
         };
         Self { images: &old.images, blocks, run: 0, slot: 0 }
     }
 
-    /// What a pair remembers, zero where it did not touch. Pairs must be asked for in order.
+    /// History of a pair, zero where it did not touch. Pairs must be asked for in order.
     #[inline]
     fn take(&mut self, i: u32, j: u32, image: [i8; 3]) -> History {
         while let Some((blocks, rolling)) = self.blocks.get(self.run) {

@@ -15,7 +15,7 @@ use grainlab_core::effective_radius;
 /// waiting for others. What two subdomains evaluate has the same bits in both.
 #[derive(Clone, Debug)]
 pub(crate) struct SubdomainPairs {
-    subdomain: Subdomain,
+    pub(crate) subdomain: Subdomain,
     pub(crate) blocks: Vec<PairBlock>,
     /// Beside each block; empty where contacts do not resist rolling.
     pub(crate) rolling: Vec<RollingBlock>,
@@ -27,7 +27,7 @@ pub(crate) struct SubdomainPairs {
     /// First of `periodic` for each chunk, and the end.
     periodic_start: Vec<u32>,
     /// Grains of other subdomains in its pairs; they may repeat.
-    ghosts: Vec<u32>,
+    pub(crate) ghosts: Vec<u32>,
     accumulator: ForceAccumulator,
 }
 
@@ -61,22 +61,12 @@ impl PartPairs<'_> {
             rolling: if self.rolling.is_empty() { &mut [] } else { &mut self.rolling[own.clone()] },
             blocks: &mut self.blocks[own],
             periodic: &self.periodic[self.periodic_start[c] as usize..self.periodic_start[c + 1] as usize],
-            sums: self.accumulator.rows(),
+            sums: self.accumulator.rows,
         }
     }
 }
 
 impl SubdomainPairs {
-    /// The grains of the subdomain.
-    pub(crate) fn subdomain(&self) -> &Subdomain {
-        &self.subdomain
-    }
-
-    /// Grains of other subdomains in its pairs; they may repeat.
-    pub(crate) fn ghosts(&self) -> &[u32] {
-        &self.ghosts
-    }
-
     /// The blocks of pairs whose first grain is owned, with their sizes, chunk by chunk.
     pub(crate) fn owned_chunks(&self) -> impl Iterator<Item = (&[PairBlock], &[PairSizes])> {
         self.chunk_start[self.subdomain.chunks().start..].windows(2).map(|c| {
@@ -183,7 +173,7 @@ impl PairsBuilder {
         let (lane, pairs) = (self.filled, &mut self.pairs);
         self.filled += 1;
         let accumulator_row = self.accumulator.row(i / CHUNK_SIZE, j);
-        let owned = self.accumulator.grains();
+        let owned = self.accumulator.grains.clone();
         for grain in [pair.i, pair.j] {
             // The pairs of a grain are consecutive, so this leaves out most repetitions.
             if !owned.contains(&(grain as usize)) && pairs.ghosts.last() != Some(&grain) {

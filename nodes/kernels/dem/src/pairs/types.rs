@@ -6,7 +6,7 @@ use grainlab_core::Vec3;
 /// Row in the table of periodic images of the pairs that only pad a block. It is so far away that they never touch.
 pub(crate) const PADDING: u32 = 0;
 
-/// Eight pairs.
+/// Block of eight pairs.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct PairBlock {
@@ -42,13 +42,13 @@ pub(crate) struct PairSizes {
 /// A pair whose second grain is a periodic image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PeriodicPair {
-    /// Its slot among those of its chunk.
+    /// Slot of the pair among those of its chunk.
     pub(crate) slot: u32,
     /// Row in the table of periodic images.
     pub(crate) image: u32,
 }
 
-/// One pair.
+/// Pair of near grains.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     pub(crate) i: u32,
@@ -58,7 +58,7 @@ pub(crate) struct Pair {
     pub(crate) history: History,
 }
 
-/// What a contact remembers of the steps before.
+/// State of a contact that the steps before left.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct History {
     /// Contact radius √(R* δ), m; 0 where the pair does not touch.
@@ -98,7 +98,7 @@ impl Pair {
 }
 
 impl PairBlock {
-    /// What the contact in a lane remembers.
+    /// History of the contact in a lane.
     #[inline(always)]
     pub(crate) fn history(&self, rolling: Option<&RollingBlock>, lane: usize) -> History {
         let vector = |h: &[[f64; BLOCK_SIZE]; 3]| Vec3::new(h[0][lane], h[1][lane], h[2][lane]);

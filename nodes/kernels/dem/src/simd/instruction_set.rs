@@ -19,7 +19,7 @@ impl Simd {
     /// All instruction sets, from narrow to wide.
     pub const ALL: [Simd; 3] = [Simd::Scalar, Simd::Avx2, Simd::Avx512];
 
-    /// Whether this processor has the instruction set.
+    /// True if this processor has the instruction set.
     pub fn is_available(self) -> bool {
         match self {
             Simd::Scalar => true,

@@ -62,9 +62,9 @@ pub(crate) trait SimdF64: Lanes {
     fn load(from: &[f64; BLOCK_SIZE], lane: usize) -> Self;
     /// Writes lanes `lane..lane + WIDTH` of a block.
     fn store(self, to: &mut [f64; BLOCK_SIZE], lane: usize);
-    /// Whether indices `lane..lane + WIDTH` of a block are below a bound.
+    /// True if indices `lane..lane + WIDTH` of a block are below a bound.
     fn all_below(indices: &[u32; BLOCK_SIZE], lane: usize, bound: usize) -> bool;
-    /// The same indices, hidden from the optimiser so that they are read from memory one by one: taking them out of a wide
+    /// These indices, hidden from the optimiser so that they are read from memory one by one: taking them out of a wide
     /// register would cost more.
     #[inline(always)]
     fn launder(indices: &[u32; BLOCK_SIZE]) -> &[u32; BLOCK_SIZE] {
@@ -87,7 +87,7 @@ pub(crate) trait SimdF64: Lanes {
         a: CheckedIndices<'_, Self>,
         b: CheckedIndices<'_, Self>,
     ) -> [LaneVec3<Self>; 2];
-    /// Spins.
+    /// Spins of grains, rad/s.
     fn gather_spins(table: &[F64x8], at: CheckedIndices<'_, Self>) -> LaneVec3<Self>;
     /// Prefetches rows of a table, where the processor can.
     fn prefetch<T>(table: &[T], rows: &[u32; BLOCK_SIZE]);
@@ -144,13 +144,13 @@ pub(crate) trait SimdF64: Lanes {
 
 /// Four numbers of one grain.
 pub(crate) trait SimdRow: Copy {
-    /// The same number four times.
+    /// One number four times.
     fn splat(value: f64) -> Self;
     /// Numbers `at..at + 4`.
     fn load<const N: usize>(from: &[f64; N], at: usize) -> Self;
     /// Writes numbers `at..at + 4`.
     fn store<const N: usize>(self, to: &mut [f64; N], at: usize);
-    /// Sum.
+    /// Sum of two rows.
     fn add(self, other: Self) -> Self;
     /// Product, number by number.
     fn mul(self, other: Self) -> Self;

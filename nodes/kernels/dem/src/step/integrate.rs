@@ -50,35 +50,16 @@ pub(crate) struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    /// Splits a state into the grains and the coefficients of their motion.
-    pub(crate) fn split(state: &'a mut State, settings: &EngineSettings) -> (Self, GrainsMut<'a>) {
-        let (is_monodisperse, rate, dt) = (state.is_monodisperse(), state.rate, state.time_step);
-        let State { position, twist, inverse_mass, inverse_inertia, .. } = state;
-        let motion = Self::new([inverse_mass, inverse_inertia], is_monodisperse, &rate, dt, settings);
-        (motion, GrainsMut::new(position, twist))
-    }
-
-    /// The coefficients alone, for grains that are stored elsewhere.
     pub(crate) fn of(state: &'a State, settings: &EngineSettings) -> Self {
-        let inertia = [&state.inverse_mass[..], &state.inverse_inertia];
-        Self::new(inertia, state.is_monodisperse(), &state.rate, state.time_step, settings)
-    }
-
-    fn new(
-        [inverse_mass, inverse_inertia]: [&'a [f64]; 2],
-        is_monodisperse: bool,
-        rate: &Mat3,
-        dt: f64,
-        settings: &EngineSettings,
-    ) -> Self {
         // Drag may stop a grain, but must not reverse it.
-        let factor = |drag: f64| (1.0 - drag * dt).max(0.0);
+        let factor = |drag: f64| (1.0 - drag * state.time_step).max(0.0);
+        let rate = &state.rate;
         Self {
-            inverse_mass,
-            inverse_inertia,
-            is_monodisperse,
+            inverse_mass: &state.inverse_mass,
+            inverse_inertia: &state.inverse_inertia,
+            is_monodisperse: state.is_monodisperse(),
             rate: [0, 1, 2].map(|c| [rate[(0, c)], rate[(1, c)], rate[(2, c)], 0.0]),
-            dt,
+            dt: state.time_step,
             drag_factors: [factor(settings.drag), factor(settings.spin_drag)],
             has_spins: settings.features() != Features::Frictionless,
         }

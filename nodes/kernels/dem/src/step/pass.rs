@@ -9,24 +9,25 @@ use super::integrate::{self, Motion, SpeedStats};
 use crate::domain::accumulator::ChunkForces;
 use crate::domain::compute::Compute;
 use crate::domain::distributed_state::{DistributedState, SubdomainView};
-use crate::domain::state::State;
+use crate::domain::state::{GrainsMut, State};
 use crate::force::geometry::ForceInput;
-use crate::force::kernel::{FrictionalKernel, FrictionlessKernel};
+use crate::force::kernel::{Frictional, Frictionless, forces};
 use crate::force::virial::{self, Virial};
 use crate::pairs::contacts::Contacts;
 use crate::pairs::subdomain_pairs::SubdomainPairs;
 use crate::pairs::types::PairChunk;
 use crate::settings::{EngineSettings, Features};
 use crate::simd::instruction_set::Simd;
-use crate::simd::simd_f64::{CHUNK_SIZE, F64x4};
+use crate::simd::simd_f64::CHUNK_SIZE;
 use grainlab_core::contact::{ContactSprings, LawVisitor, TangentialLaw};
+use std::mem::take;
 
-/// What a pass does.
+/// Work of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PassKind {
     /// Evaluates forces at the present positions.
     Forces,
-    /// The same, with the tangential history as it is instead of one step further (after a resume).
+    /// Evaluates forces with the tangential history as it is instead of one step further (after a resume).
     ForcesAsSaved,
     /// Moves all grains over one step, under the forces last evaluated.
     Motion,
@@ -34,55 +35,57 @@ pub(crate) enum PassKind {
     ForcesAndMotion,
 }
 
-/// The data of a pass.
+/// One pass over all grains.
 pub(crate) struct Pass<'a> {
     pub(crate) state: &'a mut State,
     pub(crate) copies: &'a mut DistributedState,
     pub(crate) contacts: &'a mut Contacts,
     pub(crate) settings: &'a EngineSettings,
     pub(crate) compute: &'a Compute,
+    pub(crate) kind: PassKind,
+    /// True if the virial is summed, where forces are evaluated.
+    pub(crate) with_virial: bool,
 }
 
 impl Pass<'_> {
-    /// Runs over all grains. The virial is summed if `with_virial`, where forces are evaluated.
-    pub(crate) fn run(self, kind: PassKind, with_virial: bool) -> (Virial, SpeedStats) {
+    pub(crate) fn run(self) -> (Virial, SpeedStats) {
         let (law, material) = (self.state.law, self.state.material);
-        law.visit(&material, LawPass { pass: self, kind, with_virial })
+        law.visit(&material, self)
     }
 }
 
-/// A pass, compiled for each contact law.
-struct LawPass<'a> {
-    pass: Pass<'a>,
-    kind: PassKind,
-    with_virial: bool,
-}
-
-impl LawVisitor for LawPass<'_> {
+impl LawVisitor for Pass<'_> {
     type Output = (Virial, SpeedStats);
 
     fn visit<S: ContactSprings>(self, springs: S) -> Self::Output {
-        let Self { pass: Pass { state, copies, contacts, settings, compute }, kind, with_virial } = self;
-        let kernel = force_kernel::<S>(settings, kind, !state.is_monodisperse());
+        let Self { state, copies, contacts, settings, compute, kind, with_virial } = self;
+        let kernel = if state.is_monodisperse() { kernel_for::<S, false> } else { kernel_for::<S, true> };
+        let kernel = kernel(settings, kind == PassKind::ForcesAsSaved);
         let over = SubdomainPass { kind, kernel, simd: compute.simd(), with_virial };
+        let offset = contacts.images.offsets();
         if let [pairs] = &mut contacts.subdomains[..] {
             copies.clear();
-            let offset = contacts.images.offsets();
-            return join([over.run(pairs, &mut WholeState { state, offset, settings, springs })]);
+            // Taken out of the state, so that grains move while the rest of it is read.
+            let (mut position, mut twist) = (take(&mut state.position), take(&mut state.twist));
+            let (input, motion) =
+                (ForceInput::new(state, offset, settings, springs), Motion::of(state, settings));
+            let all = GrainsMut { position: &mut position, twist: &mut twist };
+            let results = join([over.run(pairs, &mut Grains { all, input, motion })]);
+            (state.position, state.twist) = (position, twist);
+            return results;
         }
-        if !copies.is_current() {
+        if !copies.is_current {
             let subdomains: Vec<_> =
-                contacts.subdomains.iter().map(|p| (p.subdomain(), p.ghosts())).collect();
+                contacts.subdomains.iter().map(|p| (&p.subdomain, &p.ghosts[..])).collect();
             copies.scatter(state, &subdomains, compute);
         }
-        let input = ForceInput::new(state, contacts.images.offsets(), settings, springs);
-        let motion = Motion::of(state, settings);
+        let (input, motion) =
+            (ForceInput::new(state, offset, settings, springs), Motion::of(state, settings));
         let work = |(mut view, pairs): (SubdomainView<'_>, &mut SubdomainPairs)| {
             view.receive_halo();
-            let mut grains = SubdomainCopy { view, input, motion };
-            let parts = over.run(pairs, &mut grains);
+            let parts = over.run(pairs, &mut Grains { all: view.grains_mut(), input, motion });
             if over.moves() {
-                grains.view.send_halo();
+                view.send_halo();
             }
             parts
         };
@@ -107,50 +110,21 @@ fn join(subdomains: impl IntoIterator<Item = PartResults>) -> (Virial, SpeedStat
     total
 }
 
-/// Where the grains of a subdomain are stored.
-trait GrainStorage<S> {
-    /// The input of the force kernel.
-    fn force_input(&self) -> ForceInput<'_, S>;
-
-    /// Moves the grains of a chunk.
-    fn advance(&mut self, chunk: usize, forces: impl ChunkForces, simd: Simd) -> SpeedStats;
-}
-
-/// In the state itself.
-struct WholeState<'a, S> {
-    state: &'a mut State,
-    offset: &'a [F64x4],
-    settings: &'a EngineSettings,
-    springs: S,
-}
-
-impl<S: ContactSprings> GrainStorage<S> for WholeState<'_, S> {
-    fn force_input(&self) -> ForceInput<'_, S> {
-        ForceInput::new(self.state, self.offset, self.settings, self.springs)
-    }
-
-    fn advance(&mut self, chunk: usize, forces: impl ChunkForces, simd: Simd) -> SpeedStats {
-        let (motion, grains) = Motion::split(self.state, self.settings);
-        integrate::advance(&motion, forces, chunk * CHUNK_SIZE, grains.chunk(chunk, CHUNK_SIZE), simd)
-    }
-}
-
-/// In the copy of the subdomain.
-struct SubdomainCopy<'a, S> {
-    view: SubdomainView<'a>,
-    /// The input with the grains of the state.
+/// The grains of a subdomain, in the state or in a copy of it.
+struct Grains<'a, S> {
+    all: GrainsMut<'a>,
+    /// Without the grains.
     input: ForceInput<'a, S>,
     motion: Motion<'a>,
 }
 
-impl<S: ContactSprings> GrainStorage<S> for SubdomainCopy<'_, S> {
+impl<S: ContactSprings> Grains<'_, S> {
     fn force_input(&self) -> ForceInput<'_, S> {
-        ForceInput { position: self.view.positions(), twist: self.view.twists(), ..self.input }
+        ForceInput { position: self.all.position, twist: self.all.twist, ..self.input }
     }
 
     fn advance(&mut self, chunk: usize, forces: impl ChunkForces, simd: Simd) -> SpeedStats {
-        let grains = self.view.grains_mut().chunk(chunk, CHUNK_SIZE);
-        integrate::advance(&self.motion, forces, chunk * CHUNK_SIZE, grains, simd)
+        integrate::advance(&self.motion, forces, chunk * CHUNK_SIZE, self.all.chunk(chunk), simd)
     }
 }
 
@@ -168,19 +142,19 @@ impl<S: ContactSprings> SubdomainPass<S> {
     }
 
     /// Virial and speeds of each owned part.
-    fn run(&self, pairs: &mut SubdomainPairs, grains: &mut impl GrainStorage<S>) -> PartResults {
+    fn run(&self, pairs: &mut SubdomainPairs, grains: &mut Grains<'_, S>) -> PartResults {
         if self.kind == PassKind::Motion {
             return self.motion(pairs, grains);
         }
-        let owned = pairs.subdomain().parts();
+        let owned = pairs.subdomain.parts();
         for part in 0..owned.start {
             self.earlier_part(pairs, part, grains);
         }
         owned.map(|part| self.owned_part(pairs, part, grains)).collect()
     }
 
-    fn motion(&self, pairs: &SubdomainPairs, grains: &mut impl GrainStorage<S>) -> PartResults {
-        let subdomain = pairs.subdomain();
+    fn motion(&self, pairs: &SubdomainPairs, grains: &mut Grains<'_, S>) -> PartResults {
+        let subdomain = &pairs.subdomain;
         let mut parts = vec![(Virial::default(), SpeedStats::default()); subdomain.parts().len()];
         for (chunk, forces) in subdomain.chunks().zip(pairs.stored_forces()) {
             let part = subdomain.part_of(chunk) - subdomain.parts().start;
@@ -190,7 +164,7 @@ impl<S: ContactSprings> SubdomainPass<S> {
     }
 
     /// Pairs of an earlier subdomain that act on owned grains. Their virial is summed there.
-    fn earlier_part(&self, pairs: &mut SubdomainPairs, part: usize, grains: &impl GrainStorage<S>) {
+    fn earlier_part(&self, pairs: &mut SubdomainPairs, part: usize, grains: &Grains<'_, S>) {
         let mut pairs = pairs.part_mut(part);
         pairs.accumulator.begin();
         for c in 0..pairs.chunks() {
@@ -203,9 +177,9 @@ impl<S: ContactSprings> SubdomainPass<S> {
         &self,
         pairs: &mut SubdomainPairs,
         part: usize,
-        grains: &mut impl GrainStorage<S>,
+        grains: &mut Grains<'_, S>,
     ) -> (Virial, SpeedStats) {
-        let first = pairs.subdomain().chunks_of(part).start;
+        let first = pairs.subdomain.chunks_of(part).start;
         let mut pairs = pairs.part_mut(part);
         let (mut periodic, mut inner) = (Virial::default(), Virial::default());
         let mut stats = SpeedStats::default();
@@ -236,47 +210,18 @@ impl<S: ContactSprings> SubdomainPass<S> {
 type ForceKernel<S> = fn(Simd, ForceInput<'_, S>, PairChunk<'_>, bool) -> Virial;
 
 /// The force kernel compiled for these features.
-fn force_kernel<S: ContactSprings>(settings: &EngineSettings, kind: PassKind, sizes: bool) -> ForceKernel<S> {
-    let as_saved = kind == PassKind::ForcesAsSaved;
-    if sizes { kernel_for::<S, true>(settings, as_saved) } else { kernel_for::<S, false>(settings, as_saved) }
-}
-
 fn kernel_for<S: ContactSprings, const SIZES: bool>(
     settings: &EngineSettings,
     as_saved: bool,
 ) -> ForceKernel<S> {
     let rescaled = settings.tangential == TangentialLaw::Rescaled;
     match (settings.features(), rescaled, as_saved) {
-        (Features::Frictionless, ..) => frictionless::<S, SIZES>,
-        (Features::Sliding, true, false) => frictional::<S, true, true, true, SIZES>,
-        (Features::Sliding, false, false) => frictional::<S, true, true, false, SIZES>,
-        (Features::NoSlip, true, false) => frictional::<S, true, false, true, SIZES>,
-        (Features::NoSlip, false, false) => frictional::<S, true, false, false, SIZES>,
-        (Features::Sliding, _, true) => frictional::<S, false, true, false, SIZES>,
-        (Features::NoSlip, _, true) => frictional::<S, false, false, false, SIZES>,
+        (Features::Frictionless, ..) => forces::<Frictionless<S, SIZES>>,
+        (Features::Sliding, true, false) => forces::<Frictional<S, true, true, true, SIZES>>,
+        (Features::Sliding, false, false) => forces::<Frictional<S, true, true, false, SIZES>>,
+        (Features::NoSlip, true, false) => forces::<Frictional<S, true, false, true, SIZES>>,
+        (Features::NoSlip, false, false) => forces::<Frictional<S, true, false, false, SIZES>>,
+        (Features::Sliding, _, true) => forces::<Frictional<S, false, true, false, SIZES>>,
+        (Features::NoSlip, _, true) => forces::<Frictional<S, false, false, false, SIZES>>,
     }
-}
-
-fn frictionless<S: ContactSprings, const SIZES: bool>(
-    simd: Simd,
-    input: ForceInput<'_, S>,
-    chunk: PairChunk<'_>,
-    with_virial: bool,
-) -> Virial {
-    simd.run(FrictionlessKernel::<S, SIZES> { input, chunk, with_virial })
-}
-
-fn frictional<
-    S: ContactSprings,
-    const ADVANCE: bool,
-    const SLIDING: bool,
-    const RESCALED: bool,
-    const SIZES: bool,
->(
-    simd: Simd,
-    input: ForceInput<'_, S>,
-    chunk: PairChunk<'_>,
-    with_virial: bool,
-) -> Virial {
-    simd.run(FrictionalKernel::<S, ADVANCE, SLIDING, RESCALED, SIZES> { input, chunk, with_virial })
 }

@@ -47,9 +47,9 @@ pub(crate) fn stable(state: &State, contacts: &Contacts, settings: &EngineSettin
 /// Sums over the springs and dashpots of a grain, per mass: no eigenvalue of its block is larger.
 #[derive(Clone, Copy, Default)]
 struct Load {
-    /// 1/s².
+    /// Stiffness per mass, 1/s².
     stiffness: f64,
-    /// 1/s.
+    /// Damping per mass, 1/s.
     damping: f64,
 }
 
@@ -202,7 +202,7 @@ impl Springs<'_> {
         low
     }
 
-    /// Whether 4 − h² K − 2 h C is positive definite. Rotations are scaled so that their inertia is the mass.
+    /// True if 4 − h² K − 2 h C is positive definite. Rotations are scaled so that their inertia is the mass.
     fn is_stable(&self, block: &GrainBlock, h: f64) -> bool {
         // Sums with the tangential coefficients, the excess of the normal ones, and all that resists rotation.
         let (mut across, mut excess, mut turning) = ([0.0; 10], [0.0; 10], [0.0; 10]);
@@ -233,7 +233,7 @@ impl Springs<'_> {
     }
 }
 
-/// Whether a symmetric matrix, given by its lower triangle, is positive definite: all pivots of L D Lᵀ are positive.
+/// True if a symmetric matrix, given by its lower triangle, is positive definite: all pivots of L D Lᵀ are positive.
 fn is_positive(mut m: [[f64; 6]; 6]) -> bool {
     for pivot in 0..6 {
         let column = m.map(|row| row[pivot]);

@@ -8,7 +8,7 @@ use grainlab_dem::{Engine, EngineSettings, Features, TimeStep};
 const PERIOD: usize = 7;
 const RATE: [f64; 6] = [-30.0, -20.0, -25.0, 4.0, -6.0, 5.0];
 
-/// How the strain rate comes about.
+/// Source of the strain rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Drive {
     Strained,
@@ -55,7 +55,7 @@ fn run(e: &mut Engine, drive: Drive, origin: u64, end: u64, look: bool) {
     }
 }
 
-/// What is saved of a run: the packing, and the rate that its forces arose under.
+/// The saved part of a run: the packing, and the rate that its forces arose under.
 fn reloaded(e: &Engine, s: EngineSettings) -> Engine {
     let (saved, rate) = (packing(e).validated().unwrap(), e.rate());
     let mut loaded = Engine::from_packing(&saved, s).unwrap();

@@ -86,7 +86,7 @@ fn two_grains_collide_obliquely_with_friction_and_keep_angular_momentum() {
             if tangential == TangentialLaw::Rescaled || friction.is_finite() {
                 assert!(gain < -1e-3, "{tangential:?}, friction {friction}: {gain}");
             } else {
-                // What "rescaled" is there for: this law gives back on parting what it was not given on approach.
+                // "rescaled" prevents this: the law gives back on parting energy that it was not given on approach.
                 assert!(gain > 1e-4 && gain < 1e-2, "{gain}");
             }
         }

@@ -1,4 +1,4 @@
-//! What no law covers is refused with grains and numbers named, never answered with numbers that are not.
+//! Cases that no law covers are refused with grains and numbers named, never answered with numbers that are not.
 
 use crate::support::*;
 use grainlab_core::contact::{ContactLaw, Linear, SpringLaw};

@@ -176,7 +176,7 @@ fn a_packing_at_105_hundredths_of_its_true_limit_is_refused_within_a_hundred_ste
     assert!(packing(&e).validated().is_ok(), "the state that was refused is still finite");
 }
 
-/// What share of its true limit the engine chooses, if contacts, and not the Rayleigh wave, set the step.
+/// Share of its true limit that the engine chooses, if contacts, and not the Rayleigh wave, set the step.
 fn share(radii: &[f64], x: &[Vec3], cell: Cell, friction: f64, damping: f64) -> Option<f64> {
     let mut s = setting(friction, 0.0);
     (s.time_step, s.damping) = (TimeStep::FractionOfStable(1.0), damping);

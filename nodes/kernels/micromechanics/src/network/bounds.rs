@@ -52,7 +52,7 @@ impl SpringNetwork {
     /// A spin θ of all grains displaces a contact by −(λ_i + λ_j) θ×n = −θ×l.
     pub(crate) fn spin_energy(&self) -> SpinEnergy {
         let (mut spin, mut coupling) = (Matrix3::zeros(), Matrix6x3::zeros());
-        for s in self.springs() {
+        for s in &self.springs {
             let affine = s.affine();
             let [x, y, z] = s.branch();
             // Columns: θ along x, y, z.

@@ -18,7 +18,7 @@ pub(crate) struct Descent<'a, T, const G: bool> {
     half: Vec<Rows<T>>,
     /// s = p − D t = Lᵀ t, consumed by the forward sweep.
     taken: Vec<Rows<T>>,
-    /// Whether a direction of negative stiffness was found, which requires prestress.
+    /// True if a direction of negative stiffness was found, which requires prestress.
     pub(crate) unstable: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The same systems by a sparse Cholesky factorisation: a second way to every stiffness, to check the first
+//! Sparse Cholesky factorisation for these systems: a second way to every stiffness, to check the first
 //! one. They share only the operator and the definition of residuals.
 //!
 //! At 2,000 grains a factorisation costs as much as about 1,000 iterations of [`super::solve()`] with
@@ -114,7 +114,7 @@ impl Factor {
                 }
             }
         }
-        for s in network.springs().iter().filter(|s| s.i != s.j) {
+        for s in network.springs.iter().filter(|s| s.i != s.j) {
             for (row, entries) in s.coupling().iter().enumerate() {
                 for (column, entry) in entries.iter().enumerate() {
                     enter((s.i as usize, row), (s.j as usize, column), *entry);

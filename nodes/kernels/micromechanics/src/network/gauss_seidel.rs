@@ -16,7 +16,7 @@ use super::spring_network::{Spring, SpringNetwork};
 /// φ_x, φ_y, φ_z.
 pub(crate) type Rows<T> = [[T; WIDTH]; 6];
 
-/// No motion.
+/// A grain at rest.
 pub(crate) const fn still<T: Real>() -> Rows<T> {
     [[T::ZERO; WIDTH]; 6]
 }
@@ -33,9 +33,9 @@ pub(crate) struct Sweeps<T, const G: bool> {
     springs: Vec<Half<T>>,
     /// Springs of grain g to later grains: `springs[first[g]..first[g + 1]]`.
     first: Vec<u32>,
-    /// D.
+    /// Diagonal blocks D.
     blocks: Vec<Packed<T>>,
-    /// D⁻¹.
+    /// Generalised inverses D⁻¹.
     inverse: Vec<Packed<T>>,
     /// Grain of the packing at each place.
     pub(crate) order: Vec<u32>,
@@ -59,7 +59,7 @@ struct Half<T> {
     later: u32,
     /// Towards the later grain.
     normal: [T; 3],
-    /// Of the earlier and the later grain.
+    /// Levers of the earlier and the later grain.
     levers: [T; 2],
     tangential: T,
     kn_minus_kt: T,
@@ -68,7 +68,7 @@ struct Half<T> {
 
 impl<T: Real, const G: bool> Sweeps<T, G> {
     pub(crate) fn new(network: &SpringNetwork) -> Self {
-        let order = network.order().to_vec();
+        let order = network.order.clone();
         let mut places = vec![0u32; order.len()];
         for (at, grain) in order.iter().enumerate() {
             places[*grain as usize] = at as u32;
@@ -78,7 +78,7 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
         let unit = if traces > 0.0 { traces / (3 * blocks.len()) as f64 } else { 1.0 };
         let between = |s: &&Spring| s.i != s.j;
         let mut springs: Vec<(u32, Half<T>)> =
-            network.springs().iter().filter(between).map(|s| Half::of(s, &places, unit)).collect();
+            network.springs.iter().filter(between).map(|s| Half::of(s, &places, unit)).collect();
         springs.sort_by_key(|(earlier, half)| (*earlier, half.later));
         let mut first = vec![0u32; order.len() + 1];
         springs.iter().for_each(|(earlier, _)| first[*earlier as usize + 1] += 1);
@@ -303,7 +303,7 @@ pub(crate) fn store<V: Lanes>(v: V, x: &Six<V>, to: &mut Rows<V::T>) {
     }
 }
 
-/// m x.
+/// Product m x.
 #[inline(always)]
 fn product<V: Lanes>(v: V, m: &Packed<V::T>, x: &Six<V>) -> Six<V> {
     [

@@ -2,7 +2,7 @@
 
 use super::bounds::uniform_rotation_stiffness;
 use super::direct;
-use super::solve::{Solution, Solver, solve};
+use super::solve::{Solution, Solver, left, solve};
 use super::spring_network::{GrainDofs, SpringNetwork};
 use crate::error::MicroError;
 use grainlab_core::Stiffness;
@@ -38,7 +38,7 @@ pub struct NetworkStiffness {
     pub stddev: Stiffness,
     /// Affine (Voigt) stiffness: every grain moves with the mean deformation.
     pub affine: Stiffness,
-    /// The same with a uniform rotation of all grains: between relaxed and affine.
+    /// Affine stiffness with a uniform rotation of all grains: between relaxed and affine.
     pub uniform_rotation: Stiffness,
     /// Relative residual of the solve, maximum over the six columns.
     pub residual: f64,
@@ -106,7 +106,7 @@ pub fn relaxed_stiffness(
     }
     let left = match solver {
         Solver::Iterative => left_by_iterations(network, &loads, &norms, &solution, max_iterations),
-        // Its residual is at no right angle to the motion.
+        // The residual is at no right angle to the motion.
         Solver::Direct => (relaxed - by_stress).abs(),
     };
     let stddev = left.map(|left| left.max(ROUNDING * scale));
@@ -129,13 +129,9 @@ fn left_by_iterations(
     solution: &Solution<6>,
     max_iterations: u32,
 ) -> Matrix6<f64> {
-    let mut rest = vec![[[0.0; 6]; 6]; loads.len()];
-    network.apply(&solution.motion, &mut rest);
-    for (rest, load) in rest.iter_mut().zip(loads) {
-        for (rest, load) in rest.iter_mut().zip(load) {
-            (0..6).for_each(|l| rest[l] = if norms[l] > 0.0 { load[l] - rest[l] } else { 0.0 });
-        }
-    }
+    let mut image = vec![[[0.0; 6]; 6]; loads.len()];
+    network.apply(&solution.motion, &mut image);
+    let rest = left(loads, &image, norms);
     let square = |x: &[GrainDofs<6>], y: &[GrainDofs<6>], l: usize| -> f64 {
         x.iter().zip(y).map(|(x, y)| (0..6).map(|k| x[k][l] * y[k][l]).sum::<f64>()).sum()
     };

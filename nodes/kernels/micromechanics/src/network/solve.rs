@@ -34,10 +34,10 @@ const ROUNDING: f64 = 1e-12;
 /// Method of the solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Solver {
-    /// By [`solve()`].
+    /// Iterations, by [`solve()`].
     #[default]
     Iterative,
-    /// By [`super::solve_directly()`].
+    /// Factorisation, by [`super::solve_directly()`].
     Direct,
 }
 
@@ -49,7 +49,7 @@ pub struct Solution<const L: usize> {
     /// Norm of the residual of each load, recomputed from the motion, over its scale; maximum over the
     /// columns.
     pub residual: f64,
-    /// Iterations done.
+    /// Number of iterations done.
     pub iterations: u32,
 }
 
@@ -86,6 +86,17 @@ pub(crate) fn add<const L: usize>(share: &[f64; L], x: &[GrainDofs<L>], sum: &mu
     }
 }
 
+/// Loads less the forces that answer a motion, where there is a scale.
+pub(crate) fn left<const L: usize>(
+    load: &[GrainDofs<L>],
+    image: &[GrainDofs<L>],
+    scale: &[f64; L],
+) -> Vec<GrainDofs<L>> {
+    let left = |load: f64, image: f64, l: usize| if scale[l] > 0.0 { load - image } else { 0.0 };
+    let row = |load: &[f64; L], image: &[f64; L]| std::array::from_fn(|l| left(load[l], image[l], l));
+    load.iter().zip(image).map(|(load, image)| std::array::from_fn(|k| row(&load[k], &image[k]))).collect()
+}
+
 /// Solution and residual so far, in double precision.
 pub(crate) struct Refinement<'a, const L: usize> {
     load: &'a [GrainDofs<L>],
@@ -93,7 +104,7 @@ pub(crate) struct Refinement<'a, const L: usize> {
     tolerance: f64,
     max_iterations: u32,
     motion: Vec<GrainDofs<L>>,
-    /// K x.
+    /// Product K x.
     image: Vec<GrainDofs<L>>,
     /// Squared norms of load − K x.
     squares: [f64; L],
@@ -130,7 +141,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
         Ok(new)
     }
 
-    /// The residual.
+    /// Computes the residual.
     fn look(&mut self) {
         self.squares = [0.0; L];
         for (load, image) in self.load.iter().zip(&self.image) {
@@ -166,14 +177,9 @@ impl<'a, const L: usize> Refinement<'a, L> {
 
     /// The residual; zero in columns that stay at zero.
     pub(crate) fn left(&self) -> Vec<GrainDofs<L>> {
-        let left = |load: &f64, image: &f64, l: usize| if self.scale[l] > 0.0 { load - image } else { 0.0 };
-        let row = |load: &[f64; L], image: &[f64; L]| std::array::from_fn(|l| left(&load[l], &image[l], l));
-        let grain =
-            |(load, image): (&GrainDofs<L>, &GrainDofs<L>)| std::array::from_fn(|k| row(&load[k], &image[k]));
-        self.load.iter().zip(&self.image).map(grain).collect()
+        left(self.load, &self.image, self.scale)
     }
 
-    /// One iteration: moves by `length` times `step`, column by column, and updates the residual.
     pub(crate) fn advance(&mut self, network: &SpringNetwork, step: &[GrainDofs<L>], length: &[f64; L]) {
         add(length, step, &mut self.motion);
         self.iterations += 1;
@@ -186,7 +192,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
         self.look();
     }
 
-    /// Whether more iterations are needed and allowed.
+    /// True if more iterations are needed and allowed.
     pub(crate) fn goes_on(&self) -> bool {
         self.residual > self.tolerance && self.iterations < self.max_iterations
     }
@@ -265,7 +271,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
     }
 }
 
-/// Whether a grain with this block, moved alone, has a negative stiffness.
+/// True if a grain with this block, moved alone, has a negative stiffness.
 fn gives_way(block: &Block) -> bool {
     let eigenvalues = Matrix6::from_fn(|i, j| block[i][j]).symmetric_eigenvalues();
     eigenvalues.min() < -ROUNDING * eigenvalues.max()

@@ -49,7 +49,7 @@ pub enum Springs {
 }
 
 impl Springs {
-    /// Whether contacts of this friction coefficient have a k_t.
+    /// True if contacts of this friction coefficient have a k_t.
     pub fn has_tangential(self, friction: f64) -> bool {
         self == Self::NormalAndTangential || (self == Self::Carried && friction > 0.0)
     }
@@ -61,13 +61,13 @@ pub(crate) struct Spring {
     pub(crate) i: u32,
     pub(crate) j: u32,
     pub(crate) normal: [f64; 3],
-    /// |l|/2, m.
+    /// Half the branch, |l|/2, m.
     half_branch: f64,
     /// |l|/(2a): mean lever of a scaled rotation.
     lever: f64,
     /// Levers of i and j over their mean, 1 ± (R_i − R_j)/|l|: exactly 1 where radii are equal.
     share: [f64; 2],
-    /// k_t, N/m.
+    /// Tangential stiffness k_t, N/m.
     pub(crate) tangential: f64,
     /// k_n − k_t, N/m.
     pub(crate) kn_minus_kt: f64,
@@ -78,9 +78,9 @@ pub(crate) struct Spring {
 /// One contact, for other operators on the same network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSpring {
-    /// First grain.
+    /// Index of the first grain.
     pub i: u32,
-    /// Second grain.
+    /// Index of the second grain.
     pub j: u32,
     /// Branch vector from `i` to the touched image of `j`, m.
     pub branch: [f64; 3],
@@ -88,7 +88,7 @@ pub struct ContactSpring {
     pub normal: [f64; 3],
     /// Levers of scaled rotations φ of `i` and `j`: (R − δ/2)/a with a the [`SpringNetwork::spin_scale`].
     pub levers: [f64; 2],
-    /// k_t, N/m.
+    /// Tangential stiffness k_t, N/m.
     pub tangential: f64,
     /// k_n − k_t, N/m.
     pub kn_minus_kt: f64,
@@ -97,12 +97,12 @@ pub struct ContactSpring {
 /// The frozen contact network of a packing: grains, springs, volume.
 #[derive(Clone, Debug)]
 pub struct SpringNetwork {
-    springs: Vec<Spring>,
+    pub(crate) springs: Vec<Spring>,
     grains: usize,
     volume: f64,
     spin_scale: f64,
     /// Grains along a space-filling curve.
-    order: Vec<u32>,
+    pub(crate) order: Vec<u32>,
     prestressed: bool,
 }
 
@@ -154,7 +154,7 @@ impl SpringNetwork {
         if kind == Springs::PrestressedNormal { network.with_prestress(view) } else { Ok(network) }
     }
 
-    /// The same with the prestress term −(F_n/|l|)(1 − nn) on the displacement of the centres: a normal force
+    /// Adds the prestress term −(F_n/|l|)(1 − nn) on the displacement of the centres: a normal force
     /// rotates with its branch. Relative to a tangential spring it is of the order of (2/3) overlap/diameter.
     /// Without such springs it decides whether a network near isostaticity is stiff. Contacts of rattlers are
     /// dropped: under its force a grain on one contact rolls off, while without the term it just follows.
@@ -173,12 +173,12 @@ impl SpringNetwork {
         Ok(self)
     }
 
-    /// Whether the prestress term is included.
+    /// True if the prestress term is included.
     pub fn prestressed(&self) -> bool {
         self.prestressed
     }
 
-    /// Whether no contact has a tangential spring.
+    /// True if no contact has a tangential spring.
     pub fn smooth(&self) -> bool {
         self.springs.iter().all(|s| s.tangential == 0.0)
     }
@@ -209,15 +209,6 @@ impl SpringNetwork {
             tangential: s.tangential,
             kn_minus_kt: s.kn_minus_kt,
         })
-    }
-
-    pub(crate) fn springs(&self) -> &[Spring] {
-        &self.springs
-    }
-
-    /// Grains in an order that keeps neighbours close in memory; depends only on the positions.
-    pub(crate) fn order(&self) -> &[u32] {
-        &self.order
     }
 
     /// The length a that scales rotations, m: θ = φ/a.
@@ -441,7 +432,7 @@ impl Spring {
         }
     }
 
-    /// l, m.
+    /// Branch vector l, m.
     #[inline(always)]
     pub(crate) fn branch(&self) -> [f64; 3] {
         self.normal.map(|n| 2.0 * self.half_branch * n)

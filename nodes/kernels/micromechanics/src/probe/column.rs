@@ -44,7 +44,7 @@ pub struct ProbeColumn {
 }
 
 impl ProbeColumn {
-    /// Whether the network changes under strain: C is then not only that of the packing at rest. One weak
+    /// True if the network changes under strain: C is then not only that of the packing at rest. One weak
     /// contact suffices; [`ProbeColumn::forward_backward`] shows the effect.
     pub fn network_changed(&self) -> bool {
         self.opened + self.closed > 0
@@ -85,13 +85,13 @@ pub(crate) fn strained(
     let share = if component < 3 { 1.0 } else { 0.5 };
     rate[component] = share * settings.amplitude / (f64::from(strain_steps) * at_rest.engine.time_step());
     let mut relaxation = Relaxation::new(vec![at_rest.engine.clone(); 2]);
-    for (engine, side) in relaxation.engines_mut().iter_mut().zip(sides) {
+    for (engine, side) in relaxation.engines.iter_mut().zip(sides) {
         engine.set_rate(&rate.map(|r| side * r))?;
     }
     for _ in 0..strain_steps {
         relaxation.step()?;
     }
-    for engine in relaxation.engines_mut() {
+    for engine in &mut relaxation.engines {
         engine.set_rate(&[0.0; 6])?;
     }
     let between = (sides[0] - sides[1]) * settings.amplitude;
@@ -102,12 +102,12 @@ pub(crate) fn strained(
             relaxation.step()?;
         }
         column.steps += STEPS_PER_EVALUATION;
-        let snapshots = looks(&relaxation)?;
-        let [one, other] = [stress(&snapshots[0]), stress(&snapshots[1])];
+        let [first, second] = [relaxation.engines[0].observables()?, relaxation.engines[1].observables()?];
+        let [one, other] = [stress(&first), stress(&second)];
         let entries: [f64; 6] = std::array::from_fn(|k| -(one[k] - other[k]) / between);
         let largest = amax(&entries).max(FEEBLE * at_rest.affine);
         seen.push(entries);
-        column.residual = snapshots[0].unbalanced.max(snapshots[1].unbalanced) / load;
+        column.residual = first.unbalanced.max(second.unbalanced) / load;
         // In a slow relaxation, the remaining change is best estimated over a time proportional to the time
         // already spent.
         column.drift = seen[2 * (seen.len() - 1) / 3..]
@@ -124,7 +124,7 @@ pub(crate) fn strained(
             };
             column.forward_backward = (settings.sides == DifferenceScheme::Central)
                 .then(|| difference(&side(&one, 1.0), &side(&other, -1.0)) / largest);
-            for engine in relaxation.engines() {
+            for engine in &relaxation.engines {
                 let strained = contacts(engine);
                 let (opened, closed) = changes(&at_rest.contacts, &strained);
                 column.opened += opened;
@@ -144,10 +144,6 @@ pub(crate) fn strained(
             });
         }
     }
-}
-
-fn looks(relaxation: &Relaxation) -> Result<Vec<Observables>, DemError> {
-    relaxation.engines().iter().map(Engine::observables).collect()
 }
 
 fn stress(snapshot: &Observables) -> [f64; 6] {

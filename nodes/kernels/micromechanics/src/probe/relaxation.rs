@@ -23,7 +23,8 @@ const LONGEST: u32 = 500;
 /// every step.
 #[derive(Clone, Debug)]
 pub struct Relaxation {
-    engines: Vec<Engine>,
+    /// The engines, to look at and to strain during the relaxation.
+    pub engines: Vec<Engine>,
     /// Steps since the schedule started.
     since: u32,
     /// Sum of the mean square speeds after the last step, m²/s².
@@ -35,16 +36,6 @@ impl Relaxation {
     /// Their drags are replaced.
     pub fn new(engines: Vec<Engine>) -> Self {
         Self { engines, since: 0, square_speed: 0.0 }
-    }
-
-    /// The engines.
-    pub fn engines(&self) -> &[Engine] {
-        &self.engines
-    }
-
-    /// The engines, to strain them during the relaxation.
-    pub fn engines_mut(&mut self) -> &mut [Engine] {
-        &mut self.engines
     }
 
     /// One step of every engine.

@@ -21,7 +21,7 @@ pub struct StrainProbe {
     /// Friction while probing: infinite ("set very high") prevents all sliding, 0 removes tangential springs;
     /// other values let contacts slide. `None`: infinite, but 0 for a packing without friction.
     pub friction: Option<f64>,
-    /// How the tangential force follows a change of normal stiffness. [`TangentialLaw::Incremental`] has the
+    /// Response of the tangential force to a change of normal stiffness. [`TangentialLaw::Incremental`] has the
     /// frozen network as its linear limit. The other law depends on the direction of the strain, however
     /// small.
     pub tangential: TangentialLaw,

@@ -16,7 +16,7 @@ use super::relaxation::Relaxation;
 use super::settings::StrainProbe;
 use crate::error::ProbeError;
 use grainlab_core::results::NotJammed;
-use grainlab_core::{Packing, Stiffness, Vec3, min_contacts, non_rattlers};
+use grainlab_core::{Packing, Stiffness, Vec3, backbone, min_contacts};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 /// Before it is strained, the packing is relaxed to this fraction of the unbalanced force that ends a
@@ -113,7 +113,8 @@ fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeEr
     }
     let friction = settings.friction_of(packing);
     let needed = min_contacts(friction);
-    if non_rattlers(&Packing { friction, ..packing.clone() }).iter().all(|p| !p) {
+    let contacts = packing.contacts.iter().map(|c| [c.i, c.j]).collect();
+    if backbone(grains, contacts, needed).iter().all(|p| !p) {
         return Err(NotJammed::OnlyRattlers { grains, needed }.into());
     }
     let (mut change, mut force) = (0.0, 0.0);
@@ -157,9 +158,9 @@ fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engi
             relaxation.step()?;
         }
         steps += STEPS_PER_EVALUATION;
-        unbalanced = relaxation.engines()[0].observables()?.unbalanced;
+        unbalanced = relaxation.engines[0].observables()?.unbalanced;
     }
-    let mut engine = relaxation.engines()[0].clone();
+    let mut engine = relaxation.engines[0].clone();
     engine.set_velocities(&still)?;
     engine.set_spins(&still)?;
     Ok((engine, steps))

@@ -58,7 +58,7 @@ pub fn overlap_anisotropy_fit(packing: &Packing, axis: &Vec3) -> Option<OverlapA
     let slope = covariance / variance;
     let level = y_mean - slope * s_mean;
     let g = slope / level;
-    // Of the residuals, √overlap in m^½.
+    // Scatter of the residuals, √overlap in m^½.
     let scatter = (spread - slope * covariance).max(0.0) / (count - 2.0);
     let of_slope = scatter / variance;
     let of_level = scatter / count + s_mean * s_mean * of_slope;

@@ -2,7 +2,7 @@
 
 use crate::dense::dense_stiffness;
 use crate::samples::{Dice, packing_of_sizes, random, thinned};
-use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed};
+use grainlab_core::results::{ElasticStiffness, NotJammed};
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 use grainlab_micromechanics::network::{SpringNetwork, Springs};
 use grainlab_micromechanics::{PackingView, Settings, analyze};
@@ -41,11 +41,11 @@ fn a_frictionless_network_within_a_twentieth_of_isostaticity_is_solved() {
         let p = thinned(&random(60, 1.35, seed), coordination);
         let settings = Settings { springs: Springs::Normal, ..Settings::default() };
         match analyze(&p, &settings).unwrap().report.elasticity {
-            Elasticity::Jammed(m) => {
+            Ok(m) => {
                 let e = (m.tensor.0 - dense_stiffness(&p, false)).amax() / m.bounds.affine.0.amax();
                 assert!(e < 1e-9, "z {coordination}: {e:e}");
             }
-            Elasticity::NotJammed(none) => {
+            Err(none) => {
                 assert!(matches!(none, NotJammed::Floppy { .. }), "{none}");
                 assert!(dense_stiffness(&p, false).amax() < 1e-8 * 1e9);
                 floppy += 1;

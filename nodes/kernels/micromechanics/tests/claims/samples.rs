@@ -17,7 +17,7 @@ pub(crate) fn packing(
     packing_of_sizes(cell, positions, radii, friction, uniform)
 }
 
-/// The same with spheres of these radii.
+/// Packing with spheres of these radii.
 pub(crate) fn packing_of_sizes(
     cell: Cell,
     positions: Vec<Vec3>,
@@ -46,7 +46,7 @@ pub(crate) fn packing_of_sizes(
     for i in 0..n {
         for j in i..n {
             for &image in &images {
-                // Of a contact with an own image, one of the two directions is kept.
+                // A contact with an own image is kept in one of the two directions.
                 if i == j && image <= [0, 0, 0] {
                     continue;
                 }
@@ -143,7 +143,7 @@ pub(crate) fn repeated(p: &Packing, copies: i32) -> Packing {
     out.validated().expect("copies of a packing are a packing")
 }
 
-/// The same contact with `i ≤ j`.
+/// This contact with `i ≤ j`.
 pub(crate) fn ordered(c: Contact) -> Contact {
     if c.i <= c.j {
         return c;
@@ -225,7 +225,7 @@ pub(crate) fn drawn(dice: &mut Dice, count: usize, cumulative: impl Fn(f64) -> f
         .collect()
 }
 
-/// The same without scatter: uniform in x and about z.
+/// Directions without scatter: uniform in x and about z.
 pub(crate) fn spread(count: usize, cumulative: impl Fn(f64) -> f64) -> Vec<Vec3> {
     (0..count)
         .map(|k| {

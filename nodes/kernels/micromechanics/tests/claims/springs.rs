@@ -1,4 +1,4 @@
-//! Which contacts have a tangential spring.
+//! Contacts that have a tangential spring.
 
 use crate::golden::reference;
 use crate::samples::random;

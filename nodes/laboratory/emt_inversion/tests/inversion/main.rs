@@ -7,7 +7,7 @@ mod settings;
 mod speeds;
 
 use grainlab_core::results::{
-    ContactStatistics, ElasticStiffness, Elasticity, Fabric, PackingReport, PrincipalAxis, StiffnessBounds,
+    ContactStatistics, ElasticStiffness, Fabric, PackingReport, PrincipalAxis, StiffnessBounds,
     StiffnessMethod, StrainRatios,
 };
 use grainlab_core::stress::Stress;
@@ -41,7 +41,7 @@ fn report_of(stiffness: &Stiffness) -> PackingReport {
     let bounds = StiffnessBounds { affine: *stiffness, uniform_rotation: *stiffness, bulk_reuss: None };
     let principal_axis = PrincipalAxis { direction: Vec3::z(), ..PrincipalAxis::default() };
     let fabric = Fabric { reference_axis: Vec3::z(), principal_axis, ..Fabric::default() };
-    let elasticity = Elasticity::Jammed(Box::new(ElasticStiffness {
+    let elasticity = Ok(Box::new(ElasticStiffness {
         method: StiffnessMethod::FrozenNetwork,
         smooth: false,
         tensor: *stiffness,

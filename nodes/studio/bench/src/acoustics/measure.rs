@@ -111,7 +111,7 @@ pub(crate) fn rows(packings: &[Packing], plan: &Plan) -> Result<Vec<Row>, Failur
 fn stiffness(packing: &Packing) -> Result<Stiffness, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let analysis = grainlab_micromechanics::analyze(packing, &Default::default()).map_err(|e| invalid(&e))?;
-    Ok(analysis.report.elasticity.into_stiffness().map_err(|e| invalid(&e))?.tensor)
+    Ok(analysis.report.elasticity.map_err(|e| invalid(&e))?.tensor)
 }
 
 fn ways(method: Method, plan: &Plan) -> Vec<(String, MethodSettings)> {

@@ -6,7 +6,7 @@ use crate::contact::law_parameter::LawParameter;
 use crate::contact::springs::ContactSprings;
 use crate::lanes::Lanes;
 
-/// Linear springs.
+/// Springs of constant stiffness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear {
     /// Normal stiffness k_n, N/m. Positive.

@@ -19,7 +19,7 @@ pub enum SpringLaw {
     /// Hertz's normal spring with Mindlin's tangential spring; its stiffnesses follow from the material.
     #[default]
     HertzMindlin,
-    /// Linear springs.
+    /// Springs of constant stiffness.
     Linear(Linear),
 }
 
@@ -39,7 +39,7 @@ impl SpringLaw {
         }
     }
 
-    /// What the parameters of springs of this kind are.
+    /// Parameters of springs of this kind.
     pub fn parameter_list(&self) -> &'static [LawParameter] {
         match self {
             Self::HertzMindlin => &[],

@@ -5,10 +5,10 @@
 //! Torquato & Stillinger, J. Comput. Phys. 202, 737 (2005)). As in Lubachevsky, J. Comput. Phys. 94, 255 (1991), a grain whose
 //! partner found an earlier collision keeps the time of the cancelled one, and searches again then.
 
-use super::grid::{Grid, Image, NO_GRAIN, Neighbour, cell_vectors};
 use super::pair::{Grain, OVERLAP_TOLERANCE, PairMotion, collide, dot};
 use super::queue::Queue;
 use crate::error::DemError;
+use crate::gas::grid::{Grid, Image, NO_GRAIN, Neighbour, cell_vectors};
 use grainlab_core::Vec3;
 
 /// The next collision of a grain.

@@ -3,10 +3,8 @@
 //! - `spheres`: the gas, one interval at a time
 //! - `interval`: the events of one interval
 //! - `pair`: when two grains collide, and their velocities after it
-//! - `grid`: a grid of cells to find near grains
 //! - `queue`: the next event
 
-mod grid;
 mod interval;
 mod pair;
 mod queue;

@@ -11,7 +11,7 @@ pub(super) struct Grain {
     pub(super) x: [f64; 3],
     /// Time of this position.
     pub(super) time: f64,
-    /// Velocity, m/s.
+    /// Velocity of the centre, m/s.
     pub(super) v: [f64; 3],
     /// Radius at time 0, m.
     pub(super) radius: f64,
@@ -53,7 +53,7 @@ impl PairMotion {
         Self { a: dot(v, v) - growth * growth, b: dot(d, v) - sigma * growth, c: dot(d, d) - sigma * sigma }
     }
 
-    /// Whether they may collide before `limit`, without a square root or a branch: half of all pairs come closer, few of those
+    /// True if they may collide before `limit`, without a square root or a branch: half of all pairs come closer, few of those
     /// collide soon, and which is unpredictable.
     #[inline(always)]
     pub(super) fn may_collide(&self, limit: f64) -> bool {

@@ -61,7 +61,7 @@ impl HardSpheres {
         Ok(Self { cell, radii, positions, velocities })
     }
 
-    /// The cell.
+    /// The periodic cell.
     pub fn cell(&self) -> &Cell {
         &self.cell
     }
@@ -111,7 +111,7 @@ impl HardSpheres {
         self.advance_unless(rate, interval, &|| false)
     }
 
-    /// The same, unless `stopped` becomes true on the way.
+    /// Advances, unless `stopped` becomes true on the way.
     ///
     /// # Errors
     /// Those of [`HardSpheres::advance`], and [`DemError::Stopped`]; the state is then unchanged, too.

@@ -59,7 +59,7 @@ fn load_rows<L: SimdF64, T: Copy, const N: usize>(
     }
 }
 
-/// The same reference, hidden from the optimiser: it cannot tell that the memory was read before.
+/// This reference, hidden from the optimiser: it cannot tell that the memory was read before.
 #[inline(always)]
 #[allow(clippy::pointers_in_nomem_asm_block)] // nothing is read or written through it
 fn launder<T>(of: &T) -> &T {
@@ -109,7 +109,7 @@ impl SimdF64 for Avx2 {
         // SAFETY: the slice holds four numbers.
         unsafe {
             let indices = _mm_loadu_si128(indices.as_ptr().cast());
-            // Where the bound is no larger than an index, the larger of both is that index.
+            // An index at or beyond the bound is the larger of both.
             let beyond = _mm_cmpeq_epi32(_mm_max_epu32(indices, _mm_set1_epi32(bound as i32)), indices);
             _mm_testz_si128(beyond, beyond) != 0
         }

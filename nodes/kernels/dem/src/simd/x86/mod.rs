@@ -7,17 +7,17 @@ mod shuffle;
 use super::kernel::Kernel;
 use registers::{Avx2, Avx512};
 
-/// Whether the processor has what [`Avx2`] needs.
+/// True if the processor can run [`Avx2`].
 pub(crate) fn has_avx2() -> bool {
     is_x86_feature_detected!("avx2") && has_fma()
 }
 
-/// Whether the processor has a fused multiply-add.
+/// True if the processor has a fused multiply-add.
 fn has_fma() -> bool {
     is_x86_feature_detected!("fma")
 }
 
-/// Whether the processor has what [`Avx512`] needs.
+/// True if the processor can run [`Avx512`].
 pub(crate) fn has_avx512() -> bool {
     has_avx2()
         && is_x86_feature_detected!("avx512f")

@@ -2,7 +2,7 @@
 
 use grainlab_core::Vec3;
 
-/// No grain.
+/// Number that means no grain.
 pub(super) const NO_GRAIN: u32 = u32::MAX;
 
 /// Index of one of the 27 nearest images: 9(a + 1) + 3(b + 1) + c + 1 for the cell vectors a, b, c. The opposite image has
