@@ -1,13 +1,15 @@
 //! Compression of chunks.
 
+use clap::ValueEnum;
+
 /// Compression of the chunks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Compression {
-    /// Not compressed.
+    /// Not compressed
     None,
-    /// LZ4.
+    /// LZ4
     Lz4,
-    /// Zstandard.
+    /// Zstandard
     #[default]
     Zstd,
 }

@@ -4,7 +4,7 @@ use crate::output::{Job, Output};
 use crate::selection::Topics;
 use crate::times::Interval;
 use grainlab_console::Failure;
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

@@ -1,12 +1,12 @@
 //! The recording that a command writes.
 
-use crate::compression::Compression;
 use crate::opened::{losses, open};
 use crate::selection::Topics;
 use crate::times::Interval;
 use clap::ValueEnum;
 use grainlab_console::{Failure, count, print, say, worse};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
+use grainlab_recordings::Compression;
 use grainlab_recordings::copy::{self, CopyError, CopyOptions, Select};
 use std::path::{Path, PathBuf};
 
@@ -74,10 +74,10 @@ impl Form {
             Some(Preset::ZstdSmall) => CopyOptions::of_preset(copy::Preset::ZstdSmall),
         };
         if let Some(kind) = self.compression {
-            options.compression = kind.into();
+            options.compression = kind;
             options.chunk_size = options.chunk_size.or(Some(1 << 20));
         }
-        if self.level.is_some() && options.compression == grainlab_recordings::Compression::None {
+        if self.level.is_some() && options.compression == Compression::None {
             return Err(Failure::usage(
                 "--level has no effect without compression: leave it out, or choose --compression lz4 or zstd",
             ));

@@ -7,7 +7,7 @@ use crate::tables::{TableFormat, Tables, failed};
 use crate::times::Interval;
 use clap::ValueEnum;
 use grainlab_console::{Failure, print, worse};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 use grainlab_recordings::{NewPath, Selection};
 use std::path::PathBuf;
 

@@ -7,7 +7,7 @@ use crate::times::Interval;
 use clap::ValueEnum;
 use grainlab_any_message::Shown;
 use grainlab_console::{Failure, worse};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 use grainlab_recordings::{Message, Selection};
 use serde::Serialize;
 use std::io::{self, BufWriter, ErrorKind, Write};
