@@ -168,13 +168,9 @@ impl RunWriter {
         number: u64,
         before: BagMetadata,
     ) -> Result<Self, WriteError> {
-        let io = |path: &Path, action: &'static str| {
-            let path = path.to_owned();
-            move |source| WriteError::Io { path, action, source }
-        };
-        fs::create_dir_all(directory).map_err(io(directory, "create the directory"))?;
+        fs::create_dir_all(directory).map_err(WriteError::io(directory, "create the directory"))?;
         let file = part_path(directory, name, number);
-        let free = free_space(directory).map_err(io(directory, "query the free space"))?;
+        let free = free_space(directory).map_err(WriteError::io(directory, "query the free space"))?;
         if free < options.free_to_start {
             let needed = options.free_to_start;
             return Err(WriteError::NoSpace { path: file, free, needed, state: "not begun" });
@@ -301,11 +297,7 @@ impl RunWriter {
         part.sync.request(now, self.options.sync_interval);
         match part.sync.failure() {
             Some(source) => {
-                let error = WriteError::Io {
-                    path: self.file.clone(),
-                    action: "sync the recording to the device",
-                    source,
-                };
+                let error = WriteError::io(&self.file, "sync the recording to the device")(source);
                 self.ended = Some(error.to_string());
                 Err(error)
             }
@@ -363,11 +355,7 @@ impl RunWriter {
 
     fn close(&mut self, finished: bool) -> Result<Finished, WriteError> {
         self.close_part(if finished { "true" } else { "false" })?;
-        self.bag.write(&self.directory).map_err(|source| WriteError::Io {
-            path: self.file.clone(),
-            action: "write metadata.yaml",
-            source,
-        })?;
+        self.bag.write(&self.directory).map_err(WriteError::io(&self.file, "write metadata.yaml"))?;
         let (start, end) = self.bounds.unwrap_or((0, 0));
         Ok(Finished {
             file: self.file.clone(),
@@ -390,11 +378,8 @@ impl RunWriter {
         if let Some(reason) = &self.ended {
             metadata.insert("ended_by".into(), reason.clone());
         }
-        let tallies = serde_json::to_string(&self.ledger.tallies()).map_err(|e| WriteError::Io {
-            path: self.file.clone(),
-            action: "write the ledger as JSON",
-            source: e.into(),
-        })?;
+        let tallies = serde_json::to_string(&self.ledger.tallies())
+            .map_err(|e| WriteError::io(&self.file, "write the ledger as JSON")(e.into()))?;
         metadata.insert(LEDGER_KEY.into(), tallies);
         let closed = match part.close(Metadata { name: METADATA_RECORD.into(), metadata }) {
             Ok(closed) => closed,
@@ -439,11 +424,8 @@ impl RunWriter {
 
     fn require_space(&mut self) -> Result<(), WriteError> {
         self.unchecked = 0;
-        let free = free_space(&self.directory).map_err(|source| WriteError::Io {
-            path: self.directory.clone(),
-            action: "query the free space",
-            source,
-        })?;
+        let free =
+            free_space(&self.directory).map_err(WriteError::io(&self.directory, "query the free space"))?;
         if free >= self.options.free_to_continue {
             return Ok(());
         }

@@ -1,7 +1,7 @@
 //! Errors of a copy. Nothing was written under the name of the output.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use mcap::McapError;
 
@@ -64,8 +64,14 @@ pub enum CopyError {
 }
 
 impl CopyError {
+    /// An error of the file system during `action`.
+    pub(super) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::Io { path, action, source }
+    }
+
     /// The error of the file system, if it was one.
-    pub(super) fn mcap(path: &std::path::Path, action: &'static str, source: McapError) -> Self {
+    pub(super) fn mcap(path: &Path, action: &'static str, source: McapError) -> Self {
         let path = path.to_owned();
         match source {
             McapError::Io(source) => Self::Io { path, action, source },

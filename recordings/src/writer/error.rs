@@ -81,6 +81,12 @@ pub enum WriteError {
 }
 
 impl WriteError {
+    /// An error of the file system during `action`.
+    pub(super) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::Io { path, action, source }
+    }
+
     /// The error of the file system, if it was one.
     pub(super) fn mcap(path: &Path, action: &'static str, source: McapError) -> Self {
         let path = path.to_owned();
