@@ -1,5 +1,7 @@
 //! What is copied, and how it is written.
 
+use clap::ValueEnum;
+
 use crate::compression::Compression;
 use crate::reader::ChannelInfo;
 
@@ -21,13 +23,15 @@ pub struct CopyOptions {
 }
 
 /// The presets of rosbag2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
 pub enum Preset {
-    /// No chunks and no checksums.
+    /// No chunks, no index and no checksums
+    #[value(name = "fastwrite")]
     FastWrite,
-    /// Zstandard at its fastest level, without checksums of chunks.
+    /// Zstandard at level 1, without checksums
     ZstdFast,
-    /// Zstandard at level 19, chunks of 4 MiB.
+    /// Zstandard at level 19, chunks of 4 MiB
     ZstdSmall,
 }
 

@@ -5,31 +5,26 @@ use super::{
     csv, extended_xyz, lammps_data, lammps_dump, lammps_local, pvd, sidecar, vtkhdf_contacts, vtkhdf_grains,
     vtp_contacts, vtp_grains,
 };
+use clap::ValueEnum;
 use grainlab_core::Packing;
 
 /// A format of other programs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ExportFormat {
-    /// CSV with a JSON sidecar, two files per packing: no loss.
+    /// CSV with a JSON sidecar, two files per packing
     Csv,
-    /// LAMMPS dumps of grains and of contacts, one frame per packing.
+    /// LAMMPS dumps of grains and contacts, one frame per packing
+    #[value(name = "lammps")]
     LammpsDump,
-    /// LAMMPS data files, one per packing: grains.
+    /// LAMMPS data files, one per packing
     LammpsData,
-    /// Extended XYZ, one frame per packing: grains.
+    /// Extended XYZ, one frame per packing
     Xyz,
-    /// VTK XML: grains and contacts of each packing, and a collection of all.
+    /// VTK XML: grains and contacts of each packing, and a collection of all
     Vtk,
-    /// VTKHDF: grains and contacts of each packing: no loss.
+    /// VTKHDF: grains and contacts of each packing
+    #[value(name = "vtkhdf")]
     VtkHdf,
-}
-
-/// A packing cannot be written in a format.
-#[derive(Debug, thiserror::Error)]
-pub enum ExportError {
-    /// HDF5 cannot hold it.
-    #[error(transparent)]
-    Hdf(#[from] HdfError),
 }
 
 /// A part of a file.
@@ -64,7 +59,7 @@ impl Exporter {
     ///
     /// # Errors
     /// If the format cannot hold the packing.
-    pub fn next(&mut self, packing: &Packing) -> Result<Vec<FilePart>, ExportError> {
+    pub fn next(&mut self, packing: &Packing) -> Result<Vec<FilePart>, HdfError> {
         let n = self.states.len() + 1;
         let part = |name: String, content: Vec<u8>| FilePart { name, content };
         let text = |name: String, content: String| part(name, content.into_bytes());

@@ -3,16 +3,15 @@
 use crate::opened::{losses, open};
 use crate::selection::Topics;
 use crate::times::Interval;
-use clap::ValueEnum;
 use grainlab_console::{Failure, count, print, say, worse};
 use grainlab_msgs::Exit;
 use grainlab_recordings::Compression;
-use grainlab_recordings::copy::{self, CopyError, CopyOptions, Select};
+use grainlab_recordings::copy::{self, CopyError, CopyOptions, Preset, Select};
 use std::path::{Path, PathBuf};
 
 /// Where and how to write.
 #[derive(Clone, Debug, clap::Args)]
-pub(crate) struct Output {
+pub struct Output {
     /// New recording: a directory as rosbag2 has it, or one file if the name ends with .mcap
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -37,18 +36,6 @@ pub(crate) struct Form {
     chunk_size: Option<u64>,
 }
 
-/// The presets of rosbag2.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-#[value(rename_all = "snake_case")]
-pub(crate) enum Preset {
-    /// No chunks, no index and no checksums
-    Fastwrite,
-    /// Zstandard at level 1, without checksums
-    ZstdFast,
-    /// Zstandard at level 19, chunks of 4 MiB
-    ZstdSmall,
-}
-
 impl Form {
     /// Refuses options of recordings for another output.
     pub(crate) fn refuse_given(&self) -> Result<(), Failure> {
@@ -67,12 +54,7 @@ impl Form {
     }
 
     fn options(&self, operation: &str) -> Result<CopyOptions, Failure> {
-        let mut options = match self.preset {
-            None => CopyOptions::default(),
-            Some(Preset::Fastwrite) => CopyOptions::of_preset(copy::Preset::FastWrite),
-            Some(Preset::ZstdFast) => CopyOptions::of_preset(copy::Preset::ZstdFast),
-            Some(Preset::ZstdSmall) => CopyOptions::of_preset(copy::Preset::ZstdSmall),
-        };
+        let mut options = self.preset.map_or_else(CopyOptions::default, CopyOptions::of_preset);
         if let Some(kind) = self.compression {
             options.compression = kind;
             options.chunk_size = options.chunk_size.or(Some(1 << 20));
@@ -153,7 +135,7 @@ mod tests {
         let level = Form { level: Some(5), ..Form::default() };
         assert_eq!(level.options("compress").unwrap().level, 5);
         let none = Form { compression: Some(Compression::None), ..level.clone() };
-        let fast = Form { preset: Some(Preset::Fastwrite), ..level.clone() };
+        let fast = Form { preset: Some(Preset::FastWrite), ..level.clone() };
         for form in [none, fast] {
             assert!(form.options("compress").unwrap_err().to_string().starts_with("--level"));
         }
