@@ -58,7 +58,7 @@ enum Format {
 ///
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or stdout fails.
-pub fn run(args: &Args) -> Result<Exit, Failure> {
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let recordings = open(std::slice::from_ref(&args.path))?;
     args.topics.check(&recordings)?;
     let (start, end) = args.interval.of(&recordings)?;

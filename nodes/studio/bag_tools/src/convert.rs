@@ -68,7 +68,7 @@ enum Format {
 ///
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or the output cannot be written.
-pub fn run(args: &Args) -> Result<Exit, Failure> {
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let paths = std::slice::from_ref(&args.path);
     let format = match args.format {
         Some(Format::Parquet) => TableFormat::Parquet,

@@ -2,17 +2,12 @@
 //!
 //! - `cat`: messages as JSON or text
 //! - `convert`: one table per topic, as CSV or Parquet
-//! - `cut`, `merge`, `filter`, `compress`: new recordings from others
-//!
-//! Each has the arguments of its command and `run`.
+//! - `copies`: new recordings from others, cut, merged, filtered, compressed
 
 mod cat;
-mod compress;
 mod convert;
-mod cut;
+mod copies;
 mod decoders;
-mod filter;
-mod merge;
 mod opened;
 mod output;
 mod selection;
@@ -21,6 +16,7 @@ mod tables;
 mod times;
 
 use clap::Subcommand;
+pub use copies::Copies;
 use grainlab_console::Failure;
 use grainlab_msgs::Exit;
 
@@ -31,14 +27,9 @@ pub enum Command {
     Cat(cat::Args),
     /// Write one table per topic, as JSON lines, CSV or Parquet; or a recording again.
     Convert(convert::Args),
-    /// Write an interval of time as a new recording.
-    Cut(cut::Args),
-    /// Write several recordings as one.
-    Merge(merge::Args),
-    /// Write some topics as a new recording.
-    Filter(filter::Args),
-    /// Write a recording with another compression.
-    Compress(compress::Args),
+    /// Write a recording made from others.
+    #[command(flatten)]
+    Copies(Copies),
 }
 
 /// Runs a command.
@@ -49,9 +40,6 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Cat(args) => cat::run(args),
         Command::Convert(args) => convert::run(args),
-        Command::Cut(args) => cut::run(args),
-        Command::Merge(args) => merge::run(args),
-        Command::Filter(args) => filter::run(args),
-        Command::Compress(args) => compress::run(args),
+        Command::Copies(command) => copies::run(command),
     }
 }

@@ -11,7 +11,7 @@ fn whole(text: &str) -> Result<Regex, regex::Error> {
 
 /// Topics, by name, regular expression or type.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct Topics {
+pub struct Topics {
     /// Topics to take, by name [default: all]
     #[arg(long, num_args = 1.., value_name = "TOPIC")]
     topics: Vec<String>,
