@@ -3,7 +3,6 @@
 use super::check::{Check, vector_message};
 use super::error::BoundaryError;
 use crate::builtin_interfaces::Time;
-use crate::geometry_msgs::Vector3;
 use crate::msg;
 use crate::std_msgs::Header;
 use grainlab_core::contact::ContactLaw;
@@ -167,20 +166,14 @@ fn speed(index: usize, s: &msg::WaveSpeed) -> Result<MeasuredWave, BoundaryError
     Ok(MeasuredWave {
         method: method(CHECK, &name("method"), s.method)?,
         wave: WaveSpeed {
-            direction: unit(CHECK, &name("direction"), &s.direction)?,
-            polarization: unit(CHECK, &name("polarization"), &s.polarization)?,
+            direction: CHECK.unit(&name("direction"), &s.direction)?,
+            polarization: CHECK.unit(&name("polarization"), &s.polarization)?,
             speed: CHECK.positive(&name("speed"), s.speed)?,
             stddev: CHECK.known(&name("speed_stddev"), s.speed_stddev)?,
         },
         frequency: CHECK.known(&name("frequency"), s.frequency)?,
         strain_amplitude: CHECK.not_negative(&name("strain_amplitude"), s.strain_amplitude)?,
     })
-}
-
-/// A unit vector that must not be unknown.
-pub(super) fn unit(check: Check, field: &str, vector: &Vector3) -> Result<Vec3, BoundaryError> {
-    let known = check.direction(field, vector)?;
-    known.map_or_else(|| check.that(false, &format!("|{field}|"), 0.0, "1").map(|_| Vec3::zeros()), Ok)
 }
 
 /// The method of a code.
