@@ -203,6 +203,13 @@ pub enum ImportError {
     Empty,
 }
 
+impl ImportError {
+    /// A feature in a line that is not supported, and why.
+    pub(super) fn unsupported(line: usize, what: impl Into<String>, reason: &'static str) -> Self {
+        Self::Unsupported { line, what: what.into(), reason }
+    }
+}
+
 fn list(settings: &[Setting]) -> String {
     let names: Vec<String> = settings.iter().map(|s| format!("{} (give {})", s.what(), s.flag())).collect();
     names.join(", ")

@@ -125,9 +125,7 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
     let mut full = lines(text).filter(|l| !l.text.trim().is_empty());
     let first = full.next().ok_or(ImportError::Empty)?;
     let begins = |prefix: &str| first.text.trim_start().starts_with(prefix);
-    let unsupported = |what: &str, reason| {
-        Err(ImportError::Unsupported { line: first.number, what: what.to_owned(), reason })
-    };
+    let unsupported = |what: &str, reason| Err(ImportError::unsupported(first.number, what, reason));
     if begins("# vtk DataFile") {
         return unsupported("a VTK file", FROM_YADE);
     }
