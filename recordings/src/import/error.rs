@@ -1,7 +1,7 @@
 //! Errors of an import.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use grainlab_core::PackingError;
 
@@ -204,6 +204,12 @@ pub enum ImportError {
 }
 
 impl ImportError {
+    /// An error of the system with a file.
+    pub(super) fn io(path: &Path) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::Io { path, source }
+    }
+
     /// A feature in a line that is not supported, and why.
     pub(super) fn unsupported(line: usize, what: impl Into<String>, reason: &'static str) -> Self {
         Self::Unsupported { line, what: what.into(), reason }
