@@ -12,6 +12,9 @@ use std::time::Duration;
 
 use crate::reader::{ChannelInfo, Message, Messages, ReadError, Recording, Selection};
 
+/// Lateness above which the schedule is delayed instead of catching up.
+const PATIENCE: Duration = Duration::from_millis(20);
+
 /// The selection and rate of a playback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlayOptions {
@@ -25,20 +28,11 @@ pub struct PlayOptions {
     pub start_offset: Duration,
     /// How much to play, in recorded time; `None` to the end.
     pub duration: Option<Duration>,
-    /// Lateness above which the schedule is delayed instead of catching up.
-    pub patience: Duration,
 }
 
 impl Default for PlayOptions {
     fn default() -> Self {
-        Self {
-            topics: None,
-            exclude: Vec::new(),
-            rate: 1.0,
-            start_offset: Duration::ZERO,
-            duration: None,
-            patience: Duration::from_millis(20),
-        }
+        Self { topics: None, exclude: Vec::new(), rate: 1.0, start_offset: Duration::ZERO, duration: None }
     }
 }
 
@@ -80,7 +74,6 @@ pub struct Player<'r> {
     latched: VecDeque<Message>,
     messages: Peekable<Messages<'r>>,
     rate: f64,
-    patience: Duration,
     paused: bool,
     /// Messages to send although the schedule is stopped.
     steps: u64,
@@ -130,7 +123,6 @@ impl<'r> Player<'r> {
             channels,
             latched: latched.into(),
             rate: options.rate,
-            patience: options.patience,
             paused: false,
             steps: 0,
             position: start,
@@ -167,7 +159,7 @@ impl<'r> Player<'r> {
             self.position = due;
         } else if due > position {
             return Play::Wait(self.in_callers_time(due - position));
-        } else if self.in_callers_time(position - due) > self.patience {
+        } else if self.in_callers_time(position - due) > PATIENCE {
             self.slipped += self.in_callers_time(position - due);
             self.set_anchor(due, now);
         }

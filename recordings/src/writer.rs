@@ -80,10 +80,6 @@ pub struct Finished {
     pub bytes: u64,
     /// Messages in them.
     pub messages: u64,
-    /// First log time, ns since 1970; 0 without messages.
-    pub start: u64,
-    /// Last log time, ns since 1970; 0 without messages.
-    pub end: u64,
     /// The counts of all topics.
     pub ledger: Ledger,
 }
@@ -108,8 +104,6 @@ pub struct RunWriter {
     bytes: u64,
     messages: u64,
     ledger: Ledger,
-    /// First and last log time of this writer.
-    bounds: Option<(u64, u64)>,
     /// Last log time of all.
     last: Option<u64>,
     /// Time of the oldest unwritten message.
@@ -190,7 +184,6 @@ impl RunWriter {
             bytes: 0,
             messages: 0,
             ledger: Ledger::default(),
-            bounds: None,
             pending: None,
             unchecked: 0,
             ended: None,
@@ -262,7 +255,6 @@ impl RunWriter {
             t.messages += 1;
         }
         self.messages += 1;
-        self.bounds = Some((self.bounds.map_or(log_time, |(first, _)| first), log_time));
         self.last = Some(log_time);
         let now = Instant::now();
         self.pending.get_or_insert(now);
@@ -356,14 +348,11 @@ impl RunWriter {
     fn close(&mut self, finished: bool) -> Result<Finished, WriteError> {
         self.close_part(if finished { "true" } else { "false" })?;
         self.bag.write(&self.directory).map_err(WriteError::io(&self.file, "write metadata.yaml"))?;
-        let (start, end) = self.bounds.unwrap_or((0, 0));
         Ok(Finished {
             file: self.file.clone(),
             files: std::mem::take(&mut self.files),
             bytes: self.bytes,
             messages: self.messages,
-            start,
-            end,
             ledger: std::mem::take(&mut self.ledger),
         })
     }

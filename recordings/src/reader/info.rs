@@ -81,14 +81,6 @@ impl Recording {
 fn of(recording: &Recording) -> Info {
     let files = &recording.files;
     let range = recording.time_range();
-    let mut counts = BTreeMap::<&str, u64>::new();
-    for file in files {
-        for (channel, n) in &file.index.counts {
-            if let Some(info) = file.index.channels.get(channel) {
-                *counts.entry(&info.topic).or_default() += n;
-            }
-        }
-    }
     let tallies = recording.ledger().unwrap_or_default();
     let tallies: BTreeMap<&str, &TopicTally> = tallies.iter().map(|t| (t.name.as_str(), t)).collect();
     let topics: Vec<_> = recording
@@ -100,7 +92,7 @@ fn of(recording: &Recording) -> Info {
                 name: channel.topic.clone(),
                 ros_type: channel.ros_type.clone(),
                 definition: channel.stored.word(),
-                messages: counts.get(channel.topic.as_str()).copied().unwrap_or(0),
+                messages: recording.count(&channel.topic),
                 latched: channel.is_latched(),
                 published: tally.map(|t| t.published),
                 lost: tally.map(|t| t.lost),
