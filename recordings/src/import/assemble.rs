@@ -234,15 +234,7 @@ pub(super) fn packing(
     .validated()?;
     let normal_force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
     let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, normal_force);
-    let id = |k: usize| packing.ids[k];
-    let found = found.map_err(|e| match e {
-        SearchError::Coincident(i, j) => ImportError::Coincident(id(i), id(j)),
-        SearchError::FarImage(i, j) => ImportError::FarImage(id(i), id(j)),
-        SearchError::Crowded { solid_fraction, diameter, width } => {
-            ImportError::Crowded { solid_fraction, diameter, width }
-        }
-        SearchError::Clustered { together, pairs } => ImportError::Clustered { together, pairs },
-    })?;
+    let found = found.map_err(|e| e.with_ids(&packing.ids))?;
     packing.contacts = match listed {
         None => {
             notes.push(
@@ -306,13 +298,13 @@ fn listed_contact(
         (None, _) => -(p.cell.inverse() * apart).map(f64::round),
     };
     if steps.amax() > f64::from(i8::MAX) || !steps.amax().is_finite() {
-        return Err(ImportError::FarImage(c.ids.0, c.ids.1));
+        return Err(SearchError::FarImage(c.ids.0 as usize, c.ids.1 as usize).into());
     }
     let image = [steps.x as i8, steps.y as i8, steps.z as i8];
     let branch = apart + p.cell.shift(image);
     let distance = branch.norm();
     if distance == 0.0 {
-        return Err(ImportError::Coincident(c.ids.0, c.ids.1));
+        return Err(SearchError::Coincident(c.ids.0 as usize, c.ids.1 as usize).into());
     }
     let measured = branch / distance;
     let contradiction = |quantity, given, found| ImportError::Contradiction {

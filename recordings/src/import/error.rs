@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use grainlab_core::PackingError;
 
+use super::contacts::SearchError;
 use super::setting::Setting;
 use crate::reader::ReadError;
 
@@ -106,14 +107,9 @@ pub enum ImportError {
         /// Value from positions.
         found: f64,
     },
-    /// Two grains have the same centre.
-    #[error("grains {0} and {1} have the same centre: their contact has no direction")]
-    Coincident(u32, u32),
-    /// An image index does not fit.
-    #[error(
-        "grains {0} and {1} touch across more than 127 cells: fold positions into the cell, or check its size"
-    )]
-    FarImage(u32, u32),
+    /// Contacts cannot be found; grains are named by id.
+    #[error(transparent)]
+    Contacts(#[from] SearchError),
     /// Contact forces without tangential ones, of a packing with friction.
     #[error(
         "contact forces all point along their contacts, with a friction of {friction}: for granular pair styles LAMMPS gives \
@@ -155,28 +151,6 @@ pub enum ImportError {
         forces: Vec<u64>,
         /// Step of the grains.
         grains: u64,
-    },
-    /// The cell is so small, or the grains so large, that they would fill it many times over.
-    #[error(
-        "the cell is too small for its grains, or too skewed: they fill it {solid_fraction:.3e} times over, the largest is {diameter:.3e} m wide and the cell {width:.3e} m between its sides: check the units of the cell and of the radii, or state the shortest edges"
-    )]
-    Crowded {
-        /// Volume of the spheres over volume of the cell.
-        solid_fraction: f64,
-        /// m.
-        diameter: f64,
-        /// m.
-        width: f64,
-    },
-    /// The grains lie in so small a part of the cell that contacts cannot be found in a useful time.
-    #[error(
-        "the grains lie in a tiny part of the cell ({together} of them in one box of the search, {pairs:.1e} pairs to check): check the cell, or list the contacts in the file"
-    )]
-    Clustered {
-        /// Largest number of grains in one box.
-        together: usize,
-        /// Number of pairs to check.
-        pairs: f64,
     },
     /// The packing is invalid.
     #[error(transparent)]
