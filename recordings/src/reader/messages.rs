@@ -49,14 +49,6 @@ impl Recording {
         Ok(Messages::new(self, topics, selection.start.unwrap_or(0), selection.end))
     }
 
-    /// The last message on `topic` whose log time is below `time` (ns since 1970).
-    ///
-    /// # Errors
-    /// If the topic does not exist.
-    pub fn last_before(&self, topic: &str, time: u64) -> Result<Option<Message>, ReadError> {
-        Ok(self.some_before(topic, time, 1)?.pop())
-    }
-
     /// The last message on `topic`, whatever its log time.
     ///
     /// # Errors

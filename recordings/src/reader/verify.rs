@@ -44,19 +44,14 @@ pub struct Check {
 }
 
 impl Recording {
-    /// Reads all data and returns all faults: checksums, the index against the messages, log times that decrease, and
-    /// the ledger against the messages.
-    pub fn verify(&self) -> Vec<Warning> {
-        self.check().warnings
-    }
-
     /// The same without the ledger: in a recovered file it also counts messages that are no longer readable.
     pub(crate) fn verify_files(&self) -> Vec<Warning> {
         Found::of(self);
         self.warnings()
     }
 
-    /// [`Recording::verify`] with the counts of what was read.
+    /// Reads all data: counts, and all faults: checksums, the index against the messages, log times that decrease, and the ledger
+    /// against the messages.
     pub fn check(&self) -> Check {
         let found = Found::of(self);
         let ledger = self.ledger();
