@@ -5,11 +5,11 @@ use clap::ValueEnum;
 /// Compression of the chunks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Compression {
-    /// Not compressed
+    /// Chunks without compression
     None,
-    /// LZ4
+    /// Compression by LZ4
     Lz4,
-    /// Zstandard
+    /// Compression by Zstandard
     #[default]
     Zstd,
 }

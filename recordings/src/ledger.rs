@@ -83,7 +83,7 @@ impl Ledger {
         }
     }
 
-    /// Whether message `sequence` of this writer was recorded already.
+    /// True if message `sequence` of this writer was recorded already.
     pub fn holds(&self, topic: &str, guid: &Guid, sequence: i64) -> bool {
         self.topics.get(topic).and_then(|t| t.get(guid)).is_some_and(|w| w.sequence.holds(sequence))
     }

@@ -34,7 +34,7 @@ impl NewPath {
         Ok(Self { path: path.to_owned(), partial: path.with_file_name(hidden) })
     }
 
-    /// Where to write.
+    /// Temporary name, under which the output is written.
     pub fn partial(&self) -> &Path {
         &self.partial
     }

@@ -24,9 +24,9 @@ pub struct PlayOptions {
     pub exclude: Vec<String>,
     /// Recorded seconds per second; positive. With infinity, messages are due at once.
     pub rate: f64,
-    /// Where to start, after the first message of the recording.
+    /// Start, after the first message of the recording.
     pub start_offset: Duration,
-    /// How much to play, in recorded time; `None` to the end.
+    /// Duration to play, in recorded time; `None` to the end.
     pub duration: Option<Duration>,
 }
 
@@ -203,7 +203,7 @@ impl<'r> Player<'r> {
         self.rate
     }
 
-    /// Whether the schedule is stopped.
+    /// True while the schedule is stopped.
     pub fn is_paused(&self) -> bool {
         self.paused
     }

@@ -45,7 +45,7 @@ pub use topic_spec::TopicSpec;
 /// A sample received from the network.
 #[derive(Clone, Copy, Debug)]
 pub struct Incoming<'a> {
-    /// The writer.
+    /// Writer of the sample.
     pub guid: Guid,
     /// RTPS sequence number, counted from 1 by each writer.
     pub sequence: i64,
@@ -76,7 +76,7 @@ pub struct Finished {
     pub file: PathBuf,
     /// All MCAP files of this writer, in order.
     pub files: Vec<PathBuf>,
-    /// Their size, bytes.
+    /// Size of all files, bytes.
     pub bytes: u64,
     /// Messages in them.
     pub messages: u64,

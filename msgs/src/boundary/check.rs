@@ -1,4 +1,4 @@
-//! The checks.
+//! Checks of received messages.
 
 use super::error::BoundaryError;
 use crate::geometry_msgs::Vector3;
@@ -225,7 +225,7 @@ impl Check {
     }
 }
 
-/// `rate[2] (zz)`.
+/// Name of a component: `rate[2] (zz)`.
 pub(super) fn component(field: &str, index: usize) -> String {
     format!("{field}[{index}] ({})", SymTensor::COMPONENTS[index])
 }

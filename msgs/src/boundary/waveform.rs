@@ -14,7 +14,7 @@ const CHECK: Check = Check("Waveform");
 const QUANTITY: &str = "velocity";
 const UNIT: &str = "m/s";
 
-/// Checked traces.
+/// Checked traces of a wave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaveformReading {
     /// Stamp of the source.
@@ -37,10 +37,10 @@ pub struct WaveformReading {
     pub channels: Vec<TraceReading>,
 }
 
-/// One trace.
+/// Trace of one receiver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TraceReading {
-    /// Its name.
+    /// Name of the trace.
     pub name: String,
     /// Distance from the source along the direction, m, 0 or more; the wavelength of a standing wave.
     pub distance: f64,

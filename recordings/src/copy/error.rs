@@ -11,7 +11,7 @@ pub enum CopyError {
     /// The output exists.
     #[error("{path} exists: choose another output; nothing is overwritten")]
     Exists {
-        /// The output.
+        /// Path of the output.
         path: PathBuf,
     },
     /// Two recordings have different messages under one topic.
@@ -21,15 +21,15 @@ pub enum CopyError {
          that agree"
     )]
     Clash {
-        /// The topic.
+        /// Name of the topic.
         topic: String,
         /// A recording and its type of the topic.
         first: PathBuf,
-        /// Its type.
+        /// Type of its messages.
         first_type: String,
-        /// Another recording.
+        /// Path of another recording.
         second: PathBuf,
-        /// Its type.
+        /// Type of its messages.
         second_type: String,
     },
     /// Pictures of packings are wanted, and there are no packings.
@@ -38,7 +38,7 @@ pub enum CopyError {
     /// Pictures of packings are wanted, and there is a topic of their name.
     #[error("there is a topic {topic} already: leave it out with --exclude {topic}")]
     Pictured {
-        /// The topic.
+        /// Name of the topic.
         topic: String,
     },
     /// The file system returned an error.
@@ -48,17 +48,17 @@ pub enum CopyError {
         path: PathBuf,
         /// The attempted action.
         action: &'static str,
-        /// Its error.
+        /// Error that was returned.
         source: io::Error,
     },
     /// The MCAP writer returned an error.
     #[error("{path}: cannot {action}: {source}")]
     Format {
-        /// The output.
+        /// Path of the output.
         path: PathBuf,
         /// The attempted action.
         action: &'static str,
-        /// Its error.
+        /// Error that was returned.
         source: McapError,
     },
 }

@@ -17,7 +17,7 @@ use crate::reader::{ChannelInfo, Message, Messages, Recording, Selection};
 /// A finished copy.
 #[derive(Clone, Debug, Serialize)]
 pub struct Copied {
-    /// The output.
+    /// Path of the output.
     pub path: PathBuf,
     /// Size of its MCAP file, bytes.
     pub bytes: u64,
@@ -25,7 +25,7 @@ pub struct Copied {
     pub messages: u64,
     /// Those that are latched and from before the start.
     pub latched: u64,
-    /// Its topics.
+    /// Names of its topics.
     pub topics: Vec<String>,
     /// Pictures of packings added to them.
     pub pictures: u64,

@@ -32,7 +32,7 @@ pub enum ExportFormat {
 pub struct FilePart {
     /// Name of the file.
     pub name: String,
-    /// What follows in it.
+    /// Bytes that follow in it.
     pub content: Vec<u8>,
 }
 
@@ -50,12 +50,12 @@ impl Exporter {
         Self { format, states: Vec::new() }
     }
 
-    /// Whether the format has no place for resistance to rolling.
+    /// True if the format has no place for resistance to rolling.
     pub fn loses_rolling(&self) -> bool {
         matches!(self.format, ExportFormat::LammpsDump | ExportFormat::LammpsData)
     }
 
-    /// What the next packing adds. Parts of the same name are parts of one file.
+    /// Parts that the next packing adds. Parts of the same name are parts of one file.
     ///
     /// # Errors
     /// If the format cannot hold the packing.
@@ -87,7 +87,7 @@ impl Exporter {
         Ok(parts)
     }
 
-    /// What follows the last packing.
+    /// Parts that follow the last packing.
     pub fn finish(&self) -> Vec<FilePart> {
         if self.format != ExportFormat::Vtk {
             return Vec::new();

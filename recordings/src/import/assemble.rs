@@ -16,13 +16,13 @@ use super::text::{Line, digits};
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrainTable {
     pub(super) ids: Vec<u32>,
-    /// m.
+    /// Radii of the grains, m.
     pub(super) radii: Vec<f64>,
-    /// m.
+    /// Positions of the centres, m.
     pub(super) positions: Vec<Vec3>,
-    /// m/s.
+    /// Velocities of the grains, m/s.
     pub(super) velocities: Vec<Vec3>,
-    /// rad/s.
+    /// Angular velocities, rad/s.
     pub(super) spins: Vec<Vec3>,
     /// Line of each grain, counted from 1.
     pub(super) lines: Vec<usize>,
@@ -66,7 +66,7 @@ pub(super) enum ListedForce {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub(super) step: u64,
-    /// s.
+    /// Simulated time, s.
     pub(super) time: f64,
     pub(super) deformation: Mat3,
     /// s; 0 if the packing is not from a grainlab simulation.
@@ -101,7 +101,7 @@ impl GrainTable {
         all.all(|other| (other / first - 1.0).abs() < 1e-5).then_some(first)
     }
 
-    /// What to know about the grains of a packing with this material.
+    /// Notes on the grains of a packing with this material.
     fn notes(&self, material: &Material) -> Vec<String> {
         let other = |(mass, radius): &(&f64, &f64)| {
             is_beyond((**mass / material.sphere_mass(**radius) - 1.0).abs(), 1e-5)
@@ -178,7 +178,7 @@ impl GrainTable {
     }
 }
 
-/// Whether a deviation is more than `limit`, or NaN.
+/// True for a deviation that is more than `limit`, or NaN.
 pub(super) fn is_beyond(deviation: f64, limit: f64) -> bool {
     deviation.is_nan() || deviation > limit
 }

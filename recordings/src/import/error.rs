@@ -15,7 +15,7 @@ pub enum ImportError {
     /// A file cannot be read.
     #[error("{path}: {source}")]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The error of the system.
         source: io::Error,
@@ -26,9 +26,9 @@ pub enum ImportError {
     /// An error with its file.
     #[error("{path}: {source}")]
     In {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The error.
+        /// Description of the fault.
         source: Box<ImportError>,
     },
     /// The format of the file is unknown.
@@ -36,7 +36,7 @@ pub enum ImportError {
         "line {line}, {first}, has an unknown format: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor extended XYZ (N, then Properties=...), nor a YADE export (#format ...), each also as .gz, nor VTKHDF, nor a recording (.mcap or its directory)"
     )]
     UnknownFormat {
-        /// Its first line that is not empty, counted from 1.
+        /// First line that is not empty, counted from 1.
         line: usize,
         /// The beginning of that line, quoted.
         first: String,
@@ -46,7 +46,7 @@ pub enum ImportError {
     Syntax {
         /// Line, counted from 1.
         line: usize,
-        /// What was expected and what was found.
+        /// Expectation, and what was found.
         problem: String,
     },
     /// An HDF5 file is damaged, or is not VTKHDF.
@@ -66,7 +66,7 @@ pub enum ImportError {
     Unsupported {
         /// Line, counted from 1.
         line: usize,
-        /// The feature.
+        /// Name of the feature.
         what: String,
         /// Why, and what to do.
         reason: &'static str,
@@ -74,7 +74,7 @@ pub enum ImportError {
     /// An id occurs twice.
     #[error("line {line}: grain {id} occurs twice, before in line {before}")]
     DuplicateId {
-        /// The id.
+        /// Id of the grain.
         id: u32,
         /// Line, counted from 1.
         line: usize,
@@ -86,7 +86,7 @@ pub enum ImportError {
     UnknownId {
         /// Line, counted from 1.
         line: usize,
-        /// The id.
+        /// Id of the grain.
         id: u32,
     },
     /// A contact contradicts the positions.
@@ -118,7 +118,7 @@ pub enum ImportError {
          forces format float %.17g; or give --friction 0 if there is none"
     )]
     NoTangentialForces {
-        /// Friction coefficient.
+        /// Coefficient of friction.
         friction: f64,
     },
     /// Columns of contact forces that are not what they are taken for.
@@ -129,7 +129,7 @@ pub enum ImportError {
         /// The columns that fit.
         likely: String,
     },
-    /// Contact forces beside a file that has them itself, or cannot have them.
+    /// Contact forces given with a file that has them itself, or cannot have them.
     #[error("contact forces in a file of their own are read beside a LAMMPS dump or data file only")]
     ForcesBeside,
     /// A file has another number of grains or contacts than it states.
@@ -137,9 +137,9 @@ pub enum ImportError {
     Count {
         /// Grains or contacts.
         what: &'static str,
-        /// As stated.
+        /// Number that is stated.
         stated: usize,
-        /// As found.
+        /// Number that was found.
         found: usize,
     },
     /// Grains and contact forces are of different steps.
@@ -158,11 +158,11 @@ pub enum ImportError {
     /// A recorded message is not a valid packing.
     #[error("message {sequence} on {topic}: {problem}")]
     Message {
-        /// Topic.
+        /// Name of the topic.
         topic: String,
         /// Low half of its sequence number.
         sequence: u32,
-        /// The error.
+        /// Description of the fault.
         problem: String,
     },
     /// Data were given for a recording, which has its own.

@@ -41,7 +41,7 @@ const CENTRAL: f64 = 1e-9;
 pub(super) struct Local<'a> {
     /// Pairs that carry force.
     pub(super) contacts: Vec<ListedContact>,
-    /// Whether the columns include tangential forces.
+    /// True if the columns include tangential forces.
     tangential: bool,
     /// Names of all columns, places of those that are read, and the rows of the contacts.
     names: Vec<&'a str>,

@@ -118,7 +118,7 @@ fn one_of<T: Copy>(key: &str, value: &Value, values: Values<T>) -> Result<Option
     })
 }
 
-/// Whether a duration `{sec, nsec}` is zero, which is the default, or infinite.
+/// True for a duration `{sec, nsec}` that is zero, which is the default, or infinite.
 fn is_unlimited(duration: &Value) -> bool {
     let part = |key: &str| duration.get(key).and_then(Value::as_u64);
     match (part("sec"), part("nsec")) {

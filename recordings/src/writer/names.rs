@@ -32,7 +32,7 @@ pub(super) fn next_number(directory: &Path, name: &str) -> Result<u64, WriteErro
     Ok(next)
 }
 
-/// Whether a recorder has locked the file; false on a file system without locks.
+/// True if a recorder has locked the file; false on a file system without locks.
 pub(crate) fn is_locked(file: &File) -> bool {
     matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock))
 }

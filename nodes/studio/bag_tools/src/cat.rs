@@ -36,7 +36,7 @@ pub struct Args {
     /// Print at most this many messages
     #[arg(short = 'n', long, value_name = "N")]
     count: Option<usize>,
-    /// How to print messages
+    /// Format of printed messages
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     /// Print at most this many values of each array
@@ -44,7 +44,7 @@ pub struct Args {
     max_array: Option<usize>,
 }
 
-/// How messages are printed.
+/// Format of printed messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum Format {
     /// One JSON object per line

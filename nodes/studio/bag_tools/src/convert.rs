@@ -37,7 +37,7 @@ pub struct Args {
     /// Format of the output [default with --pictures: mcap]
     #[arg(long, value_enum, required_unless_present = "pictures")]
     format: Option<Format>,
-    /// Write a recording in which packings have pictures beside them, for viewers that do not read packings
+    /// Write a recording with pictures of the packings, for viewers that do not read packings
     #[arg(long)]
     pictures: bool,
     #[command(flatten)]
@@ -60,7 +60,7 @@ enum Format {
     Csv,
     /// Apache Parquet, one file per topic
     Parquet,
-    /// MCAP
+    /// Recording in MCAP
     Mcap,
 }
 

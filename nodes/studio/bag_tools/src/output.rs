@@ -9,7 +9,7 @@ use grainlab_recordings::Compression;
 use grainlab_recordings::copy::{self, CopyError, CopyOptions, Preset, Select};
 use std::path::{Path, PathBuf};
 
-/// Where and how to write.
+/// Output of a copy, and its options.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Output {
     /// New recording: a directory as rosbag2 has it, or one file if the name ends with .mcap
@@ -19,7 +19,7 @@ pub struct Output {
     form: Form,
 }
 
-/// How to write.
+/// Options of the output.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct Form {
     /// Compression of the chunks [default: zstd]
@@ -71,16 +71,16 @@ impl Form {
     }
 }
 
-/// What to copy.
+/// Description of a copy.
 pub(crate) struct Job<'a> {
     /// `cut`, `merge`, …
     pub(crate) operation: &'a str,
     pub(crate) paths: &'a [PathBuf],
     pub(crate) topics: &'a Topics,
     pub(crate) interval: &'a Interval,
-    /// Whether latched messages from before the start are copied.
+    /// Copy latched messages from before the start.
     pub(crate) latched: bool,
-    /// Whether pictures of packings are added.
+    /// Add pictures of packings.
     pub(crate) pictures: bool,
 }
 
@@ -90,7 +90,7 @@ impl Job<'_> {
         self.write(&output.output, &output.form)
     }
 
-    /// The same with the parts of the arguments.
+    /// Copies to `output` with the options of `form`, and prints what was written.
     pub(crate) fn write(&self, output: &Path, form: &Form) -> Result<Exit, Failure> {
         let options = CopyOptions { pictures: self.pictures, ..form.options(self.operation)? };
         let recordings = open(self.paths)?;

@@ -34,7 +34,7 @@ fn bare(name: &str) -> &str {
 }
 
 impl Topics {
-    /// Whether a channel is wanted.
+    /// True for a channel that is wanted.
     pub(crate) fn take(&self, channel: &ChannelInfo) -> bool {
         let name = channel.topic.as_str();
         let is_one = |names: &[String]| names.iter().any(|n| bare(n) == bare(name));

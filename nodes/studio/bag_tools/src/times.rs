@@ -75,7 +75,7 @@ impl Interval {
         }
     }
 
-    /// Whether any of it is set.
+    /// True if any of it is set.
     pub(crate) fn is_set(&self) -> bool {
         self.start.is_some() || self.end.is_some() || self.start_offset.is_some() || self.duration.is_some()
     }

@@ -6,7 +6,7 @@ use rustix::termios::{LocalModes, OptionalActions, Termios, tcgetattr, tcgetpgrp
 use std::collections::VecDeque;
 use std::io::{IsTerminal, stdin};
 
-/// What a key asks for.
+/// Request of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Key {
     /// Pauses or continues.
@@ -42,7 +42,7 @@ impl Keys {
         })
     }
 
-    /// Whether the last key ended the playback, or stdin ended.
+    /// True if the last key ended the playback, or stdin ended.
     pub(super) fn is_over(&self) -> bool {
         self.is_over
     }

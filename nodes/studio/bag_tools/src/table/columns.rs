@@ -66,7 +66,7 @@ impl Columns {
     }
 }
 
-/// Whether an array is one column, as JSON.
+/// True for an array that is one column, as JSON.
 fn is_json(longest: usize, widest: usize) -> bool {
     longest == 0 || longest > widest
 }
