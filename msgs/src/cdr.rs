@@ -43,7 +43,7 @@ pub enum DecodeError {
     Value {
         /// The expected type.
         type_name: &'static str,
-        /// What is wrong.
+        /// Description of the fault.
         reason: String,
     },
     /// Bytes after the message.

@@ -4,40 +4,40 @@ use crate::message::TypeInfo;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// `type_description_interfaces/msg/TypeDescription`.
+/// Message `type_description_interfaces/msg/TypeDescription` of ROS 2.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TypeDescription {
-    /// The type.
+    /// Description of the type.
     pub type_description: MessageDescription,
     /// All types in it, sorted by name.
     pub referenced_type_descriptions: Vec<MessageDescription>,
 }
 
-/// `type_description_interfaces/msg/IndividualTypeDescription`.
+/// Message `type_description_interfaces/msg/IndividualTypeDescription` of ROS 2.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MessageDescription {
-    /// `package/msg/Name`.
+    /// Full name, `package/msg/Name`.
     pub type_name: String,
-    /// Its fields in order.
+    /// Fields in the order of the type.
     pub fields: Vec<FieldDescription>,
 }
 
-/// `type_description_interfaces/msg/Field`.
+/// Message `type_description_interfaces/msg/Field` of ROS 2.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FieldDescription {
-    /// Its name.
+    /// Name of the field.
     pub name: String,
-    /// Its type.
+    /// Type of the field.
     #[serde(rename = "type")]
     pub kind: FieldTypeDescription,
-    /// Its default; always empty here.
+    /// Default value; always empty here.
     pub default_value: String,
 }
 
-/// `type_description_interfaces/msg/FieldType`.
+/// Message `type_description_interfaces/msg/FieldType` of ROS 2.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FieldTypeDescription {
-    /// See [`crate::FieldInfo::type_id`].
+    /// Number of the type: see [`crate::FieldInfo::type_id`].
     pub type_id: u8,
     /// Length of an array, else 0.
     pub capacity: u64,

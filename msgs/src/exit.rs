@@ -8,7 +8,7 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Exit {
-    /// 0: success.
+    /// 0: all was done.
     Done = 0,
     /// 1: an error while it ran: a file, the network, another process.
     Failure = 1,

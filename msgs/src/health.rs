@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Level {
-    /// No problem.
+    /// No problem is known.
     #[default]
     Ok = 0,
     /// The user should check something.
@@ -30,7 +30,7 @@ impl Level {
 /// The state of a node, for `/diagnostics`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Health {
-    /// The severity.
+    /// Severity of the state.
     pub level: Level,
     /// One line for the user.
     pub message: String,
@@ -54,7 +54,7 @@ impl Health {
         Self { level: Level::Error, message: message.into(), values: Vec::new() }
     }
 
-    /// The same with one more value.
+    /// Report with one more value.
     #[must_use]
     pub fn with(mut self, name: impl Into<String>, value: impl ToString) -> Self {
         self.values.push((name.into(), value.to_string()));

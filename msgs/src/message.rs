@@ -12,7 +12,7 @@ pub trait Message: Serialize + DeserializeOwned + Send + 'static {
     const TYPE: &'static str;
     /// Type hash (REP-2016), `RIHS01_` and 64 hexadecimal digits.
     const HASH: &'static str;
-    /// Its fields, as in a type description.
+    /// Fields, as in a type description.
     const FIELDS: &'static [FieldInfo];
     /// Schema text as rosbag2 writes it: the message file, then every message file that it depends on.
     const DEFINITION: &'static str;
@@ -21,17 +21,17 @@ pub trait Message: Serialize + DeserializeOwned + Send + 'static {
 /// The constants of a [`Message`] as a value: for programs that handle types by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TypeInfo {
-    /// [`Message::PACKAGE`].
+    /// Value of [`Message::PACKAGE`].
     pub package: &'static str,
-    /// [`Message::NAME`].
+    /// Value of [`Message::NAME`].
     pub name: &'static str,
-    /// [`Message::TYPE`].
+    /// Value of [`Message::TYPE`].
     pub type_name: &'static str,
-    /// [`Message::HASH`].
+    /// Value of [`Message::HASH`].
     pub hash: &'static str,
-    /// [`Message::FIELDS`].
+    /// Value of [`Message::FIELDS`].
     pub fields: &'static [FieldInfo],
-    /// [`Message::DEFINITION`].
+    /// Value of [`Message::DEFINITION`].
     pub definition: &'static str,
 }
 
@@ -52,7 +52,7 @@ impl TypeInfo {
 /// A field in a type description, `type_description_interfaces/msg/FieldType` (REP-2016).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldInfo {
-    /// Its name.
+    /// Name of the field.
     pub name: &'static str,
     /// Number of its type: 1 for a message, 11 for `float64`, 17 for `string`, …; plus 48 for an array, 144 for a sequence.
     pub type_id: u8,

@@ -20,7 +20,7 @@ const REFUSED: &str = "refused";
 pub struct Published {
     /// Resolved topic name, as in `/lab/stress`.
     pub topic: String,
-    /// The writer.
+    /// Identity of the writer.
     pub writer: Guid,
     /// Number of samples published, which is the RTPS sequence number of the last one.
     pub count: u64,
@@ -44,7 +44,7 @@ pub struct Received {
 pub struct Report {
     /// Fully qualified node name.
     pub node: String,
-    /// Process id.
+    /// Id of the process.
     pub pid: u32,
     /// The health that the node reports.
     pub health: Health,
@@ -143,7 +143,7 @@ impl Report {
         Some(report)
     }
 
-    /// Whether this is the last report of its process.
+    /// True for the last report of its process.
     pub fn is_final(&self) -> bool {
         self.exit.is_some()
     }

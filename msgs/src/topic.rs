@@ -14,10 +14,10 @@ pub struct Topic {
     pub qos: Qos,
     /// Node that publishes it; `an instrument` where no node of ours does.
     pub writer: &'static str,
-    /// Whether every recorded byte is a function of scene and seed: without a wall clock or a counter of a
+    /// True if every recorded byte is a function of scene and seed: without a wall clock or a counter of a
     /// process. If it is transient local, too, the recorder writes each message to disk at once.
     pub reproducible: bool,
-    /// Its content in one line.
+    /// Content in one line.
     pub summary: &'static str,
 }
 
@@ -87,7 +87,7 @@ impl Topic {
         Some(Self { name: constant(name), info, qos, writer: "", reproducible: false, summary: "" })
     }
 
-    /// Its name in a recording without namespace: `/stress`.
+    /// Name in a recording without namespace: `/stress`.
     pub fn absolute_name(&self) -> String {
         format!("/{}", self.name.trim_start_matches('/'))
     }

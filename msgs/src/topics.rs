@@ -34,12 +34,12 @@ impl Topic {
         named.or_else(|| TOPICS.iter().find(|t| t.is_recorded() && t.info.type_name == type_name))
     }
 
-    /// Whether recorders write it: parts of messages and copies of messages are left out.
+    /// True if recorders write it: parts of messages and copies of messages are left out.
     pub fn is_recorded(&self) -> bool {
         !self.is_transport() && self.name != STRESS_SAMPLED.name
     }
 
-    /// Whether it carries only parts of another topic's messages: it is never recorded, but the whole
+    /// True if it carries only parts of another topic's messages: it is never recorded, but the whole
     /// messages are.
     pub fn is_transport(&self) -> bool {
         self.info == PACKING_CHUNK.info || self.info == PACKING_CREDIT.info
@@ -146,7 +146,7 @@ pub const WAVEFORM: Topic = Topic {
     summary: "the traces of the wave speeds, one message per wave",
 };
 
-/// Inferred microstructure.
+/// Inferred microstructure of a packing.
 pub const MICROSTRUCTURE: Topic = Topic {
     name: "microstructure",
     info: TypeInfo::of::<msg::Microstructure>(),
@@ -166,7 +166,7 @@ pub const RUN_STATE: Topic = Topic {
     summary: "phase, progress, finished, step of the last packing",
 };
 
-/// Where the energy of a phase went, one message per phase, if the scene asks for it.
+/// Energy balance of a phase, one message per phase, if the scene asks for it.
 pub const ENERGY: Topic = Topic {
     name: "energy",
     info: TypeInfo::of::<msg::EnergyBalance>(),
@@ -186,7 +186,7 @@ pub const CLOCK: Topic = Topic {
     summary: "simulated time, at most 100 Hz of wall time",
 };
 
-/// Logs.
+/// Logs of all nodes.
 pub const ROSOUT: Topic = Topic {
     name: "/rosout",
     info: TypeInfo::of::<rcl_interfaces::Log>(),
@@ -206,7 +206,7 @@ pub const DIAGNOSTICS: Topic = Topic {
     summary: "health and counters of every node",
 };
 
-/// Frames.
+/// Frames for viewers.
 pub const TF_STATIC: Topic = Topic {
     name: "/tf_static",
     info: TypeInfo::of::<tf2_msgs::TFMessage>(),

@@ -1,4 +1,4 @@
-//! What the crate `mcap` needs alone, beside the commands of `grainlab bag`.
+//! Time that the crate `mcap` needs alone, to be compared with the commands of `grainlab bag`.
 //!
 //! ```sh
 //! cargo run --release -p grainlab_recordings --example bare -- make OUT.mcap 1000 2000 none   # MB, bytes of a message

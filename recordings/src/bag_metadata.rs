@@ -28,14 +28,7 @@ impl BagMetadata {
     pub(crate) fn of(recording: &Recording) -> Self {
         let mut metadata = Self { files: recording.parts(), topics: BTreeMap::new() };
         for channel in recording.channels() {
-            let spec = TopicSpec {
-                name: channel.topic.clone(),
-                ros_type: channel.ros_type.clone(),
-                definition: channel.definition.clone(),
-                schema_encoding: channel.schema_encoding.clone(),
-                type_hash: channel.type_hash.clone(),
-                qos: channel.qos.clone(),
-            };
+            let spec = TopicSpec::of_channel(&channel);
             let messages = recording.count(&channel.topic);
             metadata.topics.insert(spec.name.clone(), TopicCount { spec, messages });
         }

@@ -1,13 +1,15 @@
 //! Compression of chunks.
 
+use clap::ValueEnum;
+
 /// Compression of the chunks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Compression {
-    /// Not compressed.
+    /// Chunks without compression
     None,
-    /// LZ4.
+    /// Compression by LZ4
     Lz4,
-    /// Zstandard.
+    /// Compression by Zstandard
     #[default]
     Zstd,
 }

@@ -26,23 +26,23 @@ pub enum DefinitionError {
         "the definition of {type_name} is not known to this program: give a folder that contains {type_name}.msg with --msg-path"
     )]
     Unknown {
-        /// The type.
+        /// Name of the type.
         type_name: String,
     },
     /// A message file cannot be read.
     #[error("{path}: cannot read the definition of a message: {source}")]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its error.
+        /// Error that was returned.
         source: io::Error,
     },
     /// A definition is not valid.
     #[error("{type_name} from --msg-path: {source}")]
     Invalid {
-        /// The type.
+        /// Name of the type.
         type_name: String,
-        /// What is wrong.
+        /// Description of the fault.
         source: SchemaError,
     },
 }

@@ -12,7 +12,7 @@ mod vtp;
 
 pub use csv::{csv, sidecar};
 pub use extended_xyz::extended_xyz;
-pub use files::{ExportError, ExportFormat, Exporter, FilePart};
+pub use files::{ExportFormat, Exporter, FilePart};
 pub use lammps_data::lammps_data;
 pub use lammps_dump::lammps_dump;
 pub use lammps_local::lammps_local;

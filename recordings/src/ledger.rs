@@ -83,7 +83,7 @@ impl Ledger {
         }
     }
 
-    /// Whether message `sequence` of this writer was recorded already.
+    /// True if message `sequence` of this writer was recorded already.
     pub fn holds(&self, topic: &str, guid: &Guid, sequence: i64) -> bool {
         self.topics.get(topic).and_then(|t| t.get(guid)).is_some_and(|w| w.sequence.holds(sequence))
     }
@@ -131,16 +131,7 @@ impl Ledger {
     }
 
     fn tally(&self, name: &str, writers: &BTreeMap<Guid, Writer>) -> TopicTally {
-        let mut topic = TopicTally {
-            name: name.to_owned(),
-            published: 0,
-            recorded: 0,
-            lost: 0,
-            repeated: 0,
-            conflicting: 0,
-            redelivered: 0,
-            writers: Vec::new(),
-        };
+        let mut tallies = Vec::new();
         for (guid, writer) in writers {
             let s = &writer.sequence;
             // No message was received: those published before are not counted as lost.
@@ -152,22 +143,14 @@ impl Ledger {
             let recorded = held - writer.same - writer.conflicting - writer.left_out;
             // A report below the highest received number is out of date; it does not mean a negative loss.
             let published = writer.reported.unwrap_or(0).max(s.highest().max(0) as u64).max(held) - before;
-            let lost = published.saturating_sub(held);
-            let published = published - writer.left_out;
-            topic.published += published;
-            topic.recorded += recorded;
-            topic.lost += lost;
-            topic.repeated += writer.same;
-            topic.conflicting += writer.conflicting;
-            topic.redelivered += s.redelivered();
-            topic.writers.push(WriterTally {
+            tallies.push(WriterTally {
                 guid: guid.to_string(),
                 node: self.nodes.get(guid).cloned(),
                 recorded,
                 reported: writer.reported,
                 first: s.first(),
                 last: (held > 0).then(|| s.highest()),
-                lost,
+                lost: published.saturating_sub(held),
                 gaps: s
                     .gaps()
                     .filter(|(_, last)| *last >= 0 && *last as u64 > before)
@@ -178,7 +161,7 @@ impl Ledger {
                 redelivered: s.redelivered(),
             });
         }
-        topic
+        merge::topic(name.to_owned(), tallies)
     }
 }
 

@@ -1,9 +1,10 @@
 //! Outputs that appear complete or not at all.
 
-use std::ffi::{CString, OsString};
+use rustix::fs::{CWD, RenameFlags, renameat_with};
+use rustix::io::Errno;
+use std::ffi::OsString;
 use std::fs;
 use std::io::{self, ErrorKind};
-use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 
 /// A file or directory that is written under a temporary name beside its own. Dropped before [`NewPath::finish`], it is
@@ -33,7 +34,7 @@ impl NewPath {
         Ok(Self { path: path.to_owned(), partial: path.with_file_name(hidden) })
     }
 
-    /// Where to write.
+    /// Temporary name, under which the output is written.
     pub fn partial(&self) -> &Path {
         &self.partial
     }
@@ -59,22 +60,13 @@ impl Drop for NewPath {
 
 /// Renames unless `to` exists; on a file system that cannot do both at once, after a look.
 fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
-    let (a, b) = (CString::new(from.as_os_str().as_bytes())?, CString::new(to.as_os_str().as_bytes())?);
-    // SAFETY: both names end in NUL and outlive the call.
-    let status = unsafe {
-        libc::renameat2(libc::AT_FDCWD, a.as_ptr(), libc::AT_FDCWD, b.as_ptr(), libc::RENAME_NOREPLACE)
-    };
-    if status == 0 {
-        return Ok(());
+    match renameat_with(CWD, from, CWD, to, RenameFlags::NOREPLACE) {
+        Err(Errno::INVAL | Errno::NOSYS) if to.symlink_metadata().is_ok() => {
+            Err(ErrorKind::AlreadyExists.into())
+        }
+        Err(Errno::INVAL | Errno::NOSYS) => fs::rename(from, to),
+        outcome => Ok(outcome?),
     }
-    let error = io::Error::last_os_error();
-    if !matches!(error.raw_os_error(), Some(libc::EINVAL | libc::ENOSYS)) {
-        return Err(error);
-    }
-    if to.symlink_metadata().is_ok() {
-        return Err(io::ErrorKind::AlreadyExists.into());
-    }
-    fs::rename(from, to)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Whether a recording is of one run. A merged one, or one of a recorder that heard two runs, has packings and results of several
+//! Signs that a recording is of several runs. A merged one, or one of a recorder that heard two runs, has packings and results of several
 //! runs under the same steps; what is joined by its step would then be joined across runs.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,34 +17,34 @@ const REQUESTS: usize = 1 << 20;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{path} holds several runs: {sign}. Results of several runs are not joined: {}", sign.way_out())]
 pub struct SeveralRuns {
-    /// The recording.
+    /// Path of the recording.
     pub path: PathBuf,
-    /// What shows it.
+    /// Sign of several runs.
     pub sign: RunSign,
 }
 
 impl SeveralRuns {
-    /// What shows it in the scenes, packings and requests of a recording; `None` if it is of one run.
+    /// Sign in the scenes, packings and requests of a recording; `None` if it is of one run.
     pub fn of(recording: &Recording) -> Option<Self> {
         let sign = || OneRun::messages(recording).err();
         let path = recording.path();
         Self::of_scenes(recording).or_else(|| Some(Self { path: path.to_owned(), sign: sign()? }))
     }
 
-    /// What shows it in the scenes alone, without reading messages.
+    /// Sign in the scenes alone, without reading messages.
     pub fn of_scenes(recording: &Recording) -> Option<Self> {
         let sign = OneRun::scenes(recording).err()?;
         Some(Self { path: recording.path().to_owned(), sign })
     }
 }
 
-/// What shows that a recording holds several runs.
+/// Sign that a recording holds several runs.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RunSign {
     /// One step is that of two states.
     #[error("there are two different packings of step {step}")]
     Packings {
-        /// The step.
+        /// Number of the step.
         step: u64,
     },
     /// The steps begin again.
@@ -58,23 +58,23 @@ pub enum RunSign {
     /// Grains were exchanged, which no run does.
     #[error("there are packings of {first} and of {second} grains")]
     Grains {
-        /// Of the first packing.
+        /// Grains of the first packing.
         first: usize,
-        /// Of another one.
+        /// Grains of another one.
         second: usize,
     },
     /// Packings of several laboratories.
     #[error("there are packings on {first} and on {second}")]
     Topics {
-        /// A topic.
+        /// Topic of a laboratory.
         first: String,
-        /// Another one.
+        /// Topic of another one.
         second: String,
     },
     /// The recording has several scenes.
     #[error("it has {count} different scenes ({names})")]
     Scenes {
-        /// Their number.
+        /// Number of scenes.
         count: usize,
         /// Names of the stored files.
         names: String,
@@ -82,7 +82,7 @@ pub enum RunSign {
     /// One number is that of two requests of the lockstep.
     #[error("there are two different requests of number {sequence} on stress")]
     Requests {
-        /// The number.
+        /// Number of the request.
         sequence: u64,
     },
     /// A result is not that of the packing of its step.
@@ -90,15 +90,15 @@ pub enum RunSign {
     Result {
         /// Topic of the result.
         topic: &'static str,
-        /// The step.
+        /// Number of the step.
         step: u64,
-        /// What differs.
+        /// Quantity that differs.
         difference: String,
     },
 }
 
 impl RunSign {
-    /// What to do to have one run.
+    /// Advice how to get a recording of one run.
     fn way_out(&self) -> &'static str {
         match self {
             Self::Topics { .. } => "take the topics of one of them (grainlab bag filter)",

@@ -12,6 +12,9 @@ use std::time::Duration;
 
 use crate::reader::{ChannelInfo, Message, Messages, ReadError, Recording, Selection};
 
+/// Lateness above which the schedule is delayed instead of catching up.
+const PATIENCE: Duration = Duration::from_millis(20);
+
 /// The selection and rate of a playback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlayOptions {
@@ -21,24 +24,15 @@ pub struct PlayOptions {
     pub exclude: Vec<String>,
     /// Recorded seconds per second; positive. With infinity, messages are due at once.
     pub rate: f64,
-    /// Where to start, after the first message of the recording.
+    /// Start, after the first message of the recording.
     pub start_offset: Duration,
-    /// How much to play, in recorded time; `None` to the end.
+    /// Duration to play, in recorded time; `None` to the end.
     pub duration: Option<Duration>,
-    /// Lateness above which the schedule is delayed instead of catching up.
-    pub patience: Duration,
 }
 
 impl Default for PlayOptions {
     fn default() -> Self {
-        Self {
-            topics: None,
-            exclude: Vec::new(),
-            rate: 1.0,
-            start_offset: Duration::ZERO,
-            duration: None,
-            patience: Duration::from_millis(20),
-        }
+        Self { topics: None, exclude: Vec::new(), rate: 1.0, start_offset: Duration::ZERO, duration: None }
     }
 }
 
@@ -80,7 +74,6 @@ pub struct Player<'r> {
     latched: VecDeque<Message>,
     messages: Peekable<Messages<'r>>,
     rate: f64,
-    patience: Duration,
     paused: bool,
     /// Messages to send although the schedule is stopped.
     steps: u64,
@@ -117,7 +110,7 @@ impl<'r> Player<'r> {
         }
         let mut latched = Vec::new();
         for channel in channels.iter().filter(|c| c.is_latched()) {
-            latched.extend(recording.last_before(&channel.topic, start)?);
+            latched.extend(recording.some_before(&channel.topic, start, 1)?);
         }
         latched.sort_by_key(|m| m.log_time);
         let selection = Selection {
@@ -130,7 +123,6 @@ impl<'r> Player<'r> {
             channels,
             latched: latched.into(),
             rate: options.rate,
-            patience: options.patience,
             paused: false,
             steps: 0,
             position: start,
@@ -167,7 +159,7 @@ impl<'r> Player<'r> {
             self.position = due;
         } else if due > position {
             return Play::Wait(self.in_callers_time(due - position));
-        } else if self.in_callers_time(position - due) > self.patience {
+        } else if self.in_callers_time(position - due) > PATIENCE {
             self.slipped += self.in_callers_time(position - due);
             self.set_anchor(due, now);
         }
@@ -211,7 +203,7 @@ impl<'r> Player<'r> {
         self.rate
     }
 
-    /// Whether the schedule is stopped.
+    /// True while the schedule is stopped.
     pub fn is_paused(&self) -> bool {
         self.paused
     }

@@ -13,7 +13,7 @@ mod profile;
 
 use profile::Policies;
 
-/// What rosbag2 requests and offers where nothing else is known.
+/// QoS that rosbag2 requests and offers where nothing else is known.
 const DEFAULT: Qos = Qos { reliable: true, depth: 10, transient_local: false };
 
 /// Why a file of overrides cannot be used.
@@ -22,9 +22,9 @@ pub enum QosError {
     /// It cannot be read.
     #[error("{path}: cannot read the QoS profiles: {source}")]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its error.
+        /// Error that was returned.
         source: io::Error,
     },
     /// It is not YAML, or not a map from topics to profiles.
@@ -32,19 +32,19 @@ pub enum QosError {
         "{path}: {problem}; it has to be YAML such as `/topic: {{reliability: best_effort, history: keep_last, depth: 10}}`"
     )]
     Format {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong.
+        /// Description of the fault.
         problem: String,
     },
     /// A profile is not valid.
     #[error("{path}: profile of {topic}: {problem}")]
     Profile {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The topic.
+        /// Name of the topic.
         topic: String,
-        /// What is wrong, and what to write.
+        /// Description of the fault, and what to write.
         problem: String,
     },
 }

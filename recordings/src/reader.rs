@@ -19,7 +19,6 @@ mod files;
 mod held;
 mod index;
 mod info;
-mod lengths;
 mod message;
 mod messages;
 mod recording;

@@ -23,18 +23,18 @@ mod rewrite;
 /// The result for a recording.
 #[derive(Clone, Debug, Serialize)]
 pub struct Recovery {
-    /// The recording.
+    /// Path of the recording.
     pub path: PathBuf,
-    /// Its files, in order.
+    /// Files of the recording, in order.
     pub files: Vec<RecoveredFile>,
-    /// Whether a new `metadata.yaml` was written.
+    /// True if a new `metadata.yaml` was written.
     pub metadata_written: bool,
 }
 
 /// The result for one file.
 #[derive(Clone, Debug, Serialize)]
 pub struct RecoveredFile {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
     /// Number of messages in the new file.
     pub messages: u64,
@@ -45,7 +45,7 @@ pub struct RecoveredFile {
 }
 
 impl Recovery {
-    /// Whether the file was incomplete.
+    /// True if the recording was incomplete.
     pub fn changed(&self) -> bool {
         self.metadata_written || self.files.iter().any(|f| f.original.is_some())
     }
@@ -65,7 +65,7 @@ pub enum RecoverError {
     /// A recorder is writing it.
     #[error("{path} is being recorded: end the recorder first, it then finishes the file itself")]
     InUse {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
     /// It is complete but damaged: writing it again could only lose more.
@@ -73,7 +73,7 @@ pub enum RecoverError {
         "{path} is complete but damaged ({first}): nothing was changed; its readable part can be used as it is, and `grainlab bag check` lists all damage"
     )]
     Damaged {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The first error.
         first: Box<Warning>,
@@ -81,11 +81,11 @@ pub enum RecoverError {
     /// The file system returned an error.
     #[error("{path}: cannot {action}: {source}; the recording is unchanged")]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The attempted action.
         action: &'static str,
-        /// Its error.
+        /// Error that was returned.
         source: io::Error,
     },
     /// The new file does not equal the original.
@@ -93,7 +93,7 @@ pub enum RecoverError {
     Check {
         /// The new file.
         path: PathBuf,
-        /// The difference.
+        /// Difference that was found.
         problem: String,
     },
 }
@@ -166,7 +166,7 @@ fn file(path: PathBuf) -> Result<RecoveredFile, RecoverError> {
     })
 }
 
-/// Whether the messages of both are the same.
+/// Compares the messages of both.
 fn compare(old: &Recording, new: &Recording) -> Result<(), String> {
     let all = crate::reader::Selection::default();
     let (mut a, mut b) =

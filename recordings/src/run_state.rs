@@ -1,9 +1,9 @@
-//! How far a run came.
+//! Progress of a run, by the files of its directory.
 
 use serde::Deserialize;
 use std::path::Path;
 
-/// How far the run in a directory came.
+/// Progress of the run in a directory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunState {
     /// There is no run.

@@ -13,11 +13,11 @@ use std::path::Path;
 pub struct SceneText {
     /// The text for the recording: complete without its bases, with the seed in force.
     pub text: String,
-    /// The same, parsed.
+    /// Scene parsed from the text.
     pub scene: Scene,
     /// The packing that it starts from, if any.
     pub start: Option<Packing>,
-    /// What to know about that packing.
+    /// Notes on that packing.
     pub notes: Vec<String>,
 }
 

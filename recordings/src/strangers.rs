@@ -19,7 +19,7 @@ pub const DISPUTES: &str = "disputes";
 /// A process whose messages were left out of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StrangerView {
-    /// Its process, or its DDS participant.
+    /// Process, or DDS participant.
     pub who: String,
     /// The run that it claims to belong to.
     pub run: Option<String>,
@@ -28,7 +28,7 @@ pub struct StrangerView {
 }
 
 impl StrangerView {
-    /// As text.
+    /// Text of one line.
     pub fn line(&self) -> String {
         let counts: Vec<String> = self.ignored.iter().map(|(topic, n)| format!("{n} on {topic}")).collect();
         format!("not of this run and left out: {}: {}", self.who, counts.join(", "))
@@ -64,7 +64,7 @@ pub fn authors(recording: &Recording) -> Authors {
     read(recording, AUTHORS).unwrap_or_default()
 }
 
-/// What the recorders of a recording noted as doubtful: two processes of one name or one task, another scene.
+/// Doubts that the recorders of a recording noted: two processes of one name or one task, another scene.
 pub fn noted_disputes(recording: &Recording) -> Vec<String> {
     read(recording, DISPUTES).unwrap_or_default()
 }

@@ -45,7 +45,7 @@ pub use topic_spec::TopicSpec;
 /// A sample received from the network.
 #[derive(Clone, Copy, Debug)]
 pub struct Incoming<'a> {
-    /// The writer.
+    /// Writer of the sample.
     pub guid: Guid,
     /// RTPS sequence number, counted from 1 by each writer.
     pub sequence: i64,
@@ -76,14 +76,10 @@ pub struct Finished {
     pub file: PathBuf,
     /// All MCAP files of this writer, in order.
     pub files: Vec<PathBuf>,
-    /// Their size, bytes.
+    /// Size of all files, bytes.
     pub bytes: u64,
     /// Messages in them.
     pub messages: u64,
-    /// First log time, ns since 1970; 0 without messages.
-    pub start: u64,
-    /// Last log time, ns since 1970; 0 without messages.
-    pub end: u64,
     /// The counts of all topics.
     pub ledger: Ledger,
 }
@@ -108,8 +104,6 @@ pub struct RunWriter {
     bytes: u64,
     messages: u64,
     ledger: Ledger,
-    /// First and last log time of this writer.
-    bounds: Option<(u64, u64)>,
     /// Last log time of all.
     last: Option<u64>,
     /// Time of the oldest unwritten message.
@@ -168,13 +162,9 @@ impl RunWriter {
         number: u64,
         before: BagMetadata,
     ) -> Result<Self, WriteError> {
-        let io = |path: &Path, action: &'static str| {
-            let path = path.to_owned();
-            move |source| WriteError::Io { path, action, source }
-        };
-        fs::create_dir_all(directory).map_err(io(directory, "create the directory"))?;
+        fs::create_dir_all(directory).map_err(WriteError::io(directory, "create the directory"))?;
         let file = part_path(directory, name, number);
-        let free = free_space(directory).map_err(io(directory, "query the free space"))?;
+        let free = free_space(directory).map_err(WriteError::io(directory, "query the free space"))?;
         if free < options.free_to_start {
             let needed = options.free_to_start;
             return Err(WriteError::NoSpace { path: file, free, needed, state: "not begun" });
@@ -194,7 +184,6 @@ impl RunWriter {
             bytes: 0,
             messages: 0,
             ledger: Ledger::default(),
-            bounds: None,
             pending: None,
             unchecked: 0,
             ended: None,
@@ -266,7 +255,6 @@ impl RunWriter {
             t.messages += 1;
         }
         self.messages += 1;
-        self.bounds = Some((self.bounds.map_or(log_time, |(first, _)| first), log_time));
         self.last = Some(log_time);
         let now = Instant::now();
         self.pending.get_or_insert(now);
@@ -301,11 +289,7 @@ impl RunWriter {
         part.sync.request(now, self.options.sync_interval);
         match part.sync.failure() {
             Some(source) => {
-                let error = WriteError::Io {
-                    path: self.file.clone(),
-                    action: "sync the recording to the device",
-                    source,
-                };
+                let error = WriteError::io(&self.file, "sync the recording to the device")(source);
                 self.ended = Some(error.to_string());
                 Err(error)
             }
@@ -363,19 +347,12 @@ impl RunWriter {
 
     fn close(&mut self, finished: bool) -> Result<Finished, WriteError> {
         self.close_part(if finished { "true" } else { "false" })?;
-        self.bag.write(&self.directory).map_err(|source| WriteError::Io {
-            path: self.file.clone(),
-            action: "write metadata.yaml",
-            source,
-        })?;
-        let (start, end) = self.bounds.unwrap_or((0, 0));
+        self.bag.write(&self.directory).map_err(WriteError::io(&self.file, "write metadata.yaml"))?;
         Ok(Finished {
             file: self.file.clone(),
             files: std::mem::take(&mut self.files),
             bytes: self.bytes,
             messages: self.messages,
-            start,
-            end,
             ledger: std::mem::take(&mut self.ledger),
         })
     }
@@ -390,11 +367,8 @@ impl RunWriter {
         if let Some(reason) = &self.ended {
             metadata.insert("ended_by".into(), reason.clone());
         }
-        let tallies = serde_json::to_string(&self.ledger.tallies()).map_err(|e| WriteError::Io {
-            path: self.file.clone(),
-            action: "write the ledger as JSON",
-            source: e.into(),
-        })?;
+        let tallies = serde_json::to_string(&self.ledger.tallies())
+            .map_err(|e| WriteError::io(&self.file, "write the ledger as JSON")(e.into()))?;
         metadata.insert(LEDGER_KEY.into(), tallies);
         let closed = match part.close(Metadata { name: METADATA_RECORD.into(), metadata }) {
             Ok(closed) => closed,
@@ -439,11 +413,8 @@ impl RunWriter {
 
     fn require_space(&mut self) -> Result<(), WriteError> {
         self.unchecked = 0;
-        let free = free_space(&self.directory).map_err(|source| WriteError::Io {
-            path: self.directory.clone(),
-            action: "query the free space",
-            source,
-        })?;
+        let free =
+            free_space(&self.directory).map_err(WriteError::io(&self.directory, "query the free space"))?;
         if free >= self.options.free_to_continue {
             return Ok(());
         }

@@ -20,7 +20,7 @@ pub enum DecodeError {
     /// Too few bytes for a header.
     #[error("{type_name}: {length} bytes are too few for a CDR header of 4")]
     NoHeader {
-        /// The type.
+        /// Name of the type.
         type_name: String,
         /// Number of bytes.
         length: usize,
@@ -30,7 +30,7 @@ pub enum DecodeError {
         "{type_name}: encapsulation {found:02x?} is not plain CDR ([00, 01] little endian or [00, 00] big endian)"
     )]
     Encapsulation {
-        /// The type.
+        /// Name of the type.
         type_name: String,
         /// First two bytes.
         found: [u8; 2],
@@ -40,25 +40,25 @@ pub enum DecodeError {
         "{type_name}: {field} at byte {at} needs {needed} bytes or more, and {left} are left (truncated, or another type)"
     )]
     Truncated {
-        /// The type.
+        /// Name of the type.
         type_name: String,
-        /// The field.
+        /// Name of the field.
         field: String,
         /// Byte after the header at which it starts.
         at: usize,
-        /// Bytes needed.
+        /// Number of bytes needed.
         needed: u64,
-        /// Bytes left.
+        /// Number of bytes left.
         left: usize,
     },
     /// An array or a string is longer than its type allows.
     #[error("{type_name}: {field} has {length} entries, and its type allows at most {bound}")]
     TooLong {
-        /// The type.
+        /// Name of the type.
         type_name: String,
-        /// The field.
+        /// Name of the field.
         field: String,
-        /// Its length.
+        /// Number of its entries.
         length: u32,
         /// The bound in the schema.
         bound: u32,
@@ -66,7 +66,7 @@ pub enum DecodeError {
     /// Bytes after the message.
     #[error("{type_name}: {extra} bytes follow the message (at most 3 of padding may; another type?)")]
     Trailing {
-        /// The type.
+        /// Name of the type.
         type_name: String,
         /// Number of extra bytes.
         extra: usize,
@@ -74,7 +74,7 @@ pub enum DecodeError {
     /// The values would take far more memory than the bytes.
     #[error("{type_name}: its {length} bytes would take more than {PER_BYTE} times their size in memory")]
     Expands {
-        /// The type.
+        /// Name of the type.
         type_name: String,
         /// Number of bytes.
         length: usize,

@@ -2,7 +2,7 @@
 //!
 //! - [`Schema`]: the types of a schema text, as MCAP files contain it
 //! - [`Schema::decode`]: bytes to a [`Message`], a tree of [`Value`]s
-//! - [`Schema::compare`]: a definition beside the one that is wanted, and [`Mapping`]: messages of the one as those of the other
+//! - [`Schema::compare`]: a definition compared with the one that is wanted, and [`Mapping`]: messages of the one as those of the other
 //! - [`Message::encode`]: values to bytes
 //! - [`Shown`]: a message as JSON, or as the text of `ros2 topic echo`
 //!

@@ -10,7 +10,7 @@ use crate::schema::Schema;
 use crate::types::{Element, FieldType, Length, MessageType};
 use crate::value::{Array, Message, Value};
 
-/// How a definition relates to the one that is wanted.
+/// Relation of a definition to the one that is wanted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Comparison {
     /// Names, types, order and constants are the same; comments and defaults may differ.
@@ -30,7 +30,7 @@ pub struct Mapping {
 }
 
 impl Mapping {
-    /// What differs: an order, fields that are left out.
+    /// Differences: an order, fields that are left out.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -121,7 +121,7 @@ impl Found {
     }
 }
 
-/// Whether every value of the type is a value of the wanted one, with the same name.
+/// True if every value of the type is a value of the wanted one, with the same name.
 fn fits(own: &FieldType, wanted: &FieldType) -> bool {
     let within = |own: Option<u32>, most: Option<u32>| most.is_none_or(|most| own.is_some_and(|n| n <= most));
     let element = match (&own.element, &wanted.element) {

@@ -3,28 +3,23 @@
 /// An error unless `name` is that of a field or a package: small letters, digits and single underscores, a letter first, no
 /// underscore last.
 pub(crate) fn check_field(name: &str) -> Result<(), String> {
-    let first = name.starts_with(|c: char| c.is_ascii_lowercase());
-    let plain = name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_');
-    if first && plain && !name.contains("__") && !name.ends_with('_') {
-        return Ok(());
-    }
-    Err(format!(
-        "{name:?} is not the name of a field: write small letters, digits and single underscores, a letter first and no \
-         underscore last, as in mean_speed"
-    ))
+    check(name, u8::is_ascii_lowercase, ["a field", "small", "mean_speed"])
 }
 
-/// An error unless `name` is that of a constant: capital letters, digits and single underscores, a letter first, no underscore
-/// last.
+/// An error unless `name` is that of a constant: as that of a field, in capital letters.
 pub(crate) fn check_constant(name: &str) -> Result<(), String> {
-    let first = name.starts_with(|c: char| c.is_ascii_uppercase());
-    let plain = name.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit() || b == b'_');
-    if first && plain && !name.contains("__") && !name.ends_with('_') {
+    check(name, u8::is_ascii_uppercase, ["a constant", "capital", "MAX_SPEED"])
+}
+
+fn check(name: &str, is_letter: fn(&u8) -> bool, [what, letters, example]: [&str; 3]) -> Result<(), String> {
+    let plain = name.bytes().all(|b| is_letter(&b) || b.is_ascii_digit() || b == b'_');
+    if name.as_bytes().first().is_some_and(is_letter) && plain && !name.contains("__") && !name.ends_with('_')
+    {
         return Ok(());
     }
     Err(format!(
-        "{name:?} is not the name of a constant: write capital letters, digits and single underscores, a letter first and no \
-         underscore last, as in MAX_SPEED"
+        "{name:?} is not the name of {what}: write {letters} letters, digits and single underscores, a letter first and no \
+         underscore last, as in {example}"
     ))
 }
 

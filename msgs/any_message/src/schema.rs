@@ -1,4 +1,4 @@
-//! Schema texts.
+//! Parser of schema texts.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -33,7 +33,7 @@ pub enum SchemaError {
         type_name: String,
         /// Number of the line within the text of the type, from 1.
         line: usize,
-        /// What is wrong.
+        /// Description of the fault.
         problem: String,
     },
     /// The text of a type is missing.
@@ -98,7 +98,7 @@ fn short(name: &str) -> String {
     }
 }
 
-/// Whether two texts of a type have the same declarations; comments and spaces may differ.
+/// True if two texts of a type have the same declarations; comments and spaces may differ.
 fn says_the_same(a: &str, b: &str) -> bool {
     let of = |text| str::lines(text).map(declaration).filter(|line| !matches!(line, Ok(None)));
     a == b || of(a).eq(of(b))
@@ -127,7 +127,7 @@ fn sections(text: &str) -> impl Iterator<Item = (&str, &str)> {
     })
 }
 
-/// Whether a type needs no message file of its own name. `time` and `duration` are those of ROS 1.
+/// True for a type that needs no message file of its own name. `time` and `duration` are those of ROS 1.
 fn is_built_in(base: &str) -> bool {
     Primitive::by_name(base).is_some() || ["string", "wstring", "time", "duration"].contains(&base)
 }

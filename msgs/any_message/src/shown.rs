@@ -17,7 +17,7 @@ pub struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    /// All values.
+    /// Message with all values.
     pub fn new(message: &'a Message) -> Self {
         Self { message, longest: usize::MAX }
     }
@@ -213,7 +213,7 @@ fn yaml_not_finite(v: f64) -> String {
     .to_owned()
 }
 
-/// Whether YAML reads the text without quotes as the same string.
+/// True if YAML reads the text without quotes as the same string.
 fn is_simple(text: &str) -> bool {
     let word = text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '/' || c == '_');
     let reserved = ["true", "false", "yes", "no", "on", "off", "null", "y", "n"];

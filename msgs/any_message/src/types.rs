@@ -8,9 +8,9 @@ use std::sync::Arc;
 pub struct MessageType {
     /// Package and name, `std_msgs/Header`.
     pub name: String,
-    /// Its fields.
+    /// Fields in the order of the file.
     pub fields: Vec<Field>,
-    /// Its constants.
+    /// Constants in the order of the file.
     pub constants: Vec<Constant>,
     /// Fewest bytes of a message in CDR, without padding.
     pub(crate) least: u64,
@@ -21,9 +21,9 @@ pub struct MessageType {
 /// A field of a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Its name.
+    /// Name in the message file.
     pub name: String,
-    /// Its type.
+    /// Type of the value.
     pub kind: FieldType,
     /// The default in the schema, as its text.
     pub default: Option<String>,
@@ -32,11 +32,11 @@ pub struct Field {
 /// A constant of a message type. It is not part of a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Constant {
-    /// Its name.
+    /// Name in the message file.
     pub name: String,
-    /// Its type.
+    /// Type of the value.
     pub kind: Element,
-    /// Its value, as its text.
+    /// Value, as text of the file.
     pub value: String,
 }
 
@@ -45,11 +45,11 @@ pub struct Constant {
 pub struct FieldType {
     /// Type of one value.
     pub element: Element,
-    /// How many.
+    /// Number of values.
     pub length: Length,
 }
 
-/// How many values a field has.
+/// Number of values of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
     /// One, not an array.
@@ -69,34 +69,34 @@ pub enum Element {
     String(Option<u32>),
     /// A text of at most so many UTF-16 units.
     WString(Option<u32>),
-    /// Another message.
+    /// Message of another type.
     Message(Arc<MessageType>),
 }
 
 /// Types of fixed size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Primitive {
-    /// `bool`.
+    /// ROS type `bool`.
     Bool,
-    /// `int8`.
+    /// ROS type `int8`.
     I8,
     /// `uint8`, `byte` and `char`.
     U8,
-    /// `int16`.
+    /// ROS type `int16`.
     I16,
-    /// `uint16`.
+    /// ROS type `uint16`.
     U16,
-    /// `int32`.
+    /// ROS type `int32`.
     I32,
-    /// `uint32`.
+    /// ROS type `uint32`.
     U32,
-    /// `int64`.
+    /// ROS type `int64`.
     I64,
-    /// `uint64`.
+    /// ROS type `uint64`.
     U64,
-    /// `float32`.
+    /// ROS type `float32`.
     F32,
-    /// `float64`.
+    /// ROS type `float64`.
     F64,
 }
 
@@ -119,7 +119,7 @@ impl Primitive {
         })
     }
 
-    /// Its name in a message file.
+    /// Name in a message file.
     const fn name(self) -> &'static str {
         match self {
             Self::Bool => "bool",

@@ -1,4 +1,4 @@
-//! Decoded messages.
+//! Values of decoded messages.
 
 use std::sync::Arc;
 
@@ -7,9 +7,9 @@ use crate::types::MessageType;
 /// A decoded message: one value for each field of its type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Message {
-    /// Its type.
+    /// Type of the message.
     pub kind: Arc<MessageType>,
-    /// Its values, in the order of the fields.
+    /// Values, in the order of the fields.
     pub values: Vec<Value>,
 }
 
@@ -91,7 +91,7 @@ impl Array {
         for_each_array!(self, values => values.len())
     }
 
-    /// Whether it has no values.
+    /// True if it has no values.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

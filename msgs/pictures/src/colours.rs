@@ -19,7 +19,7 @@ pub const RAMP: [Colour; 7] = [
 /// Contacts of a grain with a colour of their own; grains with more have that of the last.
 pub const MOST_CONTACTS: usize = 9;
 
-/// A rattler.
+/// Colour of rattlers.
 pub const RATTLER: Colour = [196, 196, 204];
 
 /// The colour of a share; shares below 0 and above 1 have the colours of the ends.

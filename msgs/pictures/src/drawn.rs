@@ -5,13 +5,13 @@ use grainlab_core::{Packing, Vec3, non_rattlers};
 /// A packing as it is drawn: grains within the cell, each with its contacts.
 #[derive(Clone, Debug)]
 pub struct Drawn<'a> {
-    /// The packing.
+    /// Packing that is drawn.
     pub packing: &'a Packing,
     /// Positions in units of the cell vectors, 0 or more and less than 1.
     pub places: Vec<Vec3>,
     /// Contacts of each grain that are not with rattlers.
     pub coordination: Vec<u32>,
-    /// Whether each grain is a rattler.
+    /// True for each grain that is a rattler.
     pub rattler: Vec<bool>,
     /// Mean normal force of the contacts of each grain, N; 0 without contacts.
     pub force: Vec<f64>,

@@ -1,4 +1,4 @@
-//! What all markers have in common.
+//! Properties that all markers have in common.
 
 use crate::colours::Colour;
 use grainlab_core::Vec3;

@@ -10,9 +10,9 @@ use grainlab_msgs::{DecodeError, Topic, from_cdr, msg, to_cdr, topics};
 /// A picture of a packing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Picture {
-    /// [`points`].
+    /// Message of [`points`].
     Points,
-    /// [`markers`].
+    /// Message of [`markers`].
     Markers,
 }
 
@@ -22,13 +22,13 @@ pub enum PictureError {
     /// It is not a message of a packing.
     #[error(transparent)]
     Decode(#[from] DecodeError),
-    /// Its values are not those of a packing.
+    /// The values are not those of a packing.
     #[error(transparent)]
     Refused(#[from] BoundaryError),
 }
 
 impl Picture {
-    /// Every picture.
+    /// List of all pictures.
     pub const ALL: [Self; 2] = [Self::Points, Self::Markers];
 
     /// The row of its topic.
@@ -39,7 +39,7 @@ impl Picture {
         }
     }
 
-    /// The name of its topic beside a topic with packings: `/lab/packing/points`.
+    /// Name of its topic below that of a topic with packings: `/lab/packing/points`.
     pub fn beside(self, packings: &str) -> String {
         let last = match self {
             Self::Points => "points",

@@ -1,4 +1,4 @@
-//! The checks.
+//! Checks of received messages.
 
 use super::error::BoundaryError;
 use crate::geometry_msgs::Vector3;
@@ -142,12 +142,10 @@ impl Check {
 
     pub(super) fn tensor(self, field: &str, t: &SymmetricTensor) -> Checked<SymTensor> {
         let values = [t.xx, t.yy, t.zz, t.yz, t.xz, t.xy];
-        match (0..6).find(|i| !values[*i].is_finite()) {
-            Some(i) => self
-                .finite(&format!("{field}.{}", SymTensor::COMPONENTS[i]), values[i])
-                .map(|_| SymTensor::default()),
-            None => Ok(SymTensor::from_voigt(values)),
+        if let Some(i) = (0..6).find(|i| !values[*i].is_finite()) {
+            self.finite(&format!("{field}.{}", SymTensor::COMPONENTS[i]), values[i])?;
         }
+        Ok(SymTensor::from_voigt(values))
     }
 
     /// A unit vector; `None` if it is zero.
@@ -164,7 +162,7 @@ impl Check {
     /// A unit vector.
     pub(super) fn unit(self, field: &str, v: &Vector3) -> Checked<Vec3> {
         let known = self.direction(field, v)?;
-        known.map_or_else(|| self.that(false, &format!("|{field}|"), 0.0, "1").map(|_| Vec3::zeros()), Ok)
+        self.that(known.is_some(), &format!("|{field}|"), 0.0, "1").map(|_| known.unwrap_or_default())
     }
 
     /// The field `strain_ratios` of a message.
@@ -227,7 +225,7 @@ impl Check {
     }
 }
 
-/// `rate[2] (zz)`.
+/// Name of a component: `rate[2] (zz)`.
 pub(super) fn component(field: &str, index: usize) -> String {
     format!("{field}[{index}] ({})", SymTensor::COMPONENTS[index])
 }

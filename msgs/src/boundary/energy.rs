@@ -21,14 +21,14 @@ pub struct EnergyReading {
     pub strain_work: f64,
     /// Created by the finite time step.
     pub integration: f64,
-    /// What is present at the end, by name.
+    /// Energies present at the end, by name.
     pub stored: [(&'static str, f64); 4],
-    /// What is dissipated, by name.
+    /// Dissipated energies, by name.
     pub dissipated: [(&'static str, f64); 8],
 }
 
 impl EnergyReading {
-    /// What the balance misses, J: rounding, in a correct run.
+    /// Energy that the balance misses, J: rounding, in a correct run.
     pub fn residual(&self) -> f64 {
         let sum = |parts: &[(&str, f64)]| parts.iter().map(|(_, value)| value).sum::<f64>();
         self.start + self.strain_work + self.integration - sum(&self.stored) - sum(&self.dissipated)

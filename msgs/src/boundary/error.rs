@@ -12,7 +12,7 @@ pub enum BoundaryError {
         field: String,
         /// The value found.
         value: f64,
-        /// What is required.
+        /// Requirement that is not met.
         requirement: &'static str,
     },
     /// A code that is not one of the constants of the message.
@@ -24,7 +24,7 @@ pub enum BoundaryError {
         field: String,
         /// The value found.
         value: u8,
-        /// The constants.
+        /// Constants that are allowed.
         allowed: &'static str,
     },
     /// A word that is not one of the allowed ones.
@@ -44,7 +44,7 @@ pub enum BoundaryError {
     ContactLaw {
         /// Name of the message.
         message: &'static str,
-        /// What is wrong.
+        /// Description of the fault.
         fault: grainlab_core::contact::UnknownLaw,
     },
     /// An array of the wrong length.

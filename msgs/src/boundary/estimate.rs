@@ -36,9 +36,9 @@ pub struct ModelResult {
     pub values: Quantities<Option<f64>>,
     /// Standard deviations, from data and model.
     pub sigma: Quantities<Option<f64>>,
-    /// Their part due to the model.
+    /// Part of the standard deviations due to the model.
     pub sigma_model: Quantities<Option<f64>>,
-    /// Credible intervals.
+    /// Credible intervals of the values.
     pub interval: Interval,
     /// Misfit: weighted sum of squares, by errors of data and model; `None` without degrees of freedom.
     pub chi_square: Option<f64>,
@@ -50,9 +50,9 @@ pub struct ModelResult {
     pub status: &'static str,
     /// The strain ratio γ/Δ that the model used; `None` if it uses none.
     pub gamma_over_delta: Option<f64>,
-    /// Its source: `total`, `elastic`, `contact`: one of the three measured ones; `given`; `zero`: unknown, taken as 0.
+    /// Source of the strain ratio: `total`, `elastic`, `contact`: one of the three measured ones; `given`; `zero`: unknown, taken as 0.
     pub gamma_over_delta_source: Option<&'static str>,
-    /// Notes.
+    /// Notes for the user.
     pub warnings: Vec<String>,
 }
 
@@ -122,7 +122,7 @@ impl Estimate {
         [&self.k, &self.k_hat, &self.z, &self.eps, &self.eps_stiffness]
     }
 
-    /// The same fields, to be written.
+    /// Fields of the inferred quantities, to be written.
     pub fn quantities_mut(&mut self) -> [&mut Vec<f64>; N] {
         [&mut self.k, &mut self.k_hat, &mut self.z, &mut self.eps, &mut self.eps_stiffness]
     }

@@ -26,13 +26,13 @@ pub struct ModuliReading {
     pub covariance: Option<[f64; 9]>,
     /// Confining pressure, Pa, 0 or more.
     pub pressure: f64,
-    /// Its standard deviation, Pa; 0: exact, or not stated.
+    /// Standard deviation of that, Pa; 0: exact, or not stated.
     pub pressure_stddev: f64,
     /// Solid fraction φ.
     pub solid_fraction: Option<f64>,
     /// Axial stress less the lateral one over pressure, (σ_hh − (tr σ − σ_hh)/2)/p, about the reference axis.
     pub stress_ratio: Option<f64>,
-    /// Its standard deviation; 0: exact, or not stated.
+    /// Standard deviation of that; 0: exact, or not stated.
     pub stress_ratio_stddev: f64,
     /// Standard deviation of the radii over their mean.
     pub size_spread: Option<f64>,
@@ -46,7 +46,7 @@ pub struct ModuliReading {
     pub poisson_ratio_stddev: f64,
     /// Contact law of the grains.
     pub contact_law: Option<ContactLaw>,
-    /// Whether the moduli are those without tangential springs.
+    /// True for moduli without tangential springs.
     pub smooth: bool,
 }
 

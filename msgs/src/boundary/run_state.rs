@@ -10,7 +10,7 @@ const CHECK: Check = Check("RunState");
 /// Status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunStatus {
-    /// Under way.
+    /// Run under way.
     Running,
     /// The loading path is done.
     Finished,

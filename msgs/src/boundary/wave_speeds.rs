@@ -3,7 +3,6 @@
 use super::check::{Check, vector_message};
 use super::error::BoundaryError;
 use crate::builtin_interfaces::Time;
-use crate::geometry_msgs::Vector3;
 use crate::msg;
 use crate::std_msgs::Header;
 use grainlab_core::contact::ContactLaw;
@@ -35,17 +34,17 @@ pub struct WaveSpeedsReading {
     pub grains: Option<u32>,
     /// Density of the mass that moves with the wave, kg/m³, more than 0.
     pub density: f64,
-    /// Its standard deviation, kg/m³.
+    /// Standard deviation of that, kg/m³.
     pub density_stddev: Option<f64>,
     /// Confining pressure, Pa, 0 or more.
     pub pressure: f64,
-    /// Its standard deviation, Pa; 0: exact, or not stated.
+    /// Standard deviation of that, Pa; 0: exact, or not stated.
     pub pressure_stddev: f64,
     /// Solid fraction φ.
     pub solid_fraction: Option<f64>,
     /// Axial stress less the lateral one over pressure, (σ_hh − (tr σ − σ_hh)/2)/p, about the axis, e3 if unknown.
     pub stress_ratio: Option<f64>,
-    /// Its standard deviation; 0: exact, or not stated.
+    /// Standard deviation of that; 0: exact, or not stated.
     pub stress_ratio_stddev: f64,
     /// Standard deviation of the radii over their mean.
     pub size_spread: Option<f64>,
@@ -53,15 +52,15 @@ pub struct WaveSpeedsReading {
     pub axis: Option<Vec3>,
     /// Shear modulus of the grains, Pa, more than 0.
     pub grain_shear_modulus: f64,
-    /// Its standard deviation, Pa; 0: exact, or not stated.
+    /// Standard deviation of that, Pa; 0: exact, or not stated.
     pub grain_shear_modulus_stddev: f64,
     /// Poisson ratio of the grains, in [0, 0.5].
     pub grain_poisson_ratio: f64,
-    /// Its standard deviation; 0: exact, or not stated.
+    /// Standard deviation of that; 0: exact, or not stated.
     pub grain_poisson_ratio_stddev: f64,
     /// Contact law of the grains.
     pub contact_law: Option<ContactLaw>,
-    /// Whether the sample was measured without tangential springs.
+    /// True if the sample was measured without tangential springs.
     pub smooth: bool,
     /// The speeds, in the order of the message; may be empty.
     pub speeds: Vec<MeasuredWave>,
@@ -167,20 +166,14 @@ fn speed(index: usize, s: &msg::WaveSpeed) -> Result<MeasuredWave, BoundaryError
     Ok(MeasuredWave {
         method: method(CHECK, &name("method"), s.method)?,
         wave: WaveSpeed {
-            direction: unit(CHECK, &name("direction"), &s.direction)?,
-            polarization: unit(CHECK, &name("polarization"), &s.polarization)?,
+            direction: CHECK.unit(&name("direction"), &s.direction)?,
+            polarization: CHECK.unit(&name("polarization"), &s.polarization)?,
             speed: CHECK.positive(&name("speed"), s.speed)?,
             stddev: CHECK.known(&name("speed_stddev"), s.speed_stddev)?,
         },
         frequency: CHECK.known(&name("frequency"), s.frequency)?,
         strain_amplitude: CHECK.not_negative(&name("strain_amplitude"), s.strain_amplitude)?,
     })
-}
-
-/// A unit vector that must not be unknown.
-pub(super) fn unit(check: Check, field: &str, vector: &Vector3) -> Result<Vec3, BoundaryError> {
-    let known = check.direction(field, vector)?;
-    known.map_or_else(|| check.that(false, &format!("|{field}|"), 0.0, "1").map(|_| Vec3::zeros()), Ok)
 }
 
 /// The method of a code.

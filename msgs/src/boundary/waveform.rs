@@ -2,7 +2,7 @@
 
 use super::check::{Check, vector_message};
 use super::error::BoundaryError;
-use super::wave_speeds::{code, method, unit};
+use super::wave_speeds::{code, method};
 use crate::builtin_interfaces::Time;
 use crate::msg;
 use crate::std_msgs::Header;
@@ -14,7 +14,7 @@ const CHECK: Check = Check("Waveform");
 const QUANTITY: &str = "velocity";
 const UNIT: &str = "m/s";
 
-/// Checked traces.
+/// Checked traces of a wave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaveformReading {
     /// Stamp of the source.
@@ -37,10 +37,10 @@ pub struct WaveformReading {
     pub channels: Vec<TraceReading>,
 }
 
-/// One trace.
+/// Trace of one receiver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TraceReading {
-    /// Its name.
+    /// Name of the trace.
     pub name: String,
     /// Distance from the source along the direction, m, 0 or more; the wavelength of a standing wave.
     pub distance: f64,
@@ -103,8 +103,8 @@ impl TryFrom<&msg::Waveform> for WaveformReading {
             stamp: m.header.stamp,
             source_step: Some(m.source_step).filter(|step| *step > 0),
             method: method(CHECK, "method", m.method)?,
-            direction: unit(CHECK, "direction", &m.direction)?,
-            polarization: unit(CHECK, "polarization", &m.polarization)?,
+            direction: CHECK.unit("direction", &m.direction)?,
+            polarization: CHECK.unit("polarization", &m.polarization)?,
             frequency: CHECK.positive("frequency", m.frequency)?,
             sample_rate: CHECK.positive("sample_rate", m.sample_rate)?,
             start: CHECK.finite("start", m.start)?,

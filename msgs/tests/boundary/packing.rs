@@ -98,7 +98,7 @@ prop_compose! {
     }
 }
 
-/// The same shape with the volume of a cube of 0.9.
+/// Cell of this shape with the volume of a cube of 0.9.
 fn matrix_of(cell: &Mat3) -> Mat3 {
     cell * (0.9 / cell.determinant().cbrt())
 }

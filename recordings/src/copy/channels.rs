@@ -66,7 +66,7 @@ impl Channels {
     }
 }
 
-/// Whether messages of both channels have the same bytes for the same content: schemas may differ in comments.
+/// True if messages of both channels have the same bytes for the same content: schemas may differ in comments.
 fn same_messages(a: &ChannelInfo, b: &ChannelInfo) -> bool {
     let encodings = |c: &ChannelInfo| (c.message_encoding.clone(), c.schema_encoding.clone());
     if a.ros_type != b.ros_type || encodings(a) != encodings(b) {

@@ -1,7 +1,7 @@
 //! Errors of a copy. Nothing was written under the name of the output.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use mcap::McapError;
 
@@ -11,7 +11,7 @@ pub enum CopyError {
     /// The output exists.
     #[error("{path} exists: choose another output; nothing is overwritten")]
     Exists {
-        /// The output.
+        /// Path of the output.
         path: PathBuf,
     },
     /// Two recordings have different messages under one topic.
@@ -21,15 +21,15 @@ pub enum CopyError {
          that agree"
     )]
     Clash {
-        /// The topic.
+        /// Name of the topic.
         topic: String,
         /// A recording and its type of the topic.
         first: PathBuf,
-        /// Its type.
+        /// Type of its messages.
         first_type: String,
-        /// Another recording.
+        /// Path of another recording.
         second: PathBuf,
-        /// Its type.
+        /// Type of its messages.
         second_type: String,
     },
     /// Pictures of packings are wanted, and there are no packings.
@@ -38,7 +38,7 @@ pub enum CopyError {
     /// Pictures of packings are wanted, and there is a topic of their name.
     #[error("there is a topic {topic} already: leave it out with --exclude {topic}")]
     Pictured {
-        /// The topic.
+        /// Name of the topic.
         topic: String,
     },
     /// The file system returned an error.
@@ -48,24 +48,30 @@ pub enum CopyError {
         path: PathBuf,
         /// The attempted action.
         action: &'static str,
-        /// Its error.
+        /// Error that was returned.
         source: io::Error,
     },
     /// The MCAP writer returned an error.
     #[error("{path}: cannot {action}: {source}")]
     Format {
-        /// The output.
+        /// Path of the output.
         path: PathBuf,
         /// The attempted action.
         action: &'static str,
-        /// Its error.
+        /// Error that was returned.
         source: McapError,
     },
 }
 
 impl CopyError {
+    /// An error of the file system during `action`.
+    pub(super) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::Io { path, action, source }
+    }
+
     /// The error of the file system, if it was one.
-    pub(super) fn mcap(path: &std::path::Path, action: &'static str, source: McapError) -> Self {
+    pub(super) fn mcap(path: &Path, action: &'static str, source: McapError) -> Self {
         let path = path.to_owned();
         match source {
             McapError::Io(source) => Self::Io { path, action, source },

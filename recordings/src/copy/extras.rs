@@ -7,7 +7,7 @@ use mcap::records::Metadata;
 use crate::metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 use crate::reader::{Recording, StoredFile};
 
-/// What a copy has besides messages.
+/// Stored files and metadata records of a copy.
 #[derive(Default)]
 pub(super) struct Extras {
     pub(super) files: Vec<StoredFile>,

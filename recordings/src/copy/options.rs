@@ -1,9 +1,11 @@
-//! What is copied, and how it is written.
+//! Selection of messages to copy, and options of the output.
+
+use clap::ValueEnum;
 
 use crate::compression::Compression;
 use crate::reader::ChannelInfo;
 
-/// How a copy is written.
+/// Options of the output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CopyOptions {
     /// Compression of the chunks.
@@ -14,20 +16,22 @@ pub struct CopyOptions {
     pub chunk_size: Option<u64>,
     /// Checksums of chunks and of the data.
     pub checksums: bool,
-    /// How the copy is made, for its metadata: `cut`, `merge`.
+    /// Operation that makes the copy, for its metadata: `cut`, `merge`.
     pub operation: String,
-    /// Whether each topic with packings gets topics with pictures of them beside it.
+    /// Add to each topic with packings topics with pictures of them.
     pub pictures: bool,
 }
 
 /// The presets of rosbag2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
 pub enum Preset {
-    /// No chunks and no checksums.
+    /// No chunks, no index and no checksums
+    #[value(name = "fastwrite")]
     FastWrite,
-    /// Zstandard at its fastest level, without checksums of chunks.
+    /// Zstandard at level 1, without checksums
     ZstdFast,
-    /// Zstandard at level 19, chunks of 4 MiB.
+    /// Zstandard at level 19, chunks of 4 MiB
     ZstdSmall,
 }
 
@@ -77,13 +81,13 @@ impl CopyOptions {
 
 /// The messages to copy.
 pub struct Select<'a> {
-    /// Whether a topic is wanted.
+    /// Test of a topic: true if it is wanted.
     pub topic: &'a dyn Fn(&ChannelInfo) -> bool,
     /// First log time, ns since 1970.
     pub start: Option<u64>,
     /// Log time before which to end, ns since 1970.
     pub end: Option<u64>,
-    /// Whether latched messages from before the start are copied.
+    /// Copy latched messages from before the start.
     pub latched: bool,
 }
 

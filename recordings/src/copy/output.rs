@@ -36,11 +36,8 @@ pub(super) struct Output {
 impl Output {
     /// Begins `path`: one file if its name ends with `.mcap`, else a directory.
     pub(super) fn begin(path: &Path, profile: &str, options: &CopyOptions) -> Result<Self, CopyError> {
-        let io = |action| {
-            let path = path.to_owned();
-            move |source| CopyError::Io { path, action, source }
-        };
-        let new = NewPath::begin(path).map_err(|source| exists_or(path, "begin the output", source))?;
+        let io = |action| CopyError::io(path, action);
+        let new = NewPath::begin(path).map_err(|e| exists_or(path, "begin the output", e))?;
         let is_directory = path.extension().is_none_or(|e| e != "mcap");
         let file = if is_directory {
             fs::create_dir(new.partial()).map_err(io("create the directory"))?;
@@ -90,14 +87,7 @@ impl Output {
         })?;
         self.channels.push((id, channel.topic.clone()));
         self.counts.push(0);
-        let spec = TopicSpec {
-            name: channel.topic.clone(),
-            ros_type: channel.ros_type.clone(),
-            definition: channel.definition.clone(),
-            schema_encoding: channel.schema_encoding.clone(),
-            type_hash: channel.type_hash.clone(),
-            qos: channel.qos.clone(),
-        };
+        let spec = TopicSpec::of_channel(channel);
         self.bag.topics.entry(channel.topic.clone()).or_insert(TopicCount { spec, messages: 0 });
         Ok(())
     }
@@ -136,16 +126,14 @@ impl Output {
 
     /// Completes the output and gives it its name. Returns its size, bytes.
     pub(super) fn finish(mut self) -> Result<u64, CopyError> {
-        let io = |path: &Path, action| {
-            let path = path.to_owned();
-            move |source| CopyError::Io { path, action, source }
-        };
+        let path = self.path.clone();
+        let io = |action| CopyError::io(&path, action);
         self.with("write the index", |mcap| mcap.finish().map(drop))?;
         if let Some(mcap) = self.mcap.take() {
             let file = mcap.into_inner().into_inner();
-            file.map_err(|e| io(&self.path, "write the end of the file")(e.into_error()))?;
+            file.map_err(|e| io("write the end of the file")(e.into_error()))?;
         }
-        let bytes = self.file.metadata().map_err(io(&self.path, "query the size"))?.len();
+        let bytes = self.file.metadata().map_err(io("query the size"))?.len();
         if self.is_directory {
             let messages = self.counts.iter().sum();
             let name = self.file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -155,17 +143,16 @@ impl Output {
                     t.messages += count;
                 }
             }
-            self.bag.write(self.new.partial()).map_err(io(&self.path, "write metadata.yaml"))?;
+            self.bag.write(self.new.partial()).map_err(io("write metadata.yaml"))?;
         }
-        self.new.finish().map_err(|source| exists_or(&self.path, "give the output its name", source))?;
+        self.new.finish().map_err(|e| exists_or(&path, "give the output its name", e))?;
         Ok(bytes)
     }
 }
 
 fn exists_or(path: &Path, action: &'static str, source: io::Error) -> CopyError {
-    let path = path.to_owned();
     match source.kind() {
-        io::ErrorKind::AlreadyExists => CopyError::Exists { path },
-        _ => CopyError::Io { path, action, source },
+        io::ErrorKind::AlreadyExists => CopyError::Exists { path: path.to_owned() },
+        _ => CopyError::io(path, action)(source),
     }
 }

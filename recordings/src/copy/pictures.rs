@@ -16,7 +16,7 @@ use crate::writer::TopicSpec;
 pub(super) struct Pictures {
     /// By the place of a topic with packings, that of its first picture; the others come next.
     places: BTreeMap<usize, usize>,
-    /// Their channels, which follow those that are copied.
+    /// Channels of pictures, which follow those that are copied.
     pub(super) channels: Vec<Arc<ChannelInfo>>,
     /// Packings without a picture, and why.
     pub(super) notes: Vec<String>,

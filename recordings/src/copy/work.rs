@@ -17,7 +17,7 @@ use crate::reader::{ChannelInfo, Message, Messages, Recording, Selection};
 /// A finished copy.
 #[derive(Clone, Debug, Serialize)]
 pub struct Copied {
-    /// The output.
+    /// Path of the output.
     pub path: PathBuf,
     /// Size of its MCAP file, bytes.
     pub bytes: u64,
@@ -25,7 +25,7 @@ pub struct Copied {
     pub messages: u64,
     /// Those that are latched and from before the start.
     pub latched: u64,
-    /// Its topics.
+    /// Names of its topics.
     pub topics: Vec<String>,
     /// Pictures of packings added to them.
     pub pictures: u64,
@@ -56,7 +56,7 @@ pub fn copy(
     for file in &extras.files {
         output.store(file)?;
     }
-    let mut places = Places { channels: &channels, last: None, known: BTreeMap::new() };
+    let mut places = Places { channels: &channels, known: BTreeMap::new() };
     let (mut messages, mut latched, mut made) = (0, 0, 0);
     let topics: Vec<String> = channels.list.iter().map(|c| c.topic.clone()).collect();
     if let Some(start) = select.start.filter(|_| select.latched) {
@@ -113,25 +113,17 @@ fn write(
     Ok(made.len() as u64)
 }
 
-/// Finds the place of a channel; most messages are on the channel of the one before.
+/// Finds the place of a channel.
 struct Places<'a> {
     channels: &'a Channels,
-    last: Option<(Arc<ChannelInfo>, Option<usize>)>,
-    /// Those found before. A channel is known by its address, which stays its own while it is in here.
+    /// Places found before. A channel is known by its address, which stays its own while it is in here.
     known: BTreeMap<usize, (Arc<ChannelInfo>, Option<usize>)>,
 }
 
 impl Places<'_> {
     fn of(&mut self, channel: &Arc<ChannelInfo>) -> Option<usize> {
-        if let Some((last, place)) = &self.last
-            && Arc::ptr_eq(last, channel)
-        {
-            return *place;
-        }
         let found = || (channel.clone(), self.channels.place(channel));
-        let entry = self.known.entry(Arc::as_ptr(channel).addr()).or_insert_with(found);
-        self.last = Some(entry.clone());
-        entry.1
+        self.known.entry(Arc::as_ptr(channel).addr()).or_insert_with(found).1
     }
 }
 

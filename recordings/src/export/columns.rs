@@ -1,4 +1,4 @@
-//! What formats with named columns have of a packing: the same names in each of them.
+//! Columns of a packing in formats with named columns: the same names in each of them.
 
 use grainlab_core::{Contact, Packing, Vec3};
 
@@ -31,7 +31,7 @@ fn counts(name: &'static str, components: usize, values: Vec<u32>) -> Column {
     Column { name, components, values: Values::Unsigned(values) }
 }
 
-/// Of each grain. Lengths in m, m/s, rad/s, kg. `position_unwrapped` is the position as held, to which the images of contacts
+/// Columns of the grains. Lengths in m, m/s, rad/s, kg. `position_unwrapped` is the position as held, to which the images of contacts
 /// refer.
 pub(super) fn grains(packing: &Packing) -> Vec<Column> {
     let mut coordination = vec![0; packing.grains()];
@@ -51,7 +51,7 @@ pub(super) fn grains(packing: &Packing) -> Vec<Column> {
     ]
 }
 
-/// Of each contact. `pair` has ids. Forces in N, overlap in m; the normal points from the first grain to the second one, and the
+/// Columns of the contacts. `pair` has ids. Forces in N, overlap in m; the normal points from the first grain to the second one, and the
 /// tangential force acts on the first one. `mobilisation` is the tangential force over friction times normal force.
 pub(super) fn contacts(packing: &Packing) -> Vec<Column> {
     let list = &packing.contacts;
@@ -81,7 +81,7 @@ pub(super) fn contacts(packing: &Packing) -> Vec<Column> {
     columns
 }
 
-/// Of the whole packing: SI units, matrices row by row, the edge vectors of the cell as columns.
+/// Columns of the whole packing: SI units, matrices row by row, the edge vectors of the cell as columns.
 pub(super) fn state(packing: &Packing) -> Vec<Column> {
     let rows = |m: &grainlab_core::Mat3| m.transpose().as_slice().to_vec();
     vec![

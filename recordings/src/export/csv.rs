@@ -16,10 +16,7 @@ pub fn csv(packing: &Packing) -> String {
         let (id, radius) = (packing.ids[k], packing.radii[k]);
         let mass = packing.material.sphere_mass(radius);
         let _ = write!(text, "p,{id}");
-        for value in [x.x, x.y, x.z, radius, mass, v.x, v.y, v.z, w.x, w.y, w.z] {
-            let _ = write!(text, ",{value:e}");
-        }
-        text.push('\n');
+        line(&mut text, &[x.x, x.y, x.z, radius, mass, v.x, v.y, v.z, w.x, w.y, w.z]);
     }
     let resists_rolling = packing.law.rolling.is_some();
     let rolling = if resists_rolling { ",frx,fry,frz" } else { "" };
@@ -32,16 +29,18 @@ pub fn csv(packing: &Packing) -> String {
         let (i, j) = (packing.ids[c.i as usize], packing.ids[c.j as usize]);
         let (n, t) = (-c.normal, &c.tangential_force);
         let _ = write!(text, "c,{i},{j}");
-        for value in [n.x, n.y, n.z, c.overlap, c.normal_force, t.x, t.y, t.z] {
-            let _ = write!(text, ",{value:e}");
-        }
-        let rolling = c.rolling_force.iter().filter(|_| resists_rolling);
-        for value in rolling {
-            let _ = write!(text, ",{value:e}");
-        }
-        text.push('\n');
+        let force = [n.x, n.y, n.z, c.overlap, c.normal_force, t.x, t.y, t.z];
+        let rolling = if resists_rolling { c.rolling_force.as_slice() } else { &[] };
+        line(&mut text, &[&force[..], rolling].concat());
     }
     text
+}
+
+/// Adds numbers to a line, and ends it.
+fn line(text: &mut String, numbers: &[f64]) {
+    // Writing to a String cannot fail.
+    numbers.iter().for_each(|value| _ = write!(text, ",{value:e}"));
+    text.push('\n');
 }
 
 /// Cell, material and state of a packing, as the JSON beside its CSV.

@@ -5,31 +5,26 @@ use super::{
     csv, extended_xyz, lammps_data, lammps_dump, lammps_local, pvd, sidecar, vtkhdf_contacts, vtkhdf_grains,
     vtp_contacts, vtp_grains,
 };
+use clap::ValueEnum;
 use grainlab_core::Packing;
 
 /// A format of other programs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ExportFormat {
-    /// CSV with a JSON sidecar, two files per packing: no loss.
+    /// CSV with a JSON sidecar, two files per packing
     Csv,
-    /// LAMMPS dumps of grains and of contacts, one frame per packing.
+    /// LAMMPS dumps of grains and contacts, one frame per packing
+    #[value(name = "lammps")]
     LammpsDump,
-    /// LAMMPS data files, one per packing: grains.
+    /// LAMMPS data files, one per packing
     LammpsData,
-    /// Extended XYZ, one frame per packing: grains.
+    /// Extended XYZ, one frame per packing
     Xyz,
-    /// VTK XML: grains and contacts of each packing, and a collection of all.
+    /// VTK XML: grains and contacts of each packing, and a collection of all
     Vtk,
-    /// VTKHDF: grains and contacts of each packing: no loss.
+    /// VTKHDF: grains and contacts of each packing
+    #[value(name = "vtkhdf")]
     VtkHdf,
-}
-
-/// A packing cannot be written in a format.
-#[derive(Debug, thiserror::Error)]
-pub enum ExportError {
-    /// HDF5 cannot hold it.
-    #[error(transparent)]
-    Hdf(#[from] HdfError),
 }
 
 /// A part of a file.
@@ -37,7 +32,7 @@ pub enum ExportError {
 pub struct FilePart {
     /// Name of the file.
     pub name: String,
-    /// What follows in it.
+    /// Bytes that follow in it.
     pub content: Vec<u8>,
 }
 
@@ -55,16 +50,16 @@ impl Exporter {
         Self { format, states: Vec::new() }
     }
 
-    /// Whether the format has no place for resistance to rolling.
+    /// True if the format has no place for resistance to rolling.
     pub fn loses_rolling(&self) -> bool {
         matches!(self.format, ExportFormat::LammpsDump | ExportFormat::LammpsData)
     }
 
-    /// What the next packing adds. Parts of the same name are parts of one file.
+    /// Parts that the next packing adds. Parts of the same name are parts of one file.
     ///
     /// # Errors
     /// If the format cannot hold the packing.
-    pub fn next(&mut self, packing: &Packing) -> Result<Vec<FilePart>, ExportError> {
+    pub fn next(&mut self, packing: &Packing) -> Result<Vec<FilePart>, HdfError> {
         let n = self.states.len() + 1;
         let part = |name: String, content: Vec<u8>| FilePart { name, content };
         let text = |name: String, content: String| part(name, content.into_bytes());
@@ -92,7 +87,7 @@ impl Exporter {
         Ok(parts)
     }
 
-    /// What follows the last packing.
+    /// Parts that follow the last packing.
     pub fn finish(&self) -> Vec<FilePart> {
         if self.format != ExportFormat::Vtk {
             return Vec::new();

@@ -16,13 +16,13 @@ use super::text::{Line, digits};
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrainTable {
     pub(super) ids: Vec<u32>,
-    /// m.
+    /// Radii of the grains, m.
     pub(super) radii: Vec<f64>,
-    /// m.
+    /// Positions of the centres, m.
     pub(super) positions: Vec<Vec3>,
-    /// m/s.
+    /// Velocities of the grains, m/s.
     pub(super) velocities: Vec<Vec3>,
-    /// rad/s.
+    /// Angular velocities, rad/s.
     pub(super) spins: Vec<Vec3>,
     /// Line of each grain, counted from 1.
     pub(super) lines: Vec<usize>,
@@ -66,7 +66,7 @@ pub(super) enum ListedForce {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub(super) step: u64,
-    /// s.
+    /// Simulated time, s.
     pub(super) time: f64,
     pub(super) deformation: Mat3,
     /// s; 0 if the packing is not from a grainlab simulation.
@@ -101,7 +101,7 @@ impl GrainTable {
         all.all(|other| (other / first - 1.0).abs() < 1e-5).then_some(first)
     }
 
-    /// What to know about the grains of a packing with this material.
+    /// Notes on the grains of a packing with this material.
     fn notes(&self, material: &Material) -> Vec<String> {
         let other = |(mass, radius): &(&f64, &f64)| {
             is_beyond((**mass / material.sphere_mass(**radius) - 1.0).abs(), 1e-5)
@@ -178,7 +178,7 @@ impl GrainTable {
     }
 }
 
-/// Whether a deviation is more than `limit`, or NaN.
+/// True for a deviation that is more than `limit`, or NaN.
 pub(super) fn is_beyond(deviation: f64, limit: f64) -> bool {
     deviation.is_nan() || deviation > limit
 }
@@ -234,15 +234,7 @@ pub(super) fn packing(
     .validated()?;
     let normal_force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
     let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, normal_force);
-    let id = |k: usize| packing.ids[k];
-    let found = found.map_err(|e| match e {
-        SearchError::Coincident(i, j) => ImportError::Coincident(id(i), id(j)),
-        SearchError::FarImage(i, j) => ImportError::FarImage(id(i), id(j)),
-        SearchError::Crowded { solid_fraction, diameter, width } => {
-            ImportError::Crowded { solid_fraction, diameter, width }
-        }
-        SearchError::Clustered { together, pairs } => ImportError::Clustered { together, pairs },
-    })?;
+    let found = found.map_err(|e| e.with_ids(&packing.ids))?;
     packing.contacts = match listed {
         None => {
             notes.push(
@@ -306,13 +298,13 @@ fn listed_contact(
         (None, _) => -(p.cell.inverse() * apart).map(f64::round),
     };
     if steps.amax() > f64::from(i8::MAX) || !steps.amax().is_finite() {
-        return Err(ImportError::FarImage(c.ids.0, c.ids.1));
+        return Err(SearchError::FarImage(c.ids.0 as usize, c.ids.1 as usize).into());
     }
     let image = [steps.x as i8, steps.y as i8, steps.z as i8];
     let branch = apart + p.cell.shift(image);
     let distance = branch.norm();
     if distance == 0.0 {
-        return Err(ImportError::Coincident(c.ids.0, c.ids.1));
+        return Err(SearchError::Coincident(c.ids.0 as usize, c.ids.1 as usize).into());
     }
     let measured = branch / distance;
     let contradiction = |quantity, given, found| ImportError::Contradiction {

@@ -1,10 +1,11 @@
 //! Errors of an import.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use grainlab_core::PackingError;
 
+use super::contacts::SearchError;
 use super::setting::Setting;
 use crate::reader::ReadError;
 
@@ -14,7 +15,7 @@ pub enum ImportError {
     /// A file cannot be read.
     #[error("{path}: {source}")]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The error of the system.
         source: io::Error,
@@ -25,9 +26,9 @@ pub enum ImportError {
     /// An error with its file.
     #[error("{path}: {source}")]
     In {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The error.
+        /// Description of the fault.
         source: Box<ImportError>,
     },
     /// The format of the file is unknown.
@@ -35,7 +36,7 @@ pub enum ImportError {
         "line {line}, {first}, has an unknown format: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor extended XYZ (N, then Properties=...), nor a YADE export (#format ...), each also as .gz, nor VTKHDF, nor a recording (.mcap or its directory)"
     )]
     UnknownFormat {
-        /// Its first line that is not empty, counted from 1.
+        /// First line that is not empty, counted from 1.
         line: usize,
         /// The beginning of that line, quoted.
         first: String,
@@ -45,7 +46,7 @@ pub enum ImportError {
     Syntax {
         /// Line, counted from 1.
         line: usize,
-        /// What was expected and what was found.
+        /// Expectation, and what was found.
         problem: String,
     },
     /// An HDF5 file is damaged, or is not VTKHDF.
@@ -65,7 +66,7 @@ pub enum ImportError {
     Unsupported {
         /// Line, counted from 1.
         line: usize,
-        /// The feature.
+        /// Name of the feature.
         what: String,
         /// Why, and what to do.
         reason: &'static str,
@@ -73,7 +74,7 @@ pub enum ImportError {
     /// An id occurs twice.
     #[error("line {line}: grain {id} occurs twice, before in line {before}")]
     DuplicateId {
-        /// The id.
+        /// Id of the grain.
         id: u32,
         /// Line, counted from 1.
         line: usize,
@@ -85,7 +86,7 @@ pub enum ImportError {
     UnknownId {
         /// Line, counted from 1.
         line: usize,
-        /// The id.
+        /// Id of the grain.
         id: u32,
     },
     /// A contact contradicts the positions.
@@ -106,14 +107,9 @@ pub enum ImportError {
         /// Value from positions.
         found: f64,
     },
-    /// Two grains have the same centre.
-    #[error("grains {0} and {1} have the same centre: their contact has no direction")]
-    Coincident(u32, u32),
-    /// An image index does not fit.
-    #[error(
-        "grains {0} and {1} touch across more than 127 cells: fold positions into the cell, or check its size"
-    )]
-    FarImage(u32, u32),
+    /// Contacts cannot be found; grains are named by id.
+    #[error(transparent)]
+    Contacts(#[from] SearchError),
     /// Contact forces without tangential ones, of a packing with friction.
     #[error(
         "contact forces all point along their contacts, with a friction of {friction}: for granular pair styles LAMMPS gives \
@@ -122,7 +118,7 @@ pub enum ImportError {
          forces format float %.17g; or give --friction 0 if there is none"
     )]
     NoTangentialForces {
-        /// Friction coefficient.
+        /// Coefficient of friction.
         friction: f64,
     },
     /// Columns of contact forces that are not what they are taken for.
@@ -133,7 +129,7 @@ pub enum ImportError {
         /// The columns that fit.
         likely: String,
     },
-    /// Contact forces beside a file that has them itself, or cannot have them.
+    /// Contact forces given with a file that has them itself, or cannot have them.
     #[error("contact forces in a file of their own are read beside a LAMMPS dump or data file only")]
     ForcesBeside,
     /// A file has another number of grains or contacts than it states.
@@ -141,9 +137,9 @@ pub enum ImportError {
     Count {
         /// Grains or contacts.
         what: &'static str,
-        /// As stated.
+        /// Number that is stated.
         stated: usize,
-        /// As found.
+        /// Number that was found.
         found: usize,
     },
     /// Grains and contact forces are of different steps.
@@ -156,39 +152,17 @@ pub enum ImportError {
         /// Step of the grains.
         grains: u64,
     },
-    /// The cell is so small, or the grains so large, that they would fill it many times over.
-    #[error(
-        "the cell is too small for its grains, or too skewed: they fill it {solid_fraction:.3e} times over, the largest is {diameter:.3e} m wide and the cell {width:.3e} m between its sides: check the units of the cell and of the radii, or state the shortest edges"
-    )]
-    Crowded {
-        /// Volume of the spheres over volume of the cell.
-        solid_fraction: f64,
-        /// m.
-        diameter: f64,
-        /// m.
-        width: f64,
-    },
-    /// The grains lie in so small a part of the cell that contacts cannot be found in a useful time.
-    #[error(
-        "the grains lie in a tiny part of the cell ({together} of them in one box of the search, {pairs:.1e} pairs to check): check the cell, or list the contacts in the file"
-    )]
-    Clustered {
-        /// Largest number of grains in one box.
-        together: usize,
-        /// Number of pairs to check.
-        pairs: f64,
-    },
     /// The packing is invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
     /// A recorded message is not a valid packing.
     #[error("message {sequence} on {topic}: {problem}")]
     Message {
-        /// Topic.
+        /// Name of the topic.
         topic: String,
         /// Low half of its sequence number.
         sequence: u32,
-        /// The error.
+        /// Description of the fault.
         problem: String,
     },
     /// Data were given for a recording, which has its own.
@@ -201,6 +175,19 @@ pub enum ImportError {
     /// The file contains no packing.
     #[error("it contains no packing")]
     Empty,
+}
+
+impl ImportError {
+    /// An error of the system with a file.
+    pub(super) fn io(path: &Path) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::Io { path, source }
+    }
+
+    /// A feature in a line that is not supported, and why.
+    pub(super) fn unsupported(line: usize, what: impl Into<String>, reason: &'static str) -> Self {
+        Self::Unsupported { line, what: what.into(), reason }
+    }
 }
 
 fn list(settings: &[Setting]) -> String {

@@ -18,7 +18,7 @@ use super::settings::{ImportOptions, Known};
 use super::stated;
 use super::text::{Line, lines, shown};
 
-/// Whether a comment is that of extended XYZ.
+/// True for a comment of extended XYZ.
 pub(super) fn is_comment(line: &str) -> bool {
     line.contains("Properties=") || line.contains("Lattice=")
 }

@@ -6,7 +6,7 @@ use grainlab_msgs::std_msgs::Header;
 /// A packing and its source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imported {
-    /// The packing.
+    /// Packing in SI units.
     pub packing: Packing,
     /// The header of its message: the recorded one, or that of an equivalent message.
     pub header: Header,

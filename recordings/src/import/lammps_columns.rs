@@ -1,4 +1,4 @@
-//! Whether the columns of a LAMMPS `dump local` are what they are taken for: a normal force is along the line between the
+//! Check that the columns of a LAMMPS `dump local` are what they are taken for: a normal force is along the line between the
 //! centres, a tangential one across it.
 
 use std::collections::BTreeMap;

@@ -67,13 +67,12 @@ impl Section {
         match name {
             "Atoms" if matches!(style, "" | "sphere") => Ok(Self::Atoms),
             "Atoms" => {
-                let (line, what) = (line.number, format!("atom_style {style}"));
-                Err(ImportError::Unsupported { line, what, reason: "only spheres are (atom_style sphere)" })
+                let what = format!("atom_style {style}");
+                Err(ImportError::unsupported(line.number, what, "only spheres are (atom_style sphere)"))
             }
             "Velocities" => Ok(Self::Velocities),
             _ if NO_SPHERES.contains(&name.to_lowercase().as_str()) => {
-                let (line, what) = (line.number, format!("the section {name}"));
-                Err(ImportError::Unsupported { line, what, reason: SINGLE })
+                Err(ImportError::unsupported(line.number, format!("the section {name}"), SINGLE))
             }
             _ => Ok(Self::Other),
         }
@@ -124,8 +123,8 @@ impl DataFile {
             [x, y, z, "bvec"] => self.edges[1] = Some(line.vector("edge vector", [x, y, z])?),
             [x, y, z, "cvec"] => self.edges[2] = Some(line.vector("edge vector", [x, y, z])?),
             [n, kind] if NO_SPHERES.contains(&kind) && line.number::<u64>(kind, n)? > 0 => {
-                let (line, what) = (line.number, format!("a packing with {n} {kind}"));
-                return Err(ImportError::Unsupported { line, what, reason: SINGLE });
+                let what = format!("a packing with {n} {kind}");
+                return Err(ImportError::unsupported(line.number, what, SINGLE));
             }
             // Numbers of types and so on.
             _ => {}
@@ -203,7 +202,7 @@ impl DataFile {
         let density = self.densities.first().copied();
         if options.density.is_none() && self.densities.iter().any(|d| Some(*d) != density) {
             let reason = "all grains must be of one material: give --density to use one for all";
-            return Err(ImportError::Unsupported { line: 1, what: "a mixture of densities".into(), reason });
+            return Err(ImportError::unsupported(1, "a mixture of densities", reason));
         }
         let settings = Known { cell, density, ..Known::default() }.complete(options)?;
         for k in 0..found {

@@ -156,12 +156,8 @@ fn bounds(item: &Line<'_>, words: &str, rows: [Line<'_>; 3]) -> Result<(Vec3, Ma
         0
     }..];
     if let Some(other) = boundaries.iter().find(|b| **b != "pp") {
-        let (line, what) = (item.number, format!("boundary {other}"));
-        return Err(ImportError::Unsupported {
-            line,
-            what,
-            reason: "the cell must be periodic in all directions (pp)",
-        });
+        let reason = "the cell must be periodic in all directions (pp)";
+        return Err(ImportError::unsupported(item.number, format!("boundary {other}"), reason));
     }
     if general {
         return edges(rows);
@@ -209,8 +205,8 @@ impl Columns {
             return Err(line.error("a column occurs twice: dump each quantity once"));
         }
         if let Some(shape) = names.keys().find(|name| name.starts_with("shape")) {
-            let (line, what) = (line.number, format!("the column {shape}"));
-            return Err(ImportError::Unsupported { line, what, reason: "grains must be single spheres" });
+            let what = format!("the column {shape}");
+            return Err(ImportError::unsupported(line.number, what, "grains must be single spheres"));
         }
         let three = |form: &str| {
             let find = |axis: &str| names.get(&format!("{axis}{form}")).copied();

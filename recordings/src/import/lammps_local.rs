@@ -41,7 +41,7 @@ const CENTRAL: f64 = 1e-9;
 pub(super) struct Local<'a> {
     /// Pairs that carry force.
     pub(super) contacts: Vec<ListedContact>,
-    /// Whether the columns include tangential forces.
+    /// True if the columns include tangential forces.
     tangential: bool,
     /// Names of all columns, places of those that are read, and the rows of the contacts.
     names: Vec<&'a str>,
@@ -141,7 +141,7 @@ impl Local<'_> {
                 let what = format!("a second contact of grains {a} and {b}, after line {first},");
                 let reason =
                     "a dump local does not state the periodic image: the cell must be larger than two grains";
-                return Err(ImportError::Unsupported { line: c.line, what, reason });
+                return Err(ImportError::unsupported(c.line, what, reason));
             }
         }
         let columns: Vec<&str> = self.columns.iter().map(|k| self.names[*k]).collect();

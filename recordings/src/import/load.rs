@@ -60,7 +60,7 @@ pub fn each(
     take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
 ) -> Result<Vec<Warning>, ImportError> {
     let inside = |source| ImportError::In { path: path.to_owned(), source: Box::new(source) };
-    let metadata = fs::metadata(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })?;
+    let metadata = fs::metadata(path).map_err(ImportError::io(path))?;
     let (stem, extension) = stem_and_extension(path);
     if metadata.is_dir() || extension == "mcap" || starts_with(path, MCAP) {
         let recording = Recording::open(path)?;
@@ -101,9 +101,7 @@ fn hdf(
     options: &ImportOptions,
     take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
 ) -> Result<Vec<Warning>, ImportError> {
-    let read = |path: &Path| {
-        input::bytes(path, input::TEXT).map_err(|source| ImportError::Io { path: path.to_owned(), source })
-    };
+    let read = |path: &Path| input::bytes(path, input::TEXT).map_err(ImportError::io(path));
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let contacts = path.with_file_name(name.replace("grains", "contacts"));
     let has_contacts = contacts != path && contacts.exists();
@@ -125,9 +123,7 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
     let mut full = lines(text).filter(|l| !l.text.trim().is_empty());
     let first = full.next().ok_or(ImportError::Empty)?;
     let begins = |prefix: &str| first.text.trim_start().starts_with(prefix);
-    let unsupported = |what: &str, reason| {
-        Err(ImportError::Unsupported { line: first.number, what: what.to_owned(), reason })
-    };
+    let unsupported = |what: &str, reason| Err(ImportError::unsupported(first.number, what, reason));
     if begins("# vtk DataFile") {
         return unsupported("a VTK file", FROM_YADE);
     }
@@ -189,23 +185,19 @@ fn starts_with(path: &Path, magic: &[u8]) -> bool {
 /// # Errors
 /// If it cannot be read, is damaged or is not text.
 pub fn text(path: &Path) -> Result<String, ImportError> {
-    let io = |source| ImportError::Io { path: path.to_owned(), source };
-    let mut bytes = input::bytes(path, input::TEXT).map_err(io)?;
-    let refuse = |kind, problem: String| ImportError::Io {
-        path: path.to_owned(),
-        source: io::Error::new(kind, problem),
-    };
+    let mut bytes = input::bytes(path, input::TEXT).map_err(ImportError::io(path))?;
+    let refuse = |problem: String| ImportError::io(path)(io::Error::new(io::ErrorKind::InvalidData, problem));
     if bytes.starts_with(&input::MAGIC) {
-        bytes = input::gunzip(&bytes).map_err(io)?;
+        bytes = input::gunzip(&bytes).map_err(ImportError::io(path))?;
     }
     if [&b"BZh"[..], b"\xfd7zXZ", b"\x28\xb5\x2f\xfd", b"PK\x03\x04"].iter().any(|m| bytes.starts_with(m)) {
         let problem = "it is not compressed by gzip: unpack it first";
-        return Err(refuse(io::ErrorKind::InvalidData, problem.to_owned()));
+        return Err(refuse(problem.to_owned()));
     }
     let mut text = String::from_utf8(bytes).map_err(|e| {
         let (good, e) = (e.utf8_error().valid_up_to(), e);
         let line = e.as_bytes()[..good].iter().filter(|b| **b == b'\n').count() + 1;
-        refuse(io::ErrorKind::InvalidData, format!("line {line}: it is not text (byte {good} is not UTF-8)"))
+        refuse(format!("line {line}: it is not text (byte {good} is not UTF-8)"))
     })?;
     // Some Windows programs write a byte order mark first.
     if text.starts_with('\u{feff}') {

@@ -11,14 +11,14 @@ pub enum Setting {
     PoissonRatio,
     /// Density of the grain.
     Density,
-    /// Friction coefficient.
+    /// Coefficient of friction.
     Friction,
     /// Radius of the grains.
     Radius,
 }
 
 impl Setting {
-    /// Its name in messages.
+    /// Name in messages to the user.
     pub fn what(self) -> &'static str {
         match self {
             Self::Cell => "the cell",
@@ -30,7 +30,7 @@ impl Setting {
         }
     }
 
-    /// Its command-line flag, with the unit.
+    /// Flag on the command line, with the unit.
     pub fn flag(self) -> &'static str {
         match self {
             Self::Cell => "--cell LX,LY,LZ or nine numbers row by row, m",

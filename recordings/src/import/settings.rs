@@ -27,7 +27,7 @@ pub struct ImportOptions {
     pub topic: Option<String>,
     /// Text of a LAMMPS `dump local` with the contact forces of a data file or a dump, at the same steps.
     pub contact_forces: Option<String>,
-    /// Its columns, if not the default ones: ids of the two grains, normal force on the first, tangential
+    /// Columns of that text, if not the default ones: ids of the two grains, normal force on the first, tangential
     /// force on the first (`patom1 patom2 fx fy fz p1 p2 p3`); or the first five, with the whole force. Empty for the
     /// default ones.
     pub contact_columns: Vec<String>,
@@ -70,7 +70,7 @@ pub(super) struct Settings {
     pub(super) material: Material,
     pub(super) law: ContactLaw,
     pub(super) friction: f64,
-    /// What the user replaced.
+    /// Notes on values that the user replaced.
     pub(super) notes: Vec<String>,
 }
 

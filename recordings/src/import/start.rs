@@ -13,13 +13,13 @@ use crate::reader::Recording;
 /// A packing to start from, with its exact place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// The packing.
+    /// Packing in SI units.
     pub packing: Packing,
     /// The whole path of its file.
     pub path: PathBuf,
     /// The whole path of the file with its contact forces, if they are in one of their own.
     pub contact_forces: Option<PathBuf>,
-    /// Its solver step.
+    /// Solver step of the packing.
     pub step: u64,
     /// Warnings, one line each.
     pub notes: Vec<String>,
@@ -33,7 +33,7 @@ pub enum StartError {
     File {
         /// The key of `[start]` that names it.
         key: &'static str,
-        /// The reason.
+        /// Reason of the failure.
         source: Box<ImportError>,
     },
     /// The file lacks data that the scene has to give.
@@ -44,7 +44,7 @@ pub enum StartError {
     /// The file has no packing of the step.
     #[error("start.step: {path} has no packing of step {step}")]
     NoStep {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The step asked for.
         step: u64,
@@ -54,12 +54,12 @@ pub enum StartError {
         "start.step: {path} has several different packings of step {step}: it is of several runs. Name the file of one of them"
     )]
     Ambiguous {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The step asked for.
         step: u64,
     },
-    /// Which packing is the last one depends on the run.
+    /// The last packing depends on the run.
     #[error("start.packing: {0}; or name the packing by start.step, if only one run has it")]
     SeveralRuns(SeveralRuns),
 }
@@ -114,11 +114,11 @@ fn whole(key: &'static str, file: &StartPath) -> Result<PathBuf, StartError> {
         .map_err(|source| StartError::File { key, source: Box::new(ImportError::Io { path, source }) })
 }
 
-/// What a file has of a step.
+/// Packings of a step in a file.
 enum Picked {
     None,
     One(Box<Imported>),
-    /// Different packings.
+    /// Several different packings.
     Several,
 }
 
@@ -147,7 +147,7 @@ fn pick(
     Ok((found, sign))
 }
 
-/// What shows that a recording is of several runs. The frames of other files may be in any order.
+/// Sign that a recording is of several runs. The frames of other files may be in any order.
 fn several_runs(path: &Path, sign: Option<RunSign>) -> Option<RunSign> {
     let recording = Recording::open(path).ok()?;
     sign.or_else(|| OneRun::scenes(&recording).err())

@@ -12,7 +12,7 @@ pub(super) fn units(line: usize, text: &str) -> Result<(), ImportError> {
         return Ok(());
     }
     let what = format!("units {}", cut(text));
-    Err(ImportError::Unsupported { line, what, reason: "only SI units are: convert to m, kg and s" })
+    Err(ImportError::unsupported(line, what, "only SI units are: convert to m, kg and s"))
 }
 
 /// Refuses units that LAMMPS states, if they are not `si`.
@@ -21,7 +21,7 @@ pub(super) fn lammps_units(line: usize, text: &str) -> Result<(), ImportError> {
         return Ok(());
     }
     let what = format!("units {}", cut(text.trim()));
-    Err(ImportError::Unsupported { line, what, reason: "only SI units are: convert with LAMMPS (units si)" })
+    Err(ImportError::unsupported(line, what, "only SI units are: convert with LAMMPS (units si)"))
 }
 
 /// Refuses boundaries that are not periodic on three sides, as `T T T`.
@@ -31,12 +31,8 @@ pub(super) fn periodic(line: usize, text: &str) -> Result<(), ImportError> {
     if words.len() == 3 && words.iter().all(|w| ["t", "true", "1"].contains(&w.as_str())) {
         return Ok(());
     }
-    let what = format!("pbc {}", cut(text));
-    Err(ImportError::Unsupported {
-        line,
-        what,
-        reason: "the cell must be periodic in all directions: there are no walls",
-    })
+    let reason = "the cell must be periodic in all directions: there are no walls";
+    Err(ImportError::unsupported(line, format!("pbc {}", cut(text)), reason))
 }
 
 /// The radius of a grain, stated as radius, as diameter, or as both.

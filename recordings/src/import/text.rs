@@ -26,7 +26,7 @@ impl<'a> Line<'a> {
         field.trim().parse().map_err(|_| self.error(problem()))
     }
 
-    /// The same for a finite number.
+    /// Finite number in `field`.
     pub(super) fn finite(&self, name: &str, field: &str) -> Result<f64, ImportError> {
         let value: f64 = self.number(name, field)?;
         if value.is_finite() { Ok(value) } else { Err(self.error(format!("{name} is not finite ({value})"))) }

@@ -94,7 +94,7 @@ impl Columns {
                 "export with textExt in the format x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId or x_y_z_r_attrs"
             }
         };
-        Err(ImportError::Unsupported { line: line.number, what: format!("#format {}", cut(format)), reason })
+        Err(ImportError::unsupported(line.number, format!("#format {}", cut(format)), reason))
     }
 
     /// The columns after x, y, z and r, from the comment.

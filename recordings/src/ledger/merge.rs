@@ -21,7 +21,8 @@ pub fn merge(accounts: Vec<Vec<TopicTally>>) -> Vec<TopicTally> {
     topics.into_iter().map(|(name, writers)| topic(name, writers.into_values().collect())).collect()
 }
 
-fn topic(name: String, writers: Vec<WriterTally>) -> TopicTally {
+/// The counts of a topic from those of its writers.
+pub(super) fn topic(name: String, writers: Vec<WriterTally>) -> TopicTally {
     let sum = |of: fn(&WriterTally) -> u64| writers.iter().map(of).fold(0u64, u64::saturating_add);
     TopicTally {
         name,

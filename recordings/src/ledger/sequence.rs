@@ -20,7 +20,7 @@ pub(super) struct Sequence {
 }
 
 impl Sequence {
-    /// Whether `number` was received.
+    /// True if `number` was received.
     pub(super) fn holds(&self, number: i64) -> bool {
         self.first.is_some() && number <= self.highest && self.gap_of(number).is_none()
     }

@@ -37,7 +37,7 @@ pub struct WriterTally {
     /// Name of the node, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub node: Option<String>,
-    /// Messages recorded.
+    /// Number of messages recorded.
     pub recorded: u64,
     /// Count reported by the writer; `None` if it crashed or has not ended.
     pub reported: Option<u64>,

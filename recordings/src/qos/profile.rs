@@ -55,8 +55,8 @@ const KEYS: [&str; 9] = [
 
 impl Policies {
     /// Those of a profile that somebody wrote.
-    pub(super) fn strict(profile: &Value) -> Result<Self, String> {
-        let Value::Object(profile) = profile else {
+    pub(super) fn strict(whole: &Value) -> Result<Self, String> {
+        let Value::Object(profile) = whole else {
             return Err("it is not a map of policies, such as reliability: best_effort".to_owned());
         };
         if let Some(key) = profile.keys().find(|key| !KEYS.contains(&key.as_str())) {
@@ -67,34 +67,24 @@ impl Policies {
                 return Err(format!("a limited {key} is not supported: leave it out"));
             }
         }
-        if let Some(value) = profile.get("liveliness") {
-            one_of("liveliness", value, LIVELINESS)?;
-        }
         if profile.get("avoid_ros_namespace_conventions").is_some_and(|value| *value != Value::Bool(false)) {
             return Err("avoid_ros_namespace_conventions: true is not supported: leave it out".to_owned());
         }
-        let policy = |key: &str, values| match profile.get(key) {
-            Some(value) => one_of(key, value, values),
-            None => Ok(None),
-        };
-        let depth = match profile.get("depth") {
-            None => None,
-            Some(value) => {
-                let depth = value.as_u64().and_then(|n| u32::try_from(n).ok()).filter(|n| *n > 0);
-                Some(depth.ok_or_else(|| format!("depth: {value} is not a number of messages, 1 or more"))?)
-            }
-        };
-        Ok(Self {
-            reliable: policy("reliability", RELIABILITY)?,
-            transient_local: policy("durability", DURABILITY)?,
-            depth: if policy("history", HISTORY)? == Some(true) { Some(KEEP_ALL) } else { depth },
-        })
+        profile.get("liveliness").map_or(Ok(None), |value| one_of("liveliness", value, LIVELINESS))?;
+        if let Some(value) = profile.get("depth").filter(|value| depth(value).is_none_or(|n| n == 0)) {
+            return Err(format!("depth: {value} is not a number of messages, 1 or more"));
+        }
+        for (key, values) in [("reliability", RELIABILITY), ("durability", DURABILITY), ("history", HISTORY)]
+        {
+            profile.get(key).map_or(Ok(None), |value| one_of(key, value, values))?;
+        }
+        Ok(Self::lenient(whole))
     }
 
     /// Those of a recorded profile that can be read.
     pub(super) fn lenient(profile: &Value) -> Self {
         let policy = |key: &str, values| profile.get(key).and_then(|v| one_of(key, v, values).ok()).flatten();
-        let depth = profile.get("depth").and_then(Value::as_u64).and_then(|n| u32::try_from(n).ok());
+        let depth = profile.get("depth").and_then(depth);
         Self {
             reliable: policy("reliability", RELIABILITY),
             transient_local: policy("durability", DURABILITY),
@@ -112,6 +102,10 @@ impl Policies {
     }
 }
 
+fn depth(value: &Value) -> Option<u32> {
+    value.as_u64().and_then(|n| u32::try_from(n).ok())
+}
+
 /// The meaning of a value, written as a number or as a word.
 fn one_of<T: Copy>(key: &str, value: &Value, values: Values<T>) -> Result<Option<T>, String> {
     let found = values
@@ -124,7 +118,7 @@ fn one_of<T: Copy>(key: &str, value: &Value, values: Values<T>) -> Result<Option
     })
 }
 
-/// Whether a duration `{sec, nsec}` is zero, which is the default, or infinite.
+/// True for a duration `{sec, nsec}` that is zero, which is the default, or infinite.
 fn is_unlimited(duration: &Value) -> bool {
     let part = |key: &str| duration.get(key).and_then(Value::as_u64);
     match (part("sec"), part("nsec")) {

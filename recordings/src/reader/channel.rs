@@ -25,18 +25,18 @@ pub struct ChannelInfo {
     pub type_hash: String,
     /// All metadata of the channel, QoS and type hash included.
     pub metadata: BTreeMap<String, String>,
-    /// How its definition relates to the type of this name in this program.
+    /// Relation of its definition to the type of this name in this program.
     pub stored: StoredDefinition,
 }
 
 impl ChannelInfo {
-    /// Whether the recorded QoS is transient local: late readers get the last message.
+    /// True if the recorded QoS is transient local: late readers get the last message.
     pub fn is_latched(&self) -> bool {
         // rosbag2 writes an integer up to version 8 of its metadata, a word from version 9 on.
         self.qos_values("durability").any(|v| matches!(v, "1" | "transient_local"))
     }
 
-    /// How many messages a late reader of a latched topic gets, by the recorded QoS: its depth, at least 1 and at most 1000.
+    /// Number of messages that a late reader of a latched topic gets, by the recorded QoS: its depth, at least 1 and at most 1000.
     pub fn latched_depth(&self) -> usize {
         let depths = self.qos_values("depth").filter_map(|v| v.parse::<usize>().ok());
         depths.max().unwrap_or(1).clamp(1, 1000)

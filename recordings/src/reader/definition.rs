@@ -6,7 +6,7 @@ use std::sync::Arc;
 use grainlab_any_message::{Comparison, Mapping, Schema};
 use grainlab_msgs::TypeInfo;
 
-/// How the messages of a channel relate to the type of this name in this program. The definition in the recording decides, since
+/// Relation of the messages of a channel to the type of this name in this program. The definition in the recording decides, since
 /// copies may keep a hash of another version; the hash counts where there is no definition.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StoredDefinition {
@@ -14,7 +14,7 @@ pub enum StoredDefinition {
     Unknown,
     /// The type of this program.
     Same,
-    /// The same fields, and another hash in the metadata of the channel.
+    /// Fields of this program, and another hash in the metadata of the channel.
     OtherHash,
     /// Fields are read by their names: they are in another order, or there are more of them.
     Mapped(Arc<Mapping>),
@@ -57,7 +57,7 @@ impl StoredDefinition {
         }
     }
 
-    /// What a user has to know about it, in a line; `None` if the type is that of this program, or unknown to it.
+    /// Note to the user, in a line; `None` if the type is that of this program, or unknown to it.
     pub fn note(&self) -> Option<String> {
         match self {
             Self::Unknown | Self::Same => None,

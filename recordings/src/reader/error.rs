@@ -12,7 +12,7 @@ pub enum ReadError {
     /// The path cannot be read.
     #[error("{path}: {source}")]
     Io {
-        /// The path.
+        /// Path that was given.
         path: PathBuf,
         /// The error of the system.
         source: io::Error,
@@ -20,21 +20,21 @@ pub enum ReadError {
     /// A directory without a recording.
     #[error("{path} contains no .mcap file: give a run directory or an MCAP file")]
     Empty {
-        /// The directory.
+        /// Path of the directory.
         path: PathBuf,
     },
     /// Not an MCAP file.
     #[error("{path} is not an MCAP file: it has {bytes} bytes and does not start with the MCAP magic")]
     NotMcap {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its size.
+        /// Size, in bytes.
         bytes: u64,
     },
     /// A topic that the recording does not have.
     #[error("{path} has no topic {topic}; it has: {known}")]
     NoSuchTopic {
-        /// The recording.
+        /// Path of the recording.
         path: PathBuf,
         /// The topic requested.
         topic: String,
@@ -46,13 +46,13 @@ pub enum ReadError {
 /// A part that could not be read, or that contradicts another; the rest of the recording is used.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Warning {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
     /// Byte of the file at which the fault starts.
     pub offset: u64,
     /// Kind of the fault.
     pub kind: WarningKind,
-    /// Details.
+    /// Description of the fault.
     pub detail: String,
 }
 

@@ -32,7 +32,7 @@ const LARGEST_SPARE: usize = 8 << 20;
 
 /// Content of a chunk, shared by several messages.
 pub(super) enum Content {
-    /// Decompressed.
+    /// Content that was decompressed.
     Own { bytes: Vec<u8>, memory: Arc<Memory> },
     /// A part of the file, which needs no memory of its own.
     Part { file: Arc<Bytes>, range: Range<usize> },

@@ -47,7 +47,7 @@ pub(super) struct Index {
     /// Messages by channel.
     pub(super) counts: BTreeMap<u16, u64>,
     pub(super) compressions: BTreeSet<String>,
-    /// Whether the file is complete.
+    /// True if the file is complete.
     pub(super) complete: bool,
     /// The messages of a complete file without chunks.
     pub(super) loose: Option<Loose>,

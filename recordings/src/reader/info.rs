@@ -12,13 +12,13 @@ use crate::ledger::TopicTally;
 /// Overview of a recording; its `Display` is a text table, its `Serialize` the stable form for programs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Info {
-    /// The recording.
+    /// Path of the recording.
     pub path: String,
-    /// Its files.
+    /// Paths of the files.
     pub files: Vec<String>,
     /// Size of all files, bytes.
     pub bytes: u64,
-    /// Whether every file is complete.
+    /// True if every file is complete.
     pub complete: bool,
     /// Profile in the header; `ros2`.
     pub profile: String,
@@ -34,7 +34,7 @@ pub struct Info {
     pub end_ns: Option<u64>,
     /// Last minus first log time, s.
     pub duration_s: f64,
-    /// Messages.
+    /// Number of messages.
     pub messages: u64,
     /// The topics, by name.
     pub topics: Vec<TopicInfo>,
@@ -51,17 +51,17 @@ pub struct Info {
 /// One topic of an [`Info`].
 #[derive(Clone, Debug, Serialize)]
 pub struct TopicInfo {
-    /// Absolute name.
+    /// Absolute name, `/stress`.
     pub name: String,
-    /// Type.
+    /// ROS type, `grainlab_msgs/msg/Stress`.
     #[serde(rename = "type")]
     pub ros_type: String,
-    /// Its definition beside that of this program: `same`, `mapped` (read by the names of fields), `refused`, or `unknown` (this
+    /// Definition compared with that of this program: `same`, `mapped` (read by the names of fields), `refused`, or `unknown` (this
     /// program has no type of the name).
     pub definition: &'static str,
     /// Messages in the recording.
     pub messages: u64,
-    /// Whether late readers get the last message.
+    /// True if late readers get the last message.
     pub latched: bool,
     /// Messages published, if there is a ledger.
     pub published: Option<u64>,
@@ -72,7 +72,7 @@ pub struct TopicInfo {
 }
 
 impl Recording {
-    /// An overview.
+    /// Overview of the recording.
     pub fn info(&self) -> Info {
         of(self)
     }
@@ -81,14 +81,6 @@ impl Recording {
 fn of(recording: &Recording) -> Info {
     let files = &recording.files;
     let range = recording.time_range();
-    let mut counts = BTreeMap::<&str, u64>::new();
-    for file in files {
-        for (channel, n) in &file.index.counts {
-            if let Some(info) = file.index.channels.get(channel) {
-                *counts.entry(&info.topic).or_default() += n;
-            }
-        }
-    }
     let tallies = recording.ledger().unwrap_or_default();
     let tallies: BTreeMap<&str, &TopicTally> = tallies.iter().map(|t| (t.name.as_str(), t)).collect();
     let topics: Vec<_> = recording
@@ -100,7 +92,7 @@ fn of(recording: &Recording) -> Info {
                 name: channel.topic.clone(),
                 ros_type: channel.ros_type.clone(),
                 definition: channel.stored.word(),
-                messages: counts.get(channel.topic.as_str()).copied().unwrap_or(0),
+                messages: recording.count(&channel.topic),
                 latched: channel.is_latched(),
                 published: tally.map(|t| t.published),
                 lost: tally.map(|t| t.lost),

@@ -31,7 +31,7 @@ impl std::fmt::Debug for Payload {
 /// One recorded message.
 #[derive(Clone, Debug)]
 pub struct Message {
-    /// Its topic.
+    /// Topic and type.
     pub channel: Arc<ChannelInfo>,
     /// Low half of its RTPS sequence number in recordings of grainlab, 0 in those of rosbag2.
     pub sequence: u32,
@@ -44,7 +44,7 @@ pub struct Message {
 }
 
 impl Message {
-    /// Its bytes by the definition of this program, if that has a type of the name: fields in another order are read by
+    /// Bytes by the definition of this program, if that has a type of the name: fields in another order are read by
     /// their names, and messages of another type are refused.
     ///
     /// # Errors
@@ -64,14 +64,14 @@ impl Message {
         from_cdr(&self.own_bytes()?).map_err(|e| e.to_string())
     }
 
-    /// Whether it is the same message in another recording: topic, type, times, sequence and bytes.
+    /// True for the same message in another recording: topic, type, times, sequence and bytes.
     pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
         let key = |m: &Self| (m.sequence, m.log_time, m.publish_time);
         let name = |m: &Self| (m.channel.topic.clone(), m.channel.ros_type.clone());
         key(self) == key(other) && name(self) == name(other) && *self.payload == *other.payload
     }
 
-    /// Whether topic, times, sequence and bytes are the same.
+    /// True if topic, times, sequence and bytes are the same.
     pub(crate) fn says_the_same(&self, other: &Self) -> bool {
         let key = |m: &Self| (m.sequence, m.log_time, m.publish_time);
         key(self) == key(other) && *self.channel == *other.channel && *self.payload == *other.payload

@@ -13,8 +13,7 @@ use super::selection::Selection;
 use mcap::records::{MessageHeader, op};
 use std::borrow::Cow;
 use std::cmp::Reverse;
-use std::collections::binary_heap::PeekMut;
-use std::collections::{BTreeSet, BinaryHeap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Messages of a recording in order of log time.
@@ -26,45 +25,10 @@ pub struct Messages<'r> {
     end: Option<u64>,
     /// Blocks still to read: file and block, the next one last.
     blocks: Vec<(usize, usize)>,
-    /// Blocks read and not yet returned, the one with the earliest message on top. Blocks of one file may overlap in time.
-    open: BinaryHeap<Reverse<OpenBlock>>,
+    /// Blocks read and not yet returned, by the log time of their first message, their file and their offset: each has at least
+    /// one message, and they are in order of log time. Blocks of one file may overlap in time.
+    open: BTreeMap<(u64, usize, usize), std::vec::IntoIter<Message>>,
     held: Held,
-}
-
-/// The rest of a block, in order of log time; never empty.
-struct OpenBlock {
-    /// Log time of its first message, file, block offset: a total order.
-    key: (u64, usize, usize),
-    first: Message,
-    others: std::vec::IntoIter<Message>,
-}
-
-impl OpenBlock {
-    fn new(file: usize, offset: usize, mut messages: Vec<Message>) -> Option<Self> {
-        if !messages.is_sorted_by_key(|m| m.log_time) {
-            messages.sort_by_key(|m| m.log_time);
-        }
-        let mut others = messages.into_iter();
-        let first = others.next()?;
-        Some(Self { key: (first.log_time, file, offset), first, others })
-    }
-}
-
-impl PartialEq for OpenBlock {
-    fn eq(&self, other: &Self) -> bool {
-        self.key == other.key
-    }
-}
-impl Eq for OpenBlock {}
-impl PartialOrd for OpenBlock {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for OpenBlock {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.key.cmp(&other.key)
-    }
 }
 
 impl Recording {
@@ -83,14 +47,6 @@ impl Recording {
             ),
         };
         Ok(Messages::new(self, topics, selection.start.unwrap_or(0), selection.end))
-    }
-
-    /// The last message on `topic` whose log time is below `time` (ns since 1970).
-    ///
-    /// # Errors
-    /// If the topic does not exist.
-    pub fn last_before(&self, topic: &str, time: u64) -> Result<Option<Message>, ReadError> {
-        Ok(self.some_before(topic, time, 1)?.pop())
     }
 
     /// The last message on `topic`, whatever its log time.
@@ -127,7 +83,7 @@ impl<'r> Messages<'r> {
             start,
             end,
             blocks,
-            open: BinaryHeap::new(),
+            open: BTreeMap::new(),
             held: Held::new(recording.size()),
         }
     }
@@ -151,7 +107,17 @@ impl<'r> Messages<'r> {
                 messages.push(message);
             }
         });
-        self.open.extend(OpenBlock::new(f, block.offset, messages).map(Reverse));
+        if !messages.is_sorted_by_key(|m| m.log_time) {
+            messages.sort_by_key(|m| m.log_time);
+        }
+        self.reopen(f, block.offset, messages.into_iter());
+    }
+
+    /// Puts the rest of a block in its place; an empty one is done.
+    fn reopen(&mut self, f: usize, offset: usize, messages: std::vec::IntoIter<Message>) {
+        if let Some(first) = messages.as_slice().first() {
+            self.open.insert((first.log_time, f, offset), messages);
+        }
     }
 }
 
@@ -162,20 +128,16 @@ impl Iterator for Messages<'_> {
         // A block that starts no later than the earliest read message may hold an earlier one.
         while let Some(&(f, n)) = self.blocks.last() {
             let start = self.recording.files[f].blocks()[n].start;
-            if self.open.peek().is_some_and(|Reverse(b)| b.key.0 < start) {
+            if self.open.first_key_value().is_some_and(|((first, ..), _)| *first < start) {
                 break;
             }
             self.blocks.pop();
             self.read_block(f, n);
         }
-        let mut top = self.open.peek_mut()?;
-        match top.0.others.next() {
-            Some(next) => {
-                top.0.key.0 = next.log_time;
-                Some(std::mem::replace(&mut top.0.first, next))
-            }
-            None => Some(PeekMut::pop(top).0.first),
-        }
+        let ((_, f, offset), mut block) = self.open.pop_first()?;
+        let message = block.next();
+        self.reopen(f, offset, block);
+        message
     }
 }
 

@@ -71,7 +71,7 @@ impl Recording {
         &self.path
     }
 
-    /// Its files, in order.
+    /// Paths of the files, in order.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.files.iter().map(|f| f.path.clone()).collect()
     }
@@ -199,7 +199,7 @@ impl Recording {
     }
 }
 
-/// Whether a recorder of this program wrote the file: such a file gets a ledger at its end.
+/// True if a recorder of this program wrote the file: such a file gets a ledger at its end.
 fn is_of_a_recorder(file: &OpenFile) -> bool {
     file.index.library.starts_with("grainlab ") && !file.index.metadata.iter().any(|m| m.name == COPY_RECORD)
 }

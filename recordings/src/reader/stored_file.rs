@@ -12,12 +12,12 @@ pub(crate) struct FileCount {
 /// A file stored in a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StoredFile {
-    /// Its name.
+    /// Name within the recording.
     pub name: String,
-    /// Its media type.
+    /// Media type, `application/toml`.
     pub media_type: String,
     /// Time at which it was stored, ns since 1970.
     pub time: u64,
-    /// Its content.
+    /// Content of the file.
     pub bytes: Vec<u8>,
 }

@@ -17,9 +17,9 @@ use super::records::{FRAME, RawRecord, Records};
 /// The result of a complete check.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
-    /// Files read.
+    /// Paths of the files.
     pub files: Vec<PathBuf>,
-    /// Their size, bytes.
+    /// Size of all files, bytes.
     pub bytes: u64,
     /// Records in them, those within chunks included.
     pub records: u64,
@@ -27,7 +27,7 @@ pub struct Check {
     pub chunks: u64,
     /// Messages in them.
     pub messages: u64,
-    /// Stored files.
+    /// Number of stored files.
     pub attachments: u64,
     /// Lost messages according to the ledger of the recorders; `None` without a ledger.
     pub lost: Option<u64>,
@@ -37,26 +37,21 @@ pub struct Check {
     pub unjudged: Vec<PathBuf>,
     /// Topics whose definition is not that of this program, with what differs.
     pub definitions: Vec<String>,
-    /// Whether messages of such a topic cannot be read by this program.
+    /// True if messages of such a topic cannot be read by this program.
     pub refused: bool,
-    /// All faults.
+    /// Faults in all files.
     pub warnings: Vec<Warning>,
 }
 
 impl Recording {
-    /// Reads all data and returns all faults: checksums, the index against the messages, log times that decrease, and
-    /// the ledger against the messages.
-    pub fn verify(&self) -> Vec<Warning> {
-        self.check().warnings
-    }
-
-    /// The same without the ledger: in a recovered file it also counts messages that are no longer readable.
+    /// Faults without those of the ledger: in a recovered file it also counts messages that are no longer readable.
     pub(crate) fn verify_files(&self) -> Vec<Warning> {
         Found::of(self);
         self.warnings()
     }
 
-    /// [`Recording::verify`] with the counts of what was read.
+    /// Reads all data: counts, and all faults: checksums, the index against the messages, log times that decrease, and the ledger
+    /// against the messages.
     pub fn check(&self) -> Check {
         let found = Found::of(self);
         let ledger = self.ledger();

@@ -120,7 +120,7 @@ impl Copy {
         let schema = match self.schemas.get(&channel.schema_id) {
             Some((header, data)) => self.mcap.add_schema(&header.name, &header.encoding, data)?,
             None if channel.schema_id == 0 => 0,
-            // Its schema was lost with a chunk: without it the messages cannot be read.
+            // The schema was lost with a chunk: without it the messages cannot be read.
             None => return Ok(()),
         };
         let Channel { topic, message_encoding, metadata, .. } = channel;

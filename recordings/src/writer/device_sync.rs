@@ -13,7 +13,7 @@ pub(super) struct DeviceSync {
     failures: Receiver<io::Error>,
     thread: Option<JoinHandle<()>>,
     last: Option<Instant>,
-    /// Whether data were written since the last request.
+    /// True if data were written since the last request.
     unsynced: bool,
 }
 

@@ -25,9 +25,9 @@ pub enum WriteError {
         "{path}: only {free} bytes are free on this file system and {needed} are needed; the recording was {state}: free space and run again"
     )]
     NoSpace {
-        /// The recording.
+        /// Path of the recording.
         path: PathBuf,
-        /// Free bytes.
+        /// Number of free bytes.
         free: u64,
         /// Bytes that must be free.
         needed: u64,
@@ -41,17 +41,17 @@ pub enum WriteError {
         path: PathBuf,
         /// The attempted action.
         action: &'static str,
-        /// Its error.
+        /// Error that was returned.
         source: io::Error,
     },
     /// The MCAP writer returned an error.
     #[error("{path}: cannot {action}: {source}; what was written before stays readable")]
     Format {
-        /// The recording.
+        /// Path of the recording.
         path: PathBuf,
         /// The attempted action.
         action: &'static str,
-        /// Its error.
+        /// Error that was returned.
         source: McapError,
     },
     /// The topic of a sample was never declared.
@@ -63,17 +63,17 @@ pub enum WriteError {
     /// A sample is too short to be CDR.
     #[error("message {sequence} on {topic} has {bytes} bytes: CDR starts with a 4-byte encapsulation header")]
     NotCdr {
-        /// Its topic.
+        /// Topic of the message.
         topic: String,
-        /// Its RTPS sequence number.
+        /// RTPS sequence number of the message.
         sequence: i64,
-        /// Its length.
+        /// Length of the payload, bytes.
         bytes: usize,
     },
     /// An earlier failure ended the recording.
     #[error("{path}: an earlier error ended this recording: {reason}")]
     Ended {
-        /// The recording.
+        /// Path of the recording.
         path: PathBuf,
         /// The earlier error.
         reason: String,
@@ -81,6 +81,12 @@ pub enum WriteError {
 }
 
 impl WriteError {
+    /// An error of the file system during `action`.
+    pub(super) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::Io { path, action, source }
+    }
+
     /// The error of the file system, if it was one.
     pub(super) fn mcap(path: &Path, action: &'static str, source: McapError) -> Self {
         let path = path.to_owned();

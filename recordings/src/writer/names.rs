@@ -13,7 +13,7 @@ pub(super) fn part_path(directory: &Path, name: &str, number: u64) -> PathBuf {
 
 /// The number after those of all existing parts.
 pub(super) fn next_number(directory: &Path, name: &str) -> Result<u64, WriteError> {
-    let io = |source| WriteError::Io { path: directory.to_owned(), action: "read the directory", source };
+    let io = |source| WriteError::io(directory, "read the directory")(source);
     let mut next = 0;
     if !directory.exists() {
         return Ok(next);
@@ -32,7 +32,7 @@ pub(super) fn next_number(directory: &Path, name: &str) -> Result<u64, WriteErro
     Ok(next)
 }
 
-/// Whether a recorder has locked the file; false on a file system without locks.
+/// True if a recorder has locked the file; false on a file system without locks.
 pub(crate) fn is_locked(file: &File) -> bool {
     matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock))
 }

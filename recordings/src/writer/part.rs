@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufWriter};
+use std::io::{BufWriter, ErrorKind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -42,12 +42,9 @@ impl Part {
     /// Begins the file, which must not exist. It stays locked while it is open, so that no process recovers a file
     /// being recorded.
     pub(super) fn create(path: PathBuf, of: &WriterOptions, began: Instant) -> Result<Self, WriteError> {
-        let io = |action: &'static str| {
-            let path = path.clone();
-            move |source| WriteError::Io { path, action, source }
-        };
+        let io = |action| WriteError::io(&path, action);
         let file = match File::create_new(&path) {
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => return Err(WriteError::Exists { path }),
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => return Err(WriteError::Exists { path }),
             other => other.map_err(io("create the file"))?,
         };
         // A file system without locks cannot report another recorder.
@@ -121,16 +118,10 @@ impl Part {
     /// Writes the metadata record and the index, and syncs the file to the device.
     pub(super) fn close(mut self, metadata: Metadata) -> Result<Closed, WriteError> {
         let path = self.path.clone();
-        let format = |action: &'static str| {
-            let path = path.clone();
-            move |source| WriteError::mcap(&path, action, source)
-        };
-        let io = |action: &'static str| {
-            let path = path.clone();
-            move |source| WriteError::Io { path, action, source }
-        };
-        self.mcap.write_metadata(&metadata).map_err(format("write the ledger"))?;
-        self.mcap.finish().map_err(format("write the index"))?;
+        let format = |action, source| WriteError::mcap(&path, action, source);
+        let io = |action| WriteError::io(&path, action);
+        self.mcap.write_metadata(&metadata).map_err(|e| format("write the ledger", e))?;
+        self.mcap.finish().map_err(|e| format("write the index", e))?;
         let handle = self
             .mcap
             .into_inner()

@@ -1,5 +1,6 @@
 //! The declaration of a topic in a recording.
 
+use crate::reader::ChannelInfo;
 use grainlab_msgs::{Qos, Topic, TypeInfo};
 
 /// Encoding of schemas that are message files.
@@ -28,6 +29,18 @@ impl TopicSpec {
         let mut spec = Self::of_type(&topic.info, full_name);
         spec.qos = topic.qos.offered_qos_profiles();
         spec
+    }
+
+    /// A channel of a recording.
+    pub(crate) fn of_channel(channel: &ChannelInfo) -> Self {
+        Self {
+            name: channel.topic.clone(),
+            ros_type: channel.ros_type.clone(),
+            definition: channel.definition.clone(),
+            schema_encoding: channel.schema_encoding.clone(),
+            type_hash: channel.type_hash.clone(),
+            qos: channel.qos.clone(),
+        }
     }
 
     /// A channel of any known type; its QoS is unknown.

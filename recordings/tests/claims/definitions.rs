@@ -78,7 +78,7 @@ fn fields_in_another_order_are_read_by_their_names_with_a_warning() {
     let info = recording.info();
     assert_eq!((info.topics[0].definition, info.definitions.len()), ("mapped", 1));
     assert!(info.to_string().contains("read by the names"), "{info}");
-    // What is played is a message of this program.
+    // A player sends messages of this program.
     let message = recording.messages(&Selection::topics(["/packing"])).unwrap().next().unwrap();
     assert_eq!(*message.own_bytes().unwrap(), to_cdr(&message_of(&packing)));
     let check = recording.check();

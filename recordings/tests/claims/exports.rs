@@ -1,4 +1,4 @@
-//! What is exported is read back.
+//! Exports are read back.
 
 use grainlab_core::{Packing, Vec3};
 use grainlab_recordings::export::{ExportFormat, Exporter};

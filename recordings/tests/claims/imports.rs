@@ -107,7 +107,7 @@ fn a_missing_sidecar_is_answered_with_the_flags_that_replace_it() {
     assert_eq!(loaded.packings[0].packing, reference().packing);
 }
 
-/// What a file states and a packing cannot be, or that it does not keep, is refused.
+/// Statements of a file that no packing can meet, or that the file does not keep, are refused.
 #[test]
 fn units_boundaries_and_counts_that_a_file_states_are_honoured_or_refused() {
     let frame = "2\nLattice=\"1 0 0 0 1 0 0 0 1\" Properties=species:S:1:pos:R:3:radius:R:1 pbc=\"T T T\" units=\"m kg s\" step=3\n\
@@ -172,7 +172,7 @@ fn a_value_given_replaces_that_of_every_file_and_says_so() {
     {
         assert!(notes.contains(expected), "{notes}");
     }
-    // The same value is not replaced.
+    // An equal value is not replaced.
     let same = ImportOptions { density: Some(7850.0), ..ImportOptions::default() };
     let notes = csv::packing(PAIR, Some(sidecar), &same).unwrap().notes.join("\n");
     assert!(!notes.contains("replaced"), "{notes}");

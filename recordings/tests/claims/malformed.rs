@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use grainlab_recordings::import::contacts::SearchError;
 use grainlab_recordings::import::{ImportError, ImportOptions, load};
 use std::io::Write;
 
@@ -162,7 +163,7 @@ fn a_cell_far_smaller_than_its_grains_is_refused_at_once() {
         let path = folder.write("small.csv", CSV);
         let error = load(&path, &in_cube(edge)).unwrap_err();
         let ImportError::In { source, .. } = &error else { panic!("{error}") };
-        assert!(matches!(**source, ImportError::Crowded { .. }), "{edge}: {error}");
+        assert!(matches!(**source, ImportError::Contacts(SearchError::Crowded { .. })), "{edge}: {error}");
         assert!(error.to_string().contains("small.csv") && error.to_string().contains("units"), "{error}");
     }
     // Narrow in one direction only, and a cell of the right size with radii in micrometres.

@@ -43,7 +43,7 @@ fn a_file_cut_anywhere_keeps_every_message_that_could_be_read() {
         assert!(done.changed() && done.files[0].messages == before.len() as u64, "cut at {cut}: {done:?}");
         assert_eq!(said(&directory), before, "cut at {cut}");
         let recording = Recording::open(&directory).unwrap();
-        assert_eq!(recording.verify(), [], "cut at {cut}");
+        assert_eq!(recording.check().warnings, [], "cut at {cut}");
         assert_eq!(recording.stored_files(), files, "cut at {cut}");
         assert_eq!(recording.channels(), channels, "cut at {cut}");
         assert!(recording.info().complete && directory.join("metadata.yaml").exists());
@@ -76,7 +76,7 @@ fn a_damaged_chunk_of_a_cut_file_is_left_out_and_named() {
     assert!(metadata["recovered_without"].contains("chunk"), "{metadata:?}");
     assert!(!recover(&directory).unwrap().changed());
     // The recorder wrote its ledger, which shows the damage.
-    let faults = Recording::open(&directory).unwrap().verify();
+    let faults = Recording::open(&directory).unwrap().check().warnings;
     assert!(!faults.is_empty() && faults.iter().all(|w| w.detail.contains("ledger")), "{faults:?}");
 }
 
@@ -129,7 +129,7 @@ fn a_resumed_run_goes_on_in_the_next_file_behind_the_last_log_time() {
         assert_eq!(run.finish().unwrap().messages, 50);
     }
     let recording = Recording::open(&directory).unwrap();
-    assert_eq!(recording.verify(), []);
+    assert_eq!(recording.check().warnings, []);
     assert_eq!(recording.paths().len(), 3);
     let all = said(&directory);
     assert_eq!(all.len(), kept.len() + 100);

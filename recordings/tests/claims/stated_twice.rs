@@ -1,4 +1,4 @@
-//! What a file states twice, or states of half of its grains, is refused if it contradicts itself.
+//! Statements made twice, or of half of the grains, are refused if they contradict each other.
 
 use grainlab_core::Vec3;
 use grainlab_recordings::import::{ImportError, Imported};

@@ -148,7 +148,7 @@ impl Graph {
 }
 
 fn is_node(folder: &str) -> bool {
-    const NOT_NODES: [&str; 3] = ["launcher", "results", "bag_tools"];
+    const NOT_NODES: [&str; 2] = ["launcher", "results"];
     folder.strip_prefix("nodes/laboratory/").is_some_and(|name| !NOT_NODES.contains(&name))
 }
 

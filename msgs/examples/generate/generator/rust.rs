@@ -45,7 +45,7 @@ pub(crate) fn package(package: &str, messages: &[&MessageFile]) -> String {
     out
 }
 
-/// One message.
+/// Source of one message.
 pub(crate) fn message(file: &MessageFile, library: &Library) -> Result<String, String> {
     let full = format!("{}/msg/{}", file.package, file.name);
     let mut out = format!("// Generated from {} by examples/generate; not edited by hand.\n\n", file.path);
@@ -157,7 +157,7 @@ fn default_impl(file: &MessageFile) -> String {
     format!("\nimpl Default for {} {{\n    fn default() -> Self {{\n{body}\n    }}\n}}\n", file.name)
 }
 
-/// Whether a message is small enough for `Copy`: it consists of numbers and other such messages.
+/// True if a message is small enough for `Copy`: it consists of numbers and other such messages.
 fn plain(file: &MessageFile, library: &Library) -> Result<bool, String> {
     for field in &file.fields {
         let plain = match &field.base {

@@ -41,7 +41,7 @@ pub(crate) struct Binding {
 }
 
 impl Binding {
-    /// Whether a message belongs to the run; `present` lists the present writers of a topic.
+    /// Decides if a message belongs to the run; `present` lists the present writers of a topic.
     pub(crate) fn takes(
         &mut self,
         topic: &Topic,

@@ -23,7 +23,7 @@ impl Company {
         self.heard.iter().filter(|p| !self.left.contains(*p) && !there.contains(*p)).count()
     }
 
-    /// Whether every process that published, or has a writer in `present`, has sent its last report.
+    /// True if every process that published, or has a writer in `present`, has sent its last report.
     pub(crate) fn all_left(&self, present: &[Guid]) -> bool {
         let mut known = self.heard.iter().copied().chain(present.iter().map(Guid::participant));
         known.all(|p| Some(p) == self.own || self.left.contains(&p))

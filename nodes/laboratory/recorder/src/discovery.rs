@@ -21,12 +21,12 @@ const LOOK: Duration = Duration::from_millis(100);
 /// Time after which named topics that nobody publishes are reported: a name may be misspelt.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// What is recorded besides the topics of the contract.
+/// Recorded topics outside the contract.
 #[derive(Clone, Debug)]
 pub struct OtherTopics {
-    /// Which topics.
+    /// Selection of topics.
     pub wanted: Wanted,
-    /// Where the definitions of their types come from.
+    /// Source of the definitions of their types.
     pub definitions: Definitions,
     /// The QoS of readers, instead of the one adapted to the writers; of topics of the contract, too.
     pub qos: QosOverrides,
@@ -158,7 +158,7 @@ impl Finder {
         Some(Found { topic, spec })
     }
 
-    /// Whether all writers of a topic have one type; if not, says so once.
+    /// True if all writers of a topic have one type; if not, says so once.
     fn has_one_type(&mut self, name: &str, offers: &[Offer]) -> bool {
         let types: BTreeSet<&str> = offers.iter().map(|o| o.type_name.as_str()).collect();
         if types.len() == 1 {
@@ -186,7 +186,7 @@ impl Finder {
     }
 }
 
-/// Whether a topic has messages of its own: not parts or copies of another topic's messages, which are recorded there.
+/// True for a topic with messages of its own: not parts or copies of another topic's messages, which are recorded there.
 fn is_recorded(offer: &Offer) -> bool {
     let is_part = |t: &Topic| t.info.type_name == offer.type_name;
     let copies = Topic::by_name(&offer.topic).is_some_and(|t| !t.is_recorded() && is_part(t));

@@ -1,4 +1,4 @@
-//! What makes a recording doubtful: two processes of one name or one task, or packings of another scene.
+//! Doubts about a recording: two processes of one name or one task, or packings of another scene.
 
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Guid, from_cdr, msg};
@@ -103,12 +103,12 @@ impl Disputes {
         &self.lines
     }
 
-    /// Whether this recorder saw packings of another scene.
+    /// True if this recorder saw packings of another scene.
     pub(crate) fn found_scene(&self) -> bool {
         self.of_scene
     }
 
-    /// Whether this recorder saw two processes of one name or task.
+    /// True if this recorder saw two processes of one name or task.
     pub(crate) fn found_processes(&self) -> bool {
         self.of_processes
     }

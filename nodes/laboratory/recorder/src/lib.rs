@@ -1,4 +1,4 @@
-//! The recorder node: every sample of every topic into one recording.
+//! The recorder node: every sample of every topic into one recording, and the player of recordings.
 //!
 //! - [`Settings`], [`parameters`]: what is recorded, and where to
 //! - `binding`: the messages of a run by hand; [`repeats`]: repetitions of recorded messages
@@ -7,6 +7,7 @@
 //! - [`OtherTopics`], [`Wanted`]: topics of other programs, found on the bus
 //! - [`Recorder`]: the node; [`ResultSlot`]: the finished recording
 //! - [`SnapshotSettings`]: the last seconds in memory, written when asked to
+//! - [`play`]: publishes the messages of a recording again
 //! - [`tallies`]: losses, and the table of counts
 
 mod binding;
@@ -14,6 +15,7 @@ mod company;
 mod discovery;
 mod disputes;
 mod node;
+pub mod play;
 pub mod repeats;
 mod settings;
 mod snapshot;

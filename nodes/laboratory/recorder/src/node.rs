@@ -1,4 +1,4 @@
-//! The node.
+//! Node that records.
 
 use crate::Settings;
 use crate::binding::{Binding, Outside};
@@ -51,7 +51,7 @@ const SILENCE: Duration = Duration::from_millis(200);
 /// The recording that a recorder finished, for the code that started it.
 pub type ResultSlot = Rc<RefCell<Option<Finished>>>;
 
-/// How the messages of a topic are received and written.
+/// Source of the messages of a topic.
 enum Source {
     Samples(SubscriptionId),
     /// Large ones in parts: recorded whole, as one sample.
@@ -85,7 +85,7 @@ struct Channel {
     of_contract: bool,
 }
 
-/// The recorder.
+/// Recorder of one run, or of topics.
 pub struct Recorder {
     /// `None` after the end.
     writer: Option<RunWriter>,
@@ -101,7 +101,7 @@ pub struct Recorder {
     /// For the recording of one run.
     repeats: Option<Repeats>,
     contradictions: u64,
-    /// What makes the recording doubtful, that of earlier recorders included.
+    /// Doubts about the recording, those of earlier recorders included.
     disputes: Disputes,
     /// The writer of each result.
     authors: Authors,

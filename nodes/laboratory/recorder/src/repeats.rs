@@ -24,7 +24,7 @@ pub enum Novelty {
     Repeat,
     /// Another message with this number was recorded before.
     Contradiction {
-        /// Its sequence number in the lockstep, or the step of its packing.
+        /// Sequence number in the lockstep, or step of the packing.
         number: u64,
     },
 }
@@ -145,13 +145,13 @@ fn step(body: &[u8]) -> Option<u64> {
     Some(if big { u64::from_be_bytes(step) } else { u64::from_le_bytes(step) })
 }
 
-/// Whether a process has a number in its run that it keeps when it is started again.
+/// True for a process with a number in its run that it keeps when it is started again.
 fn is_member(writer: Guid) -> bool {
     let participant = writer.participant();
     run_of(&participant).is_some() && member_of(&participant) > 0
 }
 
-/// The same value for a process of a launched run and for its restarted successor.
+/// Value that a process of a launched run and its restarted successor have in common.
 pub(crate) fn author(writer: Guid) -> u64 {
     let participant = writer.participant();
     match is_member(writer) {

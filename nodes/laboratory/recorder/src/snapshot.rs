@@ -23,7 +23,7 @@ const MOST: usize = 512 << 20;
 /// A message in memory.
 #[derive(Debug)]
 pub(crate) struct Kept {
-    /// Full name.
+    /// Full name of the topic.
     pub(crate) topic: String,
     pub(crate) sample: Sample,
     /// Late readers get the last message of the topic.
@@ -79,7 +79,7 @@ impl Snapshot {
         self.asked.swap(false, Ordering::Relaxed).then(|| self.rest())
     }
 
-    /// All messages.
+    /// Takes all messages.
     pub(crate) fn rest(&mut self) -> Vec<Kept> {
         self.bytes = 0;
         let mut all: Vec<Kept> = std::mem::take(&mut self.latched).into_values().collect();

@@ -1,4 +1,4 @@
-//! Which topics are recorded.
+//! Selection of the topics to record.
 
 use regex_lite::Regex;
 
@@ -44,7 +44,7 @@ impl Wanted {
         })
     }
 
-    /// Whether the topic of this full name is recorded.
+    /// True if the topic of this full name is recorded.
     pub fn takes(&self, name: &str) -> bool {
         let is_one = |list: &[String]| list.contains(&bare(name));
         let matches = |regex: &Option<Regex>| regex.as_ref().is_some_and(|r| r.is_match(name));

@@ -38,7 +38,7 @@ pub(super) struct Sidecar {
     gravity: Option<Value>,
 }
 
-/// Whether a value says that there is none of something.
+/// True for a value that says that there is none of something.
 fn is_nothing(value: &Value) -> bool {
     match value {
         Value::Null => true,

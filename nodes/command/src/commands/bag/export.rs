@@ -1,7 +1,6 @@
 //! `grainlab bag export`.
 
 use crate::commands::packings::import as import_flags;
-use clap::ValueEnum;
 use grainlab_console::{Failure, print, say};
 use grainlab_core::Packing;
 use grainlab_experiment::{PathPosition, StrainOrigin};
@@ -46,46 +45,16 @@ pub(crate) struct Args {
     out: PathBuf,
     /// Format of the new files
     #[arg(long, value_enum)]
-    format: Format,
+    format: ExportFormat,
     #[command(flatten)]
     import: import_flags::Args,
-}
-
-/// File formats of packings.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// CSV with a JSON sidecar, two files per packing
-    Csv,
-    /// LAMMPS dumps of grains and contacts, one frame per packing
-    Lammps,
-    /// LAMMPS data files, one per packing
-    LammpsData,
-    /// Extended XYZ, one frame per packing
-    Xyz,
-    /// VTK XML: grains and contacts of each packing, and a collection of all
-    Vtk,
-    /// VTKHDF: grains and contacts of each packing
-    Vtkhdf,
-}
-
-impl From<Format> for ExportFormat {
-    fn from(format: Format) -> Self {
-        match format {
-            Format::Csv => Self::Csv,
-            Format::Lammps => Self::LammpsDump,
-            Format::LammpsData => Self::LammpsData,
-            Format::Xyz => Self::Xyz,
-            Format::Vtk => Self::Vtk,
-            Format::Vtkhdf => Self::VtkHdf,
-        }
-    }
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     std::fs::create_dir_all(&args.out)
         .map_err(|e| Failure::failed(format!("{}: {e}", args.out.display())))?;
     let options = args.import.options()?;
-    let mut writer = Writer::new(args.format.into(), &args.path, &args.out);
+    let mut writer = Writer::new(args.format, &args.path, &args.out);
     let mut failure = None;
     let warnings = import::each(&args.path, &options, &mut |imported| match writer.write(&imported) {
         Ok(()) => ControlFlow::Continue(()),
@@ -193,7 +162,7 @@ mod tests {
     const SIDECAR: &str = r#"{"G": 29e9, "nu": 0.2, "density": 2500, "mu_prep": 0.3, "box_L": [1, 1, 1]}"#;
     const GRAINS: &str = "p,1,0.1,0.1,0.1,0.11,0,0,0,0,0,0,0\np,2,0.1,0.1,0.3,0.11,0,0,0,0,0,0,0\n";
 
-    fn args(path: PathBuf, out: PathBuf, format: Format) -> Args {
+    fn args(path: PathBuf, out: PathBuf, format: ExportFormat) -> Args {
         let import = import_flags::Args::default();
         Args { path, out, format, import }
     }
@@ -206,13 +175,18 @@ mod tests {
         std::fs::write(folder.path().join("two.json"), SIDECAR).unwrap();
         let packing = load(&path, &ImportOptions::default()).unwrap().packings.remove(0).packing;
         let out = folder.path().join("out");
-        assert_eq!(run(&args(path.clone(), out.clone(), Format::Csv)).unwrap(), Exit::Done);
+        assert_eq!(run(&args(path.clone(), out.clone(), ExportFormat::Csv)).unwrap(), Exit::Done);
         let back = load(&out.join("packing_1.csv"), &ImportOptions::default()).unwrap();
         assert_eq!(back.packings[0].packing, packing);
-        assert_eq!(run(&args(path.clone(), out.clone(), Format::Lammps)).unwrap(), Exit::Done);
+        assert_eq!(run(&args(path.clone(), out.clone(), ExportFormat::LammpsDump)).unwrap(), Exit::Done);
         let dump = std::fs::read_to_string(out.join("packings.dump")).unwrap();
         assert_eq!(dump, lammps_dump(&packing));
-        assert!(run(&args(path, out, Format::Lammps)).unwrap_err().to_string().contains("packings.dump"));
+        assert!(
+            run(&args(path, out, ExportFormat::LammpsDump))
+                .unwrap_err()
+                .to_string()
+                .contains("packings.dump")
+        );
     }
 
     #[test]
@@ -245,7 +219,7 @@ mod tests {
         std::fs::create_dir(&out).unwrap();
         // The second file of the export is there already.
         std::fs::write(out.join("packing_1.json"), "of another").unwrap();
-        let error = run(&args(path, out.clone(), Format::Csv)).unwrap_err();
+        let error = run(&args(path, out.clone(), ExportFormat::Csv)).unwrap_err();
         assert!(error.to_string().contains("packing_1.json"), "{error}");
         let left: Vec<_> = std::fs::read_dir(&out).unwrap().map(|f| f.unwrap().file_name()).collect();
         assert_eq!(left, ["packing_1.json"]);

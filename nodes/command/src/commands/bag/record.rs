@@ -1,7 +1,6 @@
 //! `grainlab bag record`.
 
 use crate::commands::run::print_recorded;
-use grainlab_bag_tools::Compression;
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
 use grainlab_msgs::Topic;
@@ -9,7 +8,7 @@ use grainlab_node_kit::{Exit, NodeSpec, RosArgs, Scope, run_node};
 use grainlab_recorder::{
     OtherTopics, Recorder, ResultSlot, Settings, SnapshotSettings, Wanted, contract_topics,
 };
-use grainlab_recordings::{Definitions, QosOverrides, WriterOptions};
+use grainlab_recordings::{Compression, Definitions, QosOverrides, WriterOptions};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -139,7 +138,7 @@ fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
 fn writer(args: &Args) -> WriterOptions {
     let default = WriterOptions::default();
     WriterOptions {
-        compression: args.compression.into(),
+        compression: args.compression,
         split_bytes: args.max_bag_size.unwrap_or(default.split_bytes),
         split_after: args.max_bag_duration.map_or(default.split_after, Duration::from_secs),
         ..default

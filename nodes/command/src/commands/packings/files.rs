@@ -226,7 +226,7 @@ fn read(
             // A recording without a packing may be cut off before it, or the chunk with the packing may be
             // damaged: then data were lost.
             if let Ok(recording) = Recording::open(path) {
-                complaints = lines(&recording.verify());
+                complaints = lines(&recording.check().warnings);
                 exit = if complaints.is_empty() { exit } else { Exit::DataLoss };
             }
             complaints.push(error.to_string());

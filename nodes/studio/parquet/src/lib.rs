@@ -25,11 +25,11 @@ pub enum Kind {
     Time,
     /// Numbers, or yes and no.
     One(Primitive),
-    /// Texts.
+    /// Texts in UTF-8.
     Text,
 }
 
-/// A column.
+/// Column of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
     /// In the header.
@@ -53,7 +53,7 @@ pub enum Cell {
     Single(f32),
     /// A number of 64 bits.
     Double(f64),
-    /// A text.
+    /// Text in UTF-8.
     Text(String),
 }
 

@@ -147,7 +147,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         rate: args.rate,
         start_offset: seconds("start-offset", args.start_offset)?,
         duration: args.duration.map(|d| seconds("duration", d)).transpose()?,
-        ..PlayOptions::default()
     };
     let patience = seconds("wait-for-subscribers", args.wait_for_subscribers)?;
     let recording = Recording::open(&args.path).map_err(Failure::failed)?;

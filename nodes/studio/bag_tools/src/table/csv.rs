@@ -1,4 +1,4 @@
-//! CSV files.
+//! Tables as CSV files.
 
 use grainlab_parquet::{Cell, Column};
 use std::fs::File;

@@ -2,7 +2,7 @@
 
 use grainlab_any_message::{Message, Schema};
 use grainlab_console::say;
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 use grainlab_recordings::ChannelInfo;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -20,7 +20,7 @@ pub(super) struct Session<'a> {
     pub(super) outlets: &'a mut Outlets,
     pub(super) keys: Option<Keys>,
     pub(super) clock: Option<ClockOutlet>,
-    /// Messages sent.
+    /// Number of messages sent.
     pub(super) sent: u64,
     /// Messages of a part of the recording whose definition is another one than that of their topic.
     pub(super) unread: u64,
@@ -59,7 +59,7 @@ impl ClockOutlet {
     }
 }
 
-/// What ends a playback early.
+/// Reason for an early end of a playback.
 enum Ended {
     Signal,
     Key,
@@ -74,7 +74,7 @@ impl Session<'_> {
         Ok(!matches!(ended, Some(Ended::Signal)))
     }
 
-    /// Whether no other round of a loop begins: after a signal or the key `q`.
+    /// True if no other round of a loop begins: after a signal or the key `q`.
     pub(super) fn is_over(&self, finished: bool) -> bool {
         !finished || self.keys.as_ref().is_some_and(Keys::is_over)
     }

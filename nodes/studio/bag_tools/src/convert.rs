@@ -7,7 +7,7 @@ use crate::tables::{TableFormat, Tables, failed};
 use crate::times::Interval;
 use clap::ValueEnum;
 use grainlab_console::{Failure, print, worse};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 use grainlab_recordings::{NewPath, Selection};
 use std::path::PathBuf;
 
@@ -37,7 +37,7 @@ pub struct Args {
     /// Format of the output [default with --pictures: mcap]
     #[arg(long, value_enum, required_unless_present = "pictures")]
     format: Option<Format>,
-    /// Write a recording in which packings have pictures beside them, for viewers that do not read packings
+    /// Write a recording with pictures of the packings, for viewers that do not read packings
     #[arg(long)]
     pictures: bool,
     #[command(flatten)]
@@ -60,7 +60,7 @@ enum Format {
     Csv,
     /// Apache Parquet, one file per topic
     Parquet,
-    /// MCAP
+    /// Recording in MCAP
     Mcap,
 }
 
@@ -68,7 +68,7 @@ enum Format {
 ///
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or the output cannot be written.
-pub fn run(args: &Args) -> Result<Exit, Failure> {
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let paths = std::slice::from_ref(&args.path);
     let format = match args.format {
         Some(Format::Parquet) => TableFormat::Parquet,

@@ -7,7 +7,7 @@ use crate::times::Interval;
 use clap::ValueEnum;
 use grainlab_any_message::Shown;
 use grainlab_console::{Failure, worse};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 use grainlab_recordings::{Message, Selection};
 use serde::Serialize;
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -36,7 +36,7 @@ pub struct Args {
     /// Print at most this many messages
     #[arg(short = 'n', long, value_name = "N")]
     count: Option<usize>,
-    /// How to print messages
+    /// Format of printed messages
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     /// Print at most this many values of each array
@@ -44,7 +44,7 @@ pub struct Args {
     max_array: Option<usize>,
 }
 
-/// How messages are printed.
+/// Format of printed messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum Format {
     /// One JSON object per line
@@ -58,7 +58,7 @@ enum Format {
 ///
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or stdout fails.
-pub fn run(args: &Args) -> Result<Exit, Failure> {
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let recordings = open(std::slice::from_ref(&args.path))?;
     args.topics.check(&recordings)?;
     let (start, end) = args.interval.of(&recordings)?;

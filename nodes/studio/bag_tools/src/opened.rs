@@ -1,7 +1,7 @@
 //! Recordings that a command reads.
 
 use grainlab_console::{Failure, say};
-use grainlab_node_kit::Exit;
+use grainlab_msgs::Exit;
 use grainlab_recordings::Recording;
 use std::path::PathBuf;
 

@@ -4,22 +4,13 @@ use super::shape::{MOST_COLUMNS, Shape};
 use grainlab_any_message::{Array, Message, Value};
 use grainlab_parquet::{Cell, Column, Kind};
 
-/// The columns of a table, and how a message fills them.
+/// The columns of a table, and the shape that fills them.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns {
     pub(crate) list: Vec<Column>,
-    plan: Plan,
-}
-
-#[derive(Clone, Debug)]
-enum Plan {
-    /// One column.
-    One,
-    /// One column with the array as JSON.
-    Json,
-    Fields(Vec<Plan>),
-    /// As many values as the longest array has.
-    Items(Vec<Plan>),
+    shape: Shape,
+    /// Longest array that is written as columns.
+    widest: usize,
 }
 
 impl Columns {
@@ -27,79 +18,80 @@ impl Columns {
     /// ones as JSON. `None` if there are more than [`MOST_COLUMNS`].
     pub(crate) fn of(shape: &Shape, widest: usize) -> Option<Self> {
         let mut list = Vec::new();
-        let plan = plan(shape, "", widest, &mut list)?;
+        name_columns(shape, "", widest, &mut list)?;
         let times = ["log_time", "publish_time"].map(|time| {
             let taken = list.iter().any(|column| column.name == time);
             let name = if taken { format!("recording.{time}") } else { time.to_owned() };
             Column { name, kind: Kind::Time }
         });
         list.splice(0..0, times);
-        Some(Self { list, plan })
+        Some(Self { list, shape: shape.clone(), widest })
     }
 
     /// The cells of a message, in the order of the columns.
     pub(crate) fn row(&self, log_time: u64, publish_time: u64, message: &Message) -> Vec<Cell> {
         let mut row = Vec::with_capacity(self.list.len());
         row.extend([Cell::Unsigned(log_time), Cell::Unsigned(publish_time)]);
-        fill_fields(&self.plan, Some(message), &mut row);
+        self.fill_fields(&self.shape, Some(message), &mut row);
         row
+    }
+
+    fn fill(&self, shape: &Shape, value: Option<&Value>, row: &mut Vec<Cell>) {
+        match (shape, value) {
+            (Shape::One(_) | Shape::Text, value) => row.push(value.map_or(Cell::Missing, cell)),
+            (Shape::Array(longest, _), value) if is_json(*longest, self.widest) => row.push(match value {
+                Some(Value::Array(array)) => Cell::Text(array.json()),
+                _ => Cell::Missing,
+            }),
+            (Shape::Message(_), Some(Value::Message(message))) => {
+                self.fill_fields(shape, Some(message), row);
+            }
+            (Shape::Message(_), _) => self.fill_fields(shape, None, row),
+            (Shape::Array(longest, item), Some(Value::Array(Array::Message(messages)))) => {
+                (0..*longest).for_each(|n| self.fill_fields(item, messages.get(n), row));
+            }
+            (Shape::Array(longest, item), Some(Value::Array(array))) => {
+                (0..*longest).for_each(|n| self.fill(item, array.get(n).as_ref(), row));
+            }
+            (Shape::Array(longest, item), _) => (0..*longest).for_each(|_| self.fill(item, None, row)),
+        }
+    }
+
+    fn fill_fields(&self, shape: &Shape, message: Option<&Message>, row: &mut Vec<Cell>) {
+        if let Shape::Message(fields) = shape {
+            for (n, (_, field)) in fields.iter().enumerate() {
+                self.fill(field, message.and_then(|m| m.values.get(n)), row);
+            }
+        }
     }
 }
 
-fn plan(shape: &Shape, name: &str, widest: usize, list: &mut Vec<Column>) -> Option<Plan> {
+/// True for an array that is one column, as JSON.
+fn is_json(longest: usize, widest: usize) -> bool {
+    longest == 0 || longest > widest
+}
+
+/// Adds the columns of a shape.
+fn name_columns(shape: &Shape, name: &str, widest: usize, list: &mut Vec<Column>) -> Option<()> {
     if list.len() >= MOST_COLUMNS {
         return None;
     }
     let mut one = |kind| list.push(Column { name: name.to_owned(), kind });
-    Some(match shape {
-        Shape::One(primitive) => {
-            one(Kind::One(*primitive));
-            Plan::One
-        }
-        Shape::Text => {
-            one(Kind::Text);
-            Plan::One
-        }
-        Shape::Array(longest, _) if *longest == 0 || *longest > widest => {
-            one(Kind::Text);
-            Plan::Json
-        }
+    match shape {
+        Shape::One(primitive) => one(Kind::One(*primitive)),
+        Shape::Text => one(Kind::Text),
+        Shape::Array(longest, _) if is_json(*longest, widest) => one(Kind::Text),
         Shape::Array(longest, inner) => {
-            let item = |n| plan(inner, &format!("{name}[{n}]"), widest, list);
-            Plan::Items((0..*longest).map(item).collect::<Option<_>>()?)
+            (0..*longest).try_for_each(|n| name_columns(inner, &format!("{name}[{n}]"), widest, list))?;
         }
         Shape::Message(fields) => {
             let dot = if name.is_empty() { "" } else { "." };
-            let field =
-                |(field, shape): &(String, Shape)| plan(shape, &format!("{name}{dot}{field}"), widest, list);
-            Plan::Fields(fields.iter().map(field).collect::<Option<_>>()?)
-        }
-    })
-}
-
-fn fill(plan: &Plan, value: Option<&Value>, row: &mut Vec<Cell>) {
-    match (plan, value) {
-        (Plan::One, value) => row.push(value.map_or(Cell::Missing, cell)),
-        (Plan::Json, Some(Value::Array(array))) => row.push(Cell::Text(array.json())),
-        (Plan::Json, _) => row.push(Cell::Missing),
-        (Plan::Fields(_), Some(Value::Message(message))) => fill_fields(plan, Some(message), row),
-        (Plan::Fields(_), _) => fill_fields(plan, None, row),
-        (Plan::Items(items), Some(Value::Array(Array::Message(messages)))) => {
-            items.iter().enumerate().for_each(|(n, item)| fill_fields(item, messages.get(n), row));
-        }
-        (Plan::Items(items), Some(Value::Array(array))) => {
-            items.iter().enumerate().for_each(|(n, item)| fill(item, array.get(n).as_ref(), row));
-        }
-        (Plan::Items(items), _) => items.iter().for_each(|item| fill(item, None, row)),
-    }
-}
-
-fn fill_fields(plan: &Plan, message: Option<&Message>, row: &mut Vec<Cell>) {
-    if let Plan::Fields(fields) = plan {
-        for (n, field) in fields.iter().enumerate() {
-            fill(field, message.and_then(|m| m.values.get(n)), row);
+            for (field, shape) in fields {
+                name_columns(shape, &format!("{name}{dot}{field}"), widest, list)?;
+            }
         }
     }
+    Some(())
 }
 
 fn cell(value: &Value) -> Cell {

@@ -1,18 +1,17 @@
 //! The recording that a command writes.
 
-use crate::compression::Compression;
 use crate::opened::{losses, open};
 use crate::selection::Topics;
 use crate::times::Interval;
-use clap::ValueEnum;
 use grainlab_console::{Failure, count, print, say, worse};
-use grainlab_node_kit::Exit;
-use grainlab_recordings::copy::{self, CopyError, CopyOptions, Select};
+use grainlab_msgs::Exit;
+use grainlab_recordings::Compression;
+use grainlab_recordings::copy::{self, CopyError, CopyOptions, Preset, Select};
 use std::path::{Path, PathBuf};
 
-/// Where and how to write.
+/// Output of a copy, and its options.
 #[derive(Clone, Debug, clap::Args)]
-pub(crate) struct Output {
+pub struct Output {
     /// New recording: a directory as rosbag2 has it, or one file if the name ends with .mcap
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -20,7 +19,7 @@ pub(crate) struct Output {
     form: Form,
 }
 
-/// How to write.
+/// Options of the output.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct Form {
     /// Compression of the chunks [default: zstd]
@@ -35,18 +34,6 @@ pub(crate) struct Form {
     /// Uncompressed size of a chunk, bytes [default: 1048576]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
     chunk_size: Option<u64>,
-}
-
-/// The presets of rosbag2.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-#[value(rename_all = "snake_case")]
-pub(crate) enum Preset {
-    /// No chunks, no index and no checksums
-    Fastwrite,
-    /// Zstandard at level 1, without checksums
-    ZstdFast,
-    /// Zstandard at level 19, chunks of 4 MiB
-    ZstdSmall,
 }
 
 impl Form {
@@ -67,17 +54,12 @@ impl Form {
     }
 
     fn options(&self, operation: &str) -> Result<CopyOptions, Failure> {
-        let mut options = match self.preset {
-            None => CopyOptions::default(),
-            Some(Preset::Fastwrite) => CopyOptions::of_preset(copy::Preset::FastWrite),
-            Some(Preset::ZstdFast) => CopyOptions::of_preset(copy::Preset::ZstdFast),
-            Some(Preset::ZstdSmall) => CopyOptions::of_preset(copy::Preset::ZstdSmall),
-        };
+        let mut options = self.preset.map_or_else(CopyOptions::default, CopyOptions::of_preset);
         if let Some(kind) = self.compression {
-            options.compression = kind.into();
+            options.compression = kind;
             options.chunk_size = options.chunk_size.or(Some(1 << 20));
         }
-        if self.level.is_some() && options.compression == grainlab_recordings::Compression::None {
+        if self.level.is_some() && options.compression == Compression::None {
             return Err(Failure::usage(
                 "--level has no effect without compression: leave it out, or choose --compression lz4 or zstd",
             ));
@@ -89,16 +71,16 @@ impl Form {
     }
 }
 
-/// What to copy.
+/// Description of a copy.
 pub(crate) struct Job<'a> {
     /// `cut`, `merge`, …
     pub(crate) operation: &'a str,
     pub(crate) paths: &'a [PathBuf],
     pub(crate) topics: &'a Topics,
     pub(crate) interval: &'a Interval,
-    /// Whether latched messages from before the start are copied.
+    /// Copy latched messages from before the start.
     pub(crate) latched: bool,
-    /// Whether pictures of packings are added.
+    /// Add pictures of packings.
     pub(crate) pictures: bool,
 }
 
@@ -108,7 +90,7 @@ impl Job<'_> {
         self.write(&output.output, &output.form)
     }
 
-    /// The same with the parts of the arguments.
+    /// Copies to `output` with the options of `form`, and prints what was written.
     pub(crate) fn write(&self, output: &Path, form: &Form) -> Result<Exit, Failure> {
         let options = CopyOptions { pictures: self.pictures, ..form.options(self.operation)? };
         let recordings = open(self.paths)?;
@@ -153,7 +135,7 @@ mod tests {
         let level = Form { level: Some(5), ..Form::default() };
         assert_eq!(level.options("compress").unwrap().level, 5);
         let none = Form { compression: Some(Compression::None), ..level.clone() };
-        let fast = Form { preset: Some(Preset::Fastwrite), ..level.clone() };
+        let fast = Form { preset: Some(Preset::FastWrite), ..level.clone() };
         for form in [none, fast] {
             assert!(form.options("compress").unwrap_err().to_string().starts_with("--level"));
         }

@@ -11,7 +11,7 @@ fn whole(text: &str) -> Result<Regex, regex_lite::Error> {
 
 /// Topics, by name, regular expression or type.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct Topics {
+pub struct Topics {
     /// Topics to take, by name [default: all]
     #[arg(long, num_args = 1.., value_name = "TOPIC")]
     topics: Vec<String>,
@@ -34,7 +34,7 @@ fn bare(name: &str) -> &str {
 }
 
 impl Topics {
-    /// Whether a channel is wanted.
+    /// True for a channel that is wanted.
     pub(crate) fn take(&self, channel: &ChannelInfo) -> bool {
         let name = channel.topic.as_str();
         let is_one = |names: &[String]| names.iter().any(|n| bare(n) == bare(name));

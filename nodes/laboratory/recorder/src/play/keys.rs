@@ -1,10 +1,12 @@
 //! Keys on stdin.
 
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::process::getpgrp;
+use rustix::termios::{LocalModes, OptionalActions, Termios, tcgetattr, tcgetpgrp, tcsetattr};
 use std::collections::VecDeque;
-use std::io::IsTerminal;
-use std::mem::MaybeUninit;
+use std::io::{IsTerminal, stdin};
 
-/// What a key asks for.
+/// Request of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Key {
     /// Pauses or continues.
@@ -19,22 +21,19 @@ pub(super) enum Key {
 /// Keys from stdin. A terminal passes each key at once and does not print it, until this is dropped.
 pub(super) struct Keys {
     /// Settings of the terminal to restore.
-    before: Option<libc::termios>,
+    before: Option<Termios>,
     read: VecDeque<u8>,
     is_over: bool,
     /// The line of stdin has no key so far.
     is_empty_line: bool,
 }
 
-const STDIN: libc::c_int = libc::STDIN_FILENO;
-
 impl Keys {
     /// If stdin is a terminal, or `always`.
     pub(super) fn open(always: bool) -> Option<Self> {
         // A terminal stops a process in its background that changes its settings.
-        // SAFETY: both calls only return numbers.
-        let in_front = || unsafe { libc::tcgetpgrp(STDIN) == libc::getpgrp() };
-        let before = (std::io::stdin().is_terminal() && in_front()).then(raw).flatten();
+        let in_front = || tcgetpgrp(stdin()).is_ok_and(|group| group == getpgrp());
+        let before = (stdin().is_terminal() && in_front()).then(raw).flatten();
         (always || before.is_some()).then(|| Self {
             before,
             read: VecDeque::new(),
@@ -43,7 +42,7 @@ impl Keys {
         })
     }
 
-    /// Whether the last key ended the playback, or stdin ended.
+    /// True if the last key ended the playback, or stdin ended.
     pub(super) fn is_over(&self) -> bool {
         self.is_over
     }
@@ -71,15 +70,13 @@ impl Keys {
         if self.is_over {
             return true;
         }
-        let mut poll = libc::pollfd { fd: STDIN, events: libc::POLLIN, revents: 0 };
-        // SAFETY: `poll` is one valid entry.
-        if unsafe { libc::poll(&raw mut poll, 1, 0) } <= 0 {
+        let stdin = stdin();
+        let now = Timespec { tv_sec: 0, tv_nsec: 0 };
+        if !poll(&mut [PollFd::new(&stdin, PollFlags::IN)], Some(&now)).is_ok_and(|ready| ready > 0) {
             return false;
         }
         let mut bytes = [0u8; 64];
-        // SAFETY: the buffer has the stated length.
-        let count = unsafe { libc::read(STDIN, bytes.as_mut_ptr().cast(), bytes.len()) };
-        match usize::try_from(count) {
+        match rustix::io::read(&stdin, &mut bytes) {
             Ok(count @ 1..) => self.read.extend(&bytes[..count]),
             _ => self.is_over = true,
         }
@@ -115,26 +112,17 @@ fn key(bytes: &mut VecDeque<u8>, is_empty_line: Option<&mut bool>) -> Option<Key
 }
 
 /// Lets the terminal pass keys at once; returns its settings before.
-fn raw() -> Option<libc::termios> {
-    let mut before = MaybeUninit::<libc::termios>::uninit();
-    // SAFETY: a call that returns 0 has filled the structure.
-    let before = unsafe {
-        if libc::tcgetattr(STDIN, before.as_mut_ptr()) != 0 {
-            return None;
-        }
-        before.assume_init()
-    };
-    let mut settings = before;
-    settings.c_lflag &= !(libc::ICANON | libc::ECHO);
-    // SAFETY: the settings are those of the terminal with two flags cleared.
-    (unsafe { libc::tcsetattr(STDIN, libc::TCSANOW, &raw const settings) } == 0).then_some(before)
+fn raw() -> Option<Termios> {
+    let before = tcgetattr(stdin()).ok()?;
+    let mut settings = before.clone();
+    settings.local_modes &= !(LocalModes::ICANON | LocalModes::ECHO);
+    tcsetattr(stdin(), OptionalActions::Now, &settings).is_ok().then_some(before)
 }
 
 impl Drop for Keys {
     fn drop(&mut self) {
         if let Some(before) = &self.before {
-            // SAFETY: the settings came from this terminal.
-            unsafe { libc::tcsetattr(STDIN, libc::TCSANOW, before) };
+            let _ = tcsetattr(stdin(), OptionalActions::Now, before);
         }
     }
 }

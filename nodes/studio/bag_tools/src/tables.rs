@@ -27,7 +27,7 @@ pub(crate) enum TableFormat {
 
 /// The files of a folder.
 pub(crate) struct Tables<'a> {
-    /// Its final name, for messages.
+    /// Final name of the folder, for messages.
     name: &'a Path,
     folder: &'a Path,
     format: TableFormat,

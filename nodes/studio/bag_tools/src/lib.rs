@@ -1,0 +1,45 @@
+//! Tools of `grainlab bag` for any ROS 2 recording in MCAP: ours, those of `ros2 bag`, and those of other programs.
+//!
+//! - `cat`: messages as JSON or text
+//! - `convert`: one table per topic, as CSV or Parquet
+//! - `copies`: new recordings from others, cut, merged, filtered, compressed
+
+mod cat;
+mod convert;
+mod copies;
+mod decoders;
+mod opened;
+mod output;
+mod selection;
+mod table;
+mod tables;
+mod times;
+
+use clap::Subcommand;
+pub use copies::Copies;
+use grainlab_console::Failure;
+use grainlab_msgs::Exit;
+
+/// Commands for recordings of any type.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Print messages as JSON or text.
+    Cat(cat::Args),
+    /// Write one table per topic, as JSON lines, CSV or Parquet; or a recording again.
+    Convert(convert::Args),
+    /// Write a recording made from others.
+    #[command(flatten)]
+    Copies(Copies),
+}
+
+/// Runs a command.
+///
+/// # Errors
+/// If a recording cannot be read, an argument does not fit it, or the output cannot be written.
+pub fn run(command: &Command) -> Result<Exit, Failure> {
+    match command {
+        Command::Cat(args) => cat::run(args),
+        Command::Convert(args) => convert::run(args),
+        Command::Copies(command) => copies::run(command),
+    }
+}
