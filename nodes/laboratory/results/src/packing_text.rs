@@ -64,9 +64,6 @@ pub(crate) fn text(m: &MeasuredPacking) -> String {
     if let Some(symmetry) = &r.symmetry {
         text += &stiffness(symmetry);
     }
-    if let Some(scan) = &m.scan {
-        text += &indented(&scan.text());
-    }
     for warning in &m.warnings {
         text += &format!("  note: {warning}\n");
     }

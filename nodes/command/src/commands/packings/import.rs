@@ -48,7 +48,7 @@ pub(crate) struct Args {
     /// Periodic cell, m: three edge lengths, or nine numbers row by row with the edge vectors as columns
     #[arg(long, value_name = "LX,LY,LZ", value_delimiter = ',')]
     cell: Vec<f64>,
-    /// Topic of the packings: of recordings, or of a live run
+    /// Topic of the packings of recordings
     #[arg(long, value_name = "NAME", default_value = "packing")]
     pub(crate) topic: String,
     /// LAMMPS `dump local` with the contact forces of a data file or a dump at the same steps, also as .gz, of normal and
@@ -64,7 +64,7 @@ impl Args {
     /// Refuses a topic where no file is a recording, which has topics.
     pub(crate) fn topic_has_use(&self, files: &[PathBuf]) -> Result<(), Failure> {
         let is_recording = |file: &PathBuf| file.is_dir() || file.to_string_lossy().contains(".mcap");
-        if self.topic == topics::PACKING.name || files.is_empty() || files.iter().any(is_recording) {
+        if self.topic == topics::PACKING.name || files.iter().any(is_recording) {
             return Ok(());
         }
         Err(Failure::usage(format!("--topic {} is for recordings, and no file is one", self.topic)))
