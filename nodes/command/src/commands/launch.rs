@@ -68,7 +68,7 @@ pub(crate) struct Args {
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-    /// Print all measurements of each packing, the estimate of each model, and the counts of each topic
+    /// Print all measurements of each packing, and the estimate of each model
     #[arg(long)]
     verbose: bool,
 }

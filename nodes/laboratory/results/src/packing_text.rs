@@ -76,6 +76,17 @@ fn three_moduli(c: &Stiffness, axis: &Vec3) -> [f64; 3] {
     [t.g12, t.g13, c.bulk_voigt()]
 }
 
+/// The counted anisotropy; `None` without contacts.
+pub(crate) fn eps(r: &PackingReport) -> Option<f64> {
+    (r.contacts.contacts > 0).then_some(r.fabric.contact_anisotropy)
+}
+
+/// G12, G13 and Theta, MPa.
+pub fn moduli(r: &PackingReport) -> [Option<f64>; 3] {
+    let known = r.stiffness().map(|s| three_moduli(&s.tensor, &r.fabric.reference_axis));
+    known.map_or([None; 3], |moduli| moduli.map(|m| Some(m / 1e6)))
+}
+
 /// The axis, the anisotropies, the networks and the forces, one line each.
 fn structure(r: &PackingReport) -> String {
     let mut text = String::new();
