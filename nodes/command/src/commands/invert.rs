@@ -1,7 +1,7 @@
 //! `grainlab invert`: moduli in, microstructure out.
 //!
 //! - [`state`]: the data of one state; [`way`]: a model, its calibration and its γ/Δ; [`answer`]: the results
-//! - [`inputs`]: the inputs of a state; [`lines`], [`columns`], [`rows`]: a table, read in pieces, each row a
+//! - [`inputs`]: the inputs of a state; [`columns`], [`rows`]: a table, read in pieces, each row a
 //!   state; [`slips`]: columns whose names are almost those of inputs
 //! - [`table`], [`mod@print`]: results in order, as text
 //! - [`explain`]: contributions of the data to the uncertainty; [`sampled`]: estimates of sampled data
@@ -19,7 +19,6 @@ mod evidence;
 mod explain;
 mod inputs;
 mod judge;
-mod lines;
 mod predictive;
 mod print;
 mod prior;
@@ -28,7 +27,6 @@ mod rows;
 mod sampled;
 mod slips;
 mod speeds;
-mod splitter;
 mod state;
 mod table;
 mod way;

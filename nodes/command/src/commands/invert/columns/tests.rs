@@ -7,11 +7,7 @@ fn columns(header: &str) -> Columns {
 }
 
 fn state(header: &str, row: &str) -> Result<State, String> {
-    columns(header)
-        .row(row.as_bytes(), &mut Splitter::new())
-        .unwrap()
-        .map(|r| r.state)
-        .map_err(|bad| bad.fault)
+    columns(header).row(row.as_bytes()).unwrap().map(|r| r.state).map_err(|bad| bad.fault)
 }
 
 fn matrix_names() -> Vec<String> {
@@ -249,9 +245,9 @@ fn negative_errors_are_refused() {
 fn blank_lines_and_comments_are_no_rows() {
     let columns = columns("p_pa,g12_pa");
     for line in ["", "   ", "# 5e4,1e8"] {
-        assert!(columns.row(line.as_bytes(), &mut Splitter::new()).is_none(), "{line:?}");
+        assert!(columns.row(line.as_bytes()).is_none(), "{line:?}");
     }
-    assert!(columns.row(b"\xff,1", &mut Splitter::new()).unwrap().unwrap_err().fault.contains("UTF-8"));
+    assert!(columns.row(b"\xff,1").unwrap().unwrap_err().fault.contains("UTF-8"));
 }
 
 #[test]
@@ -265,5 +261,21 @@ fn pressures_as_a_servo_leaves_them_are_one_group_and_whole_numbers_stay() {
         ("", ""),
     ] {
         assert_eq!(group_label(cell), label, "{cell}");
+    }
+}
+
+#[test]
+fn quoted_cells_hold_commas_and_quotes() {
+    for (line, expected) in [
+        ("a, b ,", &["a", "b", ""][..]),
+        ("\"x, y\",1", &["x, y", "1"]),
+        ("1,\"say \"\"no\"\"\",3", &["1", "say \"no\"", "3"]),
+        ("\"\",", &["", ""]),
+        ("1,a\"b,2", &["1", "a\"b", "2"]),
+    ] {
+        assert_eq!(cells(line.as_bytes()).unwrap().iter().collect::<Vec<_>>(), expected, "{line}");
+    }
+    for line in ["\"a,b", "1,\"a\"\""] {
+        assert!(cells(line.as_bytes()).is_err(), "{line}");
     }
 }
