@@ -114,14 +114,6 @@ impl Answer {
         worse(self.worst_error(), if contradicts { Exit::PhysicsInvalid } else { Exit::Done })
     }
 
-    /// The exit code without regard to contradictions.
-    pub(super) fn refusal(&self) -> Exit {
-        if self.state.is_err() || !self.outcomes.iter().any(Result::is_ok) && self.errors().all(is_lacking) {
-            return Exit::Usage;
-        }
-        self.worst_error()
-    }
-
     fn worst_error(&self) -> Exit {
         self.errors().filter(|e| !is_lacking(e)).fold(Exit::Done, |exit, e| {
             worse(exit, if e.is_input_error() { Exit::Usage } else { Exit::PhysicsInvalid })
