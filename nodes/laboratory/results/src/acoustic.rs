@@ -13,9 +13,9 @@ use serde_json::{Value, json};
 /// Wave speeds, and the moduli that follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcousticReport {
-    /// Which of several measurements of the packing it is; `None` if there is one only.
+    /// Name among several measurements of the packing; `None` if there is one only.
     pub measurement: Option<Measurement>,
-    /// The speeds.
+    /// Speeds with their errors and conditions.
     pub reading: WaveSpeedsReading,
     /// Density of all grains, kg/m³.
     pub(crate) bulk_density: f64,

@@ -57,7 +57,7 @@ pub fn text(s: &Summary, directory: &Path, files: &[&str], program: &str) -> Str
     lines.join("\n") + "\n"
 }
 
-/// Where a run that is resumed goes on.
+/// Step from which a resumed run goes on.
 pub fn goes_on(saved_step: Option<u64>) -> String {
     saved_step
         .map_or_else(|| "begins anew: no state was saved".to_owned(), |n| format!("goes on from step {n}"))
@@ -71,7 +71,7 @@ pub fn lost_words(lost: u64, uncounted_files: usize) -> String {
     }
 }
 
-/// What an exit code other than 0 means for the lines below it, with the step of the last packing in the recording.
+/// Meaning of an exit code other than 0 for the lines below it, with the step of the last packing in the recording.
 pub fn ended(code: u8, reason: Option<&str>, saved_step: Option<u64>) -> Option<String> {
     let exit = Exit::ALL.into_iter().find(|e| e.code() == code)?;
     let saved = || match saved_step {
@@ -193,7 +193,7 @@ fn measured(r: &PackingReport) -> String {
     format!("G12 {g12} MPa, G13 {g13} MPa, Theta {theta} MPa")
 }
 
-/// What was inferred from data that are not about a packing of the run.
+/// Data that were inverted and are not about a packing of the run.
 fn of_instruments(results: &[Inference]) -> Option<String> {
     let data: BTreeSet<String> = results.iter().filter_map(|r| r.origin().data()).collect();
     let first = data.first()?;

@@ -16,7 +16,7 @@ pub struct MeasuredPacking {
     pub source: String,
     /// Step of the packing in its source.
     pub step: u64,
-    /// What was measured.
+    /// Measured structure, stress and stiffness.
     pub report: PackingReport,
     /// Position on the loading path; `None` if no simulator recorded it.
     pub position: Option<PathPosition>,
@@ -46,7 +46,7 @@ impl MeasuredPacking {
         Self { source, step, report, position: None, seconds: None, warnings: Vec::new(), probe: None }
     }
 
-    /// The same at this position of its run, without what its strain does not tell there.
+    /// Sets the position in the run, and removes the strain where that position does not tell it.
     #[must_use]
     pub fn at(mut self, position: Option<PathPosition>) -> Self {
         self.position = position;

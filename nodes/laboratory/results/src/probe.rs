@@ -5,7 +5,7 @@ use serde::Serialize;
 /// One probe: all six columns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeView {
-    /// Strain.
+    /// Amplitude of the strain.
     pub amplitude: f64,
     /// Largest |C_ab - C_ba| over the largest entry of C.
     pub asymmetry: f64,
@@ -13,9 +13,9 @@ pub struct ProbeView {
     pub steps: u32,
     /// Contacts that opened, formed, or were at the Coulomb limit under either strain, over all columns.
     pub opened: u32,
-    /// See `opened`.
+    /// Contacts that formed; see `opened`.
     pub closed: u32,
-    /// See `opened`.
+    /// Contacts at the Coulomb limit; see `opened`.
     pub sliding: u32,
     /// Largest difference between the forward and the backward column, relative to the largest entry.
     pub forward_backward: Option<f64>,

@@ -29,7 +29,7 @@ pub struct InvertedPacking {
     /// The other measurements of wave speeds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub further_acoustic: Vec<AcousticReport>,
-    /// What each model infers from the data of each topic.
+    /// Estimates of each model from the data of each topic.
     pub results: Vec<Inference>,
 }
 

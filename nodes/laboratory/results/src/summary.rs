@@ -8,10 +8,10 @@ use grainlab_recordings::strangers::StrangerView;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A run.
+/// A launched run.
 #[derive(Debug, Serialize)]
 pub struct Summary {
-    /// What the launcher knows.
+    /// Data of the launcher.
     #[serde(flatten)]
     pub(crate) launched: Launched,
     /// Processes whose messages were left out.
@@ -47,7 +47,7 @@ pub struct NodeEnd {
     pub pid: u32,
     /// Exit code; null if a signal ended it.
     pub exit: Option<i32>,
-    /// How often it was started again.
+    /// Number of times that it was started again.
     pub restarts: usize,
 }
 
@@ -94,7 +94,7 @@ impl Summary {
         let wall = number("wall_s").filter(|s| *s > 0.0);
         let per_wall = |key: &str| Some(number(key)? / wall?);
         let warnings: Vec<String> = launched.reasons.iter().cloned().chain(back.complaints).collect();
-        // Of missing results the launcher may have no reason; the recording has.
+        // The launcher may have no reason for missing results; the recording has.
         let is_loss = launched.exit == Exit::DataLoss.code();
         let reason = launched.reasons.first().or(warnings.first().filter(|_| is_loss)).cloned();
         Self {
@@ -121,7 +121,7 @@ pub struct Launched {
     pub scene: String,
     /// Seed of the scene.
     pub seed: u64,
-    /// DDS domain.
+    /// Number of the DDS domain.
     pub domain: u16,
     /// Id of the run.
     pub run: String,
@@ -129,7 +129,7 @@ pub struct Launched {
     pub resumed: bool,
     /// From the first start of a process to the last end, s.
     pub wall_seconds: f64,
-    /// Every process.
+    /// Every process of the run.
     pub nodes: Vec<NodeEnd>,
     /// Files of the recording whose recorder was killed: the counts of lost messages are without theirs.
     pub uncounted_files: usize,
@@ -137,7 +137,7 @@ pub struct Launched {
     pub exchanges: Option<u64>,
     /// The directory of the recording; `None` if it cannot be read.
     pub recording: Option<String>,
-    /// Exit code.
+    /// Exit code of the run.
     pub exit: u8,
     /// Messages in the recording, by topic.
     #[serde(skip)]
@@ -149,7 +149,7 @@ pub struct Launched {
 
 #[cfg(test)]
 impl Summary {
-    /// Of a run that left nothing.
+    /// Summary of a run that left nothing.
     pub(crate) fn of_nothing(exit: Exit) -> Self {
         Self::new(Launched { exit: exit.code(), ..Launched::default() }, ReadBack::default(), None)
     }

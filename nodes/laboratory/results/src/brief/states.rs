@@ -48,14 +48,14 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
             theta,
         ];
         let groups = by_origin(&state.results);
-        // Of several measurements those without an estimate have a row, too.
+        // A measurement without an estimate has a row, too, where there are several.
         let found: Vec<(&Origin, Option<&Inference>)> = groups
             .iter()
             .map(|(origin, results)| (origin, Inference::recommended(results)))
             .filter(|(origin, best)| best.is_some() || origin.measurement.is_some())
             .collect();
         let step = state.packing.step;
-        // Of several nodes that infer, each is named.
+        // Each node is named where several infer.
         let nodes: BTreeSet<_> = groups.iter().map(|(origin, _)| &origin.by).collect();
         let named = |o: &Origin| if nodes.len() > 1 { o.data_and_node() } else { o.data() };
         let shown = &found[..found.len().min(MOST_ROWS)];
