@@ -9,13 +9,13 @@ use std::path::Path;
 /// A message to record.
 pub(crate) struct Recorded {
     topic: Topic,
-    /// Stamp, ns.
+    /// Stamp of the message, ns.
     time: u64,
     payload: Vec<u8>,
 }
 
 impl Recorded {
-    /// Of a message with this header.
+    /// A message with this header.
     pub(crate) fn new<T: Message>(topic: Topic, header: &Header, message: &T) -> Self {
         let seconds = u64::try_from(header.stamp.sec).unwrap_or(0);
         let mut payload = to_cdr(message);
@@ -51,7 +51,7 @@ impl OfflineRecording {
         let mut writer =
             RunWriter::create(directory, &name, &specs, WriterOptions::default()).map_err(Failure::failed)?;
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
-        // The same messages give the same file at any time of day.
+        // Equal messages give equal files at any time of day.
         writer.set_metadata(SESSION_KEY, command);
         let mut guid = Guid([b' '; 16]);
         let title = format!("grainlab {command}");

@@ -71,13 +71,13 @@ pub(crate) struct Args {
     /// Springs of the contacts
     #[arg(long, value_enum, default_value_t)]
     springs: ContactSprings,
-    /// The same as --springs normal: the response of grains without friction
+    /// Short for --springs normal: the response of grains without friction
     #[arg(long, conflicts_with = "springs")]
     smooth: bool,
     /// Strain of --method probe, forward and backward; far below overlap/diameter [default: 1e-7]
     #[arg(long, value_name = "STRAIN")]
     amplitude: Option<f64>,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     /// Columns of --format csv, in this order [default: all]
@@ -90,7 +90,7 @@ enum Method {
     /// Linear response of the frozen contact network
     #[default]
     Network,
-    /// The same for smooth grains, with the prestress term: normal forces rotate with their branches
+    /// Linear response of smooth grains, with the prestress term: normal forces rotate with their branches
     Prestressed,
     /// Explicit: strain the packing slightly, relax it, evaluate the stress
     Probe,
@@ -109,7 +109,7 @@ enum ContactSprings {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 enum Solver {
-    /// Conjugate gradients
+    /// Method of conjugate gradients
     #[default]
     Iterative,
     /// Sparse Cholesky: for smooth packings near isostaticity; memory and time grow fast with size

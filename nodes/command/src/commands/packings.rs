@@ -11,7 +11,7 @@ use crate::offline_recording::Recorded;
 
 /// The result of one packing.
 pub(crate) struct Found<R> {
-    /// Printed part.
+    /// The printed part.
     pub(crate) shown: R,
     /// The packing lacks what was sought.
     pub(crate) is_without: bool,

@@ -44,7 +44,7 @@ pub(crate) struct Args {
     /// Also record the WaveSpeeds and Waveform messages that the node acoustic_probe would publish, into this new directory
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     /// Columns of --format csv, in this order [default: all]

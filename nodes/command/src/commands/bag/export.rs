@@ -1,7 +1,6 @@
 //! `grainlab bag export`.
 
 use crate::commands::packings::import as import_flags;
-use clap::ValueEnum;
 use grainlab_console::{Failure, print, say};
 use grainlab_core::Packing;
 use grainlab_experiment::{PathPosition, StrainOrigin};
@@ -45,47 +44,28 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Format of the new files
-    #[arg(long, value_enum)]
-    format: Format,
+    #[arg(long, value_parser = FORMATS.map(|(name, _)| name))]
+    format: String,
     #[command(flatten)]
     import: import_flags::Args,
 }
 
-/// File formats of packings.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// CSV with a JSON sidecar, two files per packing
-    Csv,
-    /// LAMMPS dumps of grains and contacts, one frame per packing
-    Lammps,
-    /// LAMMPS data files, one per packing
-    LammpsData,
-    /// Extended XYZ, one frame per packing
-    Xyz,
-    /// VTK XML: grains and contacts of each packing, and a collection of all
-    Vtk,
-    /// VTKHDF: grains and contacts of each packing
-    Vtkhdf,
-}
-
-impl From<Format> for ExportFormat {
-    fn from(format: Format) -> Self {
-        match format {
-            Format::Csv => Self::Csv,
-            Format::Lammps => Self::LammpsDump,
-            Format::LammpsData => Self::LammpsData,
-            Format::Xyz => Self::Xyz,
-            Format::Vtk => Self::Vtk,
-            Format::Vtkhdf => Self::VtkHdf,
-        }
-    }
-}
+/// File formats of packings by name; the help of the command describes them.
+const FORMATS: [(&str, ExportFormat); 6] = [
+    ("csv", ExportFormat::Csv),
+    ("lammps", ExportFormat::LammpsDump),
+    ("lammps-data", ExportFormat::LammpsData),
+    ("xyz", ExportFormat::Xyz),
+    ("vtk", ExportFormat::Vtk),
+    ("vtkhdf", ExportFormat::VtkHdf),
+];
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    std::fs::create_dir_all(&args.out)
-        .map_err(|e| Failure::failed(format!("{}: {e}", args.out.display())))?;
+    std::fs::create_dir_all(&args.out).map_err(Failure::at(&args.out))?;
     let options = args.import.options()?;
-    let mut writer = Writer::new(args.format.into(), &args.path, &args.out);
+    let format = FORMATS.into_iter().find(|(name, _)| *name == args.format).map(|(_, format)| format);
+    let format = format.ok_or_else(|| Failure::usage(format!("no format {}", args.format)))?;
+    let mut writer = Writer::new(format, &args.path, &args.out);
     let mut failure = None;
     let warnings = import::each(&args.path, &options, &mut |imported| match writer.write(&imported) {
         Ok(()) => ControlFlow::Continue(()),
@@ -116,7 +96,7 @@ struct Writer<'a> {
     packings: u64,
     /// The files made so far, which further parts extend.
     made: BTreeSet<String>,
-    /// Whether the strain of a packing was left out, and a line has said so.
+    /// True once the strain of a packing was left out, and a line has said so.
     strain_is_left_out: bool,
 }
 
@@ -193,9 +173,9 @@ mod tests {
     const SIDECAR: &str = r#"{"G": 29e9, "nu": 0.2, "density": 2500, "mu_prep": 0.3, "box_L": [1, 1, 1]}"#;
     const GRAINS: &str = "p,1,0.1,0.1,0.1,0.11,0,0,0,0,0,0,0\np,2,0.1,0.1,0.3,0.11,0,0,0,0,0,0,0\n";
 
-    fn args(path: PathBuf, out: PathBuf, format: Format) -> Args {
+    fn args(path: PathBuf, out: PathBuf, format: &str) -> Args {
         let import = import_flags::Args::default();
-        Args { path, out, format, import }
+        Args { path, out, format: format.to_owned(), import }
     }
 
     #[test]
@@ -206,13 +186,13 @@ mod tests {
         std::fs::write(folder.path().join("two.json"), SIDECAR).unwrap();
         let packing = load(&path, &ImportOptions::default()).unwrap().packings.remove(0).packing;
         let out = folder.path().join("out");
-        assert_eq!(run(&args(path.clone(), out.clone(), Format::Csv)).unwrap(), Exit::Done);
+        assert_eq!(run(&args(path.clone(), out.clone(), "csv")).unwrap(), Exit::Done);
         let back = load(&out.join("packing_1.csv"), &ImportOptions::default()).unwrap();
         assert_eq!(back.packings[0].packing, packing);
-        assert_eq!(run(&args(path.clone(), out.clone(), Format::Lammps)).unwrap(), Exit::Done);
+        assert_eq!(run(&args(path.clone(), out.clone(), "lammps")).unwrap(), Exit::Done);
         let dump = std::fs::read_to_string(out.join("packings.dump")).unwrap();
         assert_eq!(dump, lammps_dump(&packing));
-        assert!(run(&args(path, out, Format::Lammps)).unwrap_err().to_string().contains("packings.dump"));
+        assert!(run(&args(path, out, "lammps")).unwrap_err().to_string().contains("packings.dump"));
     }
 
     #[test]
@@ -245,7 +225,7 @@ mod tests {
         std::fs::create_dir(&out).unwrap();
         // The second file of the export is there already.
         std::fs::write(out.join("packing_1.json"), "of another").unwrap();
-        let error = run(&args(path, out.clone(), Format::Csv)).unwrap_err();
+        let error = run(&args(path, out.clone(), "csv")).unwrap_err();
         assert!(error.to_string().contains("packing_1.json"), "{error}");
         let left: Vec<_> = std::fs::read_dir(&out).unwrap().map(|f| f.unwrap().file_name()).collect();
         assert_eq!(left, ["packing_1.json"]);

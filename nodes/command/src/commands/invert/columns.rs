@@ -2,12 +2,11 @@
 
 use super::inputs::{INPUTS, Input, Role};
 use super::slips;
-use super::state::{Defaults, State};
+use super::state::State;
 use csv::{ReaderBuilder, StringRecord, Terminator};
 use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt::{Measured, Moduli, Modulus, check_structure};
-use std::collections::HashMap;
 use std::io::Read as _;
 
 /// Share of the largest entry of a stiffness up to which two values of one entry are the same, rounded to four digits.
@@ -29,12 +28,12 @@ pub(crate) struct Columns {
     stiffness: Option<[usize; 36]>,
     /// Axis of the projection, to which moduli, strain ratios and truth refer, too; e3 by default.
     reference_axis: Option<[usize; 3]>,
-    /// Whether the moduli have the names of the projection that `grainlab analyze` prints.
+    /// True if the moduli have the names of the projection that `grainlab analyze` prints.
     projected: bool,
     /// The columns of [`LABELS`] that are there.
-    labels: HashMap<&'static str, usize>,
+    labels: Vec<(&'static str, usize)>,
     group: Vec<usize>,
-    defaults: Defaults,
+    defaults: State,
 }
 
 /// A valid row.
@@ -54,7 +53,7 @@ pub(crate) struct BadRow {
 
 impl Columns {
     /// From a header line; rows are grouped by the columns named in `by`.
-    pub(crate) fn of_header(line: &[u8], by: &[String], defaults: Defaults) -> Result<Self, String> {
+    pub(crate) fn of_header(line: &[u8], by: &[String], defaults: State) -> Result<Self, String> {
         let names = cells(line).map_err(|fault| format!("the header: {fault}"))?;
         let names: Vec<String> = names.iter().map(str::to_owned).collect();
 
@@ -65,7 +64,7 @@ impl Columns {
                 _ => Err(format!("column {name} is there twice")),
             }
         };
-        let mut labels = HashMap::new();
+        let mut labels = Vec::new();
         for name in LABELS {
             labels.extend(find(name)?.map(|at| (name, at)));
         }
@@ -95,7 +94,7 @@ impl Columns {
         for (flag, key) in defaults.flags() {
             if let Some((_, column, _)) = inputs.iter().find(|(input, ..)| input.key == key) {
                 return Err(format!(
-                    "--{flag} is beside the column {}: leave one of them out",
+                    "--{flag} contradicts the column {}: leave one of them out",
                     names[*column]
                 ));
             }
@@ -124,7 +123,7 @@ impl Columns {
         })
     }
 
-    /// Whether a column contains the truth of an estimate.
+    /// True if a column contains the truth of an estimate.
     pub(crate) fn has_truth(&self) -> bool {
         self.inputs.iter().any(|(input, ..)| matches!(input.role, Role::Truth(_)))
     }
@@ -151,13 +150,13 @@ impl Columns {
         Some(state.map(|state| Row { state, group }))
     }
 
-    /// The cell of one of [`LABELS`]; empty without the column.
-    fn label<'a>(&self, cells: &'a StringRecord, name: &str) -> &'a str {
-        self.labels.get(name).map_or("", |at| &cells[*at])
+    /// The cell of one of [`LABELS`]; `None` without the column.
+    fn label<'a>(&self, cells: &'a StringRecord, name: &str) -> Option<&'a str> {
+        self.labels.iter().find(|(label, _)| *label == name).map(|(_, at)| &cells[*at])
     }
 
     fn sample(&self, cells: &StringRecord) -> Option<String> {
-        let label = |name| self.labels.get(name).map(|at| &cells[*at]);
+        let label = |name| self.label(cells, name);
         // One recording may contain many packings.
         let of_source = |source: &str| match label("step") {
             Some(step) => format!("{source} step {step}"),
@@ -167,11 +166,8 @@ impl Columns {
     }
 
     fn state(&self, cells: &StringRecord) -> Result<State, String> {
-        let mut state = State {
-            sample: self.sample(cells),
-            projected: self.projected,
-            ..State::of_defaults(Measured::exact(0.0), &self.defaults)
-        };
+        let mut state =
+            State { sample: self.sample(cells), projected: self.projected, ..self.defaults.clone() };
         for (input, column, factor) in &self.inputs {
             let Some(value) = self.number(cells, *column)? else {
                 if input.role == Role::Pressure {
@@ -187,11 +183,11 @@ impl Columns {
                 check_structure(&state.truth).map_err(|e| format!("column {}: {e}", self.names[*column]))?;
             }
         }
-        if let Some(text) = Some(self.label(cells, "contact_law")).filter(|text| !text.is_empty()) {
+        if let Some(text) = self.label(cells, "contact_law").filter(|text| !text.is_empty()) {
             state.contact_law = Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
         }
         let smooth = flag(self.label(cells, "smooth"), "smooth")?;
-        let friction = self.label(cells, "friction").parse().ok();
+        let friction = self.label(cells, "friction").and_then(|text| text.parse().ok());
         if smooth.is_none() && friction == Some(0.0) {
             let reason =
                 "contacts without friction have no tangential springs, and no model can invert their moduli";
@@ -334,10 +330,11 @@ impl Columns {
 /// so that an invalid cell affects only its line.
 fn cells(line: &[u8]) -> Result<StringRecord, &'static str> {
     let text = std::str::from_utf8(line).map_err(|_| "it is not UTF-8 text")?;
+    let mut record = StringRecord::with_capacity(line.len(), line.len() / 4);
     if !text.contains('"') {
-        return Ok(text.split(',').map(str::trim).collect());
+        text.split(',').for_each(|cell| record.push_field(cell.trim()));
+        return Ok(record);
     }
-    let mut record = StringRecord::new();
     // A quote that is not closed takes the line end into its cell.
     let reader = ReaderBuilder::new()
         .has_headers(false)
@@ -352,8 +349,8 @@ fn cells(line: &[u8]) -> Result<StringRecord, &'static str> {
 }
 
 /// A cell that is true or false, in any case; `None` if it is empty or not there.
-fn flag(cell: &str, name: &str) -> Result<Option<bool>, String> {
-    match cell.to_ascii_lowercase().as_str() {
+fn flag(cell: Option<&str>, name: &str) -> Result<Option<bool>, String> {
+    match cell.unwrap_or_default().to_ascii_lowercase().as_str() {
         "" => Ok(None),
         "false" => Ok(Some(false)),
         "true" => Ok(Some(true)),
@@ -398,7 +395,7 @@ fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), 
         if meant.starts_with("reference_axis") && !has_stiffness {
             continue;
         }
-        // An analysis prints q_over_p beside axial_q_over_p: alone it is probably meant for that.
+        // An analysis prints q_over_p and axial_q_over_p: the first alone is probably meant for the second.
         let is_there = |alias: &str| names.iter().any(|n| n == alias);
         let names_of_meant = INPUTS.iter().map(|i| i.names()).find(|all| all.iter().any(|a| a.name == meant));
         let meant_is_there =

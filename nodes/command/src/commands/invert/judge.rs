@@ -103,8 +103,7 @@ pub(super) fn run(
     }
     #[cfg(feature = "studio")]
     if let Some(path) = plot {
-        grainlab_console::write_whole(path, plot::svg(ways, points))
-            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+        grainlab_console::write_whole(path, plot::svg(ways, points)).map_err(Failure::at(path))?;
     }
     if let Some((exit, complaint)) = unsolved.first() {
         say!("{complaint}\ngrainlab: {} without an estimate, this the first", count(unsolved.len(), "row"));

@@ -1,7 +1,7 @@
 //! The rows of a table, in pieces, distributed over several threads.
 
 use super::columns::{BadRow, Columns, Row};
-use super::state::Defaults;
+use super::state::State;
 use grainlab_console::Failure;
 use grainlab_recordings::input;
 use rayon::prelude::*;
@@ -28,7 +28,7 @@ struct Lines {
 }
 
 impl Lines {
-    /// Of a file or a pipe; `-` is the standard input. A device is refused, because it may be endless.
+    /// Opens a file or a pipe; `-` is the standard input. A device is refused, because it may be endless.
     fn open(path: &Path) -> Result<Self, Failure> {
         if path.as_os_str() == "-" {
             return Ok(Self::new(Box::new(std::io::stdin()), "standard input".to_owned()));
@@ -84,7 +84,7 @@ pub(crate) struct Rows {
 
 impl Rows {
     /// Opens a table; `-` is the standard input.
-    pub(crate) fn open(path: &Path, by: &[String], defaults: Defaults) -> Result<Self, Failure> {
+    pub(crate) fn open(path: &Path, by: &[String], defaults: State) -> Result<Self, Failure> {
         let mut lines = Lines::open(path)?;
         while let Some(line) = lines.line()? {
             // Some spreadsheets begin their files with a byte order mark.
@@ -172,7 +172,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
         std::fs::write(&path, "# made by hand\np_pa,g12_pa\n5e4,1e8\n#2,1e8\n\n5e4,1e8\n").unwrap();
-        let mut rows = Rows::open(&path, &[], Defaults::default()).unwrap();
+        let mut rows = Rows::open(&path, &[], State::default()).unwrap();
         let mut found = 0;
         while let Some(piece) = rows.next(|_, row| row.is_ok()).unwrap() {
             found += piece.len();
@@ -195,7 +195,7 @@ mod tests {
             memory: (usize::MAX, 0),
             decode: &mut |bytes| {
                 std::fs::write(&path, bytes).unwrap();
-                let Ok(mut rows) = Rows::open(&path, &[], Defaults::default()) else { return };
+                let Ok(mut rows) = Rows::open(&path, &[], State::default()) else { return };
                 let answer = |number, row: Result<Row, BadRow>| match row {
                     Ok(row) => Answer::of(row.state, Some(number), &ways),
                     Err(bad) => Answer::of_bad_row(bad, number),

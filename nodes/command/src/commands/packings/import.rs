@@ -55,7 +55,7 @@ pub(crate) struct Args {
     /// tangential force (see `grainlab analyze --help`)
     #[arg(long, value_name = "FILE")]
     contact_forces: Option<PathBuf>,
-    /// Its columns, if they differ: ids, normal force, tangential force (or ids and the whole force)
+    /// Columns of the contact forces, if they differ: ids, normal force, tangential force (or ids and the whole force)
     #[arg(long, value_name = "ID,ID,FX,FY,FZ,P1,P2,P3", value_delimiter = ',', requires = "contact_forces")]
     contact_columns: Vec<String>,
 }
@@ -70,7 +70,7 @@ impl Args {
         Err(Failure::usage(format!("--topic {} is for recordings, and no file is one", self.topic)))
     }
 
-    /// The same, checked.
+    /// Checks the flags.
     pub(crate) fn options(&self) -> Result<ImportOptions, Failure> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         in_range("shear-modulus", self.shear_modulus, "a modulus in Pa, more than 0", positive)?;

@@ -12,7 +12,7 @@ pub(crate) struct ResultWriter<R> {
     printer: Printer<R>,
     recording: Option<OfflineRecording>,
     pub(super) bar: ProgressBar,
-    /// Packings measured.
+    /// Number of packings measured.
     pub(super) measured: usize,
     /// Packings that lack what was sought.
     without: usize,

@@ -1,9 +1,9 @@
-//! What rows and headers give.
+//! Results of rows and headers.
 
 use super::*;
 
 fn columns(header: &str) -> Columns {
-    Columns::of_header(header.as_bytes(), &[], Defaults::default()).unwrap()
+    Columns::of_header(header.as_bytes(), &[], State::default()).unwrap()
 }
 
 fn state(header: &str, row: &str) -> Result<State, String> {
@@ -168,7 +168,7 @@ fn pressures_are_in_the_unit_that_their_column_names() {
 }
 
 fn refused(header: &str) -> String {
-    Columns::of_header(header.as_bytes(), &[], Defaults::default()).err().unwrap_or_default()
+    Columns::of_header(header.as_bytes(), &[], State::default()).err().unwrap_or_default()
 }
 
 #[test]
@@ -210,12 +210,12 @@ fn smooth_grains_of_an_analysis_and_errors_of_what_is_not_there_are_not_overlook
 #[test]
 fn a_flag_beside_its_column_is_refused_and_fills_a_missing_one() {
     let with = |header: &str| {
-        let defaults = Defaults { poisson: Some(0.3), grain_shear_modulus_sigma: 1e9, ..Defaults::default() };
+        let defaults = State { poisson: Some(0.3), grain_shear_modulus_sigma: 1e9, ..State::default() };
         Columns::of_header(header.as_bytes(), &[], defaults).err().unwrap_or_default()
     };
-    assert!(with("p_pa,g12_pa,poisson").contains("--poisson is beside the column poisson"));
+    assert!(with("p_pa,g12_pa,poisson").contains("--poisson contradicts the column poisson"));
     assert!(
-        with("p_pa,g12_pa,grain_shear_modulus_sigma_pa").contains("--grain-shear-modulus-sigma is beside")
+        with("p_pa,g12_pa,grain_shear_modulus_sigma_pa").contains("--grain-shear-modulus-sigma contradicts")
     );
     assert_eq!(with("p_pa,g12_pa,grain_shear_modulus_pa"), "");
 }
