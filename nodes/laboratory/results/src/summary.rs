@@ -86,7 +86,7 @@ impl Summary {
     /// Combines the data of the launcher with those of the recording.
     pub fn new(launched: Launched, back: ReadBack, tallies: Option<&[TopicTally]>) -> Self {
         let has_counters = |r: &&Report| r.health.values.iter().any(|(key, _)| key == "particle_steps_per_s");
-        let simulator = back.reports.values().filter(has_counters).last();
+        let simulator = back.reports.values().rfind(has_counters);
         let number = |key: &str| {
             let (_, value) = simulator?.health.values.iter().find(|(k, _)| k == key)?;
             value.parse::<f64>().ok().filter(|v| v.is_finite())

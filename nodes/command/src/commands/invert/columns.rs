@@ -6,7 +6,7 @@ use super::state::State;
 use csv::{ReaderBuilder, StringRecord, Terminator};
 use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
-use grainlab_emt::{Measured, Moduli, Modulus, check_structure};
+use grainlab_emt::{Moduli, Modulus, check_structure};
 use std::io::Read as _;
 
 /// Share of the largest entry of a stiffness up to which two values of one entry are the same, rounded to four digits.

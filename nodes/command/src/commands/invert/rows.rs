@@ -19,6 +19,9 @@ const ENDLESS: u64 = 64 << 20;
 /// Rows that one thread takes at a time.
 const SHARE: usize = 32;
 
+/// A line with its number.
+type Line = (u64, Vec<u8>);
+
 /// A stream of lines.
 struct Lines {
     source: BufReader<Box<dyn Read>>,
@@ -62,7 +65,7 @@ impl Lines {
     }
 
     /// The available complete lines with their numbers, at least one; waits for it. `None` at the end.
-    fn piece(&mut self) -> Result<Option<Vec<(u64, Vec<u8>)>>, Failure> {
+    fn piece(&mut self) -> Result<Option<Vec<Line>>, Failure> {
         let mut lines = Vec::new();
         while let Some(line) = self.line()? {
             lines.push((self.number, line));
@@ -106,7 +109,7 @@ impl Rows {
     ) -> Result<Option<Vec<T>>, Failure> {
         let Some(lines) = self.lines.piece()? else { return Ok(None) };
         self.comments += lines.iter().filter(|(_, line)| line.starts_with(b"#")).count();
-        let of_line = |(number, line): &(u64, Vec<u8>)| Some(work(*number, self.columns.row(line)?));
+        let of_line = |(number, line): &Line| Some(work(*number, self.columns.row(line)?));
         Ok(Some(lines.par_iter().with_min_len(SHARE).filter_map(of_line).collect()))
     }
 
