@@ -3,13 +3,13 @@
 //! - [`cli`]: the command line
 //! - [`commands`]: one module per command, with the checks of its arguments
 //! - [`memory`]: settings of the allocator
-//! - [`tape`]: a recording of the messages that a node would publish
+//! - [`offline_recording`]: a recording of the messages that a node would publish
 //! - [`viewers`]: the nodes of the studio
 
 mod cli;
 mod commands;
 mod memory;
-mod tape;
+mod offline_recording;
 mod viewers;
 
 fn main() -> std::process::ExitCode {

@@ -139,7 +139,7 @@ fn an_interrupted_run_leaves_no_row_that_looks_settled() {
     let run = lab.last_run();
     let summary: Value = serde_json::from_slice(&std::fs::read(run.join("summary.json")).unwrap()).unwrap();
     assert_eq!(summary["states"].as_array().unwrap().len(), 0, "{}", summary["states"]);
-    assert_eq!(summary["film"]["packings"], 1);
+    assert_eq!(summary["within_phases"]["packings"], 1);
     let found = lab.run(&["analyze", &run.to_string_lossy(), "--format", "json"]);
     let states: Value = serde_json::from_str(&found.stdout).unwrap();
     let state = states.as_array().map_or(&states, |all| &all[0]);

@@ -65,55 +65,6 @@ fn analyze_records_the_bytes_that_the_live_analyzer_published() {
 }
 
 #[test]
-fn analyze_of_a_live_topic_gives_the_bytes_and_numbers_of_the_recording() {
-    let lab = Lab::new();
-    let live = lab.launch(&golden("scenes/tiny.toml"), &[]);
-    let offline = lab.run(&["analyze", &live.to_string_lossy(), "--format", "json"]);
-
-    let other = Lab::new();
-    let out = other.folder().join("measured");
-    let analyze = other.start(&[
-        "analyze",
-        "--live",
-        "--count",
-        "2",
-        "--format",
-        "json",
-        "--record",
-        &out.to_string_lossy(),
-    ]);
-    let played = other.run(&["bag", "play", &live.to_string_lossy(), "--topics", "packing"]);
-    assert_eq!(played.code, Some(0), "{}", played.stderr);
-    let ended = analyze.ended(LIMIT);
-    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
-    assert_same_results(&live, &out);
-
-    let [mut played, mut read] =
-        [&ended, &offline].map(|e| serde_json::from_str::<Value>(&e.stdout).unwrap());
-    for state in played.as_array_mut().unwrap().iter_mut().chain(read.as_array_mut().unwrap()) {
-        assert_eq!(state["method"], "frozen_network");
-        for differs in ["source", "seconds"] {
-            state.as_object_mut().unwrap().remove(differs);
-        }
-    }
-    assert_eq!(played, read);
-}
-
-#[test]
-fn a_live_analysis_ends_with_a_signal_and_what_it_measured() {
-    let lab = Lab::new();
-    for (arguments, code) in [(&["analyze", "--live"][..], 0), (&["analyze", "--live", "--count", "1"], 130)]
-    {
-        let analyze = lab.start(&[arguments, &["--format", "json"]].concat());
-        // Before the handlers are installed, a signal has its default action.
-        until("handlers", || handles(analyze.pid(), libc::SIGINT));
-        analyze.signal(libc::SIGINT);
-        let ended = analyze.ended(LIMIT);
-        assert_eq!((ended.code, ended.stdout.as_str()), (Some(code), "[]\n"), "{}", ended.stderr);
-    }
-}
-
-#[test]
 fn analyze_of_a_recording_gives_the_numbers_of_the_live_run() {
     let lab = Lab::new();
     let live = lab.launch(&golden("scenes/tiny.toml"), &[]);

@@ -1,15 +1,13 @@
-//! `grainlab analyze`: measures packings from files, without DDS, or from a live topic.
+//! `grainlab analyze`: measures packings from files, without DDS.
 //!
-//! - [`live`]: a topic; files are read by [`super::packings`]
-//! - [`measure`]: one packing
+//! - [`measure`]: one packing; files are read by [`super::packings`]
 
-mod live;
 mod measure;
 
 use super::packings::files;
 use super::packings::import::{self, in_range};
-use super::packings::outlet::Outlet;
-use crate::tape::Tape;
+use super::packings::writer::ResultWriter;
+use crate::offline_recording::OfflineRecording;
 use grainlab_console::{Failure, Format, print};
 use grainlab_core::Vec3;
 use grainlab_core::results::QUANTITIES;
@@ -20,7 +18,6 @@ use grainlab_node_kit::Exit;
 use grainlab_recordings::import::yade;
 use grainlab_results::Printer;
 use grainlab_results::quantities::help;
-use measure::Analysis;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -33,8 +30,8 @@ Examples:
   A packing in YADE, with contact forces (run the script within YADE; its first lines explain how):
     grainlab analyze --yade-script > grainlab_export.py
     grainlab analyze packing.csv
-  The packings of a running simulator, until Ctrl-C, with a recording of the messages of the analyzer node:
-    grainlab analyze --live --record measured
+  A recording of the messages that the analyzer node would publish:
+    grainlab analyze recordings/runs/demo-1-1 --record measured
   The stiffness by straining the packing, which includes the nonlinear response:
     grainlab analyze recordings/runs/demo-1-1 --method probe";
 
@@ -48,14 +45,8 @@ Examples:
 pub(crate) struct Args {
     /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files, YADE text exports; text also
     /// as .gz
-    #[arg(required_unless_present_any = ["live", "yade_script"], value_name = "FILE")]
+    #[arg(required_unless_present = "yade_script", value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Measure packings published on the topic instead of files, until Ctrl-C
-    #[arg(long, conflicts_with_all = ["files", "contact_forces"])]
-    live: bool,
-    /// Number of packings after which --live ends; with it, an earlier Ctrl-C ends with 130
-    #[arg(long, value_name = "N", requires = "live", value_parser = clap::value_parser!(u64).range(1..))]
-    count: Option<u64>,
     /// Also record the PackingReport messages that the node fabric_analyzer would publish, into this new directory
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
@@ -80,16 +71,13 @@ pub(crate) struct Args {
     /// Springs of the contacts
     #[arg(long, value_enum, default_value_t)]
     springs: ContactSprings,
-    /// The same as --springs normal: the response of grains without friction
+    /// Short for --springs normal: the response of grains without friction
     #[arg(long, conflicts_with = "springs")]
     smooth: bool,
     /// Strain of --method probe, forward and backward; far below overlap/diameter [default: 1e-7]
     #[arg(long, value_name = "STRAIN")]
     amplitude: Option<f64>,
-    /// Also probe with each of these strains, and find the range with a linear response
-    #[arg(long, value_name = "STRAIN", value_delimiter = ',')]
-    scan: Vec<f64>,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     /// Columns of --format csv, in this order [default: all]
@@ -102,7 +90,7 @@ enum Method {
     /// Linear response of the frozen contact network
     #[default]
     Network,
-    /// The same for smooth grains, with the prestress term: normal forces rotate with their branches
+    /// Linear response of smooth grains, with the prestress term: normal forces rotate with their branches
     Prestressed,
     /// Explicit: strain the packing slightly, relax it, evaluate the stress
     Probe,
@@ -121,7 +109,7 @@ enum ContactSprings {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 enum Solver {
-    /// Conjugate gradients
+    /// Method of conjugate gradients
     #[default]
     Iterative,
     /// Sparse Cholesky: for smooth packings near isostaticity; memory and time grow fast with size
@@ -135,41 +123,30 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return Ok(Exit::Done);
     }
     let options = args.import.options()?;
-    let measure = Analysis { settings: settings(args)?, scan: scan(args)? };
+    let settings = settings(args)?;
     args.without_effect()?;
     let printer = Printer::new(args.format, args.columns.clone())?;
     let recorded = [topics::PACKING_REPORT];
-    let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "analyze")).transpose()?;
-    let outlet = Outlet::new(printer, tape);
-    if args.live {
-        let given = options.flags_given().join(", ");
-        if !given.is_empty() {
-            return Err(Failure::usage(format!("{given}: published packings have these data; leave it out")));
-        }
-        live::run(&args.import.topic, args.count, &measure, outlet)
-    } else {
-        files::run(&args.files, &options, &measure, outlet)
-    }
+    let create = |at: &PathBuf| OfflineRecording::create(at, &recorded, "analyze");
+    let recording = args.record.as_ref().map(create).transpose()?;
+    let measure = |source: &str, imported: &_| measure::measure(&settings, source, imported);
+    files::run(&args.files, &options, measure, ResultWriter::new(printer, recording))
 }
 
 impl Args {
     /// Refuses flags that would change nothing.
     fn without_effect(&self) -> Result<(), Failure> {
         let probed = self.method == Method::Probe;
-        // The network beside a probe gives bounds alone, and with --scan a comparison.
-        let solved = !probed || !self.scan.is_empty();
         for (flag, given, needs) in [
             ("--amplitude", self.amplitude.is_some() && !probed, "--method probe"),
-            ("--tolerance", self.tolerance.is_some() && !solved, "another --method, or --scan"),
-            ("--solver", self.solver.is_some() && !solved, "another --method, or --scan"),
-            // With an exclusion, the parser of the command line does not enforce a required flag.
-            ("--count", self.count.is_some() && !self.live, "--live"),
+            ("--tolerance", self.tolerance.is_some() && probed, "another --method"),
+            ("--solver", self.solver.is_some() && probed, "another --method"),
         ] {
             if given {
                 return Err(Failure::usage(format!("{flag} has no effect without {needs}")));
             }
         }
-        if self.live { Ok(()) } else { self.import.topic_has_use(&self.files) }
+        self.import.topic_has_use(&self.files)
     }
 }
 
@@ -205,13 +182,4 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
         Solver::Direct => network::Solver::Direct,
     };
     Ok(grainlab_micromechanics::Settings { axis, tolerance, solver, springs, probe, ..settings })
-}
-
-fn scan(args: &Args) -> Result<Vec<f64>, Failure> {
-    for amplitude in &args.scan {
-        in_range("scan", Some(*amplitude), "strains, each more than 0 and at most 0.01", |a| {
-            a > 0.0 && a <= 0.01
-        })?;
-    }
-    Ok(args.scan.clone())
 }

@@ -63,14 +63,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let isotropic = packings::read(&args.isotropic, &naming)?;
     packings::check_isotropic(&isotropic)
         .map_err(|e| Failure::usage(format!("{}: {e}", args.isotropic.display())))?;
-    let anisotropic = match &args.anisotropic {
-        Some(path) => packings::read(path, &naming)?,
-        None => Vec::new(),
-    };
-    let other = match &args.other {
-        Some(path) => packings::read(path, &naming)?,
-        None => Vec::new(),
-    };
+    let read = |path: &Option<PathBuf>| path.as_ref().map(|path| packings::read(path, &naming)).transpose();
+    let anisotropic = read(&args.anisotropic)?.unwrap_or_default();
+    let other = read(&args.other)?.unwrap_or_default();
     let file_name = args.out.as_ref().and_then(|path| path.file_stem()).map(|n| n.to_string_lossy());
     let file_name = file_name.filter(|n| n != "-").map_or_else(|| "unnamed".to_owned(), |n| n.into_owned());
     let name = args.name.clone().unwrap_or(file_name);
@@ -80,7 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     match &args.out {
         Some(path) if path.as_os_str() == "-" => print(&toml)?,
         Some(path) => {
-            write_whole(path, toml).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+            write_whole(path, toml).map_err(Failure::at(path))?;
             print(&report::text(&calibration, [&isotropic, &anisotropic, &other]))?;
             say!("grainlab: {} is written; use it with --calibration {0}", path.display());
         }

@@ -48,16 +48,16 @@ pub(crate) struct Args {
     engine: EngineArgs,
 }
 
-/// Where and how members run.
+/// Engine that runs the members, and its options.
 #[derive(Debug, clap::Args)]
 pub(crate) struct EngineArgs {
-    /// Where the members run
+    /// Machine that runs the members
     #[arg(long, value_enum, default_value_t)]
     engine: Engine,
     /// Members at a time on this machine [default: one more than there are cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// How often an interrupted member is tried again, the last time anew
+    /// Number of further trials of an interrupted member, the last one anew
     #[arg(long, value_name = "N", default_value_t = 2)]
     retries: u16,
     /// Run members again that failed
@@ -92,7 +92,7 @@ impl EngineArgs {
         self.engine.run(campaign, folder, options)
     }
 
-    /// Whether the commands are only printed.
+    /// True if the commands are only printed.
     pub(crate) fn only_prints(&self) -> bool {
         self.engine == Engine::Print
     }

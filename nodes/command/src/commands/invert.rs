@@ -1,7 +1,7 @@
 //! `grainlab invert`: moduli in, microstructure out.
 //!
 //! - [`state`]: the data of one state; [`way`]: a model, its calibration and its γ/Δ; [`answer`]: the results
-//! - [`inputs`]: the inputs of a state; [`lines`], [`columns`], [`rows`]: a table, read in pieces, each row a
+//! - [`inputs`]: the inputs of a state; [`columns`], [`rows`]: a table, read in pieces, each row a
 //!   state; [`slips`]: columns whose names are almost those of inputs
 //! - [`table`], [`mod@print`]: results in order, as text
 //! - [`explain`]: contributions of the data to the uncertainty; [`sampled`]: estimates of sampled data
@@ -19,7 +19,6 @@ mod evidence;
 mod explain;
 mod inputs;
 mod judge;
-mod lines;
 mod predictive;
 mod print;
 mod prior;
@@ -28,11 +27,11 @@ mod rows;
 mod sampled;
 mod slips;
 mod speeds;
-mod splitter;
 mod state;
 mod table;
 mod way;
 
+use super::packings::import::in_range;
 use answer::{Answer, More};
 pub(super) use columns::{BadRow, Row};
 use grainlab_console::{Failure, Format, print, say};
@@ -40,7 +39,7 @@ use grainlab_emt::{Measured, Modulus};
 use grainlab_node_kit::Exit;
 use print::Printer;
 pub(super) use rows::Rows;
-pub(super) use state::{Defaults, State};
+pub(super) use state::State;
 use std::path::{Path, PathBuf};
 use way::{GammaChoice, ways};
 
@@ -131,7 +130,7 @@ pub(crate) struct Args {
     /// Standard deviation of the density, kg/m3
     #[arg(long, value_name = "SIGMA", requires = "density", default_value_t = 0.0)]
     density_sigma: f64,
-    /// Solid fraction
+    /// Solid fraction of the sample
     #[arg(long, value_name = "PHI", conflicts_with = "table")]
     phi: Option<f64>,
     /// Axial stress less the lateral one over pressure [default: unknown: 0 +- 0.15, cut at +- 0.3, in relaxed; isotropic in
@@ -217,7 +216,7 @@ pub(crate) struct Args {
     /// to the model, and the probability of the moduli under the posterior of each model that states one
     #[arg(long, conflicts_with = "table")]
     explain: bool,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -246,7 +245,13 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let defaults = args.defaults()?;
     let printer = Printer { ways: &ways };
     if let Some(path) = &args.table {
-        args.none_of_one_state()?;
+        let of_one_state = [
+            ("--pressure-sigma", args.pressure_sigma != 0.0),
+            ("--stress-ratio-sigma", args.stress_ratio_sigma != 0.0),
+            ("--density", args.density.is_some()),
+            ("--density-sigma", args.density_sigma != 0.0),
+        ];
+        refuse(&of_one_state, "is of one state: in a --table it is a column, or of no use")?;
         let rows = Rows::open(path, &args.by, defaults)?;
         if args.judge {
             return judge::run(rows, &args.by, &ways, plot_file(args), args.format);
@@ -254,13 +259,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return table::run(rows, &printer, args.format);
     }
     // With an exclusion, the parser of the command line does not enforce a required flag.
-    for (flag, given) in
-        [("--judge", args.judge), ("--by", !args.by.is_empty()), ("--gamma", args.gamma.is_some())]
-    {
-        if given {
-            return Err(Failure::usage(format!("{flag} is for --table")));
-        }
-    }
+    let of_table =
+        [("--judge", args.judge), ("--by", !args.by.is_empty()), ("--gamma", args.gamma.is_some())];
+    refuse(&of_table, "is for --table")?;
     let state = args.state(defaults)?;
     if let Some(simulations) = args.rank_test {
         return rank_test::run(&state, &ways, simulations, args.seed, args.format);
@@ -297,24 +298,15 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(answer.exit(&ways))
 }
 
-impl Args {
-    /// Refuses the data of one state beside a table, which has columns for them.
-    fn none_of_one_state(&self) -> Result<(), Failure> {
-        for (flag, given) in [
-            ("--pressure-sigma", self.pressure_sigma != 0.0),
-            ("--stress-ratio-sigma", self.stress_ratio_sigma != 0.0),
-            ("--density", self.density.is_some()),
-            ("--density-sigma", self.density_sigma != 0.0),
-        ] {
-            if given {
-                return Err(Failure::usage(format!(
-                    "{flag} is of one state: in a --table it is a column, or of no use"
-                )));
-            }
-        }
-        Ok(())
+/// Refuses the flags that are given.
+fn refuse(flags: &[(&str, bool)], why: &str) -> Result<(), Failure> {
+    match flags.iter().find(|(_, given)| *given) {
+        Some((flag, _)) => Err(Failure::usage(format!("{flag} {why}"))),
+        None => Ok(()),
     }
+}
 
+impl Args {
     /// The names of the models: for a prior, the recommended one.
     fn models(&self) -> Vec<String> {
         let of_prior = self.print_prior && self.model.is_empty();
@@ -322,7 +314,7 @@ impl Args {
     }
 
     /// Inputs common to all states.
-    fn defaults(&self) -> Result<Defaults, Failure> {
+    fn defaults(&self) -> Result<State, Failure> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         in_range("grain-shear-modulus", self.grain_shear_modulus, "more than 0 and finite", positive)?;
         in_range("poisson", self.poisson, "0 to 0.5", |v| (0.0..=0.5).contains(&v))?;
@@ -340,31 +332,24 @@ impl Args {
         if self.speeds.is_none() && self.table.is_none() && self.density.is_some() {
             return Err(Failure::usage("--density has no effect without --speeds: moduli are given in Pa"));
         }
-        Ok(Defaults {
+        Ok(State {
             relative_error: self.error,
             grain_shear_modulus: self.grain_shear_modulus,
             grain_shear_modulus_sigma: self.grain_shear_modulus_sigma,
             poisson: self.poisson,
             poisson_sigma: self.poisson_sigma,
+            ..State::default()
         })
     }
 
     /// The state given by the flags.
-    fn state(&self, defaults: Defaults) -> Result<State, Failure> {
+    fn state(&self, defaults: State) -> Result<State, Failure> {
         let pressure = self.pressure.ok_or_else(|| Failure::usage("--pressure is needed, or --table"))?;
         let pressure = Measured { value: pressure, stddev: self.pressure_sigma };
-        let mut state = State::of_defaults(pressure, &defaults);
-        for (modulus, value) in [
-            (Modulus::G12, self.g12),
-            (Modulus::G13, self.g13),
-            (Modulus::Theta, self.theta),
-            (Modulus::C11, self.c11),
-            (Modulus::C33, self.c33),
-            (Modulus::C13, self.c13),
-        ] {
-            if let Some(value) = value {
-                state.moduli = state.moduli.with(modulus, value);
-            }
+        let mut state = State { pressure, ..defaults };
+        let given = [self.g12, self.g13, self.theta, self.c11, self.c33, self.c13];
+        for (modulus, value) in Modulus::ALL.into_iter().zip(given) {
+            value.into_iter().for_each(|value| state.set_modulus(modulus, value));
         }
         state.gamma = self.gamma_over_delta.map(Measured::exact);
         state.phi = self.phi.map(Measured::exact);
@@ -379,18 +364,5 @@ impl Args {
             return Err(Failure::usage("--samples needs --error, or --speeds with speed_sigma"));
         }
         Ok(state)
-    }
-}
-
-/// Refuses a flag whose value is out of range, by its name.
-fn in_range(
-    flag: &str,
-    value: Option<f64>,
-    range: &str,
-    accept: impl Fn(f64) -> bool,
-) -> Result<(), Failure> {
-    match value.filter(|v| !accept(*v)) {
-        Some(v) => Err(Failure::usage(format!("--{flag} {v} is out of range: {range}"))),
-        None => Ok(()),
     }
 }

@@ -38,7 +38,7 @@ The run is stored in recordings/runs/SCENE-SEED-N: the recording, scene.toml, su
 Without ROS_DOMAIN_ID, an unused DDS domain is chosen and printed.";
 
 /// The run to launch.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
     /// Launch file: demo (the laboratory), acoustic (the same with an acoustic probe) or a file in the YAML form of ROS
@@ -54,9 +54,9 @@ pub(crate) struct Args {
     /// Seed of every random choice [default: the one of the scene]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Folder for the directory of the run
-    #[arg(long, value_name = "DIR", default_value = RUNS)]
-    out: PathBuf,
+    /// Folder for the directory of the run [default: recordings/runs]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Directory of the run itself: it begins there, continues if it was interrupted, and is left as it is if it is
     /// finished, so that the same command can be repeated
     #[arg(long, value_name = "DIR", conflicts_with = "out")]
@@ -65,10 +65,10 @@ pub(crate) struct Args {
     /// seed; the result is the same to the last byte as without the interruption
     #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "set", "seed", "out", "run"])]
     resume: Option<PathBuf>,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-    /// Print all measurements of each packing, the estimate of each model, and the counts of each topic
+    /// Print all measurements of each packing, and the estimate of each model
     #[arg(long)]
     verbose: bool,
 }
@@ -76,22 +76,6 @@ pub(crate) struct Args {
 fn scene_help() -> String {
     let known = grainlab_scene::BUILT_IN.map(|(name, _)| name).join(", ");
     format!("Scene: {known} or a file [default: the one of the launch file]")
-}
-
-impl Default for Args {
-    fn default() -> Self {
-        Self {
-            words: Vec::new(),
-            scene: None,
-            set: Vec::new(),
-            seed: None,
-            out: RUNS.into(),
-            run: None,
-            resume: None,
-            format: Format::Table,
-            verbose: false,
-        }
-    }
 }
 
 /// Runs the command.
@@ -104,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     // Held to the end of the run.
     let mut _at_work = None;
     let directory = match &args.run {
-        None => new_directory(&args.out, &scene)?,
+        None => new_directory(args.out.as_deref().unwrap_or(Path::new(RUNS)), &scene)?,
         Some(directory) => match directory::given(directory, &scene, &order)? {
             Given::Finished => return Ok(Exit::Done),
             Given::Begun(directory, lock) => {
@@ -176,7 +160,7 @@ fn refuse_unknown(plans: &[NodePlan]) -> Result<(), Failure> {
     Err(Failure::usage(format!("executable {name}: there is no program {program:?}, here or on the PATH")))
 }
 
-/// Whether a command of this name could be started: a path to an executable file, or the name of one on the PATH.
+/// True if a command of this name could be started: a path to an executable file, or the name of one on the PATH.
 fn is_program(name: &str) -> bool {
     use std::os::unix::fs::PermissionsExt;
     let executable =
@@ -222,15 +206,14 @@ fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
             );
             return Err(Failure::usage(message));
         }
-        None => input::text(path, input::SETTINGS)
-            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?,
+        None => input::text(path, input::SETTINGS).map_err(Failure::at(path))?,
     };
     LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 
 /// Creates the next free directory.
 fn new_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
-    let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", root.display()));
-    let directory = create_run_directory(root, &scene.scene.name, scene.scene.seed).map_err(failed)?;
+    let failed = Failure::at(root);
+    let directory = create_run_directory(root, &scene.scene.name, scene.scene.seed).map_err(&failed)?;
     directory.canonicalize().map_err(failed)
 }

@@ -16,9 +16,8 @@ pub(crate) struct Args {
 
 /// Writes a page for `command`, the whole command line, and for each command and sub-command of it.
 pub(crate) fn run(args: &Args, command: clap::Command) -> Result<Exit, Failure> {
-    let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", args.folder.display()));
-    std::fs::create_dir_all(&args.folder).map_err(failed)?;
-    clap_mangen::generate_to(command, &args.folder).map_err(failed)?;
+    std::fs::create_dir_all(&args.folder).map_err(Failure::at(&args.folder))?;
+    clap_mangen::generate_to(command, &args.folder).map_err(Failure::at(&args.folder))?;
     say!("grainlab: the pages are in {}", args.folder.display());
     Ok(Exit::Done)
 }

@@ -1,42 +1,20 @@
 //! Packings from files through a measurement to a printed result: the common part of `analyze` and `probe`.
 //!
 //! - [`import`]: flags for data that files lack
-//! - [`files`]: many files at once
-//! - [`sink`]: results in order; [`outlet`]: to stdout and into a recording
+//! - [`files`]: many files at once; [`writer`]: their results, in order
 
-pub(crate) mod bar;
 pub(crate) mod files;
 pub(crate) mod import;
-pub(crate) mod outlet;
-pub(crate) mod sink;
+pub(crate) mod writer;
 
-use crate::tape::Tape;
-use bar::Bar;
-use grainlab_console::Failure;
-use grainlab_node_kit::Exit;
-use grainlab_recordings::import::Imported;
-use grainlab_results::Printed;
-
-/// The measurement of one packing.
-pub(crate) trait Measure: Sync {
-    /// Its result.
-    type Found: Found;
-
-    /// Measures one packing of `source`; the error names both.
-    fn measure(&self, source: &str, imported: &Imported) -> Result<Self::Found, String>;
-}
+use crate::offline_recording::Recorded;
 
 /// The result of one packing.
-pub(crate) trait Found: Send {
+pub(crate) struct Found<R> {
     /// The printed part.
-    type Shown: Printed;
-
-    /// The printed part.
-    fn shown(&self) -> &Self::Shown;
-
-    /// Whether the packing lacks what was sought.
-    fn is_without(&self) -> bool;
-
-    /// Writes the messages into a recording.
-    fn record(&self, tape: &mut Tape, bar: &Bar) -> Result<Exit, Failure>;
+    pub(crate) shown: R,
+    /// The packing lacks what was sought.
+    pub(crate) is_without: bool,
+    /// Messages that a node would publish, or the reason why it would not.
+    pub(crate) messages: Result<Vec<Recorded>, String>,
 }

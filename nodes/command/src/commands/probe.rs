@@ -5,16 +5,15 @@
 mod flags;
 mod measure;
 
-use super::packings::outlet::Outlet;
+use super::packings::writer::ResultWriter;
 use super::packings::{files, import};
-use crate::tape::Tape;
+use crate::offline_recording::OfflineRecording;
 use flags::Flags;
 use grainlab_console::{Failure, Format};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use grainlab_results::quantities::help;
 use grainlab_results::{ACOUSTIC, Printer};
-use measure::Probe;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -45,7 +44,7 @@ pub(crate) struct Args {
     /// Also record the WaveSpeeds and Waveform messages that the node acoustic_probe would publish, into this new directory
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     /// Columns of --format csv, in this order [default: all]
@@ -62,6 +61,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let settings = args.flags.settings()?;
     let printer = Printer::new(args.format, args.columns.clone())?;
     let recorded = [topics::WAVE_SPEEDS, topics::WAVEFORM];
-    let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "probe")).transpose()?;
-    files::run(&args.files, &options, &Probe { settings }, Outlet::new(printer, tape))
+    let create = |at: &PathBuf| OfflineRecording::create(at, &recorded, "probe");
+    let recording = args.record.as_ref().map(create).transpose()?;
+    let measure = |source: &str, imported: &_| measure::measure(&settings, source, imported);
+    files::run(&args.files, &options, measure, ResultWriter::new(printer, recording))
 }

@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 fn read(path: &Path) -> Result<Run, Failure> {
-    path.metadata().map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    path.metadata().map_err(Failure::at(path))?;
     let run = Run::read(path);
     if let Some(several) = run.several_runs() {
         return Err(Failure::failed(several));

@@ -14,7 +14,7 @@ const QUICK: u32 = 500;
 
 const EXAMPLES: &str = "\
 Prepares S1 to S4 of La Ragione & Magnanimo (2012) at 50, 100, 250 and 500 kPa, each sample a recorded run, and writes
-index.html, reproduction.json and reproduction.csv into the folder: Tables I to III and Figures 1 to 4 beside the paper's, and
+index.html, reproduction.json and reproduction.csv into the folder: Tables I to III and Figures 1 to 4 compared with the paper's, and
 every model judged. Started again after an interruption, it continues, to the same bytes.
 
 Examples:
@@ -48,7 +48,7 @@ pub(crate) struct Args {
     distance: Option<PathBuf>,
     #[command(flatten)]
     engine: EngineArgs,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -139,7 +139,7 @@ fn distance(folder: &Path, format: Format) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// The same for every place where the command was typed.
+/// Command and version, equal for every place where the command was typed.
 fn provenance(args: &Args, grains: u32, root: &Path) -> Provenance {
     let mut command = "grainlab reproduce".to_owned();
     if args.seeds != 1 {

@@ -37,11 +37,7 @@ fn help() -> String {
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     pipe::watch();
     let node = NodeKind::named(&args.node, VIEWERS).map_err(Failure::usage)?;
-    let (ros, plain) = RosArgs::parse(&args.rest).map_err(Failure::usage)?;
-    if let Some(stranger) = plain.first() {
-        let message = format!("unexpected argument {stranger:?}; ROS arguments come after --ros-args");
-        return Err(Failure::usage(message));
-    }
+    let ros = ros_arguments(&args.rest)?;
     // Invalid names are refused by the node.
     Names::from_args(node.name(), &ros)
         .map_or(Ok(()), |names| node.check_remaps(&names))
@@ -50,6 +46,17 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let exit = run_node(&node.spec(), &ros, |bus, parameters| node.build(bus, parameters, &recorded));
     print_recorded(&recorded)?;
     Ok(exit)
+}
+
+/// Reads ROS 2 arguments, and refuses others.
+pub(crate) fn ros_arguments(words: &[String]) -> Result<RosArgs, Failure> {
+    let (ros, plain) = RosArgs::parse(words).map_err(Failure::usage)?;
+    match plain.first() {
+        None => Ok(ros),
+        Some(stranger) => Err(Failure::usage(format!(
+            "unexpected argument {stranger:?}; ROS arguments come after --ros-args"
+        ))),
+    }
 }
 
 /// Prints the counts of a recorder's recording, if one finished.

@@ -130,7 +130,7 @@ fn create(new: &New) -> Result<Exit, Failure> {
         .map_err(Failure::usage)?;
     let file = OpenOptions::new().write(true).create_new(true).open(&path);
     let written = file.and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    written.map_err(Failure::at(&path))?;
     print(&format!("{}\n", path.display()))?;
     Ok(Exit::Done)
 }

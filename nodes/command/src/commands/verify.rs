@@ -1,4 +1,4 @@
-//! `grainlab verify`: this program beside numbers of other codes and of the literature.
+//! `grainlab verify`: this program compared with other codes and with the literature.
 
 mod embedded;
 mod suites;
@@ -30,7 +30,7 @@ pub(crate) struct Args {
     /// The slow suites too: minutes
     #[arg(long)]
     slow: bool,
-    /// How to print the comparisons
+    /// Format of the comparisons
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }

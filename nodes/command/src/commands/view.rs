@@ -1,8 +1,9 @@
 //! `grainlab view`: packings in three dimensions, as a page or as a picture; a running laboratory as a page.
 
 use super::packings::import;
+use super::run::ros_arguments;
 use grainlab_console::{Failure, count, print, write_whole};
-use grainlab_node_kit::{Exit, RosArgs};
+use grainlab_node_kit::Exit;
 use grainlab_recordings::import::{Imported, each};
 use grainlab_report::write_page;
 use grainlab_viewer::{Film, MOST_GRAINS, Picture, Quantity, Size, View, page};
@@ -22,7 +23,7 @@ Examples:
 The page of --live is served on 127.0.0.1 until Ctrl-C. Without ROS_DOMAIN_ID it finds the run that was launched on this host.
 It belongs to no run, and no process waits for it.";
 
-/// What to show.
+/// Packings to show, or a running laboratory.
 #[derive(Debug, clap::Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS), allow_negative_numbers = true)]
 pub(crate) struct Args {
@@ -53,33 +54,17 @@ pub(crate) struct Args {
     /// State of the PNG, counted from 1 in order of time; negative from the end
     #[arg(long, value_name = "N", default_value_t = -1, requires = "png")]
     state: i64,
-    /// What the colours of the PNG show
-    #[arg(long, value_enum, default_value_t, requires = "png")]
-    color: Colour,
+    /// Colours of the PNG: contacts of each grain that are not with rattlers, mean normal force of its contacts, or whether it
+    /// carries force [default: coordination]
+    #[arg(long, value_name = "QUANTITY", value_parser = COLOURS.map(|(name, _)| name), requires = "png")]
+    color: Option<String>,
     #[command(flatten)]
     import: import::Args,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-enum Colour {
-    /// Contacts of each grain that are not with rattlers
-    #[default]
-    Coordination,
-    /// Mean normal force of the contacts of each grain
-    Force,
-    /// Whether each grain carries force
-    Rattlers,
-}
-
-impl From<Colour> for Quantity {
-    fn from(colour: Colour) -> Self {
-        match colour {
-            Colour::Coordination => Self::Coordination,
-            Colour::Force => Self::Force,
-            Colour::Rattlers => Self::Rattlers,
-        }
-    }
-}
+/// Quantities that colours show, by name.
+const COLOURS: [(&str, Quantity); 3] =
+    [("coordination", Quantity::Coordination), ("force", Quantity::Force), ("rattlers", Quantity::Rattlers)];
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -93,10 +78,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 fn live(args: &Args) -> Result<Exit, Failure> {
     let words =
         args.ros_args.iter().flat_map(|rest| std::iter::once("--ros-args".to_owned()).chain(rest.clone()));
-    let (ros, plain) = RosArgs::parse(&words.collect::<Vec<_>>()).map_err(Failure::usage)?;
-    if let Some(stranger) = plain.first() {
-        return Err(Failure::usage(format!("unexpected argument {stranger:?}")));
-    }
+    let ros = ros_arguments(&words.collect::<Vec<_>>())?;
     let options = grainlab_live::Options { port: args.port, ros };
     grainlab_live::run(&options, |url| if args.open { open(url.as_ref()) } else { Ok(()) })
 }
@@ -180,7 +162,7 @@ fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
     if args.state == 0 {
         return Err(Failure::usage("--state 0: states are counted from 1, or from -1 at the end"));
     }
-    // Of those at the end, only as many as are needed are kept.
+    // Only as many of those at the end as are needed are kept.
     let mut kept = std::collections::VecDeque::new();
     let mut count = 0;
     let exit = packings(args, file, |imported| {
@@ -201,8 +183,10 @@ fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
     let view = kept.pop_front().filter(|_| is_there).ok_or_else(|| {
         Failure::failed(format!("{}: no state {}: there are {count}", file.display(), args.state))
     })?;
-    let bytes = Picture::with_legend(&view, args.color.into(), size).png().map_err(Failure::failed)?;
-    write_whole(png, bytes).map_err(|e| Failure::failed(format!("{}: {e}", png.display())))?;
+    let named = |(name, _): &(&str, Quantity)| args.color.as_deref() == Some(*name);
+    let colour = COLOURS.into_iter().find(named).map_or(Quantity::Coordination, |(_, quantity)| quantity);
+    let bytes = Picture::with_legend(&view, colour, size).png().map_err(Failure::failed)?;
+    write_whole(png, bytes).map_err(Failure::at(png))?;
     print(&format!("{}\n", png.display()))?;
     Ok(exit)
 }

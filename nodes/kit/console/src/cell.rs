@@ -2,7 +2,7 @@
 
 use crate::output::exact;
 
-/// A value.
+/// A typed value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Cell {
     /// Undefined, or not known.
@@ -10,11 +10,11 @@ pub enum Cell {
     Unknown,
     /// A number; one that is not finite is unknown.
     Number(f64),
-    /// A count.
+    /// A whole number.
     Count(u64),
     /// Yes or no.
     Flag(bool),
-    /// A text.
+    /// A text or word.
     Text(String),
 }
 

@@ -2,6 +2,7 @@
 
 use grainlab_msgs::Exit;
 use std::fmt;
+use std::path::Path;
 
 /// A message for stderr and its exit code.
 #[derive(Debug)]
@@ -25,6 +26,11 @@ impl Failure {
     /// Something failed: exit 1.
     pub fn failed(message: impl fmt::Display) -> Self {
         Self::new(Exit::Failure, message)
+    }
+
+    /// A failure about this file or folder: exit 1.
+    pub fn at<E: fmt::Display>(path: &Path) -> impl Fn(E) -> Self {
+        move |e| Self::failed(format!("{}: {e}", path.display()))
     }
 }
 

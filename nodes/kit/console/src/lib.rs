@@ -1,4 +1,4 @@
-//! What every process has: its terminal, its signals, the end of a command.
+//! Common to every process: its terminal, its signals, the end of a command.
 //!
 //! - [`Failure`], [`worse`]: the end of a command
 //! - [`Format`], [`Table`], [`print()`], [`say!`]: its output

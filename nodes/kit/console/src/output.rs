@@ -55,7 +55,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     print_more(text).map(|_| ())
 }
 
-/// The same for a command that prints until it is stopped: false once nobody reads any more.
+/// Writes as [`print()`], for a command that prints until it is stopped: false once nobody reads any more.
 pub fn print_more(text: &str) -> Result<bool, Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -88,7 +88,7 @@ impl Table {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
-    /// The same with only these columns, in this order; an unknown one is returned as the error.
+    /// Selects these columns, in this order; an unknown one is returned as the error.
     pub fn select(&self, columns: &[String]) -> Result<Self, String> {
         let header = self.rows.first().map_or(&[][..], Vec::as_slice);
         let at = |name: &String| header.iter().position(|h| h == name).ok_or_else(|| name.clone());
@@ -101,7 +101,7 @@ impl Table {
         self.rows.first().map_or(&[], Vec::as_slice)
     }
 
-    /// The same without the columns in which no row has a value: every cell is a `-`.
+    /// Removes the columns in which no row has a value: every cell is a `-`.
     #[must_use]
     pub fn without_empty_columns(mut self) -> Self {
         let (header, rows) = self.rows.split_at(1);
@@ -154,7 +154,7 @@ impl Default for CsvText {
 }
 
 impl CsvText {
-    /// Without lines.
+    /// A text without lines.
     pub fn new() -> Self {
         // The default buffer of 8 KiB costs more than a line.
         Self(csv::WriterBuilder::new().flexible(true).buffer_capacity(512).from_writer(Vec::new()))
@@ -166,7 +166,7 @@ impl CsvText {
         let _ = self.0.write_record(cells);
     }
 
-    /// The lines.
+    /// The lines so far.
     pub fn finish(self) -> String {
         let bytes = self.0.into_inner().unwrap_or_default();
         String::from_utf8(bytes).unwrap_or_default()

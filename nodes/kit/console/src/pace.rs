@@ -1,4 +1,4 @@
-//! How fast a quantity grows, by the wall clock of the reader.
+//! Rate of growth of a quantity, by the wall clock of the reader.
 
 use std::collections::VecDeque;
 use std::time::Duration;

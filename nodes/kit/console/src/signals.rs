@@ -19,7 +19,7 @@ pub struct Signals {
     arrivals: UnixStream,
 }
 
-/// Whether the process was started with this signal ignored.
+/// True if the process was started with this signal ignored.
 fn is_ignored(signal: i32) -> bool {
     // SAFETY: with a null action, `sigaction` only writes the current one into `present`.
     unsafe {
@@ -28,7 +28,7 @@ fn is_ignored(signal: i32) -> bool {
     }
 }
 
-/// What a process writes when it ignores a signal.
+/// Message of a process that ignores a signal.
 const IGNORED: &[u8] =
     b"a signal that the launcher did not send is ignored: end the launcher, or send SIGKILL\n";
 
@@ -73,7 +73,7 @@ impl Signals {
         Ok(Self { requested, arrivals: UnixStream::from_std(arrivals) })
     }
 
-    /// Whether a signal arrived.
+    /// True once a signal arrived.
     pub fn requested(&self) -> bool {
         self.requested.load(Ordering::Relaxed)
     }

@@ -9,15 +9,15 @@ const WIDTH: usize = 80;
 /// To the first column, and erase the line.
 const ERASE: &str = "\r\x1b[2K";
 
-/// Whether a live line is on the terminal. Changed under the lock of stderr.
+/// True while a live line is on the terminal. Changed under the lock of stderr.
 static SHOWN: AtomicBool = AtomicBool::new(false);
 
 /// A terminal on stderr on which a line can be drawn again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Terminal {
-    /// Columns.
+    /// Number of columns.
     pub width: usize,
-    /// Whether colours are wanted.
+    /// True if colours are wanted.
     pub colour: bool,
 }
 

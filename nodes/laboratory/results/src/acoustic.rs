@@ -7,15 +7,15 @@ use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::*};
 use grainlab_emt::{Conditions, Measured, Modulus, WaveModuli};
 use grainlab_msgs::boundary::WaveSpeedsReading;
-use serde::Serialize;
-use serde::ser::{SerializeMap, Serializer};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::{Value, json};
 
 /// Wave speeds, and the moduli that follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcousticReport {
-    /// Which of several measurements of the packing it is; `None` if there is one only.
+    /// Name among several measurements of the packing; `None` if there is one only.
     pub measurement: Option<Measurement>,
-    /// The speeds.
+    /// Speeds with their errors and conditions.
     pub reading: WaveSpeedsReading,
     /// Density of all grains, kg/m³.
     pub(crate) bulk_density: f64,
@@ -139,41 +139,24 @@ impl Serialize for AcousticReport {
             map.serialize_entry("measurement", measurement)?;
         }
         entries(&mut map, ACOUSTIC, self)?;
-        let speeds: Vec<SpeedView> = self.reading.speeds.iter().map(SpeedView::from).collect();
-        map.serialize_entry("speeds", &speeds)?;
-        let modes: Vec<SpeedView> = self.modes.iter().map(SpeedView::from).collect();
-        map.serialize_entry("modes", &modes)?;
+        map.serialize_entry("speeds", &self.reading.speeds.iter().map(speed).collect::<Value>())?;
+        map.serialize_entry("modes", &self.modes.iter().map(speed).collect::<Value>())?;
         map.serialize_entry("warnings", &self.warnings())?;
         map.end()
     }
 }
 
-/// One speed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct SpeedView {
-    direction: [f64; 3],
-    polarization: [f64; 3],
-    /// m/s.
-    speed: f64,
-    stddev: Option<f64>,
-    method: &'static str,
-    /// Hz; null if extrapolated to zero.
-    frequency: Option<f64>,
-    strain_amplitude: f64,
-}
-
-impl From<&MeasuredWave> for SpeedView {
-    fn from(m: &MeasuredWave) -> Self {
-        Self {
-            direction: m.wave.direction.into(),
-            polarization: m.wave.polarization.into(),
-            speed: m.wave.speed,
-            stddev: m.wave.stddev,
-            method: m.method.word(),
-            frequency: m.frequency,
-            strain_amplitude: m.strain_amplitude,
-        }
-    }
+/// One speed, m/s and Hz; a frequency that is extrapolated to zero is null.
+fn speed(m: &MeasuredWave) -> Value {
+    json!({
+        "direction": <[f64; 3]>::from(m.wave.direction),
+        "polarization": <[f64; 3]>::from(m.wave.polarization),
+        "speed": m.wave.speed,
+        "stddev": m.wave.stddev,
+        "method": m.method.word(),
+        "frequency": m.frequency,
+        "strain_amplitude": m.strain_amplitude,
+    })
 }
 
 #[cfg(test)]

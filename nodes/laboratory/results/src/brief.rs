@@ -1,19 +1,18 @@
 //! A launched run in at most 20 lines: preparation, measurements, estimates, and the directory.
 
-mod shown;
 mod states;
 
-pub use shown::moduli;
+pub use crate::packing_text::moduli;
 
 use crate::acoustic_text;
 use crate::inference::{Inference, Origin, by_origin};
+use crate::packing_text::eps;
 use crate::read_back::InvertedPacking;
 use crate::summary::Summary;
 use grainlab_console::{count, fixed};
 use grainlab_core::Vec3;
 use grainlab_core::results::{InferredQuantity, PackingReport};
 use grainlab_msgs::{Exit, topics};
-use shown::eps;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -29,8 +28,10 @@ const MOST_NOTES: usize = 1;
 /// The result of a run as text. `files` are those that the directory has, and `program` is the name of the binary on the command
 /// line.
 pub fn text(s: &Summary, directory: &Path, files: &[&str], program: &str) -> String {
-    let mut lines: Vec<String> =
-        ended(s.exit, s.reason.as_deref(), s.saved_step).map(|why| row("Ended", &why)).into_iter().collect();
+    let mut lines: Vec<String> = ended(s.launched.exit, s.reason.as_deref(), s.saved_step)
+        .map(|why| row("Ended", &why))
+        .into_iter()
+        .collect();
     match s.states.as_slice() {
         [] => lines.push(row("Prepared", "no packing of the end of a phase was measured")),
         [state] => lines.extend(one(state)),
@@ -44,7 +45,7 @@ pub fn text(s: &Summary, directory: &Path, files: &[&str], program: &str) -> Str
     let next = [
         [Exit::Interrupted, Exit::DataLoss]
             .iter()
-            .any(|exit| s.exit == exit.code())
+            .any(|exit| s.launched.exit == exit.code())
             .then(|| format!("launch --resume {folder}    # {}", goes_on(s.saved_step))),
         (!s.states.is_empty()).then(|| format!("analyze {folder}    # all that is measured")),
         Some(format!("bag info {folder}    # what was recorded")),
@@ -56,7 +57,7 @@ pub fn text(s: &Summary, directory: &Path, files: &[&str], program: &str) -> Str
     lines.join("\n") + "\n"
 }
 
-/// Where a run that is resumed goes on.
+/// Step from which a resumed run goes on.
 pub fn goes_on(saved_step: Option<u64>) -> String {
     saved_step
         .map_or_else(|| "begins anew: no state was saved".to_owned(), |n| format!("goes on from step {n}"))
@@ -70,7 +71,7 @@ pub fn lost_words(lost: u64, uncounted_files: usize) -> String {
     }
 }
 
-/// What an exit code other than 0 means for the lines below it, with the step of the last packing in the recording.
+/// Meaning of an exit code other than 0 for the lines below it, with the step of the last packing in the recording.
 pub fn ended(code: u8, reason: Option<&str>, saved_step: Option<u64>) -> Option<String> {
     let exit = Exit::ALL.into_iter().find(|e| e.code() == code)?;
     let saved = || match saved_step {
@@ -192,7 +193,7 @@ fn measured(r: &PackingReport) -> String {
     format!("G12 {g12} MPa, G13 {g13} MPa, Theta {theta} MPa")
 }
 
-/// What was inferred from data that are not about a packing of the run.
+/// Data that were inverted and are not about a packing of the run.
 fn of_instruments(results: &[Inference]) -> Option<String> {
     let data: BTreeSet<String> = results.iter().filter_map(|r| r.origin().data()).collect();
     let first = data.first()?;
@@ -231,13 +232,13 @@ fn estimate(
 }
 
 fn pace(s: &Summary) -> String {
-    let since = if s.resumed { " since it was resumed" } else { "" };
-    let mut text = format!("{:.1} s{since}", s.wall_seconds);
+    let since = if s.launched.resumed { " since it was resumed" } else { "" };
+    let mut text = format!("{:.1} s{since}", s.launched.wall_seconds);
     if let Some(rate) = s.particle_steps_per_second.filter(|rate| *rate > 0.0) {
         text += &format!(", {:.1} M particle-steps/s", rate / 1e6);
     }
-    if let Some(n) = s.exchanges {
-        let in_all = if s.resumed { " in all" } else { "" };
+    if let Some(n) = s.launched.exchanges {
+        let in_all = if s.launched.resumed { " in all" } else { "" };
         text += &format!(", {}{in_all}", count(n, "exchange"));
     }
     let (messages, lost) = s.topics.iter().fold((0, 0), |(m, l), t| (m + t.recorded, l + t.lost));
@@ -245,13 +246,17 @@ fn pace(s: &Summary) -> String {
     text += &match s.topics.is_empty() {
         true => "; messages were not counted".to_owned(),
         false => {
-            format!("; {} recorded, {}", count(messages, "message"), lost_words(lost, s.uncounted_files))
+            format!(
+                "; {} recorded, {}",
+                count(messages, "message"),
+                lost_words(lost, s.launched.uncounted_files)
+            )
         }
     };
-    if s.film.packings > 0 {
-        text += &format!(", {} within phases", count(s.film.packings, "packing"));
+    if s.within_phases.packings > 0 {
+        text += &format!(", {} within phases", count(s.within_phases.packings, "packing"));
     }
-    for node in s.nodes.iter().filter(|n| n.restarts > 0) {
+    for node in s.launched.nodes.iter().filter(|n| n.restarts > 0) {
         text += &format!("; {} was restarted {}", node.name, count(node.restarts, "time"));
     }
     text

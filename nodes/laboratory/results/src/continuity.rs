@@ -1,4 +1,4 @@
-//! Which exchanges of the lockstep are in a recording, by the numbers that requests and answers carry.
+//! Exchanges of the lockstep that a recording has, by the numbers that requests and answers carry.
 
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{Topic, topics};

@@ -18,7 +18,7 @@ pub struct Inference {
     /// Node that inferred it; absent if unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
-    /// Which of several measurements of the packing it is from; absent if there is one only.
+    /// Measurement of the packing, where there are several; else absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measurement: Option<Measurement>,
     /// Result of the model.
@@ -47,12 +47,12 @@ pub struct Origin {
     pub source: Option<String>,
     /// Node that inferred.
     pub by: Option<String>,
-    /// Which of several measurements of the packing.
+    /// Measurement of the packing, where there are several.
     pub measurement: Option<Measurement>,
 }
 
 impl Origin {
-    /// The same with the node that inferred.
+    /// Data, and the node that inferred from them.
     pub(crate) fn data_and_node(&self) -> Option<String> {
         Some(format!("{} ({})", self.data()?, self.by.as_deref().unwrap_or("an unknown program")))
     }
@@ -86,7 +86,7 @@ pub fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
 }
 
 impl Inference {
-    /// Its origin.
+    /// Origin of the data.
     pub fn origin(&self) -> Origin {
         Origin { source: self.source.clone(), by: self.by.clone(), measurement: self.measurement.clone() }
     }

@@ -1,6 +1,6 @@
 //! One measured packing: the output of `grainlab analyze`, and an entry of `summary.json`.
 
-use crate::probe::{ProbeView, ScanView};
+use crate::probe::ProbeView;
 use crate::quantities::{cells, columns, entries};
 use grainlab_console::Table;
 use grainlab_core::quantities;
@@ -16,7 +16,7 @@ pub struct MeasuredPacking {
     pub source: String,
     /// Step of the packing in its source.
     pub step: u64,
-    /// What was measured.
+    /// Measured structure, stress and stiffness.
     pub report: PackingReport,
     /// Position on the loading path; `None` if no simulator recorded it.
     pub position: Option<PathPosition>,
@@ -26,8 +26,6 @@ pub struct MeasuredPacking {
     pub warnings: Vec<String>,
     /// Details of the probe, if the stiffness was measured by one.
     pub probe: Option<ProbeView>,
-    /// Probes of several amplitudes, if set.
-    pub scan: Option<ScanView>,
 }
 
 /// Quantities that precede those of the packing.
@@ -45,19 +43,10 @@ impl MeasuredPacking {
     /// The report of a packing of this source; the other fields are empty.
     pub fn new(source: String, report: PackingReport) -> Self {
         let step = report.step;
-        Self {
-            source,
-            step,
-            report,
-            position: None,
-            seconds: None,
-            warnings: Vec::new(),
-            probe: None,
-            scan: None,
-        }
+        Self { source, step, report, position: None, seconds: None, warnings: Vec::new(), probe: None }
     }
 
-    /// The same at this position of its run, without what its strain does not tell there.
+    /// Sets the position in the run, and removes the strain where that position does not tell it.
     #[must_use]
     pub fn at(mut self, position: Option<PathPosition>) -> Self {
         self.position = position;
@@ -73,7 +62,6 @@ impl Serialize for MeasuredPacking {
         entries(&mut map, QUANTITIES, &self.report)?;
         map.serialize_entry("warnings", &self.warnings)?;
         map.serialize_entry("probe", &self.probe)?;
-        map.serialize_entry("scan", &self.scan)?;
         map.end()
     }
 }

@@ -1,4 +1,4 @@
-//! Which of several measurements of one packing is which: a laboratory may send the speeds of several shots.
+//! Names of several measurements of one packing: a laboratory may send the speeds of several shots.
 
 use grainlab_msgs::builtin_interfaces::Time;
 use serde::{Serialize, Serializer};
@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Measurement {
     /// In the order of arrival, from 1.
     number: usize,
-    /// What tells it from the others, for a reader.
+    /// Name, node or stamp that tells it from the others, for a reader.
     pub label: String,
 }
 
@@ -26,7 +26,7 @@ impl Serialize for Measurement {
     }
 }
 
-/// What an answer copies from its data.
+/// Name and stamp, which an answer copies from its data.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Identity {
     name: String,
@@ -96,7 +96,7 @@ impl Measurements {
         self.several().then(|| self.named(identity, nth, ""))
     }
 
-    /// The same for an answer. One of data that nothing tells apart has a name of its own.
+    /// Name of an answer. One of data that nothing tells apart has a name of its own.
     pub(crate) fn label_of_answer(&self, identity: &Identity, nth: usize) -> Option<Measurement> {
         self.several().then(|| self.named(identity, nth, "answer "))
     }

@@ -7,13 +7,13 @@ use std::marker::PhantomData;
 
 /// A result that can be printed in every format.
 pub trait Printed: Serialize + Sized {
-    /// As text.
+    /// Text for people.
     fn text(&self) -> String;
 
     /// Results as a table, one per row, at full precision.
     fn table(results: &[Self]) -> Table;
 
-    /// What a reader of a table must know, each with its packing. CSV has no place for it: it goes to stderr.
+    /// Warnings for a reader of a table, each with its packing. CSV has no place for them: they go to stderr.
     fn warnings(&self) -> Vec<String>;
 }
 

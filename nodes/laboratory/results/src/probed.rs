@@ -23,7 +23,7 @@ pub struct Probed {
 
 /// Quantities of the packing in CSV: the inputs of an inversion besides the speeds, and its truth. The moduli
 /// are those from the speeds, under the names that `grainlab invert --table` reads.
-fn beside() -> impl Iterator<Item = &'static Quantity<PackingReport>> {
+fn inputs_and_truth() -> impl Iterator<Item = &'static Quantity<PackingReport>> {
     let inputs = ["grains", "phi", "axial_q_over_p", "size_spread", "pressure_pa"];
     let grains = ["grain_shear_modulus_pa", "poisson", "contact_law", "smooth"];
     let truth = InferredQuantity::countable().map(InferredQuantity::name);
@@ -52,11 +52,11 @@ impl Printed for Probed {
 
     fn table(results: &[Self]) -> Table {
         let origin = || ORIGIN.iter().take(2);
-        let mut t = Table::new(columns(origin()).chain(columns(ACOUSTIC)).chain(columns(beside())));
+        let mut t = Table::new(columns(origin()).chain(columns(ACOUSTIC)).chain(columns(inputs_and_truth())));
         for Probed { packing, acoustic } in results {
             let none = || columns(ACOUSTIC).map(|_| String::new()).collect();
             let acoustic: Vec<String> = acoustic.as_ref().map_or_else(none, |a| cells(ACOUSTIC, a).collect());
-            t.row(cells(origin(), packing).chain(acoustic).chain(cells(beside(), &packing.report)));
+            t.row(cells(origin(), packing).chain(acoustic).chain(cells(inputs_and_truth(), &packing.report)));
         }
         t
     }

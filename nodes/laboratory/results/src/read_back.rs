@@ -29,7 +29,7 @@ pub struct InvertedPacking {
     /// The other measurements of wave speeds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub further_acoustic: Vec<AcousticReport>,
-    /// What each model infers from the data of each topic.
+    /// Estimates of each model from the data of each topic.
     pub results: Vec<Inference>,
 }
 
@@ -67,7 +67,7 @@ pub struct ReadBack {
     /// Packings without a structure.
     pub not_analysed: usize,
     /// Packings published within phases, and the number of those measured. They are only in the recording.
-    pub(crate) film: Film,
+    pub(crate) within_phases: WithinPhases,
     /// Steps of the packings with a result, by topic.
     pub results: BTreeMap<&'static str, BTreeSet<u64>>,
     /// Processes on the bus that are not part of the run.
@@ -98,7 +98,7 @@ impl ReadBack {
 
 /// Packings published within phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub(crate) struct Film {
+pub(crate) struct WithinPhases {
     /// Number of packings.
     pub(crate) packings: usize,
     /// Number with a structure.
@@ -188,9 +188,9 @@ pub fn read(recording: &Recording) -> ReadBack {
         back.dispute(about.dispute());
         let jammed = about.report.as_ref().is_some_and(|report| report.stiffness().is_some());
         if about.is_within_phase() {
-            back.film.packings += 1;
-            back.film.structures += usize::from(about.report.is_some());
-            back.film.moduli += usize::from(jammed);
+            back.within_phases.packings += 1;
+            back.within_phases.structures += usize::from(about.report.is_some());
+            back.within_phases.moduli += usize::from(jammed);
             continue;
         }
         let ((results, others), speeds, notes) = (about.results(), about.speeds(), about.notes());

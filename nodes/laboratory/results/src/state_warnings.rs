@@ -95,7 +95,7 @@ fn below_its_bound(report: &PackingReport) -> Option<String> {
     })
 }
 
-/// Whether a packing with a stiffness resists some strains, and not all.
+/// True for a packing with a stiffness that resists some strains, and not all.
 pub fn yields(report: &PackingReport) -> bool {
     report.stiffness().is_some_and(|s| least(s) < NO_RESISTANCE)
 }

@@ -1,31 +1,22 @@
 //! The result of a launched run, with the stable keys of `summary.json`.
 
 use crate::inference::Inference;
-use crate::read_back::{Film, InvertedPacking, ReadBack};
+use crate::read_back::{InvertedPacking, ReadBack, WithinPhases};
 use grainlab_msgs::{Exit, Report};
 use grainlab_recordings::TopicTally;
 use grainlab_recordings::strangers::StrangerView;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A run.
+/// A launched run.
 #[derive(Debug, Serialize)]
 pub struct Summary {
-    pub(crate) scene: String,
-    pub(crate) seed: u64,
-    pub(crate) domain: u16,
-    /// Id of the run.
-    pub(crate) run: String,
-    /// The run was resumed: times and rates are those of its last part, and counts those of the whole run.
-    pub(crate) resumed: bool,
-    pub(crate) wall_seconds: f64,
-    pub(crate) nodes: Vec<NodeEnd>,
+    /// Data of the launcher.
+    #[serde(flatten)]
+    pub(crate) launched: Launched,
     /// Processes whose messages were left out.
     pub(crate) strangers: Vec<StrangerView>,
     pub(crate) topics: Vec<TopicCount>,
-    /// Files of the recording whose recorder was killed: the counts of lost messages are without theirs.
-    pub(crate) uncounted_files: usize,
-    pub(crate) exchanges: Option<u64>,
     pub(crate) exchanges_per_second: Option<f64>,
     /// Fraction of the run's time that the simulator waited for answers.
     pub(crate) waiting_fraction: Option<f64>,
@@ -37,12 +28,10 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) of_instruments: Vec<Inference>,
     /// Packings published within phases.
-    pub(crate) film: Film,
-    pub(crate) recording: Option<String>,
+    pub(crate) within_phases: WithinPhases,
     /// Step of the last packing in the recording, from which a run that is not finished goes on.
     pub(crate) saved_step: Option<u64>,
-    pub(crate) exit: u8,
-    /// Why `exit` is not 0, if the launcher knows.
+    /// Why the exit code is not 0, if it is known.
     #[serde(skip)]
     pub(crate) reason: Option<String>,
     /// Why the run did not end as it should, and what is missing or could not be read, one line each.
@@ -58,7 +47,7 @@ pub struct NodeEnd {
     pub pid: u32,
     /// Exit code; null if a signal ended it.
     pub exit: Option<i32>,
-    /// How often it was started again.
+    /// Number of times that it was started again.
     pub restarts: usize,
 }
 
@@ -93,118 +82,75 @@ impl TopicCount {
     }
 }
 
-/// The counters of the simulator in its last report.
-#[derive(Clone, Copy, Debug, Default)]
-struct Counters {
-    exchanges: Option<f64>,
-    wall: Option<f64>,
-    waiting: Option<f64>,
-    particle_steps: Option<f64>,
-}
-
-impl Counters {
-    fn of<'a>(reports: impl Iterator<Item = &'a Report>) -> Self {
-        let simulator = |r: &&Report| r.health.values.iter().any(|(key, _)| key == "particle_steps_per_s");
-        let Some(report) = reports.filter(simulator).last() else { return Self::default() };
-        let number = |key: &str| {
-            let (_, value) = report.health.values.iter().find(|(k, _)| k == key)?;
-            value.parse::<f64>().ok().filter(|v| v.is_finite())
-        };
-        Self {
-            exchanges: number("exchanges"),
-            wall: number("wall_s").filter(|s| *s > 0.0),
-            waiting: number("waiting_s"),
-            particle_steps: number("particle_steps_per_s"),
-        }
-    }
-}
-
 impl Summary {
     /// Combines the data of the launcher with those of the recording.
     pub fn new(launched: Launched, back: ReadBack, tallies: Option<&[TopicTally]>) -> Self {
-        let counters = Counters::of(back.reports.values());
+        let has_counters = |r: &&Report| r.health.values.iter().any(|(key, _)| key == "particle_steps_per_s");
+        let simulator = back.reports.values().rfind(has_counters);
+        let number = |key: &str| {
+            let (_, value) = simulator?.health.values.iter().find(|(k, _)| k == key)?;
+            value.parse::<f64>().ok().filter(|v| v.is_finite())
+        };
+        let wall = number("wall_s").filter(|s| *s > 0.0);
+        let per_wall = |key: &str| Some(number(key)? / wall?);
         let warnings: Vec<String> = launched.reasons.iter().cloned().chain(back.complaints).collect();
-        // Of missing results the launcher may have no reason; the recording has.
-        let is_loss = launched.exit == Exit::DataLoss;
+        // The launcher may have no reason for missing results; the recording has.
+        let is_loss = launched.exit == Exit::DataLoss.code();
         let reason = launched.reasons.first().or(warnings.first().filter(|_| is_loss)).cloned();
-        let per_wall = |v: Option<f64>| Some(v? / counters.wall?);
         Self {
-            scene: launched.scene,
-            seed: launched.seed,
-            domain: launched.domain,
-            run: launched.run,
             strangers: back.strangers,
-            resumed: launched.resumed,
-            wall_seconds: launched.wall_seconds,
-            nodes: launched.nodes,
             topics: TopicCount::of(tallies.unwrap_or_default(), &launched.recorded),
-            uncounted_files: launched.uncounted_files,
-            exchanges: launched.exchanges,
-            exchanges_per_second: per_wall(counters.exchanges),
-            waiting_fraction: per_wall(counters.waiting),
-            particle_steps_per_second: counters.particle_steps,
+            exchanges_per_second: per_wall("exchanges"),
+            waiting_fraction: per_wall("waiting_s"),
+            particle_steps_per_second: number("particle_steps_per_s"),
             states: back.states,
             of_instruments: back.of_instruments,
-            film: back.film,
-            recording: launched.recording,
+            within_phases: back.within_phases,
             saved_step: back.saved_step,
-            exit: launched.exit.code(),
             reason,
             warnings,
+            launched,
         }
     }
 }
 
 /// The data that the launcher has of a run.
-#[derive(Debug)]
+#[derive(Debug, Default, Serialize)]
 pub struct Launched {
     /// Name of the scene.
     pub scene: String,
-    /// Its seed.
+    /// Seed of the scene.
     pub seed: u64,
-    /// DDS domain.
+    /// Number of the DDS domain.
     pub domain: u16,
     /// Id of the run.
     pub run: String,
+    /// The run was resumed: times and rates are those of its last part, and counts those of the whole run.
+    pub resumed: bool,
     /// From the first start of a process to the last end, s.
     pub wall_seconds: f64,
-    /// The run was resumed: the time is that of its last part.
-    pub resumed: bool,
+    /// Every process of the run.
+    pub nodes: Vec<NodeEnd>,
+    /// Files of the recording whose recorder was killed: the counts of lost messages are without theirs.
+    pub uncounted_files: usize,
     /// Exchanges in the recording, of the whole run.
     pub exchanges: Option<u64>,
-    /// Messages in the recording, by topic.
-    pub recorded: BTreeMap<String, u64>,
-    /// Files of the recording whose recorder was killed.
-    pub uncounted_files: usize,
-    /// Every process.
-    pub nodes: Vec<NodeEnd>,
     /// The directory of the recording; `None` if it cannot be read.
     pub recording: Option<String>,
-    /// How the run ended.
-    pub exit: Exit,
+    /// Exit code of the run.
+    pub exit: u8,
+    /// Messages in the recording, by topic.
+    #[serde(skip)]
+    pub recorded: BTreeMap<String, u64>,
     /// Why it did not end as it should, one line each.
+    #[serde(skip)]
     pub reasons: Vec<String>,
 }
 
 #[cfg(test)]
 impl Summary {
-    /// Of a run that left nothing.
+    /// Summary of a run that left nothing.
     pub(crate) fn of_nothing(exit: Exit) -> Self {
-        let launched = Launched {
-            scene: "made".to_owned(),
-            seed: 1,
-            domain: 0,
-            run: String::new(),
-            wall_seconds: 1.0,
-            resumed: false,
-            exchanges: None,
-            recorded: BTreeMap::new(),
-            uncounted_files: 0,
-            nodes: Vec::new(),
-            recording: None,
-            exit,
-            reasons: Vec::new(),
-        };
-        Self::new(launched, ReadBack::default(), None)
+        Self::new(Launched { exit: exit.code(), ..Launched::default() }, ReadBack::default(), None)
     }
 }

@@ -23,7 +23,7 @@ pub(crate) struct Args {
     /// Run directory or MCAP file
     #[arg(value_name = "PATH")]
     path: PathBuf,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }

@@ -51,8 +51,7 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    std::fs::create_dir_all(&args.out)
-        .map_err(|e| Failure::failed(format!("{}: {e}", args.out.display())))?;
+    std::fs::create_dir_all(&args.out).map_err(Failure::at(&args.out))?;
     let options = args.import.options()?;
     let mut writer = Writer::new(args.format, &args.path, &args.out);
     let mut failure = None;
@@ -85,7 +84,7 @@ struct Writer<'a> {
     packings: u64,
     /// The files made so far, which further parts extend.
     made: BTreeSet<String>,
-    /// Whether the strain of a packing was left out, and a line has said so.
+    /// True once the strain of a packing was left out, and a line has said so.
     strain_is_left_out: bool,
 }
 
@@ -164,7 +163,7 @@ mod tests {
 
     fn args(path: PathBuf, out: PathBuf, format: ExportFormat) -> Args {
         let import = import_flags::Args::default();
-        Args { path, out, format, import }
+        Args { path, out, format: format.to_owned(), import }
     }
 
     #[test]

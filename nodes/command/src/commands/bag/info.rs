@@ -14,7 +14,7 @@ pub(crate) struct Args {
     /// Run directory or MCAP file
     #[arg(value_name = "PATH")]
     path: PathBuf,
-    /// How to print the result
+    /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -55,7 +55,7 @@ struct View {
     unaccounted: Vec<PathBuf>,
 }
 
-/// What the table of topics does not show.
+/// Notes that the table of topics does not show.
 fn notes(view: &View) -> Vec<String> {
     let uncounted = |path: &PathBuf| {
         format!(

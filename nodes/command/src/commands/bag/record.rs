@@ -1,10 +1,10 @@
 //! `grainlab bag record`.
 
-use crate::commands::run::print_recorded;
+use crate::commands::run::{print_recorded, ros_arguments};
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
 use grainlab_msgs::Topic;
-use grainlab_node_kit::{Exit, NodeSpec, RosArgs, Scope, run_node};
+use grainlab_node_kit::{Exit, NodeSpec, Scope, run_node};
 use grainlab_recorder::{
     OtherTopics, Recorder, ResultSlot, Settings, SnapshotSettings, Wanted, contract_topics,
 };
@@ -102,10 +102,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         scope: Scope::Everyone,
         parameters: Vec::new(),
     };
-    let (ros, plain) = RosArgs::parse(&args.ros).map_err(Failure::usage)?;
-    if let Some(stranger) = plain.first() {
-        return Err(Failure::usage(format!("unexpected argument {stranger:?}")));
-    }
+    let ros = ros_arguments(&args.ros)?;
     let recorded = ResultSlot::default();
     let exit = run_node(&spec, &ros, |bus, _| Ok(Box::new(Recorder::new(bus, &settings, recorded.clone())?)));
     print_recorded(&recorded)?;

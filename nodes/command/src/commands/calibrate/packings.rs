@@ -1,6 +1,6 @@
 //! From the rows of a table to the packings that a calibration is learned from.
 
-use crate::commands::invert::{BadRow, Defaults, Row, Rows, State};
+use crate::commands::invert::{BadRow, Row, Rows, State};
 use grainlab_console::{Failure, say};
 use grainlab_core::Material;
 use grainlab_core::contact::SpringLaw;
@@ -22,7 +22,7 @@ pub(super) struct Naming<'a> {
 /// include that row.
 pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSample>, Failure> {
     let by = [naming.preparation, naming.packing].concat();
-    let mut rows = Rows::open(path, &by, Defaults::default())?;
+    let mut rows = Rows::open(path, &by, State::default())?;
     let (mut samples, mut bad) = (Vec::new(), 0);
     let work = |number: u64, row: Result<Row, BadRow>| match row {
         Ok(row) => sample(&row, naming.preparation.len()).map_err(|fault| format!("line {number}: {fault}")),

@@ -2,8 +2,7 @@
 
 use grainlab_console::Table;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration};
-use grainlab_emt::{DeviatorLaw, RattlerLaw, Reach, RelaxationCalibration, ScalingLaw};
+use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration, Reach, RelaxationCalibration};
 use std::collections::BTreeSet;
 
 /// Constants with their standard errors, scatter, and ranges.
@@ -62,87 +61,22 @@ fn line_table<'a>(lines: impl Iterator<Item = &'a IsotropicCalibration>) -> Stri
     t.text()
 }
 
+/// Reach of the laws of relaxed networks, and the scatter about them; the file has their coefficients.
 fn network_text(n: &RelaxationCalibration) -> String {
-    let RattlerLaw([a, b, c, d, e, f, g]) = n.rattlers;
     let names = ["ln bulk", "ln shear", "dilatational", "Voigt", "harmonic", "eps by stiffness", "k"];
     let mut scatter = Table::new(names);
     scatter.row((0..names.len()).map(|i| format!("{:.4}", n.scatter[i][i].max(0.0).sqrt())));
-    let Reach { z, eps, pressure, stiffness_ratio, size_spread, stress_ratio } = n.reach;
-    let growth =
-        n.scatter_by_state.map(|[sizes, pressure]| format!("exp({sizes:.2} s^2 {pressure:+.3} ln p)"));
-    let [of_scalars, of_deviators, of_k] = growth;
+    let Reach { z, eps, pressure: [p, q], stiffness_ratio, size_spread, stress_ratio } = n.reach;
+    let others =
+        [("z", z), ("eps", eps), ("k_t/k_n", stiffness_ratio), ("s", size_spread), ("q/p", stress_ratio)];
+    let others = others.map(|(name, [low, high])| format!(", {name} {low:.3} to {high:.3}")).concat();
     format!(
-        "\nRelaxed networks of {} grains, {}, in units of E*^(2/3) p^(1/3)\nz {:.3} to {:.3}, eps {:.3} to {:.3}, p/E* {:.2e} \
-         to {:.2e}, k_t/k_n {:.3} to {:.3}, s {:.3} to {:.3}, q/p {:.3} to {:.3}\np is p/E* over 1e-6, kappa k_t/k_n - 8/9, s \
-         the standard deviation of the radii over their mean, u = z/(z - 4)\n{}{}k = {a:.3} {b:+.4} z {c:+.4} z^2 {d:+.4} z^3 \
-         {e:+.4} ln p {f:+.3} s^2 {g:+.3} z s^2\nScatter of packings left out of the laws by their recipes, all but that of k times (z - 4)/z\n\
-         {}Its variance grows as {of_scalars} for bulk and shear, {of_k} for k, {of_deviators} for the others\n",
+        "\nRelaxed networks of {} grains, {}: p/E* {p:.2e} to {q:.2e}{others}\nScatter of packings left out of the laws by their \
+         recipes, all but that of k times (z - 4)/z\n{}",
         n.grains,
         grainlab_console::count(n.recipes as usize, "recipe"),
-        z[0],
-        z[1],
-        eps[0],
-        eps[1],
-        pressure[0],
-        pressure[1],
-        stiffness_ratio[0],
-        stiffness_ratio[1],
-        size_spread[0],
-        size_spread[1],
-        stress_ratio[0],
-        stress_ratio[1],
-        scalars(n),
-        deviators(n),
         scatter.text(),
     )
-}
-
-/// One line a term of the laws of ln Θ and ln G.
-fn scalars(n: &RelaxationCalibration) -> String {
-    let terms = ["1", "ln z", "ln(z - z0)", "z0", "ln p", "kappa", "s^2", "kappa ln z", "ln p ln z"];
-    let coefficients = [&n.theta, &n.shear].map(|law| {
-        let ScalingLaw { level, by_z, by_excess, onset, by_pressure, by_stiffness_ratio, .. } = *law;
-        let [by_mixed_ratio, by_mixed_pressure] = law.mixed;
-        [
-            level,
-            by_z,
-            by_excess,
-            onset,
-            by_pressure,
-            by_stiffness_ratio,
-            law.by_size_variance,
-            by_mixed_ratio,
-            by_mixed_pressure,
-        ]
-    });
-    by_term(["terms of ln X", "bulk", "shear"], &terms, |i| coefficients.map(|law| law[i]))
-}
-
-/// One line a term of the laws of the deviators.
-fn deviators(n: &RelaxationCalibration) -> String {
-    let head = ["terms of X", "dilatational deviator", "Voigt deviator", "harmonic part", "eps by stiffness"];
-    let laws = [&n.dilatation, &n.voigt, &n.harmonic, &n.eps_stiffness];
-    let of_eps = ["eps", "eps u", "eps s^2", "eps kappa", "eps ln p", "eps u ln p", "eps z", "eps u kappa"];
-    let of_stress = ["q/p", "q/p u", "q/p u ln p"];
-    let terms = [&of_eps[..], &of_stress].concat();
-    by_term(head, &terms, |i| {
-        laws.map(|DeviatorLaw { by_eps, by_stress_ratio }| {
-            by_eps.iter().chain(by_stress_ratio).nth(i).copied().unwrap_or(0.0)
-        })
-    })
-}
-
-fn by_term<const COLUMNS: usize, const LAWS: usize>(
-    head: [&str; COLUMNS],
-    terms: &[&str],
-    coefficients: impl Fn(usize) -> [f64; LAWS],
-) -> String {
-    let mut table = Table::new(head);
-    for (i, term) in terms.iter().enumerate() {
-        let numbers = coefficients(i).map(|v| format!("{v:.4}"));
-        table.row(std::iter::once((*term).to_owned()).chain(numbers));
-    }
-    table.text()
 }
 
 /// An error to two digits.

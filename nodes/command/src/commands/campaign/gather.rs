@@ -125,7 +125,7 @@ fn table(campaign: &Campaign, states: &[State<'_>]) -> Dataset {
     table
 }
 
-/// What each model inferred: `MODEL.k`, its standard deviation `MODEL.k_stddev`, …, `MODEL.status`. Data other than the report of the packing and
+/// Estimates of each model: `MODEL.k`, its standard deviation `MODEL.k_stddev`, …, `MODEL.status`. Data other than the report of the packing and
 /// the name of a node, where several infer, precede the model.
 fn inferred(results: &[Inference]) -> BTreeMap<String, Cell> {
     let mut cells = BTreeMap::new();

@@ -25,7 +25,7 @@ pub(super) struct Answer {
     pub(super) outcomes: Vec<Result<Estimate, EmtError>>,
 }
 
-/// As JSON.
+/// An answer as JSON.
 #[derive(Debug, Serialize)]
 pub(super) struct View<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -114,14 +114,6 @@ impl Answer {
         worse(self.worst_error(), if contradicts { Exit::PhysicsInvalid } else { Exit::Done })
     }
 
-    /// The exit code without regard to contradictions.
-    pub(super) fn refusal(&self) -> Exit {
-        if self.state.is_err() || !self.outcomes.iter().any(Result::is_ok) && self.errors().all(is_lacking) {
-            return Exit::Usage;
-        }
-        self.worst_error()
-    }
-
     fn worst_error(&self) -> Exit {
         self.errors().filter(|e| !is_lacking(e)).fold(Exit::Done, |exit, e| {
             worse(exit, if e.is_input_error() { Exit::Usage } else { Exit::PhysicsInvalid })
@@ -157,7 +149,7 @@ impl Answer {
         faults.into_iter().map(|(text, models)| format!("{}: {text}", models.join(", "))).collect()
     }
 
-    /// The same as lines for stderr, each with the number of the row.
+    /// The faults as lines for stderr, each with the number of the row.
     pub(super) fn complaint(&self, ways: &[Way]) -> String {
         let line = self.line.map_or_else(String::new, |l| format!("line {l}"));
         let place = match self.sample() {
@@ -174,7 +166,7 @@ impl Answer {
     }
 }
 
-/// Whether a model lacked an input, or an error to weigh a prior against.
+/// True if a model lacked an input, or an error to weigh a prior against.
 fn is_lacking(error: &EmtError) -> bool {
     matches!(error, EmtError::Missing { .. } | EmtError::NotCalibrated { .. } | EmtError::NoLikelihood { .. })
 }
@@ -187,7 +179,7 @@ fn status(state: &State, outcome: &Result<Estimate, EmtError>) -> Status {
     }
 }
 
-/// What contradicts what, or why nothing is determined.
+/// Contradictions, or the reason why nothing is determined.
 fn contradictions(state: &State, estimate: &Estimate) -> Vec<String> {
     let of_data = state.notes.iter().filter(|_| state.in_conflict).cloned();
     let is_reason = |w: &&Warning| w.is_contradiction() || estimate.status == Status::Unknown;

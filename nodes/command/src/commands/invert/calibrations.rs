@@ -1,7 +1,7 @@
 //! Calibrations by name.
 
 use grainlab_console::Failure;
-use grainlab_emt::{Calibration, Model};
+use grainlab_emt::Calibration;
 use grainlab_recordings::input;
 use std::path::Path;
 use std::sync::Arc;
@@ -9,28 +9,9 @@ use std::sync::Arc;
 /// The name for the default calibration of each model.
 pub(super) const DEFAULT: &str = "default";
 
-/// The constants of the models.
-#[derive(Clone, Debug)]
-pub(super) enum Choice {
-    /// Each model has its default calibration.
-    Default,
-    /// One calibration for all models.
-    One(Arc<Calibration>),
-}
-
-impl Choice {
-    /// `default`, a built-in name, or a file.
-    pub(super) fn named(name: &str) -> Result<Self, Failure> {
-        if name == DEFAULT { Ok(Self::Default) } else { load(name).map(Arc::new).map(Self::One) }
-    }
-
-    /// The calibration of this model.
-    pub(super) fn of(&self, model: &dyn Model) -> Arc<Calibration> {
-        match self {
-            Self::Default => Arc::new(model.default_calibration().clone()),
-            Self::One(calibration) => Arc::clone(calibration),
-        }
-    }
+/// A calibration for all models: a built-in one, or a file; `None` for `default`, by which each model has its own.
+pub(super) fn named(name: &str) -> Result<Option<Arc<Calibration>>, Failure> {
+    if name == DEFAULT { Ok(None) } else { load(name).map(Arc::new).map(Some) }
 }
 
 /// A built-in calibration by its name, or one from a file.

@@ -1,16 +1,22 @@
 //! The columns of a table, and the state of a row.
 
 use super::inputs::{INPUTS, Input, Role};
-use super::lines::LONGEST;
 use super::slips;
-use super::splitter::{Cells, Splitter};
-use super::state::{Defaults, State};
+use super::state::State;
+use csv::{ReaderBuilder, StringRecord, Terminator};
 use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
-use grainlab_emt::{Measured, Moduli, Modulus, check_structure};
+use grainlab_emt::{Moduli, Modulus, check_structure};
+use std::io::Read as _;
 
 /// Share of the largest entry of a stiffness up to which two values of one entry are the same, rounded to four digits.
 const SAME: f64 = 1e-3;
+
+/// Longest line of a table, bytes.
+const LONGEST: usize = 1 << 20;
+
+/// Columns that describe a row, and set no number of its state.
+const LABELS: [&str; 7] = ["contact_law", "smooth", "axis_found", "friction", "sample", "source", "step"];
 
 /// Positions of the inputs in a row. Other columns are ignored.
 pub(crate) struct Columns {
@@ -22,17 +28,12 @@ pub(crate) struct Columns {
     stiffness: Option<[usize; 36]>,
     /// Axis of the projection, to which moduli, strain ratios and truth refer, too; e3 by default.
     reference_axis: Option<[usize; 3]>,
-    /// Whether the moduli have the names of the projection that `grainlab analyze` prints.
+    /// True if the moduli have the names of the projection that `grainlab analyze` prints.
     projected: bool,
-    contact_law: Option<usize>,
-    smooth: Option<usize>,
-    axis_found: Option<usize>,
-    friction: Option<usize>,
-    sample: Option<usize>,
-    source: Option<usize>,
-    step: Option<usize>,
+    /// The columns of [`LABELS`] that are there.
+    labels: Vec<(&'static str, usize)>,
     group: Vec<usize>,
-    defaults: Defaults,
+    defaults: State,
 }
 
 /// A valid row.
@@ -52,10 +53,10 @@ pub(crate) struct BadRow {
 
 impl Columns {
     /// From a header line; rows are grouped by the columns named in `by`.
-    pub(crate) fn of_header(line: &[u8], by: &[String], defaults: Defaults) -> Result<Self, String> {
-        let mut splitter = Splitter::new();
-        let names = splitter.cells(line).map_err(|fault| format!("the header: {fault}"))?;
+    pub(crate) fn of_header(line: &[u8], by: &[String], defaults: State) -> Result<Self, String> {
+        let names = cells(line).map_err(|fault| format!("the header: {fault}"))?;
         let names: Vec<String> = names.iter().map(str::to_owned).collect();
+
         let find = |name: &str| -> Result<Option<usize>, String> {
             let mut at = names.iter().enumerate().filter(|(_, n)| *n == name).map(|(i, _)| i);
             match (at.next(), at.next()) {
@@ -63,6 +64,10 @@ impl Columns {
                 _ => Err(format!("column {name} is there twice")),
             }
         };
+        let mut labels = Vec::new();
+        for name in LABELS {
+            labels.extend(find(name)?.map(|at| (name, at)));
+        }
         let there = || format!("there are: {}", names.join(", "));
         let stiffness = stiffness_columns(&find)?;
         let entries = entries();
@@ -89,7 +94,7 @@ impl Columns {
         for (flag, key) in defaults.flags() {
             if let Some((_, column, _)) = inputs.iter().find(|(input, ..)| input.key == key) {
                 return Err(format!(
-                    "--{flag} is beside the column {}: leave one of them out",
+                    "--{flag} contradicts the column {}: leave one of them out",
                     names[*column]
                 ));
             }
@@ -111,26 +116,20 @@ impl Columns {
             projected: stiffness.is_some() || find("ti_c11_pa")?.is_some(),
             stiffness,
             reference_axis: axis_columns(&find)?,
-            contact_law: find("contact_law")?,
-            smooth: find("smooth")?,
-            axis_found: find("axis_found")?,
-            friction: find("friction")?,
-            sample: find("sample")?,
-            source: find("source")?,
-            step: find("step")?,
+            labels,
             group: group.collect::<Result<_, String>>()?,
             defaults,
             names,
         })
     }
 
-    /// Whether a column contains the truth of an estimate.
+    /// True if a column contains the truth of an estimate.
     pub(crate) fn has_truth(&self) -> bool {
         self.inputs.iter().any(|(input, ..)| matches!(input.role, Role::Truth(_)))
     }
 
     /// The state of a line; `None` if it is blank or a comment.
-    pub(crate) fn row(&self, line: &[u8], splitter: &mut Splitter) -> Option<Result<Row, BadRow>> {
+    pub(crate) fn row(&self, line: &[u8]) -> Option<Result<Row, BadRow>> {
         if line.first() == Some(&b'#') || line.iter().all(u8::is_ascii_whitespace) {
             return None;
         }
@@ -138,7 +137,7 @@ impl Columns {
         if line.len() > LONGEST {
             return Some(Err(anonymous(format!("it is longer than {} kB", LONGEST >> 10))));
         }
-        let cells = match splitter.cells(line) {
+        let cells = match cells(line) {
             Ok(cells) => cells,
             Err(fault) => return Some(Err(anonymous(fault.to_owned()))),
         };
@@ -147,28 +146,28 @@ impl Columns {
             return Some(Err(anonymous(fault)));
         }
         let state = self.state(&cells).map_err(|fault| BadRow { sample: self.sample(&cells), fault });
-        let group = self.group.iter().map(|c| group_label(cells.get(*c))).collect();
+        let group = self.group.iter().map(|c| group_label(&cells[*c])).collect();
         Some(state.map(|state| Row { state, group }))
     }
 
-    fn sample(&self, cells: &Cells<'_>) -> Option<String> {
-        if let Some(column) = self.sample {
-            return Some(cells.get(column).to_owned());
-        }
-        let source = cells.get(self.source?);
-        // One recording may contain many packings.
-        Some(match self.step {
-            Some(step) => format!("{source} step {}", cells.get(step)),
-            None => source.to_owned(),
-        })
+    /// The cell of one of [`LABELS`]; `None` without the column.
+    fn label<'a>(&self, cells: &'a StringRecord, name: &str) -> Option<&'a str> {
+        self.labels.iter().find(|(label, _)| *label == name).map(|(_, at)| &cells[*at])
     }
 
-    fn state(&self, cells: &Cells<'_>) -> Result<State, String> {
-        let mut state = State {
-            sample: self.sample(cells),
-            projected: self.projected,
-            ..State::of_defaults(Measured::exact(0.0), &self.defaults)
+    fn sample(&self, cells: &StringRecord) -> Option<String> {
+        let label = |name| self.label(cells, name);
+        // One recording may contain many packings.
+        let of_source = |source: &str| match label("step") {
+            Some(step) => format!("{source} step {step}"),
+            None => source.to_owned(),
         };
+        label("sample").map(str::to_owned).or_else(|| label("source").map(of_source))
+    }
+
+    fn state(&self, cells: &StringRecord) -> Result<State, String> {
+        let mut state =
+            State { sample: self.sample(cells), projected: self.projected, ..self.defaults.clone() };
         for (input, column, factor) in &self.inputs {
             let Some(value) = self.number(cells, *column)? else {
                 if input.role == Role::Pressure {
@@ -184,11 +183,11 @@ impl Columns {
                 check_structure(&state.truth).map_err(|e| format!("column {}: {e}", self.names[*column]))?;
             }
         }
-        if let Some(text) = self.contact_law.map(|column| cells.get(column)).filter(|text| !text.is_empty()) {
+        if let Some(text) = self.label(cells, "contact_law").filter(|text| !text.is_empty()) {
             state.contact_law = Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
         }
-        let smooth = flag(cells, self.smooth, "smooth")?;
-        let friction = self.friction.and_then(|column| cells.get(column).parse().ok());
+        let smooth = flag(self.label(cells, "smooth"), "smooth")?;
+        let friction = self.label(cells, "friction").and_then(|text| text.parse().ok());
         if smooth.is_none() && friction == Some(0.0) {
             let reason =
                 "contacts without friction have no tangential springs, and no model can invert their moduli";
@@ -197,7 +196,7 @@ impl Columns {
             ));
         }
         state.smooth = smooth.unwrap_or(false);
-        if flag(cells, self.axis_found, "axis_found")? == Some(false) {
+        if flag(self.label(cells, "axis_found"), "axis_found")? == Some(false) {
             let note = "no axis stood out in the wave speeds: the moduli are about e3, which need not be an axis of symmetry";
             state.notes.push(note.to_owned());
         }
@@ -212,7 +211,7 @@ impl Columns {
             self.about_e3(cells)?;
         }
         for (input, column, _) in self.inputs.iter().filter(|(input, ..)| input.role == Role::Stddev) {
-            if !cells.get(*column).is_empty() && input.get(&state).is_none() {
+            if !cells[*column].is_empty() && input.get(&state).is_none() {
                 let name = &self.names[*column];
                 return Err(format!("column {name} is a standard deviation of a quantity that is not there"));
             }
@@ -253,7 +252,7 @@ impl Columns {
     }
 
     /// Refuses entries of a stiffness, which are in the frame of the cell, as moduli about another axis than e3.
-    fn about_e3(&self, cells: &Cells<'_>) -> Result<(), String> {
+    fn about_e3(&self, cells: &StringRecord) -> Result<(), String> {
         let axis = self.axis(cells)?;
         let in_cell = [
             ("c11_pa", "ti_c11_pa"),
@@ -263,7 +262,7 @@ impl Columns {
             ("c66_pa", "g12_pa"),
         ];
         let given = |column: usize| {
-            in_cell.iter().find(|(name, _)| *name == self.names[column] && !cells.get(column).is_empty())
+            in_cell.iter().find(|(name, _)| *name == self.names[column] && !cells[column].is_empty())
         };
         match self.inputs.iter().find_map(|(_, column, _)| given(*column)) {
             Some((entry, about_axis)) if axis.xy().norm() > SAME => Err(format!(
@@ -275,8 +274,8 @@ impl Columns {
         }
     }
 
-    fn number(&self, cells: &Cells<'_>, column: usize) -> Result<Option<f64>, String> {
-        let text = cells.get(column);
+    fn number(&self, cells: &StringRecord, column: usize) -> Result<Option<f64>, String> {
+        let text = &cells[column];
         if text.is_empty() {
             return Ok(None);
         }
@@ -285,7 +284,7 @@ impl Columns {
 
     fn numbers<const N: usize>(
         &self,
-        cells: &Cells<'_>,
+        cells: &StringRecord,
         columns: &[usize; N],
     ) -> Result<[Option<f64>; N], String> {
         let mut values = [None; N];
@@ -296,7 +295,7 @@ impl Columns {
     }
 
     /// The stiffness, if its columns exist and are not empty.
-    fn stiffness(&self, cells: &Cells<'_>) -> Result<Option<Stiffness>, String> {
+    fn stiffness(&self, cells: &StringRecord) -> Result<Option<Stiffness>, String> {
         let Some(columns) = &self.stiffness else { return Ok(None) };
         let entries = self.numbers(cells, columns)?;
         if let Some(empty) = entries.iter().position(Option::is_none) {
@@ -310,7 +309,7 @@ impl Columns {
     }
 
     /// The reference axis, a unit vector; e3 by default.
-    fn axis(&self, cells: &Cells<'_>) -> Result<Vec3, String> {
+    fn axis(&self, cells: &StringRecord) -> Result<Vec3, String> {
         let Some(columns) = &self.reference_axis else { return Ok(Vec3::z()) };
         let axis = self.numbers(cells, columns)?;
         if axis == [None; 3] {
@@ -327,9 +326,31 @@ impl Columns {
     }
 }
 
+/// The cells of a line, without space around them. A cell in quotes may contain commas and doubled quotes, but no line break,
+/// so that an invalid cell affects only its line.
+fn cells(line: &[u8]) -> Result<StringRecord, &'static str> {
+    let text = std::str::from_utf8(line).map_err(|_| "it is not UTF-8 text")?;
+    let mut record = StringRecord::with_capacity(line.len(), line.len() / 4);
+    if !text.contains('"') {
+        text.split(',').for_each(|cell| record.push_field(cell.trim()));
+        return Ok(record);
+    }
+    // A quote that is not closed takes the line end into its cell.
+    let reader = ReaderBuilder::new()
+        .has_headers(false)
+        .terminator(Terminator::Any(b'\n'))
+        .from_reader(line.chain(&b"\n"[..]))
+        .read_record(&mut record);
+    if reader.is_err() || record.iter().any(|cell| cell.contains('\n')) {
+        return Err("a quote is not closed on its line");
+    }
+    record.trim();
+    Ok(record)
+}
+
 /// A cell that is true or false, in any case; `None` if it is empty or not there.
-fn flag(cells: &Cells<'_>, column: Option<usize>, name: &str) -> Result<Option<bool>, String> {
-    match column.map_or("", |column| cells.get(column)).to_ascii_lowercase().as_str() {
+fn flag(cell: Option<&str>, name: &str) -> Result<Option<bool>, String> {
+    match cell.unwrap_or_default().to_ascii_lowercase().as_str() {
         "" => Ok(None),
         "false" => Ok(Some(false)),
         "true" => Ok(Some(true)),
@@ -374,7 +395,7 @@ fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), 
         if meant.starts_with("reference_axis") && !has_stiffness {
             continue;
         }
-        // An analysis prints q_over_p beside axial_q_over_p: alone it is probably meant for that.
+        // An analysis prints q_over_p and axial_q_over_p: the first alone is probably meant for the second.
         let is_there = |alias: &str| names.iter().any(|n| n == alias);
         let names_of_meant = INPUTS.iter().map(|i| i.names()).find(|all| all.iter().any(|a| a.name == meant));
         let meant_is_there =

@@ -16,7 +16,7 @@ pub(super) struct Explained {
     quantity: &'static str,
     value: Option<f64>,
     sigma: Option<f64>,
-    /// Its parts: from the errors of the data, and from the model.
+    /// Parts of sigma: from the errors of the data, and from the model.
     sigma_data: Option<f64>,
     sigma_model: Option<f64>,
     /// From the width of the prior.

@@ -12,9 +12,9 @@ const SHARE: f64 = 1e-5;
 
 /// One number of a state.
 pub(super) struct Input {
-    /// Its name in JSON.
+    /// Name in JSON.
     pub(super) key: &'static str,
-    /// Its meaning; empty if the table of quantities contains it.
+    /// Meaning; empty if the table of quantities contains it.
     meaning: &'static str,
     pub(super) role: Role,
     get: fn(&State) -> Option<f64>,
@@ -128,7 +128,7 @@ impl Input {
         let value = of.get(state)?;
         (stddev < SHARE * value.abs()).then(|| {
             format!(
-                "{} = {stddev} Pa is improbably small beside {} = {value:e} Pa: is it a share of it?",
+                "{} = {stddev} Pa is improbably small compared with {} = {value:e} Pa: is it a share of it?",
                 self.key, of.key
             )
         })

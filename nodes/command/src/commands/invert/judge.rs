@@ -17,7 +17,7 @@ use grainlab_core::results::InferredQuantity;
 use grainlab_node_kit::Exit;
 use score::Score;
 use serde::Serialize;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// The result of one way for one quantity of one group of rows.
@@ -40,7 +40,7 @@ struct Judged {
 struct Verdict {
     solved: bool,
     gamma: &'static str,
-    errors: [Option<score::Error>; grainlab_core::results::InferredQuantity::COUNT],
+    errors: [Option<score::Error>; InferredQuantity::COUNT],
     /// True and inferred contact anisotropy.
     anisotropy: Option<[f64; 2]>,
 }
@@ -85,17 +85,14 @@ pub(super) fn run(
                 }
                 // A missing estimate is part of the statistics. An invalid row is an error.
                 Err((number, bad)) => {
-                    let answer = Answer::of_bad_row(bad, number);
-                    let exit = answer.refusal();
-                    // A contradiction is an answer, which counts as any other.
-                    let complaint = if exit == Exit::Done { String::new() } else { answer.complaint(ways) };
-                    tally.add(exit, &complaint);
+                    tally.add(Exit::Usage, &Answer::of_bad_row(bad, number).complaint(ways));
                 }
             }
         }
     }
     let judged = board.judged(ways);
-    format.print(&judged, || csv(&judged, by), || people(&judged, by))?;
+    let text = || table(&judged, by, fixed).without_empty_columns().text() + &overconfident(&judged);
+    format.print(&judged, || table(&judged, by, |v, _| exact(v)).csv(), text)?;
     if let Some(path) = plot.filter(|_| points.iter().all(Vec::is_empty)) {
         tally.end(&rows)?;
         return Err(Failure::usage(format!(
@@ -106,8 +103,7 @@ pub(super) fn run(
     }
     #[cfg(feature = "studio")]
     if let Some(path) = plot {
-        grainlab_console::write_whole(path, plot::svg(ways, points))
-            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+        grainlab_console::write_whole(path, plot::svg(ways, points)).map_err(Failure::at(path))?;
     }
     if let Some((exit, complaint)) = unsolved.first() {
         say!("{complaint}\ngrainlab: {} without an estimate, this the first", count(unsolved.len(), "row"));
@@ -138,94 +134,67 @@ fn against(quantity: InferredQuantity, way: &Way) -> InferredQuantity {
     }
 }
 
-/// Group, way, and γ/Δ.
-type Place = (usize, usize, &'static str);
-
-/// Scores by group, way and γ/Δ, each in the order of its first row.
+/// Scores of each quantity by group, way and γ/Δ.
 #[derive(Default)]
 struct Board {
-    groups: Vec<Vec<String>>,
-    index: HashMap<Vec<String>, usize>,
-    scores: Vec<(Place, [Score; grainlab_core::results::InferredQuantity::COUNT])>,
-    places: HashMap<Place, usize>,
+    /// Numbers of the groups, in the order of their first rows.
+    groups: HashMap<Vec<String>, usize>,
+    scores: BTreeMap<(usize, usize, &'static str), [Score; InferredQuantity::COUNT]>,
 }
 
 impl Board {
     fn enter(&mut self, group: Vec<String>, verdicts: &[Verdict]) {
-        let group = match self.index.get(&group) {
-            Some(known) => *known,
-            None => {
-                self.groups.push(group.clone());
-                self.index.insert(group, self.groups.len() - 1);
-                self.groups.len() - 1
-            }
-        };
+        let next = self.groups.len();
+        let group = *self.groups.entry(group).or_insert(next);
         for (way, verdict) in verdicts.iter().enumerate() {
-            let key = (group, way, verdict.gamma);
-            let place = *self.places.entry(key).or_insert_with(|| {
-                self.scores.push((key, Default::default()));
-                self.scores.len() - 1
-            });
-            for (score, error) in self.scores[place].1.iter_mut().zip(&verdict.errors) {
-                if let Some(error) = error {
-                    score.add(error);
-                }
-            }
+            let scores = self.scores.entry((group, way, verdict.gamma)).or_default();
+            let known = scores.iter_mut().zip(&verdict.errors);
+            known.for_each(|(score, error)| error.iter().for_each(|error| score.add(error)));
         }
     }
 
     /// For each quantity of the model whose truth is known.
-    fn judged(mut self, ways: &[Way]) -> Vec<Judged> {
-        self.scores.sort_by_key(|((group, way, _), _)| (*group, *way));
-        let groups = self.groups;
-        let of = |((group, way, gamma), scores): (
-            Place,
-            [Score; grainlab_core::results::InferredQuantity::COUNT],
-        )| {
-            let (group, way) = (groups[group].clone(), &ways[way]);
+    fn judged(&self, ways: &[Way]) -> Vec<Judged> {
+        let mut judged = Vec::new();
+        let mut groups: Vec<_> = self.groups.iter().collect();
+        groups.sort_by_key(|(_, number)| **number);
+        for ((group, way, gamma), scores) in &self.scores {
+            let way = &ways[*way];
             let domain = way.model.domain(&way.calibration);
-            let relevant = move |(q, score): &(InferredQuantity, Score)| {
-                score.rows > 0 && (score.solved > 0 || domain.structure[*q as usize].is_some())
-            };
-            InferredQuantity::ALL.into_iter().zip(scores).filter(relevant).map(move |(quantity, score)| {
-                Judged {
-                    group: group.clone(),
-                    model: way.model.name(),
-                    calibration: way.calibration.name().to_owned(),
-                    gamma_over_delta_source: gamma,
-                    quantity: quantity.name(),
-                    truth: against(quantity, way).name(),
-                    score,
+            for (quantity, score) in InferredQuantity::ALL.into_iter().zip(scores) {
+                if score.rows > 0 && (score.solved > 0 || domain.structure[quantity as usize].is_some()) {
+                    judged.push(Judged {
+                        group: groups[*group].0.clone(),
+                        model: way.model.name(),
+                        calibration: way.calibration.name().to_owned(),
+                        gamma_over_delta_source: gamma,
+                        quantity: quantity.name(),
+                        truth: against(quantity, way).name(),
+                        score: *score,
+                    });
                 }
-            })
-        };
-        self.scores.into_iter().flat_map(of).collect()
+            }
+        }
+        judged
     }
 }
 
-fn people(judged: &[Judged], by: &[String]) -> String {
-    let columns =
-        ["model", "calibration", "gamma/Delta", "inferred", "truth", "rows", "solved", "bias", "scatter"];
-    let columns = columns.into_iter().chain(["rms", "mean |error|", "in 95 %"]);
+/// Every result, with numbers printed by `number`, which takes their digits.
+fn table(judged: &[Judged], by: &[String], number: fn(Option<f64>, usize) -> String) -> Table {
+    let columns = ["model", "calibration", "gamma_over_delta_source", "quantity", "truth", "rows", "solved"];
+    let columns = columns.into_iter().chain(["extrapolated", "bias", "scatter", "rms", "mean_absolute"]);
+    let columns = columns.chain(["intervals", "covered"]);
     let mut t = Table::new(by.iter().map(String::as_str).chain(columns));
     for j in judged {
-        let digits = if j.quantity.starts_with("eps") { 4 } else { 3 };
-        let s = &j.score;
-        // Removes the sign of a rounded zero.
-        let number = |value: Option<f64>| {
-            let text = fixed(value, digits);
-            let is_zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
-            if value.is_some() && is_zero { text.replace('-', "") } else { text }
-        };
-        let covered = s.coverage().map_or_else(|| "-".to_owned(), |c| format!("{:.1} %", 100.0 * c));
+        let (s, digits) = (&j.score, if j.quantity.starts_with("eps") { 4 } else { 3 });
         let cells =
             [j.model, &j.calibration, j.gamma_over_delta_source, j.quantity, j.truth].map(str::to_owned);
-        let numbers =
-            [number(s.bias()), number(s.scatter()), number(s.rms()), number(s.mean_absolute()), covered];
-        let counts = [s.rows.to_string(), s.solved.to_string()];
-        t.row(j.group.iter().cloned().chain(cells).chain(counts).chain(numbers));
+        let counts = [s.rows, s.solved, s.extrapolated].map(|n| n.to_string());
+        let numbers = [s.bias(), s.scatter(), s.rms(), s.mean_absolute()].map(|v| number(v, digits));
+        let covered = [s.intervals.to_string(), number(s.coverage(), 3)];
+        t.row(j.group.iter().cloned().chain(cells).chain(counts).chain(numbers).chain(covered));
     }
-    t.without_empty_columns().text() + &overconfident(judged)
+    t
 }
 
 /// One line for each quantity whose intervals hold the truth far less often than stated.
@@ -244,21 +213,4 @@ fn overconfident(judged: &[Judged]) -> String {
         )
     };
     judged.iter().filter(|j| j.score.is_overconfident()).map(line).collect()
-}
-
-fn csv(judged: &[Judged], by: &[String]) -> String {
-    let columns = ["model", "calibration", "gamma_over_delta_source", "quantity", "truth", "rows", "solved"];
-    let columns = columns.into_iter().chain(["extrapolated", "bias", "scatter", "rms", "mean_absolute"]);
-    let columns = columns.chain(["intervals", "covered"]);
-    let mut t = Table::new(by.iter().map(String::as_str).chain(columns));
-    for j in judged {
-        let s = &j.score;
-        let cells =
-            [j.model, &j.calibration, j.gamma_over_delta_source, j.quantity, j.truth].map(str::to_owned);
-        let counts = [s.rows, s.solved, s.extrapolated].map(|n| n.to_string());
-        let numbers = [s.bias(), s.scatter(), s.rms(), s.mean_absolute()].map(exact);
-        let covered = [s.intervals.to_string(), exact(s.coverage())];
-        t.row(j.group.iter().cloned().chain(cells).chain(counts).chain(numbers).chain(covered));
-    }
-    t.csv()
 }

@@ -1,44 +1,105 @@
 //! The rows of a table, in pieces, distributed over several threads.
 
 use super::columns::{BadRow, Columns, Row};
-use super::lines::{Lines, Piece};
-use super::splitter::Splitter;
-use super::state::Defaults;
+use super::state::State;
 use grainlab_console::Failure;
+use grainlab_recordings::input;
 use rayon::prelude::*;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
+
+/// Number of bytes read at once: some thousand rows of a few numbers.
+const PIECE: usize = 1 << 18;
+
+/// A longer line is taken as endless, bytes.
+const ENDLESS: u64 = 64 << 20;
 
 /// Rows that one thread takes at a time.
 const SHARE: usize = 32;
+
+/// A line with its number.
+type Line = (u64, Vec<u8>);
+
+/// A stream of lines.
+struct Lines {
+    source: BufReader<Box<dyn Read>>,
+    name: String,
+    /// Number of the last line read, from 1.
+    number: u64,
+}
+
+impl Lines {
+    /// Opens a file or a pipe; `-` is the standard input. A device is refused, because it may be endless.
+    fn open(path: &Path) -> Result<Self, Failure> {
+        if path.as_os_str() == "-" {
+            return Ok(Self::new(Box::new(std::io::stdin()), "standard input".to_owned()));
+        }
+        let name = path.display().to_string();
+        let pipe = std::fs::metadata(path).is_ok_and(|m| m.file_type().is_fifo());
+        let file = if pipe { File::open(path) } else { input::open(path).map(|(file, _)| file) };
+        let file = file.map_err(|e| Failure::failed(format!("{name}: {e}")))?;
+        Ok(Self::new(Box::new(file), name))
+    }
+
+    fn new(source: Box<dyn Read>, name: String) -> Self {
+        Self { source: BufReader::with_capacity(PIECE, source), name, number: 0 }
+    }
+
+    /// The next line without its end; `None` at the end.
+    fn line(&mut self) -> Result<Option<Vec<u8>>, Failure> {
+        let mut line = Vec::new();
+        let read = self.source.by_ref().take(ENDLESS).read_until(b'\n', &mut line);
+        let read = read.map_err(|e| Failure::failed(format!("{}: {e}", self.name)))? as u64;
+        self.number += 1;
+        if line.pop_if(|b| *b == b'\n').is_some() {
+            line.pop_if(|b| *b == b'\r');
+        } else if read == ENDLESS {
+            let Self { name, number, .. } = self;
+            return Err(Failure::failed(format!(
+                "{name}: line {number} has more than {ENDLESS} bytes: this is not a table"
+            )));
+        }
+        Ok((read > 0).then_some(line))
+    }
+
+    /// The available complete lines with their numbers, at least one; waits for it. `None` at the end.
+    fn piece(&mut self) -> Result<Option<Vec<Line>>, Failure> {
+        let mut lines = Vec::new();
+        while let Some(line) = self.line()? {
+            lines.push((self.number, line));
+            if !self.source.buffer().contains(&b'\n') {
+                break;
+            }
+        }
+        Ok((!lines.is_empty()).then_some(lines))
+    }
+}
 
 /// The first line that is not a comment, and the stream of lines below it.
 pub(crate) struct Rows {
     lines: Lines,
     pub(crate) columns: Columns,
-    /// Lines read together with the header.
-    first: Option<Piece>,
-    /// Number of the header's line.
-    header: u64,
     /// Number of lines below it so far that begin with `#`.
     comments: usize,
 }
 
 impl Rows {
     /// Opens a table; `-` is the standard input.
-    pub(crate) fn open(path: &Path, by: &[String], defaults: Defaults) -> Result<Self, Failure> {
+    pub(crate) fn open(path: &Path, by: &[String], defaults: State) -> Result<Self, Failure> {
         let mut lines = Lines::open(path)?;
-        loop {
-            let Some(piece) = lines.piece()? else {
-                return Err(Failure::usage(format!("{}: the table is empty", lines.name())));
-            };
-            let is_header =
-                |line: &[u8]| !(line.starts_with(b"#") || line.iter().all(u8::is_ascii_whitespace));
-            let header = piece.lines().map(|(n, l)| (n, without_mark(l))).find(|(_, l)| is_header(l));
-            let Some((header, line)) = header else { continue };
+        while let Some(line) = lines.line()? {
+            // Some spreadsheets begin their files with a byte order mark.
+            let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&line);
+            if line.starts_with(b"#") || line.iter().all(u8::is_ascii_whitespace) {
+                continue;
+            }
             let columns = Columns::of_header(line, by, defaults)
-                .map_err(|e| Failure::usage(format!("{}: {e}", lines.name())))?;
-            return Ok(Self { lines, columns, first: Some(piece), header, comments: 0 });
+                .map_err(|e| Failure::usage(format!("{}: {e}", lines.name)))?;
+            return Ok(Self { lines, columns, comments: 0 });
         }
+        Err(Failure::usage(format!("{}: the table is empty", lines.name)))
     }
 
     /// The results of `work` for the rows of the next piece, in order; `None` at the end.
@@ -46,22 +107,10 @@ impl Rows {
         &mut self,
         work: impl Fn(u64, Result<Row, BadRow>) -> T + Sync,
     ) -> Result<Option<Vec<T>>, Failure> {
-        let piece = match self.first.take() {
-            Some(piece) => piece,
-            None => match self.lines.piece()? {
-                Some(piece) => piece,
-                None => return Ok(None),
-            },
-        };
-        let lines: Vec<(u64, &[u8])> = piece.lines().filter(|(number, _)| *number > self.header).collect();
+        let Some(lines) = self.lines.piece()? else { return Ok(None) };
         self.comments += lines.iter().filter(|(_, line)| line.starts_with(b"#")).count();
-        let of_share = |splitter: &mut Splitter, share: &[(u64, &[u8])]| -> Vec<T> {
-            let of_line =
-                |(number, line): &(u64, &[u8])| Some(work(*number, self.columns.row(line, splitter)?));
-            share.iter().filter_map(of_line).collect()
-        };
-        let worked: Vec<Vec<T>> = lines.par_chunks(SHARE).map_init(Splitter::new, of_share).collect();
-        Ok(Some(worked.into_iter().flatten().collect()))
+        let of_line = |(number, line): &Line| Some(work(*number, self.columns.row(line)?));
+        Ok(Some(lines.par_iter().with_min_len(SHARE).filter_map(of_line).collect()))
     }
 
     /// Text on the comment lines below the header, to follow a number of rows; empty without such lines.
@@ -74,13 +123,8 @@ impl Rows {
 
     /// The name of the table in messages.
     pub(crate) fn name(&self) -> &str {
-        self.lines.name()
+        &self.lines.name
     }
-}
-
-/// Some spreadsheets begin their files with a byte order mark.
-fn without_mark(line: &[u8]) -> &[u8] {
-    line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)
 }
 
 #[cfg(test)]
@@ -89,12 +133,49 @@ mod tests {
     use crate::commands::invert::answer::Answer;
     use crate::commands::invert::way;
 
+    /// Returns at most `step` bytes at a time, like a pipe.
+    struct Pipe {
+        text: Vec<u8>,
+        step: usize,
+    }
+
+    impl Read for Pipe {
+        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+            let count = self.step.min(buffer.len()).min(self.text.len());
+            buffer[..count].copy_from_slice(&self.text[..count]);
+            self.text.drain(..count);
+            Ok(count)
+        }
+    }
+
+    fn all(text: &[u8], step: usize) -> Vec<(u64, Vec<u8>)> {
+        let mut lines = Lines::new(Box::new(Pipe { text: text.to_vec(), step }), "pipe".into());
+        std::iter::from_fn(|| lines.piece().unwrap()).flatten().collect()
+    }
+
+    #[test]
+    fn lines_do_not_depend_on_how_the_bytes_come() {
+        let text = b"one\r\ntwo\n\nfour, and no end";
+        let expected: Vec<(u64, Vec<u8>)> =
+            (1..).zip([&b"one"[..], b"two", b"", b"four, and no end"].map(<[u8]>::to_vec)).collect();
+        for step in 1..=text.len() + 1 {
+            assert_eq!(all(text, step), expected, "{step} bytes at a time");
+        }
+    }
+
+    #[test]
+    fn a_source_that_never_ends_a_line_is_given_up() {
+        let mut lines = Lines::new(Box::new(std::io::repeat(0)), "zeros".into());
+        assert!(lines.piece().err().unwrap().to_string().contains("not a table"));
+        assert!(Lines::open(Path::new("/dev/zero")).err().unwrap().to_string().contains("device"));
+    }
+
     #[test]
     fn comments_below_the_header_are_counted_and_those_above_are_not() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
         std::fs::write(&path, "# made by hand\np_pa,g12_pa\n5e4,1e8\n#2,1e8\n\n5e4,1e8\n").unwrap();
-        let mut rows = Rows::open(&path, &[], Defaults::default()).unwrap();
+        let mut rows = Rows::open(&path, &[], State::default()).unwrap();
         let mut found = 0;
         while let Some(piece) = rows.next(|_, row| row.is_ok()).unwrap() {
             found += piece.len();
@@ -117,7 +198,7 @@ mod tests {
             memory: (usize::MAX, 0),
             decode: &mut |bytes| {
                 std::fs::write(&path, bytes).unwrap();
-                let Ok(mut rows) = Rows::open(&path, &[], Defaults::default()) else { return };
+                let Ok(mut rows) = Rows::open(&path, &[], State::default()) else { return };
                 let answer = |number, row: Result<Row, BadRow>| match row {
                     Ok(row) => Answer::of(row.state, Some(number), &ways),
                     Err(bad) => Answer::of_bad_row(bad, number),

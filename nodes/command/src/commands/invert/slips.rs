@@ -67,7 +67,7 @@ pub(super) fn meant<'a>(column: &str, known: &[&'a str]) -> Option<&'a str> {
     };
     let nearly = |name: &&str| {
         let of_name = words(name).concat();
-        joined.len() >= LONG && of_name.len() >= LONG && one_letter_apart(&joined, &of_name)
+        joined.len() >= LONG && of_name.len() >= LONG && strsim::osa_distance(&joined, &of_name) == 1
     };
     known.iter().copied().find(same).or_else(|| known.iter().copied().find(nearly))
 }
@@ -101,21 +101,6 @@ fn words(name: &str) -> Vec<String> {
 /// The words without units.
 fn bare(words: &[String]) -> Vec<String> {
     words.iter().filter(|w| !UNITS.contains(&w.as_str())).cloned().collect()
-}
-
-/// Whether one letter is added, missing or another, or two are exchanged.
-fn one_letter_apart(a: &str, b: &str) -> bool {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    let same = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
-    let (a, b) = (&a[same..], &b[same..]);
-    match (a, b) {
-        ([], []) => false,
-        ([_, rest @ ..], _) if rest == b => true,
-        (_, [_, rest @ ..]) if rest == a => true,
-        ([_, x @ ..], [_, y @ ..]) if x == y => true,
-        ([p, q, x @ ..], [r, s, y @ ..]) => (p, q) == (s, r) && x == y,
-        _ => false,
-    }
 }
 
 #[cfg(test)]

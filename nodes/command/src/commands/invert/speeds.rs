@@ -99,38 +99,52 @@ fn checked(header: &StringRecord) -> Result<(), String> {
     Ok(())
 }
 
+/// A line of the table.
+#[derive(serde::Deserialize)]
+struct Line {
+    angle_deg: Option<f64>,
+    mode: Option<String>,
+    direction_x: Option<f64>,
+    direction_y: Option<f64>,
+    direction_z: Option<f64>,
+    polarization_x: Option<f64>,
+    polarization_y: Option<f64>,
+    polarization_z: Option<f64>,
+    speed: Option<f64>,
+    speed_sigma: Option<f64>,
+}
+
 fn wave(header: &StringRecord, record: &StringRecord) -> Result<WaveSpeed, String> {
     if record.len() != header.len() {
         return Err(format!("{} cells under {} columns", record.len(), header.len()));
     }
-    let cell = |name: &str| {
-        let at = header.iter().position(|column| column == name)?;
-        record.get(at).filter(|text| !text.is_empty())
-    };
-    let number = |name: &str| -> Result<Option<f64>, String> {
-        let parsed =
-            |text: &str| text.parse().map_err(|_| format!("column {name}: {text:?} is not a number"));
-        cell(name).map(parsed).transpose()
-    };
-    let speed = number("speed")?.ok_or("column speed is empty")?;
+    let line: Line = record.deserialize(Some(header)).map_err(|e| not_a_number(&e, header, record))?;
+    let speed = line.speed.ok_or("column speed is empty")?;
     if !(speed > 0.0 && speed.is_finite()) {
         return Err(format!("speed = {speed} must be positive and finite"));
     }
-    let sigma = number("speed_sigma")?;
-    if let Some(sigma) = sigma.filter(|s| !(*s >= 0.0 && s.is_finite())) {
+    if let Some(sigma) = line.speed_sigma.filter(|s| !(*s >= 0.0 && s.is_finite())) {
         return Err(format!("speed_sigma = {sigma} must be 0 or more and finite"));
     }
-    let vector = |name: &str| -> Result<Option<Vec3>, String> {
-        let [x, y, z] = ["x", "y", "z"].map(|axis| number(&format!("{name}_{axis}")));
-        Ok(x?.zip(y?).zip(z?).map(|((x, y), z)| Vec3::new(x, y, z)))
-    };
-    let (direction, polarization) = (vector("direction")?, vector("polarization")?);
-    let (direction, polarization) = match (number("angle_deg")?, cell("mode"), direction, polarization) {
+    let vector = |x: Option<f64>, y: Option<f64>, z: Option<f64>| Some(Vec3::new(x?, y?, z?));
+    let direction = vector(line.direction_x, line.direction_y, line.direction_z);
+    let polarization = vector(line.polarization_x, line.polarization_y, line.polarization_z);
+    let (direction, polarization) = match (line.angle_deg, line.mode.as_deref(), direction, polarization) {
         (Some(angle), Some(mode), None, None) => along(angle, mode)?,
         (None, None, Some(direction), Some(polarization)) => (unit(direction)?, unit(polarization)?),
         _ => return Err("give angle_deg and mode, or direction_x to _z and polarization_x to _z".to_owned()),
     };
-    Ok(WaveSpeed { direction, polarization, speed, stddev: sigma.filter(|s| *s > 0.0) })
+    Ok(WaveSpeed { direction, polarization, speed, stddev: line.speed_sigma.filter(|s| *s > 0.0) })
+}
+
+/// The cell that could not be read.
+fn not_a_number(error: &csv::Error, header: &StringRecord, record: &StringRecord) -> String {
+    let at = match error.kind() {
+        csv::ErrorKind::Deserialize { err, .. } => err.field().map_or(0, |field| field as usize),
+        _ => 0,
+    };
+    let cell = |of: &StringRecord| of.get(at).unwrap_or_default().to_owned();
+    format!("column {}: {:?} is not a number", cell(header), cell(record))
 }
 
 fn unit(vector: Vec3) -> Result<Vec3, String> {

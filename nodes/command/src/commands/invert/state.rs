@@ -10,35 +10,6 @@ use grainlab_emt::{
     StrainRatio, StrainRatioSource,
 };
 
-/// Inputs common to all states without their own.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Defaults {
-    pub(crate) relative_error: Option<f64>,
-    pub(crate) grain_shear_modulus: Option<f64>,
-    /// Pa; 0: exact.
-    pub(crate) grain_shear_modulus_sigma: f64,
-    pub(crate) poisson: Option<f64>,
-    /// 0: exact.
-    pub(crate) poisson_sigma: f64,
-}
-
-impl Defaults {
-    /// The flags given, with the keys of the inputs that they set; --error is for moduli without an error of their own.
-    pub(super) fn flags(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        [
-            (self.grain_shear_modulus.is_some(), ("grain-shear-modulus", "grain_shear_modulus_pa")),
-            (
-                self.grain_shear_modulus_sigma > 0.0,
-                ("grain-shear-modulus-sigma", "grain_shear_modulus_sigma_pa"),
-            ),
-            (self.poisson.is_some(), ("poisson", "poisson")),
-            (self.poisson_sigma > 0.0, ("poisson-sigma", "poisson_sigma")),
-        ]
-        .into_iter()
-        .filter_map(|(given, flag)| given.then_some(flag))
-    }
-}
-
 /// One state, as given.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
@@ -46,7 +17,7 @@ pub(crate) struct State {
     pub(crate) moduli: Moduli,
     /// Part of a full stiffness that is not isotropic about e3; `None` if only moduli are given.
     pub(crate) asymmetry: Option<f64>,
-    /// Whether the moduli are the projection of one stiffness, so that five of them were measured and Θ follows.
+    /// True if the moduli are the projection of one stiffness, so that five of them were measured and Θ follows.
     pub(crate) projected: bool,
     /// Standard deviations of the moduli, Pa.
     pub(crate) sigma: [Option<f64>; grainlab_emt::MODULI],
@@ -56,7 +27,7 @@ pub(crate) struct State {
     pub(crate) relative_error: Option<f64>,
     /// Θ for the model `ratio-as-printed`, if it differs, Pa.
     pub(crate) theta_printed: Option<f64>,
-    /// Pa.
+    /// Confining pressure, Pa.
     pub(crate) pressure: Measured,
     /// The γ/Δ given.
     pub(crate) gamma: Option<Measured>,
@@ -67,18 +38,18 @@ pub(crate) struct State {
     pub(crate) stress_ratio: Option<Measured>,
     /// Standard deviation of the radii over their mean.
     pub(crate) size_spread: Option<f64>,
-    /// Pa.
+    /// Shear modulus of the grains, Pa.
     pub(crate) grain_shear_modulus: Option<f64>,
     /// Pa; 0: exact.
     pub(crate) grain_shear_modulus_sigma: f64,
     pub(crate) poisson: Option<f64>,
-    /// 0: exact.
+    /// Standard deviation; 0: exact.
     pub(crate) poisson_sigma: f64,
-    /// Whether the moduli are those without tangential springs.
+    /// True if the moduli are those without tangential springs.
     pub(crate) smooth: bool,
     /// Notes on the data, for every estimate.
     pub(crate) notes: Vec<String>,
-    /// Whether the data contradict each other, as the notes say.
+    /// True if the data contradict each other, as the notes say.
     pub(crate) in_conflict: bool,
     /// Contact law of the grains, if a table contains it.
     pub(crate) contact_law: Option<ContactLaw>,
@@ -88,9 +59,9 @@ pub(crate) struct State {
     pub(crate) truth: Microstructure,
 }
 
-impl State {
-    /// Only the pressure is known, Pa.
-    pub(crate) fn at(pressure: Measured) -> Self {
+impl Default for State {
+    /// A state without data.
+    fn default() -> Self {
         Self {
             sample: None,
             moduli: Moduli::NONE,
@@ -101,7 +72,7 @@ impl State {
             full_covariance: None,
             relative_error: None,
             theta_printed: None,
-            pressure,
+            pressure: Measured::exact(0.0),
             gamma: None,
             measured_gamma: StrainRatios::default(),
             phi: None,
@@ -118,17 +89,23 @@ impl State {
             truth: Microstructure::default(),
         }
     }
+}
 
-    /// The same with what is common to all states.
-    pub(super) fn of_defaults(pressure: Measured, defaults: &Defaults) -> Self {
-        Self {
-            relative_error: defaults.relative_error,
-            grain_shear_modulus: defaults.grain_shear_modulus,
-            grain_shear_modulus_sigma: defaults.grain_shear_modulus_sigma,
-            poisson: defaults.poisson,
-            poisson_sigma: defaults.poisson_sigma,
-            ..Self::at(pressure)
-        }
+impl State {
+    /// The flags for all states that are given, with the keys of the inputs that they set; --error is for moduli without an error of
+    /// their own.
+    pub(super) fn flags(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        [
+            (self.grain_shear_modulus.is_some(), ("grain-shear-modulus", "grain_shear_modulus_pa")),
+            (
+                self.grain_shear_modulus_sigma > 0.0,
+                ("grain-shear-modulus-sigma", "grain_shear_modulus_sigma_pa"),
+            ),
+            (self.poisson.is_some(), ("poisson", "poisson")),
+            (self.poisson_sigma > 0.0, ("poisson-sigma", "poisson_sigma")),
+        ]
+        .into_iter()
+        .filter_map(|(given, flag)| given.then_some(flag))
     }
 
     pub(super) fn set_modulus(&mut self, modulus: Modulus, value: f64) {
@@ -194,7 +171,7 @@ impl State {
         }
     }
 
-    /// Whether Θ follows from the other moduli: with an error of its own, it would count as an additional
+    /// True if Θ follows from the other moduli: with an error of its own, it would count as an additional
     /// measurement, unless all others have theirs.
     fn theta_follows(&self) -> bool {
         let mut others = Modulus::ALL.into_iter().filter(|m| *m != Modulus::Theta);
@@ -217,7 +194,7 @@ impl State {
         let exact: Vec<&str> =
             self.moduli.known().map(|(m, _)| m).filter(is_exact).map(Modulus::name).collect();
         (!exact.is_empty()).then(|| {
-            format!("no error of {} is given beside those of the others: taken as exact", exact.join(", "))
+            format!("no error of {} is given, unlike those of the others: taken as exact", exact.join(", "))
         })
     }
 
@@ -280,7 +257,13 @@ mod tests {
     /// 9 Θ = 4 C11 − 4 G12 + 4 C13 + C33.
     fn medium(projected: bool) -> State {
         let moduli = Moduli::of_values([140.0, 150.0, 1840.0 / 9.0, 360.0, 400.0, 140.0].map(Some));
-        State { moduli, projected, relative_error: Some(0.01), ..State::at(Measured::exact(5e4)) }
+        State {
+            moduli,
+            projected,
+            relative_error: Some(0.01),
+            pressure: Measured::exact(5e4),
+            ..State::default()
+        }
     }
 
     #[test]
@@ -313,9 +296,9 @@ mod tests {
 
     #[test]
     fn unknown_properties_of_grains_are_those_of_the_calibration() {
-        let state = State { poisson: Some(0.3), ..State::at(Measured::exact(5e4)) };
+        let state = State { poisson: Some(0.3), pressure: Measured::exact(5e4), ..State::default() };
         let material = state.material(&Calibration::PAPER).unwrap();
         assert_eq!((material.poisson_ratio, material.shear_modulus), (0.3, Material::GLASS.shear_modulus));
-        assert_eq!(State::at(Measured::exact(5e4)).material(&Calibration::PAPER), None);
+        assert_eq!(State::default().material(&Calibration::PAPER), None);
     }
 }

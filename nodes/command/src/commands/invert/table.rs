@@ -4,9 +4,8 @@ use super::answer::Answer;
 use super::columns::Row;
 use super::print::Printer;
 use super::rows::Rows;
-use grainlab_console::{Failure, Format, say, worse};
+use grainlab_console::{Failure, Format, print_more, say, worse};
 use grainlab_node_kit::Exit;
-use std::io::{ErrorKind, Write};
 use std::time::Instant;
 
 /// Maximum number of states printed as a text table, whose columns are aligned at its end.
@@ -68,7 +67,13 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
     };
     let mut tally = Tally::new();
     let mut kept = Vec::new();
-    let mut out = Out::new(format);
+    // Between two texts, before the first, and without any.
+    let (separator, start, nothing) = match format {
+        Format::Json => (",", "[".to_owned(), "[]\n"),
+        Format::Csv => ("", Printer::csv_header(), ""),
+        Format::Table => ("", String::new(), ""),
+    };
+    let mut begun = false;
     loop {
         // Text is formatted in the same threads, because formatting takes as long as the inversion.
         let piece = rows.next(|number, row| {
@@ -94,59 +99,20 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
             let most = format!("more than {FOR_PEOPLE} states are too many for a text table");
             return Err(Failure::usage(format!("{}: {most}; use --format csv or json", rows.name())));
         }
-        if !out.write(&texts)? {
+        if texts.is_empty() {
+            continue;
+        }
+        let before = if std::mem::replace(&mut begun, true) { separator } else { &start };
+        if !print_more(&format!("{before}{}", texts.join(separator)))? {
             // The reader closed the pipe.
             return Ok(tally.exit);
         }
     }
     if format == Format::Table && tally.rows > 0 {
-        out.write(&[printer.people(&kept)])?;
+        print_more(&printer.people(&kept))?;
     }
     let ended = tally.end(&rows);
-    out.end()?;
+    let end = if format == Format::Json && begun { "\n]\n" } else { "" };
+    print_more(if begun { end } else { nothing })?;
     ended
-}
-
-/// Texts that together form one CSV or one JSON array, on stdout.
-struct Out {
-    format: Format,
-    begun: bool,
-}
-
-impl Out {
-    fn new(format: Format) -> Self {
-        Self { format, begun: false }
-    }
-
-    /// Whether the pipe is still open.
-    fn write(&mut self, texts: &[String]) -> Result<bool, Failure> {
-        if texts.is_empty() {
-            return Ok(true);
-        }
-        let first = !std::mem::replace(&mut self.begun, true);
-        let text = match (self.format, first) {
-            (Format::Json, true) => format!("[{}", texts.join(",")),
-            (Format::Json, false) => format!(",{}", texts.join(",")),
-            (Format::Csv, true) => Printer::csv_header() + &texts.concat(),
-            _ => texts.concat(),
-        };
-        raw(&text)
-    }
-
-    fn end(&self) -> Result<bool, Failure> {
-        raw(match (self.format, self.begun) {
-            (Format::Json, true) => "\n]\n",
-            (Format::Json, false) => "[]\n",
-            _ => "",
-        })
-    }
-}
-
-fn raw(text: &str) -> Result<bool, Failure> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(false),
-        Err(e) => Err(Failure::failed(format!("stdout: {e}"))),
-        Ok(()) => Ok(true),
-    }
 }

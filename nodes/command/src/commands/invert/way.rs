@@ -1,6 +1,6 @@
 //! The ways to invert a state: a model, its constants, and its γ/Δ.
 
-use super::calibrations::Choice;
+use super::calibrations;
 use grainlab_console::Failure;
 use grainlab_emt::{Calibration, Model, Prior, StrainRatioSource};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub(super) enum GammaChoice {
     Elastic,
     /// The column g_contact: of the overlaps of the contacts
     Contact,
-    /// None: 0
+    /// None: taken as 0
     Zero,
     /// Each of total, elastic, contact and zero
     All,
@@ -29,7 +29,7 @@ pub(super) struct Way {
     pub(super) calibration: Arc<Calibration>,
     /// `None`: the one given, else that of the paper's models.
     pub(super) gamma: Option<StrainRatioSource>,
-    /// Of the quantities in the file of the user; `None`: none.
+    /// Prior of the quantities in the file of the user; `None`: none.
     pub(super) prior: Option<Arc<Prior>>,
 }
 
@@ -50,26 +50,22 @@ pub(super) fn ways(
         }
     }
     let models = if named.is_empty() { grainlab_emt::models().to_vec() } else { named };
-    let choices = calibrations.iter().map(|name| Choice::named(name)).collect::<Result<Vec<_>, _>>()?;
+    let choices = calibrations.iter().map(|name| calibrations::named(name)).collect::<Result<Vec<_>, _>>()?;
+    use StrainRatioSource::{Contact, Elastic, Given, Total, Zero};
     let gammas: &[Option<StrainRatioSource>] = match gamma {
         None => &[None],
-        Some(GammaChoice::Given) => &[Some(StrainRatioSource::Given)],
-        Some(GammaChoice::Total) => &[Some(StrainRatioSource::Total)],
-        Some(GammaChoice::Elastic) => &[Some(StrainRatioSource::Elastic)],
-        Some(GammaChoice::Contact) => &[Some(StrainRatioSource::Contact)],
-        Some(GammaChoice::Zero) => &[Some(StrainRatioSource::Zero)],
-        Some(GammaChoice::All) => &[
-            Some(StrainRatioSource::Total),
-            Some(StrainRatioSource::Elastic),
-            Some(StrainRatioSource::Contact),
-            Some(StrainRatioSource::Zero),
-        ],
+        Some(GammaChoice::Given) => &[Some(Given)],
+        Some(GammaChoice::Total) => &[Some(Total)],
+        Some(GammaChoice::Elastic) => &[Some(Elastic)],
+        Some(GammaChoice::Contact) => &[Some(Contact)],
+        Some(GammaChoice::Zero) => &[Some(Zero)],
+        Some(GammaChoice::All) => &[Some(Total), Some(Elastic), Some(Contact), Some(Zero)],
     };
     let mut ways = Vec::new();
     for model in models {
         let gammas = if model.uses_gamma() { gammas } else { &[None] };
         for choice in &choices {
-            let calibration = choice.of(model);
+            let calibration = choice.clone().unwrap_or_else(|| Arc::new(model.default_calibration().clone()));
             let with =
                 |gamma: &_| Way { model, calibration: Arc::clone(&calibration), gamma: *gamma, prior: None };
             ways.extend(gammas.iter().map(with));

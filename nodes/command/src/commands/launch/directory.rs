@@ -10,9 +10,9 @@ use std::time::Duration;
 /// Time for a previous launcher of the run to end.
 const TIME_LIMIT: Duration = Duration::from_secs(30);
 
-/// What a given directory holds.
+/// Content of a given directory.
 pub(super) enum Given {
-    /// No run.
+    /// There is no run.
     Empty(PathBuf, Lock),
     /// A run that is not finished.
     Begun(PathBuf, Lock),
@@ -64,5 +64,5 @@ pub(super) fn refuse_another(directory: &Path, scene: &SceneText, order: &Order)
 /// Writes a copy of the scene: later edits of the file affect neither the run nor a restart.
 pub(super) fn fill(directory: &Path, scene: &SceneText) -> Result<(), Failure> {
     let path = directory.join("scene.toml");
-    std::fs::write(&path, &scene.text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
+    std::fs::write(&path, &scene.text).map_err(Failure::at(&path))
 }

@@ -90,7 +90,7 @@ pub(super) fn finish(
         wall_seconds: supervised.wall.as_secs_f64(),
         nodes: nodes.collect(),
         recording: recording.is_ok().then(|| directory.display().to_string()),
-        exit,
+        exit: exit.code(),
         reasons: supervised.reasons,
     };
     back.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));

@@ -26,7 +26,7 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Whether the other one starts the same processes, wherever its launch file is.
+    /// True if the other one starts the same processes, wherever its launch file is.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         self.launch == other.launch && self.arguments == other.arguments && self.seed == other.seed
     }
@@ -38,7 +38,7 @@ impl Order {
         // At once: what has a launch file can be resumed.
         std::fs::write(&partial, json(self)?)
             .and_then(|()| std::fs::rename(&partial, &path))
-            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
+            .map_err(Failure::at(&path))
     }
 
     /// Reads it back.

@@ -1,12 +1,12 @@
-//! How a launch prints its result.
+//! Form of the result of a launch.
 
 use grainlab_console::Format;
 
-/// How to print the result.
+/// Form of the result.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Output {
     pub(super) format: Format,
-    /// Print everything, beside the summary.
+    /// Print everything before the summary.
     pub(super) verbose: bool,
     /// The run is continued: its times are those of the last part.
     pub(super) resumed: bool,

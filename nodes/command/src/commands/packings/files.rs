@@ -1,204 +1,122 @@
 //! Many files at once, with a few packings of them in memory.
 
-use super::Measure;
-use super::bar::Bar;
-use super::outlet::Outlet;
-use super::sink::{Ending, Place, Sink};
+use super::Found;
+use super::writer::ResultWriter;
 use grainlab_console::{Failure, Signals, count, worse};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
 use grainlab_recordings::import::{ImportError, ImportOptions, Imported, each};
-use std::collections::VecDeque;
+use grainlab_results::Printed;
+use indicatif::{ProgressBar, ProgressStyle};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::mpsc::{Receiver, channel, sync_channel};
+use std::time::Duration;
 
-/// Measures every packing of every file on all cores. A worker without a packing reads the next file. A
-/// reader measures the packings that it reads once two per core are queued, which limits the memory.
-pub(crate) fn run<M: Measure>(
+/// Period of the updates while a large packing is measured.
+const TICK: Duration = Duration::from_millis(250);
+
+/// A step of the output, in the order of the files and of their packings.
+enum Event<R> {
+    /// The result of a packing, once it is measured; without one if the work was stopped.
+    Measured(Receiver<Result<Found<R>, String>>),
+    /// The warnings of a file that was read to its end, and their exit code.
+    FileRead(Vec<String>, Exit),
+}
+
+/// Measures every packing of every file on all cores, while the next ones are read. At most two packings a core wait for their
+/// turn, which limits the memory.
+pub(crate) fn run<R: Printed + Send>(
     files: &[PathBuf],
     options: &ImportOptions,
-    measure: &M,
-    outlet: Outlet<M::Found>,
+    measure: impl Fn(&str, &Imported) -> Result<Found<R>, String> + Sync,
+    mut writer: ResultWriter<R>,
 ) -> Result<Exit, Failure> {
-    let mut sink = Sink::new(outlet);
     let signals = Signals::install().map_err(Failure::failed)?;
-    let stop = signals.flag();
-    sink.bar = Bar::of(files.len());
-    let workers = std::thread::available_parallelism().map_or(1, usize::from);
-    let shop = Shop {
-        files,
-        options,
-        measure,
-        stop: &stop,
-        room: 2 * workers,
-        desk: Mutex::new(Desk::default()),
-        news: Condvar::new(),
-        sink: Mutex::new(sink),
-        failure: Mutex::new(None),
-    };
-    std::thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| shop.work());
-        }
-    });
-    let Shop { desk, sink, failure, .. } = shop;
-    if let Some(failure) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        return Err(failure);
-    }
-    let desk = desk.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let sink = sink.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let measured = sink.measured();
-    let exit = sink.finish()?;
+    let (stop, measure) = (signals.flag(), &measure);
+    let bar = progress(files.len());
+    writer.bar = bar.clone();
+    let (mut found, mut read_to_end) = (0, 0);
+    let (events, output) = sync_channel(2 * rayon::current_num_threads());
+    let writer = std::thread::scope(|threads| {
+        let writing = threads.spawn(|| write(writer, output, &stop));
+        rayon::in_place_scope(|pool| {
+            for file in files {
+                let source = file.display().to_string();
+                let mut of_file = 0;
+                let (complaints, exit) = read(file, options, &mut |imported| {
+                    let (sender, receiver) = channel();
+                    let (stop, source) = (&*stop, source.clone());
+                    // Without a writer, all stops.
+                    if is_set(stop) || events.send(Event::Measured(receiver)).is_err() {
+                        return ControlFlow::Break(());
+                    }
+                    pool.spawn(move |_| {
+                        if !is_set(stop) {
+                            let _ = sender.send(measure(&source, &imported));
+                        }
+                    });
+                    // One packing of each file is expected from the start.
+                    bar.inc_length(u64::from(of_file > 0));
+                    (found, of_file) = (found + 1, of_file + 1);
+                    ControlFlow::Continue(())
+                });
+                if is_set(&stop) || events.send(Event::FileRead(complaints, exit)).is_err() {
+                    break;
+                }
+                read_to_end += 1;
+                bar.set_message(format!("{read_to_end} of {} read", count(files.len(), "file")));
+            }
+        });
+        drop(events);
+        writing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })?;
+    let measured = writer.measured;
+    let exit = writer.finish()?;
     // A signal after the end of all work has no effect.
-    if desk.read_to_end == files.len() && desk.packings.is_empty() {
+    if read_to_end == files.len() && measured == found {
         return Ok(exit);
     }
-    let left = files.len() - desk.read_to_end;
     grainlab_console::say!(
         "grainlab: interrupted: {} measured, {} not read to the end",
         count(measured, "packing"),
-        count(left, "file")
+        count(files.len() - read_to_end, "file")
     );
     Ok(worse(exit, Exit::Interrupted))
 }
 
-struct Job {
-    place: Place,
-    imported: Imported,
+fn is_set(flag: &AtomicBool) -> bool {
+    flag.load(Ordering::Relaxed)
 }
 
-/// The state of the work.
-#[derive(Default)]
-struct Desk {
-    /// The next file to read.
-    next: usize,
-    reading: usize,
-    read_to_end: usize,
-    packings: VecDeque<Job>,
-}
-
-enum Task {
-    Measure(Box<Job>),
-    Read(usize),
-}
-
-struct Shop<'a, M: Measure> {
-    files: &'a [PathBuf],
-    options: &'a ImportOptions,
-    measure: &'a M,
-    /// A signal arrived, or results cannot be written.
-    stop: &'a AtomicBool,
-    /// Maximum number of queued packings.
-    room: usize,
-    desk: Mutex<Desk>,
-    news: Condvar,
-    sink: Mutex<Sink<M::Found>>,
-    failure: Mutex<Option<Failure>>,
-}
-
-impl<M: Measure> Shop<'_, M> {
-    fn work(&self) {
-        while let Some(task) = self.task() {
-            match task {
-                Task::Measure(job) => self.measure(&job),
-                Task::Read(file) => self.read(file),
+/// Passes on the results; the work stops when they cannot be printed or recorded.
+fn write<R: Printed>(
+    mut writer: ResultWriter<R>,
+    output: Receiver<Event<R>>,
+    stop: &AtomicBool,
+) -> Result<ResultWriter<R>, Failure> {
+    for event in output {
+        match event {
+            Event::Measured(result) => {
+                if let Ok(found) = result.recv() {
+                    writer.put(found).inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+                }
             }
+            Event::FileRead(complaints, exit) => writer.complain(&complaints, exit),
         }
     }
-
-    fn task(&self) -> Option<Task> {
-        let mut desk = self.desk();
-        loop {
-            if self.stopped() {
-                return None;
-            }
-            if let Some(job) = desk.packings.pop_front() {
-                return Some(Task::Measure(Box::new(job)));
-            }
-            if desk.next < self.files.len() {
-                desk.next += 1;
-                desk.reading += 1;
-                return Some(Task::Read(desk.next - 1));
-            }
-            if desk.reading == 0 {
-                return None;
-            }
-            desk = self.news.wait(desk).unwrap_or_else(PoisonError::into_inner);
-        }
-    }
-
-    fn measure(&self, job: &Job) {
-        let source = self.files[job.place.0].display().to_string();
-        let found = self.measure.measure(&source, &job.imported);
-        let put = lock(&self.sink).put(job.place, found);
-        self.check(put);
-    }
-
-    fn read(&self, file: usize) {
-        let mut reading = Reading { desk: &self.desk, news: &self.news, to_end: false };
-        let mut packings = 0;
-        let (complaints, exit) = read(&self.files[file], self.options, &mut |imported| {
-            let job = Job { place: (file, packings), imported };
-            packings += 1;
-            lock(&self.sink).found();
-            let mut desk = self.desk();
-            if desk.packings.len() < self.room {
-                desk.packings.push_back(job);
-                drop(desk);
-                self.news.notify_one();
-            } else {
-                drop(desk);
-                self.measure(&job);
-            }
-            if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
-        if !self.stopped() {
-            reading.to_end = true;
-            let end = lock(&self.sink).end(file, Ending { packings, complaints, exit });
-            self.check(end);
-        }
-    }
-
-    /// All workers stop when results cannot be printed or recorded.
-    fn check(&self, result: Result<(), Failure>) {
-        if let Err(failure) = result {
-            lock(&self.failure).get_or_insert(failure);
-            self.stop.store(true, Ordering::Relaxed);
-            self.news.notify_all();
-        }
-    }
-
-    fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
-
-    fn desk(&self) -> MutexGuard<'_, Desk> {
-        lock(&self.desk)
-    }
+    Ok(writer)
 }
 
-/// A file being read. Dropping it informs the waiting workers that no more packings come, also after a panic.
-struct Reading<'a> {
-    desk: &'a Mutex<Desk>,
-    news: &'a Condvar,
-    to_end: bool,
-}
-
-impl Drop for Reading<'_> {
-    fn drop(&mut self) {
-        let mut desk = lock(self.desk);
-        desk.reading -= 1;
-        desk.read_to_end += usize::from(self.to_end);
-        drop(desk);
-        self.news.notify_all();
+/// A bar on a terminal: packings measured, of those found and one for each file that was not read.
+fn progress(files: usize) -> ProgressBar {
+    let bar = ProgressBar::new(files as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} packings, {msg}, {elapsed}") {
+        bar.set_style(style);
     }
-}
-
-/// A worker that panicked ends the process at the end of the scope; until then the others continue.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+    bar.enable_steady_tick(TICK);
+    bar
 }
 
 /// Reads one file; returns its warnings and their exit code.

@@ -48,14 +48,14 @@ pub(crate) struct Args {
     /// Periodic cell, m: three edge lengths, or nine numbers row by row with the edge vectors as columns
     #[arg(long, value_name = "LX,LY,LZ", value_delimiter = ',')]
     cell: Vec<f64>,
-    /// Topic of the packings: of recordings, or of a live run
+    /// Topic of the packings of recordings
     #[arg(long, value_name = "NAME", default_value = "packing")]
     pub(crate) topic: String,
     /// LAMMPS `dump local` with the contact forces of a data file or a dump at the same steps, also as .gz, of normal and
     /// tangential force (see `grainlab analyze --help`)
     #[arg(long, value_name = "FILE")]
     contact_forces: Option<PathBuf>,
-    /// Its columns, if they differ: ids, normal force, tangential force (or ids and the whole force)
+    /// Columns of the contact forces, if they differ: ids, normal force, tangential force (or ids and the whole force)
     #[arg(long, value_name = "ID,ID,FX,FY,FZ,P1,P2,P3", value_delimiter = ',', requires = "contact_forces")]
     contact_columns: Vec<String>,
 }
@@ -64,13 +64,13 @@ impl Args {
     /// Refuses a topic where no file is a recording, which has topics.
     pub(crate) fn topic_has_use(&self, files: &[PathBuf]) -> Result<(), Failure> {
         let is_recording = |file: &PathBuf| file.is_dir() || file.to_string_lossy().contains(".mcap");
-        if self.topic == topics::PACKING.name || files.is_empty() || files.iter().any(is_recording) {
+        if self.topic == topics::PACKING.name || files.iter().any(is_recording) {
             return Ok(());
         }
         Err(Failure::usage(format!("--topic {} is for recordings, and no file is one", self.topic)))
     }
 
-    /// The same, checked.
+    /// Checks the flags.
     pub(crate) fn options(&self) -> Result<ImportOptions, Failure> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         in_range("shear-modulus", self.shear_modulus, "a modulus in Pa, more than 0", positive)?;

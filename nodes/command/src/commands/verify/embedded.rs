@@ -29,7 +29,7 @@ pub(super) fn smooth_spheres() -> Result<Packing, Failure> {
 
 /// 500 equal spheres of LAMMPS with their forces, and what LAMMPS says of them.
 pub(super) fn equal_spheres() -> Result<(Packing, Reference), Failure> {
-    /// The file beside the packing, with its own names.
+    /// The sidecar of the packing, with its own names.
     #[derive(Deserialize)]
     struct Sidecar {
         stress_from_contacts: [[f64; 3]; 3],
@@ -63,14 +63,8 @@ pub(super) fn equal_spheres() -> Result<(Packing, Reference), Failure> {
 
 /// 400 unequal spheres of LAMMPS with the contact forces that it dumped, and its stress, Pa: xx yy zz xy xz yz.
 pub(super) fn unequal_spheres() -> Result<(Packing, [f64; 6]), Failure> {
-    let options = ImportOptions {
-        shear_modulus: Some(29e9),
-        poisson_ratio: Some(0.2),
-        density: Some(2500.0),
-        friction: Some(0.3),
-        contact_forces: Some(unpacked(include_bytes!(golden!("lammps/forces.dump.gz")))?),
-        ..ImportOptions::default()
-    };
+    let contact_forces = Some(unpacked(include_bytes!(golden!("lammps/forces.dump.gz")))?);
+    let options = ImportOptions { contact_forces, ..glass(0.3) };
     let text = unpacked(include_bytes!(golden!("lammps/grains.dump.gz")))?;
     let mut packings = read(lammps_dump::packings(&text, &options))?;
     let packing = packings.pop().ok_or_else(|| failed("grains.dump.gz", &"no packing"))?.packing;
@@ -84,15 +78,19 @@ pub(super) fn unequal_spheres() -> Result<(Packing, [f64; 6]), Failure> {
 
 /// 2,000 grains of LAMMPS at 100 kPa.
 pub(super) fn to_compress() -> Result<Packing, Failure> {
-    let options = ImportOptions {
+    let text = unpacked(include_bytes!(golden!("packings/packing_2000.data.gz")))?;
+    Ok(read(lammps_data::packing(&text, &glass(0.1)))?.packing)
+}
+
+/// Properties that the files of LAMMPS lack.
+fn glass(friction: f64) -> ImportOptions {
+    ImportOptions {
         shear_modulus: Some(29e9),
         poisson_ratio: Some(0.2),
         density: Some(2500.0),
-        friction: Some(0.1),
+        friction: Some(friction),
         ..ImportOptions::default()
-    };
-    let text = unpacked(include_bytes!(golden!("packings/packing_2000.data.gz")))?;
-    Ok(read(lammps_data::packing(&text, &options))?.packing)
+    }
 }
 
 fn unpacked(bytes: &[u8]) -> Result<String, Failure> {

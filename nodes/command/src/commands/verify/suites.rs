@@ -12,9 +12,9 @@ use rayon::prelude::*;
 pub(super) struct Suite {
     /// As in `--only`.
     pub(super) name: &'static str,
-    /// What is compared.
+    /// Subject of the comparisons.
     pub(super) about: &'static str,
-    /// Whether it takes minutes.
+    /// True if it takes minutes.
     pub(super) slow: bool,
     /// Makes the comparisons.
     pub(super) rows: fn() -> Result<Vec<Row>, Failure>,
@@ -41,7 +41,7 @@ pub(super) const SUITES: [Suite; 9] = [
         rows.extend(lammps_packings::unequal_spheres(&packing, &stress));
         Ok(rows)
     }),
-    quick(uniaxial::NAME, "uniaxial compression step by step beside LAMMPS", || {
+    quick(uniaxial::NAME, "uniaxial compression step by step compared with LAMMPS", || {
         made(uniaxial::rows(&embedded::to_compress()?, embedded::UNIAXIAL))
     }),
     Suite {

@@ -1,7 +1,7 @@
 //! The comparisons as a table.
 
 use grainlab_console::{Table, count, exact};
-use grainlab_verification::{Row, Verdict};
+use grainlab_verification::{Point, Row, Verdict};
 use serde::Serialize;
 
 /// A comparison with what follows from it.
@@ -24,88 +24,42 @@ impl<'a> Judged<'a> {
     }
 }
 
-/// A block for each suite, and a summary: at most 100 columns.
+/// A table for each suite, with the notes of what does not pass, and a summary.
 pub(super) fn text(rows: &[Row]) -> String {
-    let mut notes: Vec<&str> = Vec::new();
-    let mut text =
-        columns(["comparison", "theirs", "ours", "off by", "allowed", "verdict"].map(str::to_owned));
+    let mut text = String::new();
     for group in rows.chunk_by(|a, b| a.suite == b.suite) {
         let mut sources: Vec<&str> = group.iter().map(|r| short(&r.source)).collect();
         sources.sort_unstable();
         sources.dedup();
-        text += "\n";
-        text += &wrapped(&format!("{}: ", group[0].suite), "  ", &sources.join(", "), WIDTH);
-        let new = notes.len();
+        text += &format!("{}: {}\n", group[0].suite, sources.join(", "));
+        let mut notes = Vec::new();
+        let mut table = Table::new(["comparison", "theirs", "ours", "unit", "off by", "allowed", "verdict"]);
         for row in group {
-            text += &line(row, &mut notes);
+            let mut verdict = row.verdict().word().to_owned();
+            if row.verdict() != Verdict::Passed && !row.note.is_empty() {
+                let known = notes.iter().position(|n| *n == &row.note);
+                verdict += &format!(" [{}]", known.unwrap_or(notes.len()) + 1);
+                notes.extend(known.is_none().then_some(&row.note));
+            }
+            let number_of = |of: fn(&Point) -> f64| row.worst().map_or_else(dash, |p| number(of(p)));
+            table.row([
+                row.name.clone(),
+                number_of(|p| p.theirs),
+                number_of(|p| p.ours),
+                row.unit.to_owned(),
+                row.difference().map_or_else(dash, amount),
+                limit(row.tolerance),
+                verdict,
+            ]);
         }
-        for (n, note) in notes.iter().enumerate().skip(new) {
-            text += &wrapped(&format!("  [{}] ", n + 1), "      ", note, WIDTH);
-        }
+        text += &table.text();
+        notes.iter().zip(1..).for_each(|(note, n)| text += &format!("[{n}] {note}\n"));
+        text.push('\n');
     }
-    text + "\n" + &summary(rows)
+    text + &summary(rows)
 }
 
-/// Columns of a terminal that the table needs.
-const WIDTH: usize = 100;
-
-/// Columns of the name of a comparison; longer ones take several lines.
-const NAME: usize = 36;
-
-/// One comparison. A note that is new is added to `notes`.
-fn line<'a>(row: &'a Row, notes: &mut Vec<&'a str>) -> String {
-    let verdict = row.verdict();
-    let mut word = verdict.word().to_owned();
-    if verdict != Verdict::Passed && !row.note.is_empty() {
-        let known = notes.iter().position(|n| *n == row.note);
-        let number = known.unwrap_or_else(|| {
-            notes.push(&row.note);
-            notes.len() - 1
-        });
-        word += &format!(" [{}]", number + 1);
-    }
-    let Some(worst) = row.worst() else {
-        return wrapped("  ", "    ", &format!("{}: {word}", row.name), WIDTH);
-    };
-    let unit = if row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
-    let difference = row.difference().map_or_else(dash, amount);
-    columns([
-        row.name.clone(),
-        number(worst.theirs),
-        number(worst.ours) + &unit,
-        difference,
-        limit(row.tolerance),
-        word,
-    ])
-}
-
-/// A line of the table; of a name that is too long, the rest is below.
-fn columns([name, theirs, ours, difference, tolerance, verdict]: [String; 6]) -> String {
-    // The unit stands behind the aligned number.
-    let (ours, unit) = ours.split_once(' ').unwrap_or((&ours, ""));
-    let name = wrapped("  ", "    ", &name, NAME + 2);
-    let (first, rest) = name.split_once('\n').unwrap_or((&name, ""));
-    let first =
-        format!("{first:<38} {theirs:>11} {ours:>11} {unit:<5} {difference:>7} {tolerance:>7}  {verdict}");
-    format!("{}\n{rest}", first.trim_end())
-}
-
-/// Words in lines of at most `width` columns, the first after `begin`, the others after `next`.
-fn wrapped(begin: &str, next: &str, words: &str, width: usize) -> String {
-    let (mut text, mut line) = (String::new(), begin.to_owned());
-    let mut empty = true;
-    for word in words.split_whitespace() {
-        if !empty && line.chars().count() + 1 + word.chars().count() > width {
-            text += &format!("{line}\n");
-            (line, empty) = (next.to_owned(), true);
-        }
-        line += &if empty { word.to_owned() } else { format!(" {word}") };
-        empty = false;
-    }
-    text + line.trim_end() + "\n"
-}
-
-/// How many comparisons there are of each verdict.
+/// Number of comparisons of each verdict.
 fn summary(rows: &[Row]) -> String {
     let of = |verdict| rows.iter().filter(|r| r.verdict() == verdict).count();
     let mut text = format!(
@@ -122,7 +76,7 @@ fn summary(rows: &[Row]) -> String {
         (Verdict::Failed, "FAILED"),
     ] {
         for row in rows.iter().filter(|r| r.verdict() == verdict) {
-            text += &wrapped("  ", "    ", &format!("{words}: {}, {}", row.suite, row.name), WIDTH);
+            text += &format!("  {words}: {}, {}\n", row.suite, row.name);
         }
     }
     text
@@ -207,7 +161,7 @@ fn limit(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_verification::{Measure, Point};
+    use grainlab_verification::Measure;
 
     #[test]
     fn the_table_shows_the_worst_point_and_numbers_the_notes_of_what_does_not_pass() {
@@ -221,22 +175,18 @@ mod tests {
             Row::not_comparable("suite", "walls", "Somebody", "There are none."),
         ];
         let text = text(&rows);
-        let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[2], "suite: Somebody", "{text}");
-        assert!(lines[3].starts_with("  same ") && lines[3].ends_with("passed"), "{text}");
-        assert!(lines[3].contains("1.0010 N") && lines[3].contains(" 1.0e-3    1e-2 "), "{text}");
-        assert!(lines[4].ends_with("explained [1]"), "{text}");
-        assert!(lines[5].ends_with("DIFFERS [1]"), "{text}");
-        assert_eq!(
-            lines[6..],
-            [
-                "  walls: not comparable [2]",
-                "  [1] Another law.",
-                "  [2] There are none.",
-                "",
-                "4 comparisons: 1 passed, 1 explained, 1 differ from their source, 1 not comparable, 0 failed",
-                "  DIFFERS from its source, ours being what our own law gives: suite, own law"
-            ]
+        let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split_whitespace().collect()).collect();
+        assert_eq!(lines[0], ["suite:", "Somebody"], "{text}");
+        assert_eq!(lines[2], ["same", "1.0000", "1.0010", "N", "1.0e-3", "1e-2", "passed"], "{text}");
+        assert!(lines[3].ends_with(&["explained", "[1]"]), "{text}");
+        assert!(lines[4].ends_with(&["DIFFERS", "[1]"]), "{text}");
+        assert!(lines[5].ends_with(&["not", "comparable", "[2]"]), "{text}");
+        assert!(
+            text.ends_with(
+                "[1] Another law.\n[2] There are none.\n\n4 comparisons: 1 passed, 1 explained, 1 differ from their source, \
+                 1 not comparable, 0 failed\n  DIFFERS from its source, ours being what our own law gives: suite, own law\n"
+            ),
+            "{text}"
         );
         let csv = csv(&rows);
         assert!(csv.lines().nth(2).unwrap().contains("explained,Another law."), "{csv}");
@@ -244,26 +194,5 @@ mod tests {
             csv.lines().nth(4).unwrap().contains(",relative,") && csv.contains(",not_comparable,"),
             "{csv}"
         );
-    }
-
-    #[test]
-    fn long_names_sources_and_notes_take_several_lines_of_at_most_100_columns() {
-        let words = "a note of many words ".repeat(20);
-        let points =
-            vec![Point::explained(0.0, -1.234_567e-12, -1.234_567e12, -1.234_567e12, -1.234_567e-12)];
-        let name = "500 smooth spheres, 36 moduli, with the term of the normal forces";
-        let row = Row::new("a-suite", name, words.clone(), "rad/s", Measure::Relative, 1.9e-2, points);
-        let text = text(&[row.with_note(words)]);
-        assert!(text.lines().all(|l| l.chars().count() <= 100), "{text}");
-        let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        for part in [
-            "500 smooth spheres, 36 moduli,",
-            "the normal forces",
-            "-1.2346e12 rad/s",
-            "1.9e-2",
-            "explained [1]",
-        ] {
-            assert!(flat.contains(part), "{part} is missing:\n{text}");
-        }
     }
 }

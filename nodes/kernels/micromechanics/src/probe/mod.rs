@@ -1,16 +1,13 @@
 //! Explicit probe: stiffness from the stress change under a small strain, with the whole contact law.
 //!
 //! - [`strain_probe()`]: all six columns, with the settings [`StrainProbe`]
-//! - [`amplitude_sweep()`]: the range of strains with a linear response
 //! - [`Relaxation`]: brings grains to rest in a fixed cell
 
-mod amplitude_sweep;
 mod column;
 mod relaxation;
 mod settings;
 mod strain_probe;
 
-pub use amplitude_sweep::{AmplitudeSweep, amplitude_sweep};
 pub use column::ProbeColumn;
 pub use relaxation::Relaxation;
 pub use settings::{DifferenceScheme, StrainProbe};

@@ -1,17 +1,14 @@
 //! Several packings of a run, one line each, in at most 100 columns.
 
-use super::shown::{eps, moduli};
 use crate::inference::{Inference, Origin, by_origin};
+use crate::packing_text::{eps, moduli};
 use crate::read_back::InvertedPacking;
 use grainlab_console::{Table, count, fixed};
 use grainlab_core::results::InferredQuantity;
 use std::collections::BTreeSet;
 
-/// Rows of the table; with more states, the last ones have rows.
+/// Rows of the table; with more estimates, those of the last states have rows.
 const MOST_ROWS: usize = 10;
-
-/// The same where packings have several measurements.
-const MOST_ROWS_OF_SEVERAL: usize = 24;
 
 /// The mark after the model of an estimate outside its range, and the status that it means.
 const OUTSIDE: (&str, &str) = ("*", "extrapolated");
@@ -21,11 +18,12 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
     let mut t = Table::new([
         "step", "p/kPa", "q/p", "phi", "k", "z", "eps", "G12", "Theta", "est. k", "z", "eps", "by",
     ]);
-    let origins = states.iter().map(|s| by_origin(&s.results).len()).max().unwrap_or(0).max(1);
-    let left_out = match of_measurements(states) {
-        Some(shown) => states.len() - shown,
-        None => states.len().saturating_sub((MOST_ROWS / origins).max(1)),
+    let mut rows = 0;
+    let has_room = |state: &&InvertedPacking| {
+        rows += by_origin(&state.results).len().clamp(1, MOST_ROWS);
+        rows <= MOST_ROWS
     };
+    let left_out = states.len() - states.iter().rev().take_while(has_room).count();
     let mut notes = Vec::new();
     let mut note = |line: String| {
         if !notes.contains(&line) {
@@ -50,14 +48,14 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
             theta,
         ];
         let groups = by_origin(&state.results);
-        // Of several measurements those without an estimate have a row, too.
+        // A measurement without an estimate has a row, too, where there are several.
         let found: Vec<(&Origin, Option<&Inference>)> = groups
             .iter()
             .map(|(origin, results)| (origin, Inference::recommended(results)))
             .filter(|(origin, best)| best.is_some() || origin.measurement.is_some())
             .collect();
         let step = state.packing.step;
-        // Of several nodes that infer, each is named.
+        // Each node is named where several infer.
         let nodes: BTreeSet<_> = groups.iter().map(|(origin, _)| &origin.by).collect();
         let named = |o: &Origin| if nodes.len() > 1 { o.data_and_node() } else { o.data() };
         let shown = &found[..found.len().min(MOST_ROWS)];
@@ -87,20 +85,6 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
     }
     let table = t.without_empty_columns().text();
     table.lines().map(str::to_owned).chain(notes).collect()
-}
-
-/// Number of the last states that have rows where packings have several measurements: each of these has one; `None` without such
-/// packings.
-fn of_measurements(states: &[InvertedPacking]) -> Option<usize> {
-    let is_of_several = |s: &InvertedPacking| s.results.iter().any(|r| r.measurement.is_some());
-    states.iter().any(is_of_several).then(|| {
-        let mut rows = 0;
-        let shown = states.iter().rev().take_while(|s| {
-            rows += by_origin(&s.results).len().clamp(1, MOST_ROWS);
-            rows <= MOST_ROWS_OF_SEVERAL
-        });
-        shown.count()
-    })
 }
 
 /// The recommended estimate; without one, its cell has `unknown`.

@@ -16,7 +16,7 @@ const INVERTED: [&str; 3] = [topics::PACKING_REPORT.name, topics::MODULI.name, t
 
 /// A message that is not used.
 pub(super) enum Unused {
-    /// Its content is refused; it is about the packing of this step.
+    /// The content is refused; it is about the packing of this step.
     Refused(u64, String),
     /// It cannot be read.
     Unreadable(String),
@@ -53,7 +53,7 @@ pub(super) struct About {
     disputed_by: Option<String>,
     wave_speeds: Vec<(Identity, WaveSpeedsReading)>,
     answers: Vec<Answer>,
-    /// What was sent and answered, by topic.
+    /// Data sent and answered, by topic.
     pub(super) data: BTreeMap<&'static str, Measurements>,
 }
 
@@ -65,7 +65,7 @@ impl About {
         self.position.is_some_and(|p| !p.end_of_phase)
     }
 
-    /// Whether data of the identity are about this packing. Those of an instrument without a simulation have step 0, too, and
+    /// True if data of the identity are about this packing. Those of an instrument without a simulation have step 0, too, and
     /// the stamp tells them from data of the packing that a run starts from.
     fn is_of_packing(&self, identity: &Identity) -> bool {
         self.packing.is_some() && (self.step > 0 || self.stamp == Some(identity.stamp()))
@@ -106,7 +106,7 @@ impl About {
             .collect()
     }
 
-    /// What was inferred from data about this packing, and from data that are not about it, in the order of arrival.
+    /// Estimates from data about this packing, and from data that are not about it, in the order of arrival.
     pub(super) fn results(&mut self) -> (Vec<Inference>, Vec<Inference>) {
         let (mut own, mut others) = (Vec::new(), Vec::new());
         for answer in std::mem::take(&mut self.answers) {
@@ -128,7 +128,7 @@ impl About {
         (own, others)
     }
 
-    /// What shows that the report is not that of the packing: it has another stamp, or other numbers of grains or contacts.
+    /// Sign that the report is not that of the packing: it has another stamp, or other numbers of grains or contacts.
     pub(super) fn contradiction(&self) -> Option<RunSign> {
         let ((grains, contacts), report) = (self.packing?, self.report.as_ref()?);
         let found = &report.contacts;

@@ -1,17 +1,13 @@
-//! What rows and headers give.
+//! Results of rows and headers.
 
 use super::*;
 
 fn columns(header: &str) -> Columns {
-    Columns::of_header(header.as_bytes(), &[], Defaults::default()).unwrap()
+    Columns::of_header(header.as_bytes(), &[], State::default()).unwrap()
 }
 
 fn state(header: &str, row: &str) -> Result<State, String> {
-    columns(header)
-        .row(row.as_bytes(), &mut Splitter::new())
-        .unwrap()
-        .map(|r| r.state)
-        .map_err(|bad| bad.fault)
+    columns(header).row(row.as_bytes()).unwrap().map(|r| r.state).map_err(|bad| bad.fault)
 }
 
 fn matrix_names() -> Vec<String> {
@@ -172,7 +168,7 @@ fn pressures_are_in_the_unit_that_their_column_names() {
 }
 
 fn refused(header: &str) -> String {
-    Columns::of_header(header.as_bytes(), &[], Defaults::default()).err().unwrap_or_default()
+    Columns::of_header(header.as_bytes(), &[], State::default()).err().unwrap_or_default()
 }
 
 #[test]
@@ -214,12 +210,12 @@ fn smooth_grains_of_an_analysis_and_errors_of_what_is_not_there_are_not_overlook
 #[test]
 fn a_flag_beside_its_column_is_refused_and_fills_a_missing_one() {
     let with = |header: &str| {
-        let defaults = Defaults { poisson: Some(0.3), grain_shear_modulus_sigma: 1e9, ..Defaults::default() };
+        let defaults = State { poisson: Some(0.3), grain_shear_modulus_sigma: 1e9, ..State::default() };
         Columns::of_header(header.as_bytes(), &[], defaults).err().unwrap_or_default()
     };
-    assert!(with("p_pa,g12_pa,poisson").contains("--poisson is beside the column poisson"));
+    assert!(with("p_pa,g12_pa,poisson").contains("--poisson contradicts the column poisson"));
     assert!(
-        with("p_pa,g12_pa,grain_shear_modulus_sigma_pa").contains("--grain-shear-modulus-sigma is beside")
+        with("p_pa,g12_pa,grain_shear_modulus_sigma_pa").contains("--grain-shear-modulus-sigma contradicts")
     );
     assert_eq!(with("p_pa,g12_pa,grain_shear_modulus_pa"), "");
 }
@@ -249,9 +245,9 @@ fn negative_errors_are_refused() {
 fn blank_lines_and_comments_are_no_rows() {
     let columns = columns("p_pa,g12_pa");
     for line in ["", "   ", "# 5e4,1e8"] {
-        assert!(columns.row(line.as_bytes(), &mut Splitter::new()).is_none(), "{line:?}");
+        assert!(columns.row(line.as_bytes()).is_none(), "{line:?}");
     }
-    assert!(columns.row(b"\xff,1", &mut Splitter::new()).unwrap().unwrap_err().fault.contains("UTF-8"));
+    assert!(columns.row(b"\xff,1").unwrap().unwrap_err().fault.contains("UTF-8"));
 }
 
 #[test]
@@ -265,5 +261,21 @@ fn pressures_as_a_servo_leaves_them_are_one_group_and_whole_numbers_stay() {
         ("", ""),
     ] {
         assert_eq!(group_label(cell), label, "{cell}");
+    }
+}
+
+#[test]
+fn quoted_cells_hold_commas_and_quotes() {
+    for (line, expected) in [
+        ("a, b ,", &["a", "b", ""][..]),
+        ("\"x, y\",1", &["x, y", "1"]),
+        ("1,\"say \"\"no\"\"\",3", &["1", "say \"no\"", "3"]),
+        ("\"\",", &["", ""]),
+        ("1,a\"b,2", &["1", "a\"b", "2"]),
+    ] {
+        assert_eq!(cells(line.as_bytes()).unwrap().iter().collect::<Vec<_>>(), expected, "{line}");
+    }
+    for line in ["\"a,b", "1,\"a\"\""] {
+        assert!(cells(line.as_bytes()).is_err(), "{line}");
     }
 }

@@ -11,7 +11,7 @@ pub(super) struct Error {
     /// Estimate minus truth; `None` without an estimate.
     error: Option<f64>,
     extrapolated: bool,
-    /// Whether the interval contains the truth; `None` without an interval.
+    /// Coverage of the truth by the interval; `None` without an interval.
     covered: Option<bool>,
 }
 
@@ -61,7 +61,7 @@ impl Score {
         self.absolute += value.abs();
     }
 
-    /// Mean error.
+    /// Mean of the errors.
     pub(super) fn bias(&self) -> Option<f64> {
         (self.solved > 0).then_some(self.mean)
     }
@@ -88,7 +88,7 @@ impl Score {
 }
 
 impl Score {
-    /// Whether so few intervals contain the truth that it is no chance: fewer than 90 % where 95 % are stated, and less than
+    /// True if so few intervals contain the truth that it is no chance: fewer than 90 % where 95 % are stated, and less than
     /// once in a thousand in independent rows.
     pub(super) fn is_overconfident(&self) -> bool {
         const STATED: f64 = 0.95;

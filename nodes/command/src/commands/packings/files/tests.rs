@@ -32,7 +32,7 @@ fn a_damaged_chunk_of_the_packing_is_named_and_is_data_loss() {
         chunk = if good[at] == 0x06 { at } else { chunk };
         at += 9 + u64::from_le_bytes(good[at + 1..at + 9].try_into().unwrap()) as usize;
     }
-    // Its opcode, its length, its header and the start of its content.
+    // The chunk's opcode, its length, its header and the start of its content.
     for bit in 0..8 * 70 {
         let mut bytes = good.clone();
         bytes[chunk + bit / 8] ^= 1 << (bit % 8);

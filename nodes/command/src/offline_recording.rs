@@ -6,9 +6,28 @@ use grainlab_msgs::{Guid, Message, Topic, to_cdr};
 use grainlab_recordings::{Incoming, RunWriter, SESSION_KEY, TopicSpec, WriterOptions};
 use std::path::Path;
 
+/// A message to record.
+pub(crate) struct Recorded {
+    topic: Topic,
+    /// Stamp of the message, ns.
+    time: u64,
+    payload: Vec<u8>,
+}
+
+impl Recorded {
+    /// A message with this header.
+    pub(crate) fn new<T: Message>(topic: Topic, header: &Header, message: &T) -> Self {
+        let seconds = u64::try_from(header.stamp.sec).unwrap_or(0);
+        let mut payload = to_cdr(message);
+        // The bytes of the bus, which sends whole words.
+        payload.resize(payload.len().next_multiple_of(4), 0);
+        Self { topic, time: seconds * 1_000_000_000 + u64::from(header.stamp.nanosec), payload }
+    }
+}
+
 /// Writes messages. Their log times are their stamps, increased where necessary to stay in order: two
 /// recordings of the same packings are equal.
-pub(crate) struct Tape {
+pub(crate) struct OfflineRecording {
     writer: RunWriter,
     /// A placeholder for the writer, since there is no network.
     guid: Guid,
@@ -17,7 +36,7 @@ pub(crate) struct Tape {
     counts: Vec<(Topic, i64)>,
 }
 
-impl Tape {
+impl OfflineRecording {
     /// Begins a recording of these topics in this directory, made by `grainlab command`.
     pub(crate) fn create(directory: &Path, topics: &[Topic], command: &'static str) -> Result<Self, Failure> {
         let name = directory.file_name().map(|n| n.to_string_lossy().into_owned());
@@ -32,7 +51,7 @@ impl Tape {
         let mut writer =
             RunWriter::create(directory, &name, &specs, WriterOptions::default()).map_err(Failure::failed)?;
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
-        // The same messages give the same file at any time of day.
+        // Equal messages give equal files at any time of day.
         writer.set_metadata(SESSION_KEY, command);
         let mut guid = Guid([b' '; 16]);
         let title = format!("grainlab {command}");
@@ -41,28 +60,15 @@ impl Tape {
     }
 
     /// Records the next message of one of its topics.
-    pub(crate) fn put<T: Message>(
-        &mut self,
-        topic: &Topic,
-        header: &Header,
-        message: &T,
-    ) -> Result<(), Failure> {
-        let Some((_, count)) = self.counts.iter_mut().find(|(t, _)| t.name == topic.name) else {
-            return Err(Failure::failed(format!("{} is not among the topics recorded", topic.name)));
-        };
-        *count += 1;
-        let seconds = u64::try_from(header.stamp.sec).unwrap_or(0);
-        let time = seconds * 1_000_000_000 + u64::from(header.stamp.nanosec);
-        let mut payload = to_cdr(message);
-        // The bytes of the bus, which sends whole words.
-        payload.resize(payload.len().next_multiple_of(4), 0);
-        let sample = Incoming {
-            guid: self.guid,
-            sequence: *count,
-            source_time: Some(time),
-            receive_time: time,
-            payload: &payload,
-        };
+    pub(crate) fn put(&mut self, message: &Recorded) -> Result<(), Failure> {
+        let Recorded { topic, time, payload } = message;
+        let known = self.counts.iter_mut().find(|(known, _)| known.name == topic.name);
+        let sequence = known.map_or(0, |(_, count)| {
+            *count += 1;
+            *count
+        });
+        let (source_time, receive_time) = (Some(*time), *time);
+        let sample = Incoming { guid: self.guid, sequence, source_time, receive_time, payload };
         self.writer.write(&topic.absolute_name(), &sample).map(drop).map_err(Failure::failed)
     }
 
