@@ -5,7 +5,6 @@ use serde_json::Value;
 use std::path::Path;
 use system_tests::bodies::distinct;
 use system_tests::lab::{LIMIT, Lab, golden, until};
-use system_tests::process::handles;
 
 #[test]
 fn a_recording_played_into_fresh_nodes_gives_the_recorded_bytes() {
