@@ -86,7 +86,7 @@ fn a_late_joiner_gets_what_was_latched_with_its_first_sequence_numbers() {
         Subscription::<RunState>::subscribe(&mut late, &topics::RUN_STATE, Demand::reliable(10)).unwrap();
     let mut last = None;
     until(&mut late, "the latched state", |b| {
-        while let Some((message, info)) = latched.take(b).unwrap() {
+        while let Some((message, info)) = latched.take_valid(b).unwrap() {
             last = Some((message.step, info.sequence));
         }
         last == Some((8, 2))
@@ -201,10 +201,10 @@ fn each_of_two_subscriptions_to_one_topic_gets_everything() {
     }
     let (mut first, mut second) = (Vec::new(), Vec::new());
     until(&mut b, "20 samples for both", |b| {
-        while let Some((m, _)) = weak.take(b).unwrap() {
+        while let Some((m, _)) = weak.take_valid(b).unwrap() {
             second.push(m.sequence);
         }
-        while let Some((m, _)) = strong.take(b).unwrap() {
+        while let Some((m, _)) = strong.take_valid(b).unwrap() {
             first.push(m.sequence);
         }
         first.len() == 20 && second.len() == 20
@@ -350,7 +350,7 @@ fn a_process_receives_its_own_messages_once_for_any_demand() {
     }
     let mut far = Vec::new();
     until(&mut peer, "20 samples", |b| {
-        far.extend(std::iter::from_fn(|| there.take(b).unwrap()).map(|(m, _)| m.step));
+        far.extend(std::iter::from_fn(|| there.take_valid(b).unwrap()).map(|(m, _)| m.step));
         far.len() == 20
     });
     for subscription in [strong, weak] {

@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(line(&rest, 40), "[   3.75 s]  6 of 10  extension  45 %");
         let unmet = Rest::Unmet(UNMET.to_owned());
         assert_eq!(line(&unmet, 130).split("  ").last(), Some(&*format!("not yet: {UNMET}")));
-        assert!(line(&unmet, 100).ends_with("above 1e-3, unbalanced is…"), "{}", line(&unmet, 100));
+        assert!(line(&unmet, 100).ends_with("above 1e-3, unbalan…"), "{}", line(&unmet, 100));
         let done = |width| done(3.75, &phase("load"), (7, 0.4), "without spins", width);
         assert_eq!(
             done(90),

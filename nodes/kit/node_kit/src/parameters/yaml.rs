@@ -1,20 +1,19 @@
 //! YAML of any shape, and the parameter values in it.
 
 use super::value::ParameterValue;
-use indexmap::IndexMap;
-use serde::Deserialize;
+use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use std::fmt;
 
 /// A YAML document of any shape; mappings keep the order of the file.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Yaml {
+    Null,
     Bool(bool),
     Integer(i64),
     Double(f64),
     Text(String),
     List(Vec<Yaml>),
-    Map(IndexMap<String, Yaml>),
-    Null(Option<()>),
+    Map(Vec<(String, Yaml)>),
 }
 
 /// The value of a parameter written as YAML, as on a command line: `0.5`, `true`, `[1, 2]`, `text`.
@@ -36,7 +35,7 @@ impl Yaml {
 
     fn kind(&self) -> &'static str {
         match self {
-            Yaml::Null(_) => "nothing",
+            Yaml::Null => "nothing",
             Yaml::Bool(_) => "bool",
             Yaml::Integer(_) => "integer",
             Yaml::Double(_) => "double",
@@ -80,4 +79,57 @@ fn list(items: &[Yaml]) -> Result<ParameterValue, String> {
             let kinds: Vec<&str> = items.iter().map(Yaml::kind).collect();
             format!("a list must hold values of one type, this one holds {}", kinds.join(", "))
         })
+}
+
+impl<'de> Deserialize<'de> for Yaml {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Any;
+        impl<'de> Visitor<'de> for Any {
+            type Value = Yaml;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("YAML")
+            }
+            fn visit_unit<E>(self) -> Result<Yaml, E> {
+                Ok(Yaml::Null)
+            }
+            fn visit_none<E>(self) -> Result<Yaml, E> {
+                Ok(Yaml::Null)
+            }
+            fn visit_some<D: Deserializer<'de>>(self, inner: D) -> Result<Yaml, D::Error> {
+                Yaml::deserialize(inner)
+            }
+            fn visit_bool<E>(self, v: bool) -> Result<Yaml, E> {
+                Ok(Yaml::Bool(v))
+            }
+            fn visit_i64<E>(self, v: i64) -> Result<Yaml, E> {
+                Ok(Yaml::Integer(v))
+            }
+            fn visit_u64<E: serde::de::Error>(self, v: u64) -> Result<Yaml, E> {
+                i64::try_from(v)
+                    .map(Yaml::Integer)
+                    .map_err(|_| E::custom(format!("{v} does not fit 64 bits with a sign")))
+            }
+            fn visit_f64<E>(self, v: f64) -> Result<Yaml, E> {
+                Ok(Yaml::Double(v))
+            }
+            fn visit_str<E>(self, v: &str) -> Result<Yaml, E> {
+                Ok(Yaml::Text(v.into()))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Yaml, A::Error> {
+                let mut items = Vec::new();
+                while let Some(item) = seq.next_element()? {
+                    items.push(item);
+                }
+                Ok(Yaml::List(items))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Yaml, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = map.next_entry::<String, Yaml>()? {
+                    entries.push(entry);
+                }
+                Ok(Yaml::Map(entries))
+            }
+        }
+        deserializer.deserialize_any(Any)
+    }
 }
