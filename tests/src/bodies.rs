@@ -23,12 +23,12 @@ pub fn assert_same(first: &Path, second: &Path) {
     assert_same_under(first, second, "");
 }
 
-/// The same for a second run whose topics are in a ROS namespace, as in `/left`.
+/// Compares with a second run whose topics are in a ROS namespace, as in `/left`.
 pub fn assert_same_under(first: &Path, second: &Path, namespace: &str) {
     assert_same_named(first, second, |topic| format!("{namespace}{topic}"));
 }
 
-/// The same for a second run whose topics have other names.
+/// Compares with a second run whose topics have other names.
 pub fn assert_same_named(first: &Path, second: &Path, name: impl Fn(&str) -> String) {
     for topic in REPRODUCIBLE {
         let (a, b) = (distinct(first, topic), distinct(second, &name(topic)));

@@ -26,7 +26,7 @@ const NETWORK: &str = "
     touch \"$0\"
     exec sleep 600";
 
-/// Whether this process may make network namespaces; if not, the test says that it is skipped.
+/// True if this process may make network namespaces; if not, the test says that it is skipped.
 pub fn can_isolate() -> bool {
     let can = Command::new("unshare").args(["-n", "ip", "link"]).output().is_ok_and(|o| o.status.success());
     if !can {
@@ -69,7 +69,7 @@ impl Hosts {
         assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
     }
 
-    /// The same command on one of the hosts, in the folder of the laboratory.
+    /// Runs a command on one of the hosts, in the folder of the laboratory.
     pub fn on(&self, host: &str, command: &Command) -> Command {
         let mut there = self.inside();
         there.args(["ip", "netns", "exec", host]).arg(command.get_program()).args(command.get_args());

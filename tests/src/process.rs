@@ -18,14 +18,14 @@ pub struct Process {
 pub struct Ended {
     /// Exit code; `None` if a signal ended it.
     pub code: Option<i32>,
-    /// Standard output.
+    /// Text of standard output.
     pub stdout: String,
-    /// Standard error.
+    /// Text of standard error.
     pub stderr: String,
 }
 
 impl Process {
-    /// Starts `command`.
+    /// Starts `command` with piped output.
     pub fn start(command: &mut Command) -> Self {
         let mut child = command
             .stdin(Stdio::null())
@@ -38,7 +38,7 @@ impl Process {
         Self { child, stdout, stderr }
     }
 
-    /// Process id.
+    /// Id of the process.
     pub fn pid(&self) -> u32 {
         self.child.id()
     }
@@ -48,7 +48,7 @@ impl Process {
         send(self.pid(), signal);
     }
 
-    /// Whether it still runs.
+    /// True until it has ended.
     pub fn runs(&mut self) -> bool {
         matches!(self.child.try_wait(), Ok(None))
     }
@@ -90,12 +90,12 @@ pub fn send(pid: u32, signal: i32) {
     unsafe { libc::kill(pid, signal) };
 }
 
-/// Whether a process of this pid runs.
+/// True if a process of this pid runs.
 pub fn runs(pid: u32) -> bool {
     std::path::Path::new(&format!("/proc/{pid}/exe")).exists()
 }
 
-/// Whether the process handles `signal` itself; before, a signal has its default action.
+/// True once the process handles `signal` itself; before, a signal has its default action.
 pub fn handles(pid: u32, signal: i32) -> bool {
     let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
     let caught = status.lines().find_map(|l| l.strip_prefix("SigCgt:"));

@@ -54,7 +54,7 @@ impl Terminal {
         (Self { reader }, slave.into())
     }
 
-    /// What it shows once every program on it has ended.
+    /// Text on it once every program on it has ended.
     pub fn shown(self) -> Shown {
         let text = self.reader.join().unwrap_or_else(|_| panic!("the terminal cannot be read"));
         let mut shown = Shown { lines: Vec::new(), erased: Vec::new() };

@@ -65,7 +65,7 @@ enum Studio {
     /// Report runs: a page with results, plots and packings; for many runs one row per run.
     Report(report::Args),
     /// Show packings in three dimensions, as a page or PNG, or with --live a running laboratory.
-    View(view::Args),
+    View(Box<view::Args>),
     /// Reproduce the tables and figures of the paper: sixteen states, one page.
     Reproduce(reproduce::Args),
     /// List and measure topics: rate, bandwidth, delay, publishers and subscriptions.

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 
 /// A decoder of bytes from outside.
 pub struct Target<'a> {
-    /// Its name, and that of its folder in the corpus.
+    /// Name of the target and of its folder in the corpus.
     pub name: &'a str,
     /// Valid or nearly valid inputs.
     pub seeds: Vec<Vec<u8>>,
@@ -28,7 +28,7 @@ pub struct Target<'a> {
     pub words: &'a [&'a str],
     /// Memory in bytes that any input may need, plus a number per byte of the input.
     pub memory: (usize, usize),
-    /// The decoder.
+    /// The decoder under test.
     pub decode: &'a mut dyn FnMut(&[u8]),
 }
 

@@ -23,7 +23,7 @@ const NUMBERS: [u64; 14] = [
     u64::MAX / 3,
 ];
 
-/// The same numbers as text.
+/// Special numbers as text.
 const WORDS: [&str; 18] = [
     "0",
     "-1",

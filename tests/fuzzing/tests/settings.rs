@@ -84,7 +84,7 @@ fn a_parameter_file_gives_values_or_an_error() {
         let given = ["--ros-args", "--params-file", &path.to_string_lossy()].map(str::to_owned);
         let (arguments, _) = RosArgs::parse(&given).unwrap();
         drop(Parameters::resolve(&specs, "node", &names, &arguments));
-        // The same text as the value of one parameter.
+        // Decodes the text as the value of one parameter.
         let given = ["--ros-args".to_owned(), "-p".to_owned(), format!("names:={text}")];
         if let Ok((arguments, _)) = RosArgs::parse(&given) {
             drop(Parameters::resolve(&specs, "node", &names, &arguments));

@@ -9,11 +9,11 @@ pub(crate) type ModulePath = Vec<String>;
 
 /// One module: a file, or the root.
 pub(crate) struct Module {
-    /// Its source file.
+    /// Source file of the module.
     pub(crate) file: PathBuf,
     /// Lines of the file.
     pub(crate) lines: usize,
-    /// Its items without those of tests.
+    /// Items without those of tests.
     pub(crate) items: Vec<Item>,
 }
 

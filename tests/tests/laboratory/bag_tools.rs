@@ -181,7 +181,7 @@ fn peer(lab: &Lab, python: &Path, what: &str) -> Process {
     Process::start(&mut command)
 }
 
-/// What the other program printed: messages by topic.
+/// Output of the other program: messages by topic.
 fn messages(peer: Process) -> BTreeMap<String, Vec<Value>> {
     let ended = peer.ended(LIMIT);
     assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);

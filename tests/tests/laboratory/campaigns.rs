@@ -63,8 +63,7 @@ fn a_campaign_killed_at_any_moment_goes_on_to_the_same_bytes() {
 #[test]
 fn a_killed_member_is_continued_and_a_failed_one_costs_nothing_else() {
     let lab = Lab::new();
-    let failing =
-        "[[group]]\nscenes = ['demo']\nseeds = [9]\nset = { grains.count = 100, phase.rest.until.timeout = 1e-6 }";
+    let failing = "[[group]]\nscenes = ['demo']\nseeds = [9]\nset = { grains.count = 100, phase.rest.until.timeout = 1e-6 }";
     let file = tiny(&lab, "[1, 2]", failing);
     let file = file.to_string_lossy();
     let campaign = lab.start(&["campaign", &file, "--out", "c", "--jobs", "2"]);

@@ -21,7 +21,7 @@ const MEASURED_ELSEWHERE: Places = [
     ("dem_simulator", "left"),
 ];
 
-/// The same with the servo on the other host.
+/// Driven with the servo on the other host.
 const DRIVEN_FROM_ELSEWHERE: Places = [
     ("recorder", "left"),
     ("emt_inversion", "right"),
@@ -125,7 +125,7 @@ impl Run {
 
 const SUBNET: [(&str, &str); 1] = [("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")];
 
-/// The same variable on each host.
+/// One variable on every host.
 fn by_multicast() -> BTreeMap<&'static str, [(&'static str, &'static str); 1]> {
     ["left", "right", "third"].map(|host| (host, SUBNET)).into()
 }

@@ -97,7 +97,7 @@ fn decoded<T: Message>(run: &Path, topic: &str) -> Vec<T> {
 }
 
 fn emt_models() -> usize {
-    Settings::default().models.iter().count()
+    Settings::default().models.len()
 }
 
 #[test]

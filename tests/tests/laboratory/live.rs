@@ -30,7 +30,7 @@ impl Page {
     fn get(&self, path: &str) -> BufReader<TcpStream> {
         let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, self.port)).unwrap();
         stream.set_read_timeout(Some(LIMIT)).unwrap();
-        // Of version 1.0: a stream without chunks.
+        // Version 1.0: a stream without chunks.
         write!(stream, "GET {path} HTTP/1.0\r\nHost: localhost\r\n\r\n").unwrap();
         BufReader::new(stream)
     }

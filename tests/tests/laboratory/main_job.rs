@@ -168,7 +168,7 @@ fn on_a_terminal_a_phase_has_one_line_and_an_interrupted_launch_leaves_no_other(
     assert!(erased.iter().any(|line| line.contains(" 1 of ")), "no live line was drawn: {erased:?}");
     let wide = |line: &&String| line.chars().count() > COLUMNS;
     assert_eq!(erased.iter().find(wide), None, "a live line is wider than the terminal");
-    // What is left: lines with the time that are about a phase that is over, or about the launch.
+    // Lines that are left: lines with the time that are about a phase that is over, or about the launch.
     let progress = lines.iter().filter(|line| line.starts_with('['));
     let left: Vec<_> = progress.filter(|l| l.contains(" of ") && !l.contains(" steps ")).collect();
     assert!(left.is_empty(), "a live line is left: {left:?}");

@@ -6,7 +6,7 @@ use std::process::Command;
 use system_tests::lab::Lab;
 use system_tests::python;
 
-/// What builds the module, and what its tests use.
+/// Packages that build the module, and those of its tests.
 const NEEDED: &str = "maturin, numpy, pytest, nbclient, ipykernel, freud, ovito";
 
 #[test]

@@ -112,7 +112,7 @@ pub(crate) fn rows(packing: &Packing, kind: &str, methods: &Methods) -> Result<V
         let mut row = Row::new(Family::Stiffness, names, (seconds, repetitions as usize), (error, against));
         row.details.insert("coordination", 2.0 * packing.contacts.len() as f64 / packing.grains() as f64);
         row.details.extend(found.and_then(|f| f.1).map(|n| ("iterations", f64::from(n))));
-        Ok(Row { grains: Some(packing.grains()), failure, ..row })
+        Ok::<_, Failure>(Row { grains: Some(packing.grains()), failure, ..row })
     };
     let many = methods.repetitions;
     let mut rows = vec![row("affine", None, many, &|| bench.affine())?];

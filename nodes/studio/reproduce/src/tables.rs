@@ -48,7 +48,8 @@ impl Reproduction {
             (Quantity::Fabric(2), 4),
             (Quantity::SolidFraction, 4),
         ];
-        let names = ["k, all grains", "z, without rattlers (compared with the paper's k)", "L11", "L22", "L33", "φ"];
+        let names =
+            ["k, all grains", "z, without rattlers (compared with the paper's k)", "L11", "L22", "L33", "φ"];
         let mut rows = Vec::new();
         for (sample, paper) in PAPER.iter().enumerate() {
             for ((quantity, digits), name) in quantities.iter().zip(names) {

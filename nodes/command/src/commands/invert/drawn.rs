@@ -13,7 +13,7 @@ use std::path::Path;
 /// Ratio of the scatter of the draws to that of the estimate, or its inverse, from which the two are said to differ.
 const UNLIKE: f64 = 1.15;
 
-/// How many draws.
+/// Number of draws.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Number {
     pub(super) chains: usize,
@@ -74,7 +74,7 @@ fn drawn(state: &State, way: &Way, count: usize, seed: u64) -> Result<(Draws, Es
     let prior = way.prior.as_deref().cloned().unwrap_or_default();
     let settings = PosteriorSettings { seed, ..PosteriorSettings::default() };
     let observation = state.observation(way)?;
-    // What has no estimate has no posterior worth drawing from: it is far outside the packings of the calibration.
+    // A state without an estimate has no posterior worth drawing from: it is far outside the packings of the calibration.
     let estimate = way.model.infer(&observation, &way.calibration)?;
     let posterior = Posterior::new(way.model, &observation, &way.calibration, &prior, settings)?;
     // With a prior of its own, a draw has it, too.

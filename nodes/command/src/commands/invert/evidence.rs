@@ -30,7 +30,7 @@ impl std::str::FromStr for Odds {
     }
 }
 
-/// One model.
+/// Evidence of one model.
 #[derive(Debug, Serialize)]
 pub(super) struct OfModel {
     model: &'static str,
@@ -52,7 +52,7 @@ pub(super) struct OfModel {
 /// The moduli and their observed values, and the evidence.
 type Found = (Vec<(Modulus, f64)>, Evidence);
 
-/// Of every way.
+/// Evidences of every way.
 pub(super) fn of_ways(
     state: &State,
     ways: &[Way],
@@ -66,7 +66,7 @@ pub(super) fn of_ways(
     let weight = |way: &Way| odds.iter().find(|o| o.model == way.model.name()).map_or(1.0, |o| o.weight);
     let one = |(way, outcome): (&Way, &Result<Found, EmtError>)| {
         let (data, evidence) = outcome.as_ref().map_or((&[][..], None), |(d, e)| (d.as_slice(), Some(e)));
-        // Of one model with several calibrations each is a model of its own.
+        // Each calibration of a model counts as a model of its own.
         let same = ways.iter().zip(&found).filter_map(|(w, o)| {
             let (d, e) = o.as_ref().ok()?;
             are_same(d, data).then_some((weight(w), e.ln))
@@ -89,7 +89,7 @@ pub(super) fn of_ways(
     Ok(ways.iter().zip(&found).map(one).collect())
 }
 
-/// Whether they are the same moduli with the same values, but for rounding.
+/// True for the same moduli with the same values, but for rounding.
 fn are_same(a: &[(Modulus, f64)], b: &[(Modulus, f64)]) -> bool {
     let is_same =
         |((m, v), (n, w)): (&(Modulus, f64), &(Modulus, f64))| m == n && (v - w).abs() <= ROUNDING * v.abs();

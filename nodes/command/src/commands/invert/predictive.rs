@@ -10,14 +10,14 @@ use serde::Serialize;
 /// Number of points of the integration: probabilities above 1e-3 are accurate to a few percent of them.
 const POINTS: usize = 16_384;
 
-/// One model.
+/// Prediction of one model.
 #[derive(Debug, Serialize)]
 pub(super) struct Predictive {
     model: &'static str,
     calibration: String,
     /// Probability of a chi-square as large as the observed one, under the posterior of all moduli.
     chi_square: f64,
-    /// Whether the observation is unlike what the model predicts.
+    /// True if the observation is unlike the predictions of the model.
     unlikely: bool,
     moduli: Vec<OfModulus>,
 }
@@ -32,7 +32,7 @@ struct OfModulus {
     left_out: Option<f64>,
 }
 
-/// Of the models that state a likelihood. Improbable moduli are part of the status of the answer.
+/// Predictions of the models that state a likelihood. Improbable moduli are part of the status of the answer.
 pub(super) fn of_ways(
     state: &State,
     outcomes: &mut [Result<Estimate, EmtError>],

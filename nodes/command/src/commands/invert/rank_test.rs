@@ -9,7 +9,7 @@ use grainlab_node_kit::Exit;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// One quantity.
+/// Ranks of one quantity.
 #[derive(Debug, Serialize)]
 struct Ranked {
     model: &'static str,

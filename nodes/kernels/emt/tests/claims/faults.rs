@@ -182,7 +182,7 @@ fn ratios_that_no_anisotropy_gives_at_that_strain_are_refused() {
 
 /// k̂ → ∞ where G12/Θ = α/ρ = 2.27 for r = 1, g = 0.
 #[test]
-fn shear_too_stiff_beside_bulk_is_refused_with_the_limit() {
+fn shear_too_stiff_for_the_bulk_is_refused_with_the_limit() {
     let with = |share: f64| {
         let g12 = share * 170.0 / 75.0 * 100.0e6;
         Observation::from_g12_g13_theta(g12, g12, 100.0e6, 50.0e3, StrainRatio::given(0.0))

@@ -2,7 +2,6 @@
 
 use crate::bench::{Bench, FOREVER, Record, exit_of};
 use grainlab_dem_simulator::Settings;
-use grainlab_emt_inversion::Models;
 use grainlab_msgs::msg::{Estimate, Microstructure, Packing, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::{Actor, Exit, run_until};

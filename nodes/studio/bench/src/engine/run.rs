@@ -114,6 +114,6 @@ fn observe(run: &Simulation) -> Result<Observables, String> {
     let settings = grainlab_micromechanics::Settings::default();
     let r = grainlab_micromechanics::analyze(&run.packing(), &settings).map_err(|e| e.to_string())?.report;
     let (k, eps, phi) = (r.contacts.coordination, r.fabric.contact_anisotropy, r.solid_fraction);
-    let c = r.elasticity.into_stiffness().map_err(|e| e.to_string())?.tensor;
+    let c = r.elasticity.map_err(|e| e.to_string())?.tensor;
     Ok([k, eps, phi, c.transverse_isotropy().g12, c.bulk_voigt()])
 }

@@ -19,10 +19,6 @@ pub(super) enum Role {
     Ping,
     /// Answers over the bus of grainlab.
     Pong,
-    /// Sends requests over bare ros2-client.
-    BarePing,
-    /// Answers over bare ros2-client.
-    BarePong,
 }
 
 /// Results of a round with a recorder.
