@@ -161,6 +161,19 @@ const ONCE: [(&str, &str); 7] = [
     ("\"foxglove.sdk.v1\"", "nodes/studio/foxglove_bridge/src/protocol.rs"),
 ];
 
+/// Names of types that say nothing of what they are.
+const VAGUE: [&str; 8] = ["At", "Company", "Desk", "Knob", "Outlet", "Sink", "Tape", "Way"];
+
+/// Types of `source` with a vague name.
+fn vague(source: &str) -> Vec<&str> {
+    let named = |word: &'static str| {
+        let kinds = ["struct", "enum", "trait", "type"];
+        let forms = |kind: &str| [" ", "<", "(", ";"].map(|end| format!("{kind} {word}{end}"));
+        kinds.iter().flat_map(|kind| forms(kind)).any(|form| source.contains(&form)).then_some(word)
+    };
+    VAGUE.into_iter().filter_map(named).collect()
+}
+
 /// Inferred quantities that a file may name. More are a list by hand, which a new quantity would miss.
 const NAMED: usize = 3;
 
@@ -207,6 +220,10 @@ fn what_has_one_place_is_in_no_other() {
         files.iter().filter_map(|(file, text)| listed(file, text)).collect::<Vec<_>>(),
         Vec::<String>::new()
     );
+    assert_eq!(vague("pub struct Way {\n}\nenum Attempt {}\n"), ["Way"]);
+    for (file, text) in files.iter().filter(|(file, _)| file.extension().is_some_and(|e| e == "rs")) {
+        assert_eq!(vague(text), Vec::<&str>::new(), "{}", file.display());
+    }
     for (text, place) in ONCE {
         assert_eq!(repeated(text, place, &files), Vec::<String>::new());
         files.push(("nodes/studio/planted/assets/page.html".into(), text.to_owned()));

@@ -1,6 +1,6 @@
 //! `grainlab invert`: moduli in, microstructure out.
 //!
-//! - [`state`]: the data of one state; [`way`]: a model, its calibration and its γ/Δ; [`answer`]: the results
+//! - [`state`]: the data of one state; [`case`]: a model, its calibration and its γ/Δ; [`answer`]: the results
 //! - [`inputs`]: the inputs of a state; [`columns`], [`rows`]: a table, read in pieces, each row a
 //!   state; [`slips`]: columns whose names are almost those of inputs
 //! - [`table`], [`mod@print`]: results in order, as text
@@ -13,6 +13,7 @@
 
 mod answer;
 mod calibrations;
+mod case;
 mod columns;
 mod drawn;
 mod evidence;
@@ -29,10 +30,10 @@ mod slips;
 mod speeds;
 mod state;
 mod table;
-mod way;
 
 use super::packings::import::in_range;
 use answer::{Answer, More};
+use case::{GammaChoice, cases};
 pub(super) use columns::{BadRow, Row};
 use grainlab_console::{Failure, Format, print, say};
 use grainlab_emt::{Measured, Modulus};
@@ -41,7 +42,6 @@ use print::Printer;
 pub(super) use rows::Rows;
 pub(super) use state::State;
 use std::path::{Path, PathBuf};
-use way::{GammaChoice, ways};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -233,17 +233,17 @@ fn plot_file(_: &Args) -> Option<&Path> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let mut ways = ways(&args.models(), &args.calibration, args.gamma)?;
+    let mut cases = cases(&args.models(), &args.calibration, args.gamma)?;
     if let Some(path) = &args.prior {
-        prior::apply(path, &mut ways)?;
+        prior::apply(path, &mut cases)?;
     }
     if args.print_prior {
-        let texts = ways.iter().map(prior::text).collect::<Result<Vec<_>, _>>()?;
+        let texts = cases.iter().map(prior::text).collect::<Result<Vec<_>, _>>()?;
         print(&texts.join("\n"))?;
         return Ok(Exit::Done);
     }
     let defaults = args.defaults()?;
-    let printer = Printer { ways: &ways };
+    let printer = Printer { cases: &cases };
     if let Some(path) = &args.table {
         let of_one_state = [
             ("--pressure-sigma", args.pressure_sigma != 0.0),
@@ -254,7 +254,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         refuse(&of_one_state, "is of one state: in a --table it is a column, or of no use")?;
         let rows = Rows::open(path, &args.by, defaults)?;
         if args.judge {
-            return judge::run(rows, &args.by, &ways, plot_file(args), args.format);
+            return judge::run(rows, &args.by, &cases, plot_file(args), args.format);
         }
         return table::run(rows, &printer, args.format);
     }
@@ -264,23 +264,23 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     refuse(&of_table, "is for --table")?;
     let state = args.state(defaults)?;
     if let Some(simulations) = args.rank_test {
-        return rank_test::run(&state, &ways, simulations, args.seed, args.format);
+        return rank_test::run(&state, &cases, simulations, args.seed, args.format);
     }
     if let Some(path) = &args.draws {
         let (chains, per_chain) = (args.chains as usize, args.draws_per_chain as usize);
-        drawn::write(&state, &ways, drawn::Number { chains, per_chain, seed: args.seed }, path)?;
+        drawn::write(&state, &cases, drawn::Number { chains, per_chain, seed: args.seed }, path)?;
     }
-    let evidence = args.evidence.then(|| evidence::of_ways(&state, &ways, &args.prior_odds, args.seed));
-    let mut answer = Answer::of(state, None, &ways);
+    let evidence = args.evidence.then(|| evidence::of_ways(&state, &cases, &args.prior_odds, args.seed));
+    let mut answer = Answer::of(state, None, &cases);
     let state = answer.state.as_ref().ok().filter(|_| args.explain);
-    let predictive = state.map(|state| predictive::of_ways(state, &mut answer.outcomes, &ways));
-    for fault in answer.faults(&ways) {
+    let predictive = state.map(|state| predictive::of_ways(state, &mut answer.outcomes, &cases));
+    for fault in answer.faults(&cases) {
         say!("grainlab: {fault}");
     }
     let more = More {
-        explained: args.explain.then(|| explain::explained(&answer.outcomes, &ways)),
+        explained: args.explain.then(|| explain::explained(&answer.outcomes, &cases)),
         sampled: answer.state.as_ref().ok().zip(args.samples).map(|(state, draws)| {
-            sampled::sampled(state, &answer.outcomes, &ways, draws as usize, args.seed)
+            sampled::sampled(state, &answer.outcomes, &cases, draws as usize, args.seed)
         }),
         evidence: evidence.transpose()?,
         predictive,
@@ -295,7 +295,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         Format::Csv => Printer::csv_header() + &printer.csv(&answer),
         Format::Table => printer.state(&answer, &more),
     })?;
-    Ok(answer.exit(&ways))
+    Ok(answer.exit(&cases))
 }
 
 /// Refuses the flags that are given.

@@ -11,9 +11,9 @@
 //! - [`tallies`]: losses, and the table of counts
 
 mod binding;
-mod company;
 mod discovery;
 mod disputes;
+mod known_processes;
 mod node;
 pub mod play;
 pub mod repeats;

@@ -2,9 +2,9 @@
 
 use crate::Settings;
 use crate::binding::{Binding, Outside};
-use crate::company::Company;
 use crate::discovery::{Finder, Found};
 use crate::disputes::Disputes;
+use crate::known_processes::KnownProcesses;
 use crate::repeats::{Novelty, Repeats};
 use crate::snapshot::{Kept, Snapshot};
 use crate::strangers::grouped;
@@ -81,7 +81,7 @@ struct Channel {
     name: String,
     reports: bool,
     /// A result: written at once.
-    precious: bool,
+    write_through: bool,
     of_contract: bool,
 }
 
@@ -95,7 +95,7 @@ pub struct Recorder {
     result: ResultSlot,
     whole_run: bool,
     recorded: u64,
-    company: Company,
+    known_processes: KnownProcesses,
     /// For a run whose processes share no run id.
     binding: Option<Binding>,
     /// For the recording of one run.
@@ -133,8 +133,8 @@ impl Recorder {
             };
             specs.push(TopicSpec::of_contract(topic, &name));
             let reports = topic.name == topics::DIAGNOSTICS.name;
-            let precious = topic.qos.transient_local && topic.reproducible;
-            channels.push(Channel { topic: *topic, source, name, reports, precious, of_contract: true });
+            let write_through = topic.qos.transient_local && topic.reproducible;
+            channels.push(Channel { topic: *topic, source, name, reports, write_through, of_contract: true });
         }
         let directory = settings.directory().map_err(|e| failed(&e))?;
         let name =
@@ -166,7 +166,7 @@ impl Recorder {
             writer.set_metadata("run", &run.to_string());
         }
         log::info!("recording to {}", writer.file().display());
-        let company = Company::default();
+        let known_processes = KnownProcesses::default();
         Ok(Self {
             writer: Some(writer),
             names: channels.iter().map(|c| c.name.clone()).collect(),
@@ -174,7 +174,7 @@ impl Recorder {
             result,
             whole_run: settings.whole_run,
             recorded: 0,
-            company,
+            known_processes,
             binding: (settings.whole_run && run.is_none()).then(Binding::default),
             repeats,
             contradictions: 0,
@@ -197,7 +197,14 @@ impl Recorder {
             writer.ledger_mut().count_from_first(&spec.name);
             self.names.insert(spec.name.clone());
             let (name, of_contract) = (spec.name, false);
-            self.channels.push(Channel { topic, source, name, reports: false, precious: false, of_contract });
+            self.channels.push(Channel {
+                topic,
+                source,
+                name,
+                reports: false,
+                write_through: false,
+                of_contract,
+            });
         }
         Ok(())
     }
@@ -223,10 +230,10 @@ impl Recorder {
                 }
                 // Other programs send no reports.
                 if channel.of_contract {
-                    self.company.note_writer(sample.info.writer);
+                    self.known_processes.note_writer(sample.info.writer);
                 }
                 if channel.reports && enter_reports(writer, &self.names, &sample) {
-                    self.company.left.insert(sample.info.writer.participant());
+                    self.known_processes.left.insert(sample.info.writer.participant());
                 }
                 if self.whole_run {
                     match topic.name {
@@ -270,7 +277,7 @@ impl Recorder {
                 }
                 let outcome = writer.write(&channel.name, &incoming).map_err(|e| lost(&e))?;
                 self.recorded += 1;
-                if channel.precious {
+                if channel.write_through {
                     if let Outcome::Recorded { log_time } = outcome {
                         self.authors.enter(&channel.name, log_time, incoming.guid);
                     }
@@ -298,7 +305,7 @@ impl Recorder {
 
     /// Waits for messages known to be in transit, then for a short pause if any process may still publish.
     fn last_call(&mut self, bus: &mut dyn Bus) -> Result<(), NodeError> {
-        self.company.own = bus.published().first().map(|p| p.writer.participant());
+        self.known_processes.own = bus.published().first().map(|p| p.writer.participant());
         let end = bus.now() + LAST_CALL;
         let mut quiet_since = bus.now();
         loop {
@@ -308,7 +315,7 @@ impl Recorder {
             }
             let outstanding = self.writer.as_ref().map_or(0, |w| w.ledger().outstanding());
             let settled = || {
-                self.company.all_left(&bus.foreign_writers(&topics::DIAGNOSTICS))
+                self.known_processes.all_left(&bus.foreign_writers(&topics::DIAGNOSTICS))
                     || now - quiet_since >= SILENCE
             };
             if now >= end || (outstanding == 0 && settled()) {
@@ -417,7 +424,7 @@ impl Node for Recorder {
     /// Finishes the file. What this process publishes after that is not recorded.
     fn on_shutdown(&mut self, bus: &mut dyn Bus) -> Result<Exit, NodeError> {
         self.last_call(bus)?;
-        let missing = self.company.missing(&bus.foreign_writers(&topics::DIAGNOSTICS));
+        let missing = self.known_processes.missing(&bus.foreign_writers(&topics::DIAGNOSTICS));
         let strangers = self.strangers(bus);
         let Some(mut writer) = self.writer.take() else { return Ok(Exit::Done) };
         for kept in self.snapshot.iter_mut().flat_map(Snapshot::rest) {

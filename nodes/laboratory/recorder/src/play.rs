@@ -1,7 +1,7 @@
 //! `grainlab bag play`.
 
 mod keys;
-mod outlet;
+mod publisher;
 mod session;
 
 use grainlab_console::Failure;
@@ -9,7 +9,7 @@ use grainlab_msgs::topics;
 use grainlab_node_kit::{Bus, Exit, tool_bus};
 use grainlab_recordings::{PlayOptions, Player, QosOverrides, Recording, StoredDefinition};
 use keys::Keys;
-use outlet::{Outlets, offer, pause, wait_for_readers};
+use publisher::{TopicPublishers, offer, pause, wait_for_readers};
 use session::Session;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -166,12 +166,12 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 
     let mut bus = tool_bus("player")?;
     pause(&mut bus, LOOK_AROUND);
-    let (mut publishers, mut refused) = (Outlets::new(), false);
+    let (mut publishers, mut refused) = (TopicPublishers::new(), false);
     for channel in wanted {
         let name = channel.topic.clone();
         let to = renamed(&args.remap, &name);
         let replaced = args.clock.is_some() && to == topics::CLOCK.name;
-        let outlet = match replaced {
+        let publisher = match replaced {
             true => Err("--clock publishes it".to_owned()),
             false if matches!(channel.stored, StoredDefinition::Refused(_)) => {
                 refused = true;
@@ -179,7 +179,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             }
             false => offer(&mut bus, &channel, to, &overrides)?,
         };
-        match outlet {
+        match publisher {
             Ok(publisher) => {
                 channel
                     .stored
@@ -201,10 +201,10 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         return Ok(Exit::Interrupted);
     }
     let keys = Keys::open(args.start_paused || args.step);
-    let clock = args.clock.map(|hz| session::ClockOutlet::advertise(&mut bus, hz)).transpose()?;
+    let clock = args.clock.map(|hz| session::ClockPublisher::advertise(&mut bus, hz)).transpose()?;
     let mut session = Session {
         bus: &mut bus,
-        outlets: &mut publishers,
+        publishers: &mut publishers,
         keys,
         clock,
         sent: 0,

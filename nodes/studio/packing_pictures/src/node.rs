@@ -15,14 +15,14 @@ const BACKLOG: u32 = 16;
 pub struct PackingPictures {
     packings: BulkSubscription,
     latest: Option<Sample>,
-    outlets: Vec<Outlet>,
+    publishers: Vec<PicturePublisher>,
     published: u64,
     trouble: Option<String>,
 }
 
 /// The publisher of one picture.
 #[derive(Debug)]
-struct Outlet {
+struct PicturePublisher {
     picture: Picture,
     publisher: PublisherId,
     /// The packing that was shown last.
@@ -35,20 +35,24 @@ impl PackingPictures {
     /// # Errors
     /// If a topic is refused.
     pub fn new(bus: &mut dyn Bus) -> Result<Self, BusError> {
-        let mut outlets = Vec::new();
+        let mut publishers = Vec::new();
         for picture in Picture::ALL {
-            outlets.push(Outlet { picture, publisher: bus.advertise(picture.topic())?, shown: None });
+            publishers.push(PicturePublisher {
+                picture,
+                publisher: bus.advertise(picture.topic())?,
+                shown: None,
+            });
         }
         let packings = BulkSubscription::subscribe(bus, &topics::PACKING, Demand::reliable(BACKLOG))?;
-        Ok(Self { packings, latest: None, outlets, published: 0, trouble: None })
+        Ok(Self { packings, latest: None, publishers, published: 0, trouble: None })
     }
 
     /// Publishes the pictures of the latest packing that were not published yet and have readers.
     fn show(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
         let Some(latest) = &self.latest else { return Ok(()) };
         let id = latest.info.id();
-        let due = |o: &&mut Outlet| o.shown != Some(id) && bus.readers(o.publisher) > 0;
-        let due: Vec<&mut Outlet> = self.outlets.iter_mut().filter(due).collect();
+        let due = |o: &&mut PicturePublisher| o.shown != Some(id) && bus.readers(o.publisher) > 0;
+        let due: Vec<&mut PicturePublisher> = self.publishers.iter_mut().filter(due).collect();
         if due.is_empty() {
             return Ok(());
         }
@@ -64,10 +68,10 @@ impl PackingPictures {
         };
         self.trouble = None;
         let drawn = Drawn::new(&packing);
-        for outlet in due {
-            outlet.shown = Some(id);
-            let body = outlet.picture.encoded(&drawn);
-            let topic = outlet.picture.topic().name;
+        for publisher in due {
+            publisher.shown = Some(id);
+            let body = publisher.picture.encoded(&drawn);
+            let topic = publisher.picture.topic().name;
             if body.len() > BULK_LIMIT {
                 let trouble = format!(
                     "{topic} of step {}: {} bytes are too many for one sample: use foxglove_bridge, or a recording with \
@@ -79,7 +83,7 @@ impl PackingPictures {
                 self.trouble = Some(trouble);
                 continue;
             }
-            match bus.publish(outlet.publisher, &body) {
+            match bus.publish(publisher.publisher, &body) {
                 Ok(_) => self.published += 1,
                 // A reader that is far behind gets the next one.
                 Err(full @ BusError::Full { .. }) => self.trouble = Some(full.to_string()),

@@ -10,7 +10,7 @@ use grainlab_emt::{
 
 /// A model with its constants and its γ/Δ.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
+pub struct Case {
     /// Model of the inversion.
     pub model: &'static dyn Model,
     /// Constants of the model.
@@ -19,7 +19,7 @@ pub struct Way {
     pub gamma: Option<StrainRatioSource>,
 }
 
-impl Way {
+impl Case {
     /// Every model with the paper's constants and with ours, where it takes them, and with each of the three γ/Δ.
     pub fn all() -> Vec<Self> {
         let ratios = [StrainRatioSource::Total, StrainRatioSource::Elastic, StrainRatioSource::Contact];
@@ -83,11 +83,11 @@ impl Errors {
     }
 }
 
-/// Errors of one way on all states.
+/// Errors of one case on all states.
 #[derive(Clone, Debug)]
 pub struct Judged {
-    /// Way that is judged.
-    pub way: Way,
+    /// Case that is judged.
+    pub case: Case,
     /// Errors of k; `None`, as of z and ε, where the model does not infer it.
     pub k: Option<Errors>,
     /// Errors of z.
@@ -108,10 +108,10 @@ impl Judged {
         gamma: Option<&str>,
         calibration: &str,
     ) -> Option<&'a Self> {
-        judged.iter().find(|Self { way, .. }| {
-            way.model.name() == model
-                && way.calibration.name() == calibration
-                && way.gamma.map(|g| g.name()) == gamma
+        judged.iter().find(|Self { case, .. }| {
+            case.model.name() == model
+                && case.calibration.name() == calibration
+                && case.gamma.map(|g| g.name()) == gamma
         })
     }
 }
@@ -129,13 +129,13 @@ pub struct Row {
     pub eps: Option<Mean>,
 }
 
-/// Every way on every state.
+/// Every case on every state.
 pub fn judge(states: &States) -> Vec<Judged> {
-    Way::all().into_iter().map(|way| judge_one(way, states)).collect()
+    Case::all().into_iter().map(|case| judge_one(case, states)).collect()
 }
 
-fn judge_one(way: Way, states: &States) -> Judged {
-    let found: Vec<_> = states.all().iter().map(|o| (o, way.infer(o))).collect();
+fn judge_one(case: Case, states: &States) -> Judged {
+    let found: Vec<_> = states.all().iter().map(|o| (o, case.infer(o))).collect();
     let value = |found: &Option<[Option<f64>; InferredQuantity::COUNT]>, q: InferredQuantity| {
         found.as_ref().and_then(|values| values[q as usize])
     };
@@ -154,7 +154,7 @@ fn judge_one(way: Way, states: &States) -> Judged {
         z: errors(InferredQuantity::Z, |o| o.report.contacts.mechanical_coordination),
         eps: errors(InferredQuantity::Eps, |o| o.report.fabric.contact_anisotropy),
         unanswered: found.iter().filter(|(_, f)| f.is_none()).count(),
-        way,
+        case,
     }
 }
 
@@ -183,8 +183,8 @@ mod tests {
 
     #[test]
     fn models_with_gamma_are_judged_with_each_of_the_three() {
-        let ways = Way::all();
-        let of = |name: &str| ways.iter().filter(|w| w.model.name() == name).count();
+        let cases = Case::all();
+        let of = |name: &str| cases.iter().filter(|w| w.model.name() == name).count();
         assert_eq!((of("relaxed"), of("emt"), of("ratio")), (1, 3, 6));
     }
 }

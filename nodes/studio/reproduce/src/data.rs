@@ -63,9 +63,9 @@ impl Reproduction {
         });
         let judged = self.judged.iter().map(|j| {
             object!({
-                "model": j.way.model.name(),
-                "calibration": j.way.calibration.name(),
-                "gamma_over_delta": j.way.gamma.map(|g| g.name()),
+                "model": j.case.model.name(),
+                "calibration": j.case.calibration.name(),
+                "gamma_over_delta": j.case.gamma.map(|g| g.name()),
                 "k": errors(j.k.as_ref()),
                 "z": errors(j.z.as_ref()),
                 "eps": errors(j.eps.as_ref()),

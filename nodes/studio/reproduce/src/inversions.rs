@@ -26,7 +26,8 @@ impl Reproduction {
             of_paper("emt, the paper on its packings", &emt, None),
         ];
         let ours = self.judged.iter().map(|j| {
-            let names = [j.way.model.name(), j.way.calibration.name(), j.way.gamma.map_or("–", |g| g.name())];
+            let names =
+                [j.case.model.name(), j.case.calibration.name(), j.case.gamma.map_or("–", |g| g.name())];
             row(names, j.k.as_ref(), j.eps.as_ref(), j.z.as_ref(), j.unanswered)
         });
         let rows = theirs.into_iter().chain(ours);

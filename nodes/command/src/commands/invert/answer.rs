@@ -1,12 +1,12 @@
 //! The results of the models for one state.
 
+use super::case::Case;
 use super::columns::BadRow;
 use super::evidence::OfModel;
 use super::explain::Explained;
 use super::predictive::Predictive;
 use super::sampled::Sampled;
 use super::state::State;
-use super::way::Way;
 use grainlab_console::worse;
 use grainlab_emt::{EmtError, Estimate, Status, Warning, recommended};
 use grainlab_msgs::boundary::ModelResult;
@@ -14,14 +14,14 @@ use grainlab_node_kit::Exit;
 use grainlab_results::Inference;
 use serde::Serialize;
 
-/// One state and one outcome per way.
+/// One state and one outcome per case.
 #[derive(Debug)]
 pub(super) struct Answer {
     /// Line of the table.
     pub(super) line: Option<u64>,
     /// Or the reason why the line is invalid.
     pub(super) state: Result<State, BadRow>,
-    /// One per way; empty without a state.
+    /// One per case; empty without a state.
     pub(super) outcomes: Vec<Result<Estimate, EmtError>>,
 }
 
@@ -50,9 +50,9 @@ pub(super) struct More {
 }
 
 impl Answer {
-    /// The outcome of each way for a state.
-    pub(super) fn of(state: State, line: Option<u64>, ways: &[Way]) -> Self {
-        let outcomes = ways.iter().map(|way| state.infer(way)).collect();
+    /// The outcome of each case for a state.
+    pub(super) fn of(state: State, line: Option<u64>, cases: &[Case]) -> Self {
+        let outcomes = cases.iter().map(|case| state.infer(case)).collect();
         Self { line, state: Ok(state), outcomes }
     }
 
@@ -68,17 +68,17 @@ impl Answer {
         }
     }
 
-    /// With the stable keys of results, one per way.
-    pub(super) fn inferences(&self, ways: &[Way]) -> Vec<Inference> {
-        let one = |(i, way): (usize, &Way)| self.inference(way, self.outcomes.get(i));
-        ways.iter().enumerate().map(one).collect()
+    /// With the stable keys of results, one per case.
+    pub(super) fn inferences(&self, cases: &[Case]) -> Vec<Inference> {
+        let one = |(i, case): (usize, &Case)| self.inference(case, self.outcomes.get(i));
+        cases.iter().enumerate().map(one).collect()
     }
 
-    fn inference(&self, way: &Way, outcome: Option<&Result<Estimate, EmtError>>) -> Inference {
-        let name = way.calibration.name();
+    fn inference(&self, case: &Case, outcome: Option<&Result<Estimate, EmtError>>) -> Inference {
+        let name = case.calibration.name();
         match (&self.state, outcome) {
             (Ok(state), Some(outcome)) => {
-                let mut inference = Inference::of(way.model.name(), name, outcome);
+                let mut inference = Inference::of(case.model.name(), name, outcome);
                 let result = &mut inference.result;
                 result.status = status(state, outcome).name();
                 // The reason of a model without an estimate comes first, then what is wrong with the data.
@@ -86,23 +86,23 @@ impl Answer {
                 result.warnings.splice(at..at, state.notes.iter().cloned());
                 inference
             }
-            (Err(row), _) => ModelResult::unknown(way.model.name(), name, vec![row.fault.clone()]).into(),
-            (Ok(_), None) => ModelResult::unknown(way.model.name(), name, Vec::new()).into(),
+            (Err(row), _) => ModelResult::unknown(case.model.name(), name, vec![row.fault.clone()]).into(),
+            (Ok(_), None) => ModelResult::unknown(case.model.name(), name, Vec::new()).into(),
         }
     }
 
-    pub(super) fn view(&self, ways: &[Way], more: More) -> View<'_> {
+    pub(super) fn view(&self, cases: &[Case], more: More) -> View<'_> {
         let inputs = self.state.as_ref().ok();
-        View { line: self.line, inputs, results: self.inferences(ways), more }
+        View { line: self.line, inputs, results: self.inferences(cases), more }
     }
 
     /// The exit code of a command with only this result. Invalid moduli are wrong usage, moduli that no
     /// packing has are invalid physics, and so is an answer of the recommended model that contradicts them, or
     /// none at all. A model that lacks an input is not an error, unless no model has a result.
-    pub(super) fn exit(&self, ways: &[Way]) -> Exit {
+    pub(super) fn exit(&self, cases: &[Case]) -> Exit {
         let Ok(state) = &self.state else { return Exit::Usage };
         let statuses: Vec<(&str, Status)> =
-            ways.iter().zip(&self.outcomes).map(|(way, o)| (way.model.name(), status(state, o))).collect();
+            cases.iter().zip(&self.outcomes).map(|(case, o)| (case.model.name(), status(state, o))).collect();
         if statuses.iter().all(|(_, status)| *status == Status::Unknown) {
             let lacking = self.outcomes.iter().all(|o| o.as_ref().err().is_some_and(is_lacking));
             let alone = if lacking { Exit::Usage } else { Exit::PhysicsInvalid };
@@ -121,23 +121,23 @@ impl Answer {
     }
 
     /// The errors and contradictions, each once with its models; empty if [`Answer::exit`] is `Done`.
-    pub(super) fn faults(&self, ways: &[Way]) -> Vec<String> {
+    pub(super) fn faults(&self, cases: &[Case]) -> Vec<String> {
         let state = match &self.state {
             Ok(state) => state,
             Err(row) => return vec![row.fault.clone()],
         };
-        if self.exit(ways) == Exit::Done {
+        if self.exit(cases) == Exit::Done {
             return Vec::new();
         }
         let nothing = self.outcomes.iter().all(|o| o.as_ref().err().is_some_and(is_lacking));
         let mut faults: Vec<(String, Vec<&str>)> = Vec::new();
-        for (outcome, way) in self.outcomes.iter().zip(ways) {
+        for (outcome, case) in self.outcomes.iter().zip(cases) {
             let texts = match outcome {
                 Err(error) if is_lacking(error) && !nothing => continue,
                 Err(error) => vec![error.to_string()],
                 Ok(estimate) => contradictions(state, estimate),
             };
-            let model = way.model.name();
+            let model = case.model.name();
             for text in texts {
                 match faults.iter_mut().find(|(known, _)| *known == text) {
                     Some((_, models)) if models.contains(&model) => {}
@@ -150,14 +150,14 @@ impl Answer {
     }
 
     /// The faults as lines for stderr, each with the number of the row.
-    pub(super) fn complaint(&self, ways: &[Way]) -> String {
+    pub(super) fn complaint(&self, cases: &[Case]) -> String {
         let line = self.line.map_or_else(String::new, |l| format!("line {l}"));
         let place = match self.sample() {
             Some(sample) => format!("{line} ({sample})"),
             None => line,
         };
         let lines: Vec<String> =
-            self.faults(ways).iter().map(|f| format!("grainlab: {place}: {f}")).collect();
+            self.faults(cases).iter().map(|f| format!("grainlab: {place}: {f}")).collect();
         lines.join("\n")
     }
 

@@ -1,7 +1,7 @@
 //! Draws from the posterior of one model, into a file.
 
+use super::case::Case;
 use super::state::State;
-use super::way::Way;
 use grainlab_console::{Failure, json, say};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Draws, EmtError, Estimate, Posterior, PosteriorSettings};
@@ -21,10 +21,10 @@ pub(super) struct Number {
     pub(super) seed: u64,
 }
 
-/// Writes the draws of the only way as CSV or as JSON, by the end of the file's name.
-pub(super) fn write(state: &State, ways: &[Way], number: Number, path: &Path) -> Result<(), Failure> {
+/// Writes the draws of the only case as CSV or as JSON, by the end of the file's name.
+pub(super) fn write(state: &State, cases: &[Case], number: Number, path: &Path) -> Result<(), Failure> {
     let name = path.display();
-    let [way] = ways else {
+    let [case] = cases else {
         return Err(Failure::usage("--draws is for one model and one calibration: add --model relaxed"));
     };
     let end = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
@@ -32,19 +32,19 @@ pub(super) fn write(state: &State, ways: &[Way], number: Number, path: &Path) ->
         return Err(Failure::usage(format!("{name}: draws are written as .csv or .json (for ArviZ)")));
     }
     let Number { chains, per_chain, seed } = number;
-    let (draws, estimate) = drawn(state, way, chains * per_chain, seed).map_err(|e| {
+    let (draws, estimate) = drawn(state, case, chains * per_chain, seed).map_err(|e| {
         let exit = if e.is_input_error() { Exit::Usage } else { Exit::PhysicsInvalid };
-        Failure::new(exit, format!("{}: {e}", way.model.name()))
+        Failure::new(exit, format!("{}: {e}", case.model.name()))
     })?;
     let text = match end {
         "csv" => posterior_draws::csv(&draws, chains),
-        _ => json(&posterior_draws::inference_data(&draws, chains, attributes(way, &draws, seed)))?,
+        _ => json(&posterior_draws::inference_data(&draws, chains, attributes(case, &draws, seed)))?,
     };
     grainlab_console::write_whole(path, text).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
     say!(
         "grainlab: {name}: {} independent draws of model {}, {:.0} % of the proposals accepted",
         draws.draws.len(),
-        way.model.name(),
+        case.model.name(),
         100.0 * draws.acceptance
     );
     draws
@@ -70,23 +70,23 @@ fn unlike(draws: &Draws, estimate: &Estimate, quantity: InferredQuantity) -> Opt
     })
 }
 
-fn drawn(state: &State, way: &Way, count: usize, seed: u64) -> Result<(Draws, Estimate), EmtError> {
-    let prior = way.prior.as_deref().cloned().unwrap_or_default();
+fn drawn(state: &State, case: &Case, count: usize, seed: u64) -> Result<(Draws, Estimate), EmtError> {
+    let prior = case.prior.as_deref().cloned().unwrap_or_default();
     let settings = PosteriorSettings { seed, ..PosteriorSettings::default() };
-    let observation = state.observation(way)?;
+    let observation = state.observation(case)?;
     // A state without an estimate has no posterior worth drawing from: it is far outside the packings of the calibration.
-    let estimate = way.model.infer(&observation, &way.calibration)?;
-    let posterior = Posterior::new(way.model, &observation, &way.calibration, &prior, settings)?;
+    let estimate = case.model.infer(&observation, &case.calibration)?;
+    let posterior = Posterior::new(case.model, &observation, &case.calibration, &prior, settings)?;
     // With a prior of its own, a draw has it, too.
-    Ok((posterior.draws(count)?, state.infer(way).unwrap_or(estimate)))
+    Ok((posterior.draws(count)?, state.infer(case).unwrap_or(estimate)))
 }
 
-fn attributes(way: &Way, draws: &Draws, seed: u64) -> Map<String, Value> {
+fn attributes(case: &Case, draws: &Draws, seed: u64) -> Map<String, Value> {
     let attributes = [
         ("inference_library", json!("grainlab")),
         ("inference_library_version", json!(env!("CARGO_PKG_VERSION"))),
-        ("model", json!(way.model.name())),
-        ("calibration", json!(way.calibration.name())),
+        ("model", json!(case.model.name())),
+        ("calibration", json!(case.calibration.name())),
         ("sampler", json!("rejection: independent draws")),
         ("acceptance", json!(draws.acceptance)),
         ("envelope_raised", json!(draws.raised)),

@@ -1,7 +1,7 @@
 //! The evidence of models: their marginal likelihoods of the same moduli.
 
+use super::case::Case;
 use super::state::State;
-use super::way::Way;
 use grainlab_console::{Failure, Table, fixed};
 use grainlab_emt::{EmtError, Evidence, Modulus, Posterior, PosteriorSettings};
 use serde::Serialize;
@@ -52,41 +52,41 @@ pub(super) struct OfModel {
 /// The moduli and their observed values, and the evidence.
 type Found = (Vec<(Modulus, f64)>, Evidence);
 
-/// Evidences of every way.
+/// Evidences of every case.
 pub(super) fn of_ways(
     state: &State,
-    ways: &[Way],
+    cases: &[Case],
     odds: &[Odds],
     seed: u64,
 ) -> Result<Vec<OfModel>, Failure> {
-    if let Some(unknown) = odds.iter().find(|o| ways.iter().all(|way| way.model.name() != o.model)) {
+    if let Some(unknown) = odds.iter().find(|o| cases.iter().all(|case| case.model.name() != o.model)) {
         return Err(Failure::usage(format!("--prior-odds: no model {:?} is used", unknown.model)));
     }
-    let found: Vec<Result<Found, EmtError>> = ways.iter().map(|way| of_way(state, way, seed)).collect();
-    let weight = |way: &Way| odds.iter().find(|o| o.model == way.model.name()).map_or(1.0, |o| o.weight);
-    let one = |(way, outcome): (&Way, &Result<Found, EmtError>)| {
+    let found: Vec<Result<Found, EmtError>> = cases.iter().map(|case| of_case(state, case, seed)).collect();
+    let weight = |case: &Case| odds.iter().find(|o| o.model == case.model.name()).map_or(1.0, |o| o.weight);
+    let one = |(case, outcome): (&Case, &Result<Found, EmtError>)| {
         let (data, evidence) = outcome.as_ref().map_or((&[][..], None), |(d, e)| (d.as_slice(), Some(e)));
         // Each calibration of a model counts as a model of its own.
-        let same = ways.iter().zip(&found).filter_map(|(w, o)| {
+        let same = cases.iter().zip(&found).filter_map(|(w, o)| {
             let (d, e) = o.as_ref().ok()?;
             are_same(d, data).then_some((weight(w), e.ln))
         });
         let same: Vec<(f64, f64)> = same.collect();
         let probability = evidence
             .filter(|_| same.len() > 1)
-            .map(|e| 1.0 / same.iter().map(|(w, ln)| w / weight(way) * (ln - e.ln).exp()).sum::<f64>());
+            .map(|e| 1.0 / same.iter().map(|(w, ln)| w / weight(case) * (ln - e.ln).exp()).sum::<f64>());
         OfModel {
-            model: way.model.name(),
-            calibration: way.calibration.name().to_owned(),
+            model: case.model.name(),
+            calibration: case.calibration.name().to_owned(),
             moduli: data.iter().map(|(m, _)| m.name()).collect(),
             ln_evidence: evidence.map(|e| e.ln),
             stderr: evidence.map(|e| e.stderr),
-            prior_odds: weight(way),
+            prior_odds: weight(case),
             probability,
             reason: outcome.as_ref().err().map(ToString::to_string),
         }
     };
-    Ok(ways.iter().zip(&found).map(one).collect())
+    Ok(cases.iter().zip(&found).map(one).collect())
 }
 
 /// True for the same moduli with the same values, but for rounding.
@@ -96,11 +96,11 @@ fn are_same(a: &[(Modulus, f64)], b: &[(Modulus, f64)]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(is_same)
 }
 
-fn of_way(state: &State, way: &Way, seed: u64) -> Result<Found, EmtError> {
+fn of_case(state: &State, case: &Case, seed: u64) -> Result<Found, EmtError> {
     let settings = PosteriorSettings { points: POINTS, seed };
-    let prior = way.prior.as_deref().cloned().unwrap_or_default();
-    let observation = state.observation(way)?;
-    let posterior = Posterior::new(way.model, &observation, &way.calibration, &prior, settings)?;
+    let prior = case.prior.as_deref().cloned().unwrap_or_default();
+    let observation = state.observation(case)?;
+    let posterior = Posterior::new(case.model, &observation, &case.calibration, &prior, settings)?;
     Ok((posterior.observed(), posterior.evidence()?))
 }
 

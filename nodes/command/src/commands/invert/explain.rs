@@ -1,6 +1,6 @@
 //! Contribution of each datum to the uncertainty of each unknown, and the parts due to data and model.
 
-use super::way::Way;
+use super::case::Case;
 use grainlab_console::{Table, fixed};
 use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
 use grainlab_emt::{EmtError, Estimate, INPUT_NAMES};
@@ -28,12 +28,12 @@ pub(super) struct Explained {
 }
 
 /// All results of the models.
-pub(super) fn explained(outcomes: &[Result<Estimate, EmtError>], ways: &[Way]) -> Vec<Explained> {
-    let found = outcomes.iter().zip(ways).filter_map(|(o, way)| Some((o.as_ref().ok()?, way)));
-    found.flat_map(|(estimate, way)| of_estimate(estimate, way)).collect()
+pub(super) fn explained(outcomes: &[Result<Estimate, EmtError>], cases: &[Case]) -> Vec<Explained> {
+    let found = outcomes.iter().zip(cases).filter_map(|(o, case)| Some((o.as_ref().ok()?, case)));
+    found.flat_map(|(estimate, case)| of_estimate(estimate, case)).collect()
 }
 
-fn of_estimate(estimate: &Estimate, way: &Way) -> Vec<Explained> {
+fn of_estimate(estimate: &Estimate, case: &Case) -> Vec<Explained> {
     let condition_number = estimate.condition_number();
     let determined = InferredQuantity::ALL.into_iter().filter(|q| estimate.structure.get(*q).is_some());
     let one = |quantity: InferredQuantity| {
@@ -41,7 +41,7 @@ fn of_estimate(estimate: &Estimate, way: &Way) -> Vec<Explained> {
         let part = |c: Option<MicrostructureCovariance>| c.map(|c| c[(i, i)].max(0.0).sqrt());
         let shares = estimate.information(quantity).unwrap_or_default();
         Explained {
-            model: way.model.name(),
+            model: case.model.name(),
             calibration: estimate.calibration.clone(),
             gamma_over_delta_source: estimate.gamma.map(|g| g.source.name()),
             quantity: quantity.name(),

@@ -7,11 +7,11 @@ mod plot;
 mod score;
 
 use super::answer::Answer;
+use super::case::Case;
 use super::columns::BadRow;
 use super::rows::Rows;
 use super::state::State;
 use super::table::Tally;
-use super::way::Way;
 use grainlab_console::{Failure, Format, Table, count, exact, fixed, say};
 use grainlab_core::results::InferredQuantity;
 use grainlab_node_kit::Exit;
@@ -20,7 +20,7 @@ use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-/// The result of one way for one quantity of one group of rows.
+/// The result of one case for one quantity of one group of rows.
 #[derive(Debug, Serialize)]
 struct Judged {
     /// Cells of the columns grouped by.
@@ -36,7 +36,7 @@ struct Judged {
     score: Score,
 }
 
-/// The result of one way for one row: whether there is an estimate, the γ/Δ used, and the error of each quantity whose truth is known.
+/// The result of one case for one row: whether there is an estimate, the γ/Δ used, and the error of each quantity whose truth is known.
 struct Verdict {
     solved: bool,
     gamma: &'static str,
@@ -50,7 +50,7 @@ struct Verdict {
 pub(super) fn run(
     mut rows: Rows,
     by: &[String],
-    ways: &[Way],
+    cases: &[Case],
     plot: Option<&Path>,
     format: Format,
 ) -> Result<Exit, Failure> {
@@ -60,15 +60,15 @@ pub(super) fn run(
     }
     let mut tally = Tally::new();
     let mut board = Board::default();
-    let mut points = vec![Vec::new(); ways.len()];
+    let mut points = vec![Vec::new(); cases.len()];
     let mut unsolved = Vec::new();
     loop {
         let piece = rows.next(|number, row| {
             let row = row.map_err(|bad| (number, bad))?;
-            let verdicts: Vec<_> = ways.iter().map(|way| Verdict::of(&row.state, way)).collect();
+            let verdicts: Vec<_> = cases.iter().map(|case| Verdict::of(&row.state, case)).collect();
             let unsolved = verdicts.iter().all(|v| !v.solved).then(|| {
-                let answer = Answer::of(row.state, Some(number), ways);
-                (answer.exit(ways), answer.complaint(ways))
+                let answer = Answer::of(row.state, Some(number), cases);
+                (answer.exit(cases), answer.complaint(cases))
             });
             Ok::<_, (u64, BadRow)>((row.group, verdicts, unsolved))
         })?;
@@ -85,12 +85,12 @@ pub(super) fn run(
                 }
                 // A missing estimate is part of the statistics. An invalid row is an error.
                 Err((number, bad)) => {
-                    tally.add(Exit::Usage, &Answer::of_bad_row(bad, number).complaint(ways));
+                    tally.add(Exit::Usage, &Answer::of_bad_row(bad, number).complaint(cases));
                 }
             }
         }
     }
-    let judged = board.judged(ways);
+    let judged = board.judged(cases);
     let text = || table(&judged, by, fixed).without_empty_columns().text() + &overconfident(&judged);
     format.print(&judged, || table(&judged, by, |v, _| exact(v)).csv(), text)?;
     if let Some(path) = plot.filter(|_| points.iter().all(Vec::is_empty)) {
@@ -103,7 +103,7 @@ pub(super) fn run(
     }
     #[cfg(feature = "studio")]
     if let Some(path) = plot {
-        grainlab_console::write_whole(path, plot::svg(ways, points)).map_err(Failure::at(path))?;
+        grainlab_console::write_whole(path, plot::svg(cases, points)).map_err(Failure::at(path))?;
     }
     if let Some((exit, complaint)) = unsolved.first() {
         say!("{complaint}\ngrainlab: {} without an estimate, this the first", count(unsolved.len(), "row"));
@@ -113,28 +113,28 @@ pub(super) fn run(
 }
 
 impl Verdict {
-    fn of(state: &State, way: &Way) -> Self {
-        let estimate = state.infer(way).ok();
+    fn of(state: &State, case: &Case) -> Self {
+        let estimate = state.infer(case).ok();
         let errors = InferredQuantity::ALL.map(|quantity| {
-            let truth = state.truth.get(against(quantity, way))?;
+            let truth = state.truth.get(against(quantity, case))?;
             Some(score::Error::of(estimate.as_ref(), quantity, truth))
         });
         let found = estimate.as_ref().and_then(|e| e.structure.eps);
         let anisotropy = state.truth.eps.zip(found).map(<[f64; 2]>::from);
-        Self { solved: estimate.is_some(), gamma: state.gamma_source(way), errors, anisotropy }
+        Self { solved: estimate.is_some(), gamma: state.gamma_source(case), errors, anisotropy }
     }
 }
 
 /// The quantity for comparison: k̂ is not a property of a packing, so that the coordination number of its
 /// calibration is used.
-fn against(quantity: InferredQuantity, way: &Way) -> InferredQuantity {
+fn against(quantity: InferredQuantity, case: &Case) -> InferredQuantity {
     match quantity {
-        InferredQuantity::KHat => way.calibration.isotropic().coordination_kind,
+        InferredQuantity::KHat => case.calibration.isotropic().coordination_kind,
         other => other,
     }
 }
 
-/// Scores of each quantity by group, way and γ/Δ.
+/// Scores of each quantity by group, case and γ/Δ.
 #[derive(Default)]
 struct Board {
     /// Numbers of the groups, in the order of their first rows.
@@ -146,30 +146,30 @@ impl Board {
     fn enter(&mut self, group: Vec<String>, verdicts: &[Verdict]) {
         let next = self.groups.len();
         let group = *self.groups.entry(group).or_insert(next);
-        for (way, verdict) in verdicts.iter().enumerate() {
-            let scores = self.scores.entry((group, way, verdict.gamma)).or_default();
+        for (case, verdict) in verdicts.iter().enumerate() {
+            let scores = self.scores.entry((group, case, verdict.gamma)).or_default();
             let known = scores.iter_mut().zip(&verdict.errors);
             known.for_each(|(score, error)| error.iter().for_each(|error| score.add(error)));
         }
     }
 
     /// For each quantity of the model whose truth is known.
-    fn judged(&self, ways: &[Way]) -> Vec<Judged> {
+    fn judged(&self, cases: &[Case]) -> Vec<Judged> {
         let mut judged = Vec::new();
         let mut groups: Vec<_> = self.groups.iter().collect();
         groups.sort_by_key(|(_, number)| **number);
-        for ((group, way, gamma), scores) in &self.scores {
-            let way = &ways[*way];
-            let domain = way.model.domain(&way.calibration);
+        for ((group, case, gamma), scores) in &self.scores {
+            let case = &cases[*case];
+            let domain = case.model.domain(&case.calibration);
             for (quantity, score) in InferredQuantity::ALL.into_iter().zip(scores) {
                 if score.rows > 0 && (score.solved > 0 || domain.structure[quantity as usize].is_some()) {
                     judged.push(Judged {
                         group: groups[*group].0.clone(),
-                        model: way.model.name(),
-                        calibration: way.calibration.name().to_owned(),
+                        model: case.model.name(),
+                        calibration: case.calibration.name().to_owned(),
                         gamma_over_delta_source: gamma,
                         quantity: quantity.name(),
-                        truth: against(quantity, way).name(),
+                        truth: against(quantity, case).name(),
                         score: *score,
                     });
                 }

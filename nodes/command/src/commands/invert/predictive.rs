@@ -1,7 +1,7 @@
 //! The observed moduli against what each model predicts with its posterior.
 
+use super::case::Case;
 use super::state::State;
-use super::way::Way;
 use grainlab_console::{Table, fixed};
 use grainlab_emt::{Check, EmtError, Estimate, Posterior, PosteriorSettings};
 use rayon::prelude::*;
@@ -36,26 +36,26 @@ struct OfModulus {
 pub(super) fn of_ways(
     state: &State,
     outcomes: &mut [Result<Estimate, EmtError>],
-    ways: &[Way],
+    cases: &[Case],
 ) -> Vec<Predictive> {
-    let of_way = |(way, outcome): (&Way, &mut Result<Estimate, EmtError>)| {
-        let check = check(state, way).ok()?;
+    let of_case = |(case, outcome): (&Case, &mut Result<Estimate, EmtError>)| {
+        let check = check(state, case).ok()?;
         if let Ok(estimate) = outcome {
             check.apply(estimate);
         }
-        Some(view(way, &check))
+        Some(view(case, &check))
     };
-    ways.par_iter().zip(outcomes).filter_map(of_way).collect()
+    cases.par_iter().zip(outcomes).filter_map(of_case).collect()
 }
 
-fn check(state: &State, way: &Way) -> Result<Check, EmtError> {
+fn check(state: &State, case: &Case) -> Result<Check, EmtError> {
     let settings = PosteriorSettings { points: POINTS, seed: 0 };
-    let prior = way.prior.as_deref().cloned().unwrap_or_default();
-    let observation = state.observation(way)?;
-    Ok(Posterior::new(way.model, &observation, &way.calibration, &prior, settings)?.check())
+    let prior = case.prior.as_deref().cloned().unwrap_or_default();
+    let observation = state.observation(case)?;
+    Ok(Posterior::new(case.model, &observation, &case.calibration, &prior, settings)?.check())
 }
 
-fn view(way: &Way, check: &Check) -> Predictive {
+fn view(case: &Case, check: &Check) -> Predictive {
     let one = |m: &grainlab_emt::ModulusCheck| OfModulus {
         modulus: m.modulus.name(),
         observed_pa: m.observed,
@@ -63,8 +63,8 @@ fn view(way: &Way, check: &Check) -> Predictive {
         left_out: m.left_out,
     };
     Predictive {
-        model: way.model.name(),
-        calibration: way.calibration.name().to_owned(),
+        model: case.model.name(),
+        calibration: case.calibration.name().to_owned(),
         chi_square: check.chi_square,
         unlikely: check.is_unlikely(),
         moduli: check.moduli.iter().map(one).collect(),

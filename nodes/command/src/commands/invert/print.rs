@@ -1,14 +1,14 @@
 //! Results as text: JSON, CSV, a table.
 
 use super::answer::{Answer, More};
-use super::way::Way;
+use super::case::Case;
 use super::{evidence, explain, predictive, sampled};
 use grainlab_console::{CsvText, Failure, Table, exact, json};
 use grainlab_results::{Inference, inference_text};
 
 /// Converts results to text.
 pub(super) struct Printer<'a> {
-    pub(super) ways: &'a [Way],
+    pub(super) cases: &'a [Case],
 }
 
 impl Printer<'_> {
@@ -21,16 +21,16 @@ impl Printer<'_> {
         text.finish()
     }
 
-    /// One line per way.
+    /// One line per case.
     pub(super) fn csv(&self, answer: &Answer) -> String {
         let state = answer.state.as_ref().ok();
         let label = [answer.sample().unwrap_or_default().to_owned(), exact(state.map(|s| s.pressure.value))];
         let line = answer.line.map_or_else(String::new, |l| l.to_string());
         let mut text = CsvText::new();
-        for (result, way) in answer.inferences(self.ways).iter().zip(self.ways) {
+        for (result, case) in answer.inferences(self.cases).iter().zip(self.cases) {
             let reason = result.warnings.join("; ");
             let gamma =
-                [exact(result.gamma_over_delta), state.map_or("", |s| s.gamma_source(way)).to_owned()];
+                [exact(result.gamma_over_delta), state.map_or("", |s| s.gamma_source(case)).to_owned()];
             let (cells, end) = (result.exact_cells(), [&line, &reason]);
             text.row(label.iter().chain(&cells).chain(&gamma).chain(end));
         }
@@ -39,7 +39,7 @@ impl Printer<'_> {
 
     /// An object, for one state.
     pub(super) fn json(&self, answer: &Answer, more: More) -> Result<String, Failure> {
-        json(&answer.view(self.ways, more))
+        json(&answer.view(self.cases, more))
     }
 
     /// An element of an array, without the separator.
@@ -50,7 +50,7 @@ impl Printer<'_> {
 
     /// One state, warnings below.
     pub(super) fn state(&self, answer: &Answer, more: &More) -> String {
-        let mut text = inference_text::table(&answer.inferences(self.ways));
+        let mut text = inference_text::table(&answer.inferences(self.cases));
         text += &more.explained.as_deref().map_or_else(String::new, explain::people);
         text += &more.predictive.as_deref().map_or_else(String::new, predictive::people);
         text += &more.sampled.as_deref().map_or_else(String::new, sampled::people);
@@ -65,9 +65,9 @@ impl Printer<'_> {
             let line = answer.line.map_or_else(String::new, |l| format!("line {l}"));
             let sample = answer.sample().map_or_else(|| line.clone(), str::to_owned);
             let pressure = answer.state.as_ref().ok().map(|s| kilopascals(s.pressure.value));
-            let results = answer.inferences(self.ways);
-            for (result, way) in results.iter().zip(self.ways) {
-                let asked = way.gamma.map_or("-", grainlab_emt::StrainRatioSource::name).to_owned();
+            let results = answer.inferences(self.cases);
+            for (result, case) in results.iter().zip(self.cases) {
+                let asked = case.gamma.map_or("-", grainlab_emt::StrainRatioSource::name).to_owned();
                 let label = [sample.clone(), pressure.clone().unwrap_or_else(|| "-".to_owned()), asked];
                 t.row(label.into_iter().chain(result.cells()));
             }

@@ -1,23 +1,23 @@
 //! Priors from files, and the one that a model has.
 
-use super::way::Way;
+use super::case::Case;
 use grainlab_console::{Failure, say};
 use grainlab_emt::Prior;
 use grainlab_recordings::input;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Gives the prior of a file to every way whose model infers one of its quantities. An error if no model infers one of them, or
+/// Gives the prior of a file to every case whose model infers one of its quantities. An error if no model infers one of them, or
 /// if the prior excludes the domain of a model.
-pub(super) fn apply(path: &Path, ways: &mut [Way]) -> Result<(), Failure> {
+pub(super) fn apply(path: &Path, cases: &mut [Case]) -> Result<(), Failure> {
     let name = path.display();
     let text = input::text(path, input::SETTINGS).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
     let prior = Prior::parse(&text).map_err(|e| Failure::usage(format!("{name}: {e}")))?;
     for quantity in prior.quantities() {
-        let without = |way: &&Way| !way.model.quantities(&way.calibration).contains(&quantity);
-        let mut models: Vec<&str> = ways.iter().filter(without).map(|way| way.model.name()).collect();
+        let without = |case: &&Case| !case.model.quantities(&case.calibration).contains(&quantity);
+        let mut models: Vec<&str> = cases.iter().filter(without).map(|case| case.model.name()).collect();
         models.dedup();
-        if !models.is_empty() && ways.iter().all(|way| without(&way)) {
+        if !models.is_empty() && cases.iter().all(|case| without(&case)) {
             let models = models.join(", ");
             return Err(Failure::usage(format!("{name}: [{quantity}]: no model infers it ({models})")));
         }
@@ -25,27 +25,27 @@ pub(super) fn apply(path: &Path, ways: &mut [Way]) -> Result<(), Failure> {
             say!("grainlab: {name}: [{quantity}] is not used by {}", models.join(", "));
         }
     }
-    for way in ways {
-        let own = prior.only(&way.model.quantities(&way.calibration));
-        let domain = way.model.prior_domain(&way.calibration);
+    for case in cases {
+        let own = prior.only(&case.model.quantities(&case.calibration));
+        let domain = case.model.prior_domain(&case.calibration);
         own.completed(&domain).map_err(|e| Failure::usage(format!("{name}: {e}")))?;
-        way.prior = (own != Prior::default()).then(|| Arc::new(own));
+        case.prior = (own != Prior::default()).then(|| Arc::new(own));
     }
     Ok(())
 }
 
-/// The whole prior of a way as a file.
-pub(super) fn text(way: &Way) -> Result<String, Failure> {
-    let domain = way.model.prior_domain(&way.calibration);
-    let own = way.prior.as_deref().cloned().unwrap_or_default();
+/// The whole prior of a case as a file.
+pub(super) fn text(case: &Case) -> Result<String, Failure> {
+    let domain = case.model.prior_domain(&case.calibration);
+    let own = case.prior.as_deref().cloned().unwrap_or_default();
     let prior = own.completed(&domain).map_err(Failure::usage)?;
     let mut text = format!(
         "# The prior of model {}, calibration {}: grainlab invert --prior FILE\n# distribution = \"normal\" (mean, stddev), \
          \"uniform\" (low, high) or \"truncated-normal\" (mean, stddev, low and high or one of them)\n",
-        way.model.name(),
-        way.calibration.name()
+        case.model.name(),
+        case.calibration.name()
     );
-    let follows = way.model.quantities(&way.calibration);
+    let follows = case.model.quantities(&case.calibration);
     let follows: Vec<&str> =
         follows.into_iter().filter(|q| domain.structure[*q as usize].is_none()).map(|q| q.name()).collect();
     if !follows.is_empty() {

@@ -1,7 +1,7 @@
 //! Simulation-based calibration of the posterior: ranks of known structures among draws.
 
+use super::case::Case;
 use super::state::State;
-use super::way::Way;
 use grainlab_console::{Failure, Format, Table, fixed, say};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{EmtError, RankHistogram, SimulatedRanks, SimulationSettings, simulated_ranks};
@@ -26,22 +26,22 @@ struct Ranked {
 /// Simulates, infers and prints.
 pub(super) fn run(
     state: &State,
-    ways: &[Way],
+    cases: &[Case],
     simulations: u32,
     seed: u64,
     format: Format,
 ) -> Result<Exit, Failure> {
-    let [way] = ways else {
+    let [case] = cases else {
         return Err(Failure::usage("--rank-test is for one model and one calibration: add --model relaxed"));
     };
-    if !way.model.states_likelihood() {
+    if !case.model.states_likelihood() {
         return Err(Failure::usage(format!(
             "--rank-test: model {} states the error of its estimate, which changes with the structure, and no likelihood: ranks \
              among its draws are not uniform; use --model relaxed",
-            way.model.name()
+            case.model.name()
         )));
     }
-    let conditions = state.observation(way).map_err(Failure::usage)?.conditions;
+    let conditions = state.observation(case).map_err(Failure::usage)?.conditions;
     let settings = SimulationSettings {
         conditions,
         grains: None,
@@ -49,8 +49,8 @@ pub(super) fn run(
         moduli: [true; grainlab_emt::MODULI],
         seed,
     };
-    let prior = way.prior.as_deref().cloned().unwrap_or_default();
-    let of = |index| simulated_ranks(way.model, &way.calibration, &prior, &settings, index);
+    let prior = case.prior.as_deref().cloned().unwrap_or_default();
+    let of = |index| simulated_ranks(case.model, &case.calibration, &prior, &settings, index);
     let all: Vec<Result<SimulatedRanks, EmtError>> =
         (0..u64::from(simulations)).into_par_iter().map(of).collect();
     let mut histograms: Vec<(InferredQuantity, RankHistogram)> = Vec::new();
@@ -73,8 +73,8 @@ pub(super) fn run(
         .map(|(quantity, histogram)| {
             let (chi_square, p) = histogram.uniformity();
             Ranked {
-                model: way.model.name(),
-                calibration: way.calibration.name().to_owned(),
+                model: case.model.name(),
+                calibration: case.calibration.name().to_owned(),
                 quantity: quantity.name(),
                 simulations: histogram.counts().iter().sum(),
                 chi_square,

@@ -131,7 +131,7 @@ impl Rows {
 mod tests {
     use super::*;
     use crate::commands::invert::answer::Answer;
-    use crate::commands::invert::way;
+    use crate::commands::invert::case;
 
     /// Returns at most `step` bytes at a time, like a pipe.
     struct Pipe {
@@ -190,7 +190,7 @@ mod tests {
         let held_out = include_str!("../../../../../tests/golden/ensembles/held_out.csv");
         let head: Vec<&str> = held_out.lines().take(6).collect();
         let small = "sample,g12_pa,g13_pa,theta_pa,pressure_pa,phi,gamma_over_delta\nx,1.042e8,1.124e8,1.36e8,5e4,0.633,-0.06\n";
-        let ways = way::ways(&[], &["default".to_owned()], None).unwrap();
+        let cases = case::cases(&[], &["default".to_owned()], None).unwrap();
         fuzzing::Target {
             name: "table",
             seeds: vec![head.join("\n").into_bytes(), small.as_bytes().to_vec()],
@@ -200,11 +200,13 @@ mod tests {
                 std::fs::write(&path, bytes).unwrap();
                 let Ok(mut rows) = Rows::open(&path, &[], State::default()) else { return };
                 let answer = |number, row: Result<Row, BadRow>| match row {
-                    Ok(row) => Answer::of(row.state, Some(number), &ways),
+                    Ok(row) => Answer::of(row.state, Some(number), &cases),
                     Err(bad) => Answer::of_bad_row(bad, number),
                 };
                 while let Ok(Some(answers)) = rows.next(answer) {
-                    answers.iter().for_each(|a| _ = (a.exit(&ways), a.complaint(&ways), a.inferences(&ways)));
+                    answers
+                        .iter()
+                        .for_each(|a| _ = (a.exit(&cases), a.complaint(&cases), a.inferences(&cases)));
                 }
             },
         }

@@ -1,7 +1,7 @@
 //! Estimates as samples of their distribution.
 
+use super::case::Case;
 use super::state::State;
-use super::way::Way;
 use grainlab_console::{Table, fixed};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, MonteCarlo, SamplingSettings, monte_carlo};
@@ -31,19 +31,19 @@ pub(super) struct Sampled {
 pub(super) fn sampled(
     state: &State,
     outcomes: &[Result<Estimate, EmtError>],
-    ways: &[Way],
+    cases: &[Case],
     draws: usize,
     seed: u64,
 ) -> Vec<Sampled> {
     let settings = SamplingSettings { draws, seed };
-    let found: Vec<_> = ways.iter().zip(outcomes).filter_map(|(w, o)| o.is_ok().then_some(w)).collect();
+    let found: Vec<_> = cases.iter().zip(outcomes).filter_map(|(w, o)| o.is_ok().then_some(w)).collect();
     // An estimate always has samples: without errors of the data the flag is refused.
-    let samples: Vec<_> = found.par_iter().filter_map(|way| of_way(state, way, settings).ok()).collect();
+    let samples: Vec<_> = found.par_iter().filter_map(|case| of_case(state, case, settings).ok()).collect();
     samples.iter().flat_map(of_samples).collect()
 }
 
-fn of_way(state: &State, way: &Way, settings: SamplingSettings) -> Result<MonteCarlo, EmtError> {
-    monte_carlo(way.model, &state.observation(way)?, &way.calibration, settings)
+fn of_case(state: &State, case: &Case, settings: SamplingSettings) -> Result<MonteCarlo, EmtError> {
+    monte_carlo(case.model, &state.observation(case)?, &case.calibration, settings)
 }
 
 fn of_samples(samples: &MonteCarlo) -> Vec<Sampled> {

@@ -1,6 +1,6 @@
 //! The data of one state.
 
-use super::way::Way;
+use super::case::Case;
 use grainlab_core::Material;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::Microstructure;
@@ -123,34 +123,34 @@ impl State {
         self.covariance(&self.moduli).map(|c| c[(at, at)].sqrt())
     }
 
-    /// The estimate of the model of this way.
-    pub(super) fn infer(&self, way: &Way) -> Result<Estimate, EmtError> {
-        let estimate = way.model.infer(&self.observation(way)?, &way.calibration)?;
-        match &way.prior {
-            Some(prior) => estimate.with_prior(prior)?.within(&way.model.prior_domain(&way.calibration)),
+    /// The estimate of the model of this case.
+    pub(super) fn infer(&self, case: &Case) -> Result<Estimate, EmtError> {
+        let estimate = case.model.infer(&self.observation(case)?, &case.calibration)?;
+        match &case.prior {
+            Some(prior) => estimate.with_prior(prior)?.within(&case.model.prior_domain(&case.calibration)),
             None => Ok(estimate),
         }
     }
 
-    /// The observation for this way.
-    pub(super) fn observation(&self, way: &Way) -> Result<Observation, EmtError> {
+    /// The observation for this case.
+    pub(super) fn observation(&self, case: &Case) -> Result<Observation, EmtError> {
         let mut conditions = Conditions::at(self.pressure.value);
         conditions.pressure = self.pressure;
         conditions.solid_fraction = self.phi;
         conditions.stress_ratio = self.stress_ratio;
         conditions.size_spread = self.size_spread;
-        conditions.material = self.material(&way.calibration);
+        conditions.material = self.material(&case.calibration);
         conditions.shear_modulus_stddev = self.grain_shear_modulus_sigma;
         conditions.poisson_ratio_stddev = self.poisson_sigma;
         conditions.smooth = self.smooth;
         conditions.contact_law = self.contact_law;
-        if way.model.uses_gamma() {
-            let model = way.model.name();
+        if case.model.uses_gamma() {
+            let model = case.model.name();
             conditions.gamma =
-                self.gamma(way.gamma).map_err(|missing| EmtError::Missing { model, missing })?;
+                self.gamma(case.gamma).map_err(|missing| EmtError::Missing { model, missing })?;
         }
         let mut moduli = self.moduli;
-        if let Some(theta) = self.theta_printed.filter(|_| way.model.name() == "ratio-as-printed") {
+        if let Some(theta) = self.theta_printed.filter(|_| case.model.name() == "ratio-as-printed") {
             moduli = moduli.with(Modulus::Theta, theta);
         }
         if self.theta_follows() {
@@ -163,11 +163,11 @@ impl State {
     }
 
     /// The source of the γ/Δ that a model uses or would use.
-    pub(super) fn gamma_source(&self, way: &Way) -> &'static str {
-        match self.gamma(way.gamma) {
-            _ if !way.model.uses_gamma() => "none",
+    pub(super) fn gamma_source(&self, case: &Case) -> &'static str {
+        match self.gamma(case.gamma) {
+            _ if !case.model.uses_gamma() => "none",
             Ok(gamma) => gamma.source.name(),
-            Err(_) => way.gamma.map_or("none", StrainRatioSource::name),
+            Err(_) => case.gamma.map_or("none", StrainRatioSource::name),
         }
     }
 
@@ -251,7 +251,7 @@ impl State {
 
 #[cfg(test)]
 mod tests {
-    use super::super::way::ways;
+    use super::super::case::cases;
     use super::*;
 
     /// 9 Θ = 4 C11 − 4 G12 + 4 C13 + C33.
@@ -268,9 +268,9 @@ mod tests {
 
     #[test]
     fn of_a_projected_stiffness_five_moduli_are_measured_and_of_single_ones_all() {
-        let way = &ways(&["relaxed".to_owned()], &["default".to_owned()], None).unwrap()[0];
+        let case = &cases(&["relaxed".to_owned()], &["default".to_owned()], None).unwrap()[0];
         let variance = |state: &State| {
-            let observation = state.observation(way).unwrap();
+            let observation = state.observation(case).unwrap();
             let checked = observation.checked().unwrap();
             assert!((checked.moduli.get(Modulus::Theta).unwrap() - 1840.0 / 9.0).abs() < 1e-9);
             checked.covariance.unwrap()[(Modulus::Theta as usize, Modulus::Theta as usize)]
@@ -283,13 +283,13 @@ mod tests {
 
     #[test]
     fn a_stated_error_of_theta_is_no_additional_measurement_where_all_others_have_theirs() {
-        let way = &ways(&["relaxed".to_owned()], &["default".to_owned()], None).unwrap()[0];
+        let case = &cases(&["relaxed".to_owned()], &["default".to_owned()], None).unwrap()[0];
         let observed = |stated: f64| {
             let mut state = medium(true);
             for (modulus, value) in state.moduli.known().collect::<Vec<_>>() {
                 state.set_sigma(modulus, if modulus == Modulus::Theta { stated } else { 0.01 * value });
             }
-            state.observation(way).unwrap().checked().unwrap()
+            state.observation(case).unwrap().checked().unwrap()
         };
         assert_eq!(observed(1.0), observed(50.0));
     }

@@ -62,7 +62,7 @@ impl Tally {
 /// Inverts every row.
 pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Result<Exit, Failure> {
     let answer = |number, row: Result<Row, _>| match row {
-        Ok(row) => Answer::of(row.state, Some(number), printer.ways),
+        Ok(row) => Answer::of(row.state, Some(number), printer.cases),
         Err(bad) => Answer::of_bad_row(bad, number),
     };
     let mut tally = Tally::new();
@@ -83,7 +83,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
                 Format::Json => printer.json_element(&answer)?,
                 Format::Table => String::new(),
             };
-            let (exit, complaint) = (answer.exit(printer.ways), answer.complaint(printer.ways));
+            let (exit, complaint) = (answer.exit(printer.cases), answer.complaint(printer.cases));
             // Only a text table collects all results before printing.
             Ok::<_, Failure>((text, exit, complaint, (format == Format::Table).then_some(answer)))
         })?;

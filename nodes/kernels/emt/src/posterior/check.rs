@@ -6,7 +6,7 @@
 use super::halton;
 use super::points::{Posterior, point};
 use super::proposal::Proposal;
-use super::target::At;
+use super::target::TargetValue;
 use crate::estimate::{Estimate, Status};
 use crate::likelihood::Predicted;
 use crate::moduli::Modulus;
@@ -96,7 +96,7 @@ impl Posterior<'_> {
         }
         // The others may determine far less: points of their own.
         let given_others = |predicted: &Predicted| predicted.given_others(modulus);
-        let ln = |at: &At| at.ln() - given_others(&at.predicted).0;
+        let ln = |at: &TargetValue| at.ln() - given_others(&at.predicted).0;
         let proposal = Proposal::about(&self.target, ln).ok()?;
         let weighted = |index: u64| {
             let found = point(&self.target, &proposal, 0, &halton::point(index, &[0.5; 6]))?;

@@ -2,7 +2,7 @@
 
 use super::halton;
 use super::proposal::Proposal;
-use super::target::{At, Target};
+use super::target::{Target, TargetValue};
 use crate::calibration::Calibration;
 use crate::error::EmtError;
 use crate::likelihood::FOLLOWING;
@@ -56,7 +56,7 @@ pub(super) struct Point {
     /// ln of posterior over proposal.
     pub(super) ln_weight: f64,
     pub(super) structure: [f64; InferredQuantity::COUNT],
-    pub(super) at: At,
+    pub(super) at: TargetValue,
 }
 
 impl<'a> Posterior<'a> {
@@ -71,7 +71,7 @@ impl<'a> Posterior<'a> {
     ) -> Result<Self, EmtError> {
         let prior = prior.completed(&model.prior_domain(calibration))?;
         let target = Target::new(model.name(), model.likelihood(observation, calibration)?, &prior)?;
-        let proposal = Proposal::about(&target, At::ln)?;
+        let proposal = Proposal::about(&target, TargetValue::ln)?;
         let mut random = Random::new(settings.seed);
         let each = settings.points.div_ceil(REPLICATES);
         let mut points = Vec::with_capacity(settings.points);

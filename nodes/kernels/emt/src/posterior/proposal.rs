@@ -1,6 +1,6 @@
 //! The distribution from which points are proposed: a mixture of two normal ones about the posterior.
 
-use super::target::{At, Target};
+use super::target::{Target, TargetValue};
 use crate::error::EmtError;
 use crate::normal::{self, LN_SQRT_TAU};
 use nalgebra::{DMatrix, DVector};
@@ -26,7 +26,7 @@ pub(super) struct Proposal {
 
 impl Proposal {
     /// About the density with this logarithm, found on grids over the range of the priors.
-    pub(super) fn about(target: &Target<'_>, ln: impl Fn(&At) -> f64) -> Result<Self, EmtError> {
+    pub(super) fn about(target: &Target<'_>, ln: impl Fn(&TargetValue) -> f64) -> Result<Self, EmtError> {
         let n = target.unknowns.len();
         let nodes: usize = [65, 65, 25, 13][n.min(3)];
         let whole: Vec<[f64; 2]> = target.unknowns.iter().map(|d| d.effective_range()).collect();
@@ -84,7 +84,7 @@ impl Proposal {
 /// Mean and covariance of the density over the cells of a grid; `None` where it is 0 in all of them.
 fn moments(
     target: &Target<'_>,
-    ln: &impl Fn(&At) -> f64,
+    ln: &impl Fn(&TargetValue) -> f64,
     range: &[[f64; 2]],
     nodes: usize,
 ) -> Option<(DVector<f64>, DMatrix<f64>)> {

@@ -20,7 +20,7 @@ pub(super) struct Target<'a> {
 }
 
 /// The target at one point.
-pub(super) struct At {
+pub(super) struct TargetValue {
     pub(super) predicted: Predicted,
     pub(super) ln_likelihood: f64,
     /// ln prior of the unknowns.
@@ -32,7 +32,7 @@ pub(super) struct At {
     root: Matrix2<f64>,
 }
 
-impl At {
+impl TargetValue {
     /// ln of likelihood and prior, what follows integrated out.
     pub(super) fn ln(&self) -> f64 {
         self.ln_likelihood + self.ln_prior + self.ln_overlap
@@ -63,7 +63,7 @@ impl<'a> Target<'a> {
     }
 
     /// `None` where the posterior is 0.
-    pub(super) fn at(&self, x: &[f64]) -> Option<At> {
+    pub(super) fn at(&self, x: &[f64]) -> Option<TargetValue> {
         let ln_prior: f64 = self.unknowns.iter().zip(x).map(|(density, x)| density.ln(*x)).sum();
         if ln_prior == f64::NEG_INFINITY {
             return None;
@@ -85,7 +85,7 @@ impl<'a> Target<'a> {
         } else {
             Cholesky::new(0.5 * (covariance + covariance.transpose()))?.l()
         };
-        (ln_likelihood + ln_overlap).is_finite().then_some(At {
+        (ln_likelihood + ln_overlap).is_finite().then_some(TargetValue {
             predicted,
             ln_likelihood,
             ln_prior,

@@ -1,7 +1,7 @@
 //! Sends the messages of a playback, and follows its keys.
 
 use super::keys::{Key, Keys};
-use super::outlet::Outlets;
+use super::publisher::TopicPublishers;
 use grainlab_console::{Failure, say};
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::{rosgraph_msgs, to_cdr, topics};
@@ -17,9 +17,9 @@ const KEYS: Duration = Duration::from_millis(30);
 /// A playback on the bus.
 pub(super) struct Session<'a> {
     pub(super) bus: &'a mut DdsBus,
-    pub(super) outlets: &'a mut Outlets,
+    pub(super) publishers: &'a mut TopicPublishers,
     pub(super) keys: Option<Keys>,
-    pub(super) clock: Option<ClockOutlet>,
+    pub(super) clock: Option<ClockPublisher>,
     /// Number of messages sent.
     pub(super) sent: u64,
     /// Messages of a part of the recording whose definition is another one than that of their topic.
@@ -29,13 +29,13 @@ pub(super) struct Session<'a> {
 }
 
 /// Publishes the time of the recording.
-pub(super) struct ClockOutlet {
+pub(super) struct ClockPublisher {
     publisher: PublisherId,
     period: Duration,
     next: Duration,
 }
 
-impl ClockOutlet {
+impl ClockPublisher {
     /// Advertises `/clock`, to be published `hz` times per second.
     pub(super) fn advertise(bus: &mut DdsBus, hz: f64) -> Result<Self, Failure> {
         let publisher = bus.advertise(&topics::CLOCK).map_err(Failure::failed)?;
@@ -85,8 +85,8 @@ impl Session<'_> {
                 return Ok(Some(Ended::Key));
             }
             let mut idle = true;
-            for outlet in self.outlets.values_mut() {
-                idle &= outlet.advance(self.bus)?;
+            for publisher in self.publishers.values_mut() {
+                idle &= publisher.advance(self.bus)?;
             }
             let now = self.bus.now();
             let mut wait = match player.poll(now) {
@@ -118,13 +118,13 @@ impl Session<'_> {
 
     /// Sends a message, waiting for slow readers; false on a signal.
     fn send(&mut self, message: &Message) -> Result<bool, Failure> {
-        let Some(outlet) = self.outlets.get_mut(&message.channel.topic) else { return Ok(true) };
+        let Some(publisher) = self.publishers.get_mut(&message.channel.topic) else { return Ok(true) };
         let Ok(body) = message.own_bytes() else {
             self.unread += 1;
             return Ok(true);
         };
         loop {
-            match outlet.publish(self.bus, &body) {
+            match publisher.publish(self.bus, &body) {
                 Ok(()) => break,
                 Err(BusError::Full { .. }) => {}
                 Err(error) => return Err(Failure::failed(error)),

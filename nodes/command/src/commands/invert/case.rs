@@ -1,4 +1,4 @@
-//! The ways to invert a state: a model, its constants, and its γ/Δ.
+//! The cases by which a state is inverted: a model, its constants, and its γ/Δ.
 
 use super::calibrations;
 use grainlab_console::Failure;
@@ -22,9 +22,9 @@ pub(super) enum GammaChoice {
     All,
 }
 
-/// One way to an estimate.
+/// One case to invert by: a model, its calibration, γ/Δ and prior.
 #[derive(Clone, Debug)]
-pub(super) struct Way {
+pub(super) struct Case {
     pub(super) model: &'static dyn Model,
     pub(super) calibration: Arc<Calibration>,
     /// `None`: the one given, else that of the paper's models.
@@ -34,11 +34,11 @@ pub(super) struct Way {
 }
 
 /// Every model, or those of these names, with every calibration and every γ/Δ set.
-pub(super) fn ways(
+pub(super) fn cases(
     models: &[String],
     calibrations: &[String],
     gamma: Option<GammaChoice>,
-) -> Result<Vec<Way>, Failure> {
+) -> Result<Vec<Case>, Failure> {
     let named = models.iter().map(|name| grainlab_emt::model(name).ok_or_else(|| no_model(name)));
     let named = named.collect::<Result<Vec<_>, _>>()?;
     for (flag, given) in [("--model", models), ("--calibration", calibrations)] {
@@ -61,17 +61,17 @@ pub(super) fn ways(
         Some(GammaChoice::Zero) => &[Some(Zero)],
         Some(GammaChoice::All) => &[Some(Total), Some(Elastic), Some(Contact), Some(Zero)],
     };
-    let mut ways = Vec::new();
+    let mut cases = Vec::new();
     for model in models {
         let gammas = if model.uses_gamma() { gammas } else { &[None] };
         for choice in &choices {
             let calibration = choice.clone().unwrap_or_else(|| Arc::new(model.default_calibration().clone()));
             let with =
-                |gamma: &_| Way { model, calibration: Arc::clone(&calibration), gamma: *gamma, prior: None };
-            ways.extend(gammas.iter().map(with));
+                |gamma: &_| Case { model, calibration: Arc::clone(&calibration), gamma: *gamma, prior: None };
+            cases.extend(gammas.iter().map(with));
         }
     }
-    Ok(ways)
+    Ok(cases)
 }
 
 fn no_model(name: &str) -> Failure {

@@ -6,13 +6,13 @@ use std::collections::BTreeSet;
 
 /// The processes that published, and those that sent their last report, which counts all messages of the process.
 #[derive(Debug, Default)]
-pub(crate) struct Company {
+pub(crate) struct KnownProcesses {
     pub(crate) own: Option<Participant>,
     heard: BTreeSet<Participant>,
     pub(crate) left: BTreeSet<Participant>,
 }
 
-impl Company {
+impl KnownProcesses {
     pub(crate) fn note_writer(&mut self, writer: Guid) {
         self.heard.insert(writer.participant());
     }
@@ -37,13 +37,16 @@ mod tests {
     #[test]
     fn everyone_has_left_after_the_last_report_of_each() {
         let writer = |who| Guid([who; 16]);
-        let mut company = Company { own: Some([1; 12]), ..Company::default() };
-        assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
-        company.note_writer(writer(2));
-        assert!(!company.all_left(&[]), "gone without a word: it may have been killed");
-        assert_eq!((company.missing(&[]), company.missing(&[writer(2)])), (1, 0));
-        company.left.insert([2; 12]);
-        assert!(company.all_left(&[writer(1), writer(2)]));
-        assert!(!company.all_left(&[writer(2), writer(3)]), "one that was never heard may still speak");
+        let mut known_processes = KnownProcesses { own: Some([1; 12]), ..KnownProcesses::default() };
+        assert!(known_processes.all_left(&[writer(1)]), "there is nobody but the recorder");
+        known_processes.note_writer(writer(2));
+        assert!(!known_processes.all_left(&[]), "gone without a word: it may have been killed");
+        assert_eq!((known_processes.missing(&[]), known_processes.missing(&[writer(2)])), (1, 0));
+        known_processes.left.insert([2; 12]);
+        assert!(known_processes.all_left(&[writer(1), writer(2)]));
+        assert!(
+            !known_processes.all_left(&[writer(2), writer(3)]),
+            "one that was never heard may still speak"
+        );
     }
 }

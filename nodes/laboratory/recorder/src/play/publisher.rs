@@ -11,13 +11,13 @@ use std::time::Duration;
 const SETTLE: Duration = Duration::from_millis(1000);
 
 /// The publisher of one topic.
-pub(super) enum Outlet {
+pub(super) enum TopicPublisher {
     Plain(PublisherId),
     /// Packings of any length: large ones in parts.
     Bulk(Box<BulkPublisher>),
 }
 
-impl Outlet {
+impl TopicPublisher {
     pub(super) fn id(&self) -> PublisherId {
         match self {
             Self::Plain(id) => *id,
@@ -41,7 +41,7 @@ impl Outlet {
     }
 }
 
-pub(super) type Outlets = BTreeMap<String, Outlet>;
+pub(super) type TopicPublishers = BTreeMap<String, TopicPublisher>;
 
 /// Advertises a recorded topic as `to`; the inner error is the reason if it is not possible.
 pub(super) fn offer(
@@ -49,7 +49,7 @@ pub(super) fn offer(
     channel: &ChannelInfo,
     to: &str,
     overrides: &QosOverrides,
-) -> Result<Result<Outlet, String>, Failure> {
+) -> Result<Result<TopicPublisher, String>, Failure> {
     if channel.message_encoding != "cdr" {
         return Ok(Err(format!("its messages are {:?}, not CDR", channel.message_encoding)));
     }
@@ -67,14 +67,14 @@ pub(super) fn offer(
     if let Some(writer) = writers.first() {
         return Ok(Err(format!("a live node publishes it (writer {writer})")));
     }
-    let outlet = if topic.info == topics::PACKING.info {
-        BulkPublisher::advertise(bus, &topic).map(|bulk| Outlet::Bulk(Box::new(bulk)))
+    let publisher = if topic.info == topics::PACKING.info {
+        BulkPublisher::advertise(bus, &topic).map(|bulk| TopicPublisher::Bulk(Box::new(bulk)))
     } else {
-        bus.advertise(&topic).map(Outlet::Plain)
+        bus.advertise(&topic).map(TopicPublisher::Plain)
     };
-    match outlet {
+    match publisher {
         Err(BusError::Name(error)) => Ok(Err(error.to_string())),
-        outlet => Ok(Ok(outlet.map_err(Failure::failed)?)),
+        publisher => Ok(Ok(publisher.map_err(Failure::failed)?)),
     }
 }
 
@@ -96,7 +96,7 @@ pub(super) fn pause(bus: &mut DdsBus, time: Duration) {
 /// Waits until every topic has the readers it needs and no more appear for a short time; false on a signal.
 pub(super) fn wait_for_readers(
     bus: &mut DdsBus,
-    publishers: &Outlets,
+    publishers: &TopicPublishers,
     needed: usize,
     patience: Duration,
 ) -> bool {
