@@ -19,6 +19,7 @@ mod files;
 mod held;
 mod index;
 mod info;
+mod lengths;
 mod message;
 mod messages;
 mod recording;

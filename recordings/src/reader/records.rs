@@ -3,6 +3,8 @@
 use mcap::records::{MessageHeader, Record, op};
 use std::ops::Range;
 
+use super::lengths;
+
 /// A record in the file or in a chunk.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RawRecord<'a> {
@@ -23,9 +25,8 @@ impl<'a> RawRecord<'a> {
 
     /// The parsed record, or the error.
     pub(super) fn parse(&self) -> Result<Record<'a>, String> {
-        // The parser takes for granted that an attachment has its last four bytes.
-        if self.opcode == op::ATTACHMENT && !has_end(self.body) {
-            return Err("the lengths in it do not fit an attachment".to_owned());
+        if !lengths::fit(self.opcode, self.body) {
+            return Err(format!("the lengths in it do not fit a record of type 0x{:02x}", self.opcode));
         }
         mcap::parse_record(self.opcode, self.body).map_err(|e| match e {
             mcap::McapError::Parse(_) => format!("not a record of type 0x{:02x}", self.opcode),
@@ -51,16 +52,6 @@ impl RawRecord<'_> {
         };
         Some((header, self.offset + FRAME + HEADER..self.end()))
     }
-}
-
-/// True if an attachment has four bytes after its two times, its two texts and the length of its content.
-fn has_end(body: &[u8]) -> bool {
-    fn behind_text(rest: &[u8]) -> Option<&[u8]> {
-        let (length, text) = rest.split_first_chunk::<4>()?;
-        text.get(u32::from_le_bytes(*length) as usize..)
-    }
-    let rest = body.get(16..).and_then(behind_text).and_then(behind_text);
-    rest.is_some_and(|rest| rest.len() >= 12)
 }
 
 /// Iterates over records; ends at the end of the bytes, or with the offset of an incomplete record.
