@@ -55,7 +55,7 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
     for node in NODES {
         assert_eq!(most.get(node), Some(&1), "processes of {node}");
     }
-    for word in ["G12", "G13", "Theta", "ratio", "eps", "lost"] {
+    for word in ["g12_pa", "G12", "theta_pa", "ratio", "eps_k", "recommended: relaxed"] {
         assert!(ended.stdout.contains(word), "{word} is missing from the table:\n{}", ended.stdout);
     }
     for phase in ["gas", "rest", "uniaxial", "load", "settle"] {
@@ -99,7 +99,6 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
     );
     assert!(ratio["k"].is_f64() && ratio["z"].is_null() && ratio["sigma"]["k"].is_f64(), "{ratio}");
     assert!(ratio["degrees_of_freedom"] == 0 && ratio["condition_number"].is_f64(), "{ratio}");
-    assert!(ended.stdout.contains("errors against the values counted"), "{}", ended.stdout);
     assert!(run.join("metadata.yaml").is_file());
 
     if let Some(python) = python::with("mcap_ros2, rosbags, zstandard, lz4, yaml") {
