@@ -42,7 +42,7 @@ fn layout(opcode: u8) -> &'static [Part] {
     }
 }
 
-/// Whether all stated parts of the record lie within its body. More bytes may follow: the format lets later
+/// True if all stated parts of the record lie within its body. More bytes may follow: the format lets later
 /// versions append parts.
 pub(super) fn fit(opcode: u8, body: &[u8]) -> bool {
     let mut rest = body;

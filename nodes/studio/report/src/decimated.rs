@@ -1,7 +1,7 @@
 //! A long series with few points, made while the series is read.
 
 /// A point of a series: time and value.
-type At = (f64, f64);
+type TimedValue = (f64, f64);
 
 /// A series as the extremes of bins of equal width in time, with at most four points each: first, least, greatest and last.
 /// The width doubles when the series becomes too long for the bins.
@@ -19,14 +19,14 @@ pub(crate) struct Decimated {
 
 #[derive(Clone, Copy, Debug)]
 struct Bin {
-    first: At,
-    least: At,
-    greatest: At,
-    last: At,
+    first: TimedValue,
+    least: TimedValue,
+    greatest: TimedValue,
+    last: TimedValue,
 }
 
 impl Bin {
-    fn of(at: At) -> Self {
+    fn of(at: TimedValue) -> Self {
         Self { first: at, least: at, greatest: at, last: at }
     }
 
@@ -92,7 +92,7 @@ impl Decimated {
     }
 
     /// The points in order of time.
-    pub(crate) fn points(&self) -> Vec<At> {
+    pub(crate) fn points(&self) -> Vec<TimedValue> {
         let mut points = Vec::with_capacity(4 * self.bins.len());
         for bin in self.bins.iter().flatten() {
             let (early, late) = if bin.least.0 <= bin.greatest.0 {
@@ -114,7 +114,7 @@ impl Decimated {
 mod tests {
     use super::*;
 
-    fn of(values: impl Iterator<Item = At>) -> Decimated {
+    fn of(values: impl Iterator<Item = TimedValue>) -> Decimated {
         let mut series = Decimated::new(500);
         values.for_each(|(t, v)| series.push(t, v));
         series
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn a_short_series_is_kept_whole() {
-        let all: Vec<At> = (0..40).map(|n| (f64::from(n), f64::from(n * n))).collect();
+        let all: Vec<TimedValue> = (0..40).map(|n| (f64::from(n), f64::from(n * n))).collect();
         assert_eq!(of(all.iter().copied()).points(), all);
     }
 
