@@ -11,7 +11,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 pub struct Quantity<R: 'static> {
     /// Name in JSON, in CSV and on command lines, with the unit at its end where there is one.
     pub key: &'static str,
-    /// Symbol in formulas; empty if there is none.
+    /// Symbol in formulas; empty for a quantity without one.
     pub symbol: &'static str,
     /// Unit; `1` if it is dimensionless, empty if it is no number.
     pub unit: &'static str,

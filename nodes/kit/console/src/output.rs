@@ -55,7 +55,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     print_more(text).map(|_| ())
 }
 
-/// Writes as [`print()`], for a command that prints until it is stopped: false once nobody reads any more.
+/// Prints like [`print()`], for a command without an end; false once the reader of standard output has closed it.
 pub fn print_more(text: &str) -> Result<bool, Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -9,7 +9,7 @@ const WIDTH: usize = 80;
 /// To the first column, and erase the line.
 const ERASE: &str = "\r\x1b[2K";
 
-/// True while a live line is on the terminal. Changed under the lock of stderr.
+/// True while the terminal shows a live line. The lock of stderr guards every change.
 static SHOWN: AtomicBool = AtomicBool::new(false);
 
 /// A terminal on stderr on which a line can be drawn again.

@@ -89,7 +89,7 @@ impl Run {
         paragraph(about) + grid(figures) + details("Notes of the models", warnings) + self.of_instruments()
     }
 
-    /// Values inferred from data that are not about a packing of the run; empty if there are none.
+    /// Values inferred from data of no packing of the run, for example from an instrument; may be empty.
     fn of_instruments(&self) -> Html {
         let rows = self.of_instruments.iter().map(|e| {
             let cells = InferredQuantity::countable().map(|q| Cell::fixed(e.values[q], q.digits()));

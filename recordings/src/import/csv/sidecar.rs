@@ -38,7 +38,7 @@ pub(super) struct Sidecar {
     gravity: Option<Value>,
 }
 
-/// True for a value that says that there is none of something.
+/// True for a value that stands for absence: null, false, zero, "", "none", or a list or table of such values.
 fn is_nothing(value: &Value) -> bool {
     match value {
         Value::Null => true,

@@ -33,7 +33,7 @@ impl StaticPeers {
         self.hosts.iter().flatten().copied()
     }
 
-    /// True if there is none.
+    /// True for an empty list of peers.
     pub fn is_empty(&self) -> bool {
         self.iter().next().is_none()
     }
