@@ -49,8 +49,6 @@ impl Calibration {
         let fits = (0.0..=0.5).contains(&poisson_ratio);
         constant("material.poisson_ratio", poisson_ratio, fits, "it must lie in [0, 1/2]")?;
         constant("material.density", density, density > 0.0, "it must be positive")?;
-        isotropic.check()?;
-        other.iter().try_for_each(IsotropicCalibration::check)?;
         file.discrepancy.iter().try_for_each(ModelDiscrepancy::check)?;
         file.network.iter().try_for_each(|network| network.check())?;
         Ok(Self {

@@ -1,9 +1,9 @@
 //! Moduli of isotropic packings, Eqs. 21 and 22.
 
-use super::error::{CalibrationError, constant};
+use super::error::CalibrationError;
 use super::names::coordination_kind;
 use grainlab_core::results::InferredQuantity;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 const MEGA: f64 = 1.0e6;
 
@@ -12,7 +12,7 @@ const MEGA: f64 = 1.0e6;
 ///
 /// Built by [`IsotropicCalibration::new`], which checks what makes the inversion unique: α, ρ > 0, β < ζ and β < 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(remote = "Self", deny_unknown_fields)]
 pub struct IsotropicCalibration {
     /// Kind of the coordination number k̂: [`InferredQuantity::K`] or [`InferredQuantity::Z`].
     #[serde(rename = "abscissa", with = "coordination_kind")]
@@ -29,6 +29,18 @@ pub struct IsotropicCalibration {
     /// Covariance of (α, β, ρ, ζ), α and ρ in MPa^⅔; `None` if not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub covariance: Option<[[f64; 4]; 4]>,
+}
+
+impl Serialize for IsotropicCalibration {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, to)
+    }
+}
+
+impl<'de> Deserialize<'de> for IsotropicCalibration {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        Self::deserialize(from)?.checked().map_err(D::Error::custom)
+    }
 }
 
 impl IsotropicCalibration {
@@ -50,17 +62,39 @@ impl IsotropicCalibration {
         coordination_kind: InferredQuantity,
         fitted: [f64; 2],
     ) -> Result<Self, CalibrationError> {
-        let new = Self { coordination_kind, alpha, beta, rho, zeta, fitted, scatter: None, covariance: None };
-        new.check().map(|()| new)
+        Self { coordination_kind, alpha, beta, rho, zeta, fitted, scatter: None, covariance: None }.checked()
     }
 
-    pub(super) fn check(&self) -> Result<(), CalibrationError> {
-        let Self { alpha, beta, rho, zeta, fitted: [low, high], .. } = *self;
-        constant("alpha", alpha, alpha > 0.0, "it must be positive and finite")?;
-        constant("rho", rho, rho > 0.0, "it must be positive and finite")?;
-        constant("beta", beta, beta < 0.0, "shear must vanish at a positive coordination: beta < 0")?;
-        constant("zeta", zeta, zeta > beta, "shear must vanish before bulk does: zeta > beta")?;
-        constant("fitted", low, low < high, "it must be a range, low and high")
+    fn checked(self) -> Result<Self, CalibrationError> {
+        let Self { alpha, beta, rho, zeta, fitted, .. } = self;
+        let positive = |v: f64| v > 0.0 && v.is_finite();
+        for (field, value, valid, requirement) in [
+            ("alpha", alpha, positive(alpha), "it must be positive and finite"),
+            ("rho", rho, positive(rho), "it must be positive and finite"),
+            (
+                "beta",
+                beta,
+                beta < 0.0 && beta.is_finite(),
+                "shear must vanish at a positive coordination: beta < 0",
+            ),
+            (
+                "zeta",
+                zeta,
+                zeta > beta && zeta.is_finite(),
+                "shear must vanish before bulk does: zeta > beta",
+            ),
+            (
+                "fitted",
+                fitted[0],
+                fitted[0].is_finite() && fitted[0] < fitted[1],
+                "it must be a range, low and high",
+            ),
+        ] {
+            if !valid {
+                return Err(CalibrationError::Constant { field, value, requirement });
+            }
+        }
+        Ok(self)
     }
 
     /// α, β, ρ, ζ; α and ρ in MPa^⅔.
