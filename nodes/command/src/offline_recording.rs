@@ -63,12 +63,12 @@ impl OfflineRecording {
     pub(crate) fn put(&mut self, message: &Recorded) -> Result<(), Failure> {
         let Recorded { topic, time, payload } = message;
         let known = self.counts.iter_mut().find(|(known, _)| known.name == topic.name);
-        let sequence = known.map_or(0, |(_, count)| {
-            *count += 1;
-            *count
-        });
+        let Some((_, sequence)) = known else {
+            return Err(Failure::failed(format!("{} is not among the topics recorded", topic.name)));
+        };
+        *sequence += 1;
         let (source_time, receive_time) = (Some(*time), *time);
-        let sample = Incoming { guid: self.guid, sequence, source_time, receive_time, payload };
+        let sample = Incoming { guid: self.guid, sequence: *sequence, source_time, receive_time, payload };
         self.writer.write(&topic.absolute_name(), &sample).map(drop).map_err(Failure::failed)
     }
 

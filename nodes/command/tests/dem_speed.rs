@@ -35,6 +35,27 @@ fn every_case_has_a_row_and_the_packing_holds_together() {
 }
 
 #[test]
+fn without_features_the_default_packing_is_stepped_with_all_that_fit_its_friction() {
+    let output = dem(&[
+        "--grains",
+        "2000",
+        "--threads",
+        "1",
+        "--steps",
+        "20",
+        "--repetitions",
+        "1",
+        "--format",
+        "json",
+    ]);
+    let err = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{err}");
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let features = report["rows"].as_array().unwrap().iter().map(|row| row["features"].as_str().unwrap());
+    assert_eq!(features.collect::<Vec<_>>(), ["coulomb", "stuck"]);
+}
+
+#[test]
 fn wrong_usage_of_the_bench_is_refused_with_what_would_do() {
     for (arguments, code, word) in [
         (&["--grains", "3000"][..], 2, "2000, 16000, 54000"),

@@ -150,9 +150,7 @@ impl Phase {
             PhaseKind::Servo { controls, .. } => *controls,
         }
     }
-}
 
-impl Phase {
     /// Imposed rate of a strain component (Voigt index), 1/s; `None` where a stress is controlled instead.
     pub(crate) fn imposed_rate(&self, component: usize) -> Option<f64> {
         match self.controls()[component] {

@@ -28,6 +28,7 @@ static LOGGER: Logger = Logger {
         rosout: false,
         colour: false,
         queue: VecDeque::new(),
+        dropped: 0,
     }),
 };
 
@@ -45,6 +46,8 @@ struct Settings {
     rosout: bool,
     colour: bool,
     queue: VecDeque<Log>,
+    /// Number of lines that the full queue dropped since it was last taken.
+    dropped: usize,
 }
 
 /// The logger of this process.
@@ -65,6 +68,7 @@ impl Logger {
             rosout: args.rosout,
             colour: colour_wanted(|name| std::env::var(name).ok(), std::io::stderr().is_terminal()),
             queue: VecDeque::new(),
+            dropped: 0,
         };
         let most = settings.logger_levels.iter().map(|(_, level)| *level).fold(settings.level, Ord::max);
         *LOGGER.lock() = settings;
@@ -83,8 +87,16 @@ impl Logger {
     }
 
     /// Takes the queued lines for `/rosout`, in the order of their stamps.
+    /// The first one states the number of older lines that the full queue dropped, if any.
     pub fn drain(&self) -> Vec<Log> {
-        self.lock().queue.drain(..).collect()
+        let mut settings = self.lock();
+        let mut lines: Vec<Log> = settings.queue.drain(..).collect();
+        let dropped = std::mem::take(&mut settings.dropped);
+        if let (1.., Some(first)) = (dropped, lines.first()) {
+            let msg = format!("{dropped} lines before this one are on stderr alone");
+            lines.insert(0, Log { msg, level: Log::WARN, ..first.clone() });
+        }
+        lines
     }
 
     /// Hands the queued lines for `/rosout` to `each`, in the order of their stamps. Lines that this thread logs meanwhile
@@ -150,6 +162,7 @@ impl log::Log for Logger {
         if settings.rosout && !PUBLISHES.get() {
             if settings.queue.len() >= BACKLOG {
                 settings.queue.pop_front();
+                settings.dropped += 1;
             }
             let entry = Log {
                 stamp,
@@ -180,6 +193,7 @@ mod tests {
             rosout: true,
             colour: false,
             queue: VecDeque::new(),
+            dropped: 0,
         }
     }
 

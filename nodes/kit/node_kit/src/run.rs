@@ -17,7 +17,7 @@ use crate::watchdog;
 use grainlab_console::Signals;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Exit, Guid, Health, Received, Report, topics};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
 
 /// Time between two heartbeats, and from the start to the first: `/diagnostics` keeps nothing for late joiners, and a
@@ -130,7 +130,12 @@ pub fn drive(
             log::info!("stopping on request");
             break settle(node.on_shutdown(bus));
         }
-        match node.step(bus) {
+        let stepped = catch_unwind(AssertUnwindSafe(|| node.step(bus))).unwrap_or_else(|panic| {
+            // The last lines before a panic explain it.
+            let _ = housekeeping.rosout.close(bus);
+            resume_unwind(panic)
+        });
+        match stepped {
             Ok(Next::Again) if housekeeping.look_due(bus.now()) => {
                 asked = bus.wait(Duration::ZERO) == Wake::Shutdown
             }

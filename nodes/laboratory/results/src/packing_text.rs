@@ -55,11 +55,11 @@ pub(crate) fn text(m: &MeasuredPacking) -> String {
     text
 }
 
-/// A value with five significant digits, at most four decimals.
+/// A value with four decimals, or in exponent form where they would show fewer than three digits.
 fn rounded(cell: &Cell) -> String {
     match cell {
         Cell::Unknown => "-".to_owned(),
-        Cell::Number(v) if v.abs() >= 1e4 || *v != 0.0 && v.abs() < 1e-4 => format!("{v:.4e}"),
+        Cell::Number(v) if v.abs() >= 1e4 || *v != 0.0 && v.abs() < 1e-2 => format!("{v:.4e}"),
         Cell::Number(v) => format!("{v:.4}"),
         other => other.text(),
     }

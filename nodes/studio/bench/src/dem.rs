@@ -38,7 +38,7 @@ pub struct Args {
     /// Numbers of threads
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1,2", value_parser = clap::value_parser!(u32).range(1..=1024))]
     threads: Vec<u32>,
-    /// Parts of the contact law; default: all for the default packing, those of its friction for another
+    /// Parts of the contact law; default: all that fit the friction of the default packing, those of its friction for another
     #[arg(long, value_enum, value_delimiter = ',')]
     features: Vec<Features>,
     /// Evaluate the stress and control the strain rate after every step, at the pressure of the packing
@@ -102,7 +102,10 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let sizes = packing::copies(packing.grains(), &args.grains)?;
     say!("grainlab: {} grains, friction {}, {}", packing.grains(), packing.friction, packing.law);
     let features = match (&args.features[..], &args.packing) {
-        ([], None) => Features::value_variants().to_vec(),
+        ([], None) => {
+            let all = Features::value_variants().iter().copied();
+            all.filter(|features| features.fits(packing.friction)).collect()
+        }
         ([], Some(_)) => vec![Features::of(packing.friction)],
         (given, _) => given.to_vec(),
     };

@@ -37,7 +37,7 @@ pub enum Command {
     /// Runs under all kinds of faults, each drawn from a seed: they end with the same results or with an
     /// error.
     Faults(faults::Args),
-    /// One exchange of the lockstep between two processes, with a recorder, compared with bare ros2-client.
+    /// One exchange of the lockstep between two processes, with a recorder and without.
     Lockstep(lockstep::Args),
     /// Time against error of every method and setting of the laboratory, in one table and one figure.
     Overview(overview::Args),

@@ -291,6 +291,7 @@ impl RawPublisher {
         match self.0.write_with_options(RawPayload { bytes: Bytes::from(padded), big_endian }, options) {
             Ok(identity) => Ok(Some(i64::from(identity.sequence_number))),
             Err(WriteError::WouldBlock { .. }) => Ok(None),
+            Err(WriteError::Io(error)) => Err(error.to_string()),
             Err(error) => Err(error.to_string()),
         }
     }

@@ -53,7 +53,7 @@ impl Role {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
-            .unwrap();
+            .unwrap_or_else(|e| panic!("examples/role: {e}: run without --test, which builds no examples"));
         let out = child.stdout.take().map(collect);
         let err = child.stderr.take().map(collect);
         Self { child, name, out, err }
