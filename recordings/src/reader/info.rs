@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
+use chrono::{DateTime, SecondsFormat};
 use serde::Serialize;
 
 use super::error::Warning;
@@ -128,11 +129,10 @@ fn of(recording: &Recording) -> Info {
 
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let time =
-            |ns: Option<u64>| match ns.and_then(|ns| jiff::Timestamp::from_nanosecond(i128::from(ns)).ok()) {
-                Some(t) => format!("{t:.3}"),
-                None => "-".to_owned(),
-            };
+        let time = |ns: Option<u64>| match ns.and_then(|ns| i64::try_from(ns).ok()) {
+            Some(ns) => DateTime::from_timestamp_nanos(ns).to_rfc3339_opts(SecondsFormat::Millis, true),
+            None => "-".to_owned(),
+        };
         let list = |names: &[String]| if names.is_empty() { "-".to_owned() } else { names.join(", ") };
         writeln!(f, "recording    {}{}", self.path, if self.complete { "" } else { " (incomplete)" })?;
         writeln!(f, "size         {:.3} MB in {} file(s)", self.bytes as f64 * 1e-6, self.files.len())?;

@@ -16,8 +16,8 @@ impl FromStr for Time {
         if let Some(ns) = seconds(text) {
             return Ok(Self(ns));
         }
-        let stamp = text.parse::<jiff::Timestamp>().ok();
-        let ns = stamp.and_then(|t| u64::try_from(t.as_nanosecond()).ok());
+        let stamp = chrono::DateTime::parse_from_rfc3339(text).ok();
+        let ns = stamp.and_then(|t| u64::try_from(t.timestamp_nanos_opt()?).ok());
         ns.map(Self).ok_or_else(|| {
             format!(
                 "{text:?} is not a time: write seconds since 1970 (1700000000.5) or 2026-01-31T12:00:00.5Z"

@@ -40,7 +40,7 @@ pub(crate) struct Picker {
 impl Picker {
     /// For traces of `samples` samples at the sampling rate `rate`, Hz.
     pub(crate) fn new(pick: ArrivalPick, burst: Burst, rate: f64, samples: usize) -> Self {
-        let finer = (FINE * burst.frequency / rate).ceil().max(1.0) as usize;
+        let finer = ((FINE * burst.frequency / rate).ceil().max(1.0) as usize).next_power_of_two();
         let spectrum = Spectrum::new(samples, finer);
         let length = burst.duration() * rate;
         let sent: Vec<f64> = (0..length.ceil() as usize).map(|k| burst.at(k as f64 / rate)).collect();

@@ -1,7 +1,8 @@
 //! Spectra of sampled signals: filters, interpolation, correlation.
 
+use rustfft::algorithm::Radix4;
 use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use rustfft::{Fft, FftDirection, Length};
 use std::sync::Arc;
 
 /// A complex number whose real part is a signal and whose magnitude is its envelope.
@@ -11,18 +12,19 @@ pub(crate) type Analytic = Complex<f64>;
 #[derive(Clone)]
 pub(crate) struct Spectrum {
     samples: usize,
-    forward: Arc<dyn Fft<f64>>,
-    back: Arc<dyn Fft<f64>>,
+    forward: Arc<Radix4<f64>>,
+    back: Arc<Radix4<f64>>,
     finer: usize,
 }
 
 impl Spectrum {
-    /// For signals of `samples` samples, interpolated to `finer` times as many. Zeros of the same number are
-    /// appended, so that the ends of a signal do not interact.
+    /// For signals of `samples` samples, interpolated to `finer` times as many, a power of two. Zeros of the same number are
+    /// appended, so that the ends of a signal do not interact. One algorithm on every processor, so that results are the same
+    /// on all of them.
     pub(crate) fn new(samples: usize, finer: usize) -> Self {
         let padded = (2 * samples).next_power_of_two();
-        let mut planner = FftPlanner::new();
-        let (forward, back) = (planner.plan_fft_forward(padded), planner.plan_fft_inverse(padded * finer));
+        let of = |length, direction| Arc::new(Radix4::new(length, direction));
+        let (forward, back) = (of(padded, FftDirection::Forward), of(padded * finer, FftDirection::Inverse));
         Self { samples, forward, back, finer }
     }
 
