@@ -159,7 +159,6 @@ fn warnings_that_a_table_has_no_column_for_are_printed_beside_it() {
 fn flags_that_change_nothing_are_refused_with_what_they_need() {
     for (flags, word) in [
         (&["--amplitude", "1e-6"][..], "--method probe"),
-        (&["--method", "probe", "--solver", "direct"], "another --method"),
         (&["--method", "probe", "--tolerance", "1e-8"], "another --method"),
         (&["--topic", "nothing"], "recordings"),
     ] {

@@ -33,14 +33,12 @@ fn a_tighter_solve_takes_more_iterations_and_errs_less_and_affine_motion_errs_mo
     let rows = rows(&["--packing", &reference(), "--tolerances", "1e-2,1e-4,1e-8"]);
     let of = |key: &str| rows.iter().map(|r| r[key].as_f64()).collect::<Vec<_>>();
     let methods: Vec<&str> = rows.iter().filter_map(|r| r["method"].as_str()).collect();
-    assert_eq!(methods, ["affine", "mean_spin", "cg", "cg", "cg", "direct"]);
+    assert_eq!(methods, ["affine", "mean_spin", "cg", "cg", "cg"]);
     let errors: Vec<f64> = rows.iter().map(error).collect();
     assert!(errors[..5].is_sorted_by(|a, b| a > b), "{rows:?}");
     assert!(of("iterations")[2..5].is_sorted_by(|a, b| a < b), "{rows:?}");
     // Affine motion overestimates the shear moduli of such a packing by more than half.
-    assert!(errors[0] > 0.3 && errors[4] < 1e-12 && errors[5] < 1e-12, "{rows:?}");
-    // A factorisation leaves a small residual to refine.
-    assert!(of("iterations")[5].unwrap() <= 3.0, "{rows:?}");
+    assert!(errors[0] > 0.3 && errors[4] < 1e-12, "{rows:?}");
     assert!(of("seconds").iter().all(|s| s.unwrap() > 0.0));
 }
 
@@ -73,7 +71,7 @@ fn packings_of_two_sizes_have_an_exponent_a_method_and_a_folder_gets_report_and_
     let report = report(&[&arguments[..], &[out.to_str().unwrap()]].concat());
     let exponents = report["exponents"].as_array().unwrap();
     let methods: Vec<_> = exponents.iter().filter_map(|e| e["method"].as_str()).collect();
-    assert_eq!(methods, ["affine", "mean_spin", "cg", "direct"]);
+    assert_eq!(methods, ["affine", "mean_spin", "cg"]);
     for exponent in exponents {
         assert_eq!(exponent["sizes"], serde_json::json!([500, 2000]), "{exponent}");
         assert!(exponent["exponent"].as_f64().unwrap() > 0.0, "{exponent}");
@@ -82,7 +80,7 @@ fn packings_of_two_sizes_have_an_exponent_a_method_and_a_folder_gets_report_and_
     assert_eq!(serde_json::from_slice::<Value>(&written).unwrap(), report);
     let picture = std::fs::read_to_string(out.join("stiffness.svg")).unwrap();
     std::fs::remove_dir_all(&out).unwrap();
-    assert!(picture.contains("500 grains") && picture.contains("direct") && picture.ends_with("</svg>\n"));
+    assert!(picture.contains("500 grains") && picture.contains("mean_spin") && picture.ends_with("</svg>\n"));
 }
 
 #[test]

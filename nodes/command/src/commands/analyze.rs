@@ -11,7 +11,7 @@ use crate::offline_recording::OfflineRecording;
 use grainlab_console::{Failure, Format, print};
 use grainlab_core::Vec3;
 use grainlab_core::results::QUANTITIES;
-use grainlab_micromechanics::network::{self, Springs};
+use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::StrainProbe;
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
@@ -65,9 +65,6 @@ pub(crate) struct Args {
     /// Method of the stiffness
     #[arg(long, value_enum, default_value_t)]
     method: Method,
-    /// Solver of the equations of the network [default: iterative]
-    #[arg(long, value_enum)]
-    solver: Option<Solver>,
     /// Springs of the contacts
     #[arg(long, value_enum, default_value_t)]
     springs: ContactSprings,
@@ -107,15 +104,6 @@ enum ContactSprings {
     Normal,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-enum Solver {
-    /// Method of conjugate gradients
-    #[default]
-    Iterative,
-    /// Sparse Cholesky: for smooth packings near isostaticity; memory and time grow fast with size
-    Direct,
-}
-
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if args.yade_script {
@@ -140,7 +128,6 @@ impl Args {
         for (flag, given, needs) in [
             ("--amplitude", self.amplitude.is_some() && !probed, "--method probe"),
             ("--tolerance", self.tolerance.is_some() && probed, "another --method"),
-            ("--solver", self.solver.is_some() && probed, "another --method"),
         ] {
             if given {
                 return Err(Failure::usage(format!("{flag} has no effect without {needs}")));
@@ -177,9 +164,5 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     };
     let probe =
         (args.method == Method::Probe).then(|| StrainProbe { amplitude, ..measure::explicit(springs) });
-    let solver = match args.solver.unwrap_or_default() {
-        Solver::Iterative => network::Solver::Iterative,
-        Solver::Direct => network::Solver::Direct,
-    };
-    Ok(grainlab_micromechanics::Settings { axis, tolerance, solver, springs, probe, ..settings })
+    Ok(grainlab_micromechanics::Settings { axis, tolerance, springs, probe, ..settings })
 }

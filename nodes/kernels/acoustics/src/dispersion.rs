@@ -36,7 +36,7 @@ use error::SolveError;
 use extrapolation::Extrapolation;
 use grainlab_core::results::NotJammed;
 use grainlab_core::{Packing, Vec3};
-use grainlab_micromechanics::network::{Solver, SpringNetwork, relaxed_stiffness};
+use grainlab_micromechanics::network::{SpringNetwork, relaxed_stiffness};
 use modes::modes;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -210,7 +210,7 @@ impl Dispersion<'_> {
 
 /// The error of modes that were not found. A motion without resistance is no sign that the whole network has none.
 fn failure(network: &SpringNetwork, error: SolveError, direction: Vec3, wavelength: f64) -> AcousticsError {
-    let stiffness = || relaxed_stiffness(network, Solver::Iterative, RESISTS, ITERATIONS).ok().flatten();
+    let stiffness = || relaxed_stiffness(network, RESISTS, ITERATIONS).ok().flatten();
     let resists = || {
         stiffness().is_some_and(|c| {
             let stiffnesses = c.relaxed.mandel().symmetric_eigenvalues();

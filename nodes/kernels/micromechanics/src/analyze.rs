@@ -2,7 +2,7 @@
 
 use crate::equilibrium::unbalanced_force_ratio;
 use crate::error::MicroError;
-use crate::network::{Solver, SpringNetwork, Springs, bulk_reuss_bound, relaxed_stiffness};
+use crate::network::{SpringNetwork, Springs, bulk_reuss_bound, relaxed_stiffness};
 use crate::probe::{StrainProbe, StrainProbeResult, strain_probe};
 use crate::sampling_tolerance::sampling_tolerance;
 use crate::structure::{contact_statistics, fabric, strain_ratio, stress_decomposition, total_strain_ratio};
@@ -19,8 +19,6 @@ pub struct Settings {
     /// about 1e-14 in C at z = 5.3. A larger one overestimates C, the more so the closer the network is to
     /// isostaticity (z = 4).
     pub tolerance: f64,
-    /// Method of the stiffness solve; the result is the same.
-    pub solver: Solver,
     /// Maximum number of iterations of the solve.
     pub max_iterations: u32,
     /// Axis of ε, the P4 coefficient, the ratios γ/Δ, and the moduli taken from the stiffness
@@ -38,7 +36,6 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             tolerance: 1e-9,
-            solver: Solver::Iterative,
             max_iterations: 20_000,
             axis: Vec3::z(),
             springs: Springs::Carried,
@@ -113,7 +110,7 @@ fn elasticity(
         return not_jammed(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
     }
     let network = SpringNetwork::new(view, settings.springs)?;
-    let found = relaxed_stiffness(&network, settings.solver, settings.tolerance, settings.max_iterations)?;
+    let found = relaxed_stiffness(&network, settings.tolerance, settings.max_iterations)?;
     let Some(found) = found else {
         return not_jammed(NotJammed::Floppy { contacts: network.contacts() });
     };

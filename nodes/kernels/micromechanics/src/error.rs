@@ -52,7 +52,7 @@ pub enum MicroError {
     /// The linear solve did not reach its tolerance.
     #[error(
         "stiffness solve reached a relative residual of {residual:e} after {iterations} iterations, {tolerance:e} was \
-         asked for (a network near isostaticity converges slowly); raise the tolerance, or use the direct solver"
+         asked for (a network near isostaticity converges slowly); raise the tolerance"
     )]
     NotConverged {
         /// The worst relative residual of the columns.

@@ -48,7 +48,7 @@ impl Family {
     pub(crate) fn work(self) -> &'static str {
         match self {
             Self::InversionEps | Self::InversionZ => "one state, uncertainty included",
-            Self::Stiffness => "all 21 constants, network and factorisation included",
+            Self::Stiffness => "all 21 constants, network included",
             Self::EngineEnergy | Self::EnginePacking => "a run from a gas to 50 kPa",
             Self::Waves => "all speeds of a packing, its preparation included",
         }

@@ -10,7 +10,7 @@ use grainlab_core::results::NotJammed;
 use grainlab_core::{Packing, Stiffness};
 use grainlab_micromechanics::PackingView;
 use grainlab_micromechanics::network::{
-    Solver, SpringNetwork, Springs, relaxed_stiffness, uniform_rotation_stiffness,
+    SpringNetwork, Springs, relaxed_stiffness, uniform_rotation_stiffness,
 };
 use grainlab_micromechanics::probe::{StrainProbe, strain_probe};
 use grainlab_node_kit::Exit;
@@ -18,9 +18,8 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 The default packing has 2,000 grains and was made by LAMMPS. Methods: affine (every grain moves with the strain), mean_spin
-(the same with a uniform spin of all grains), cg (conjugate gradients on the frozen network, by residual), direct (a
-factorisation of it), probe (the packing is strained with the whole contact law, by strain). Copies of a packing converge
-faster than a packing of that size; they count as other methods, and exponents of the time never mix the two. Contacts
+(the same with a uniform spin of all grains), cg (conjugate gradients on the frozen network, by residual), probe
+(the packing is strained with the whole contact law, by strain). Copies of a packing converge faster than a packing of that size; they count as other methods, and exponents of the time never mix the two. Contacts
 under the probe neither slide nor scale their tangential force: the network is its linear limit, except for terms of the order
 of the pressure and for the motion while the packing first comes to rest.
 
@@ -34,9 +33,6 @@ Examples:
 
 /// Residual of the reference solve: the smallest that a solve accepts.
 const CONVERGED: f64 = 1e-13;
-
-/// Residual of the direct solve: the factorisation alone almost reaches it.
-const DIRECT: f64 = 1e-12;
 
 /// The packings to measure.
 #[derive(Debug, clap::Args)]
@@ -67,7 +63,7 @@ pub(crate) struct Methods {
     /// Contacts without tangential springs, as in a packing prepared without friction
     #[arg(long)]
     pub(crate) frictionless: bool,
-    /// Largest number of grains for the direct solve, whose time grows with the square of the number, and for probes
+    /// Largest number of grains for probes
     #[arg(long, value_name = "N", default_value_t = 4000)]
     pub(crate) slow_up_to: u64,
     /// Repetitions of every case except probes
@@ -102,8 +98,8 @@ pub(crate) fn rows(packing: &Packing, kind: &str, methods: &Methods) -> Result<V
     let springs = if methods.frictionless { Springs::Normal } else { Springs::NormalAndTangential };
     let view = PackingView::new(packing).map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
     let bench = Bench { view, springs };
-    let slow = packing.grains() as u64 <= methods.slow_up_to;
-    let (converged, against) = bench.converged(slow)?;
+    let solved = bench.solved(CONVERGED).map_err(|why| Failure::new(Exit::PhysicsInvalid, why))?;
+    let (converged, against) = (solved.0, "frozen network by cg at 1e-13");
     let row = |method: &str, value: Option<f64>, repetitions: u32, work: &dyn Fn() -> Found| {
         let (seconds, found) = timed(repetitions, work)?;
         let (found, failure) = found.map_or_else(|why| (None, Some(why)), |found| (Some(found), None));
@@ -118,10 +114,9 @@ pub(crate) fn rows(packing: &Packing, kind: &str, methods: &Methods) -> Result<V
     let mut rows = vec![row("affine", None, many, &|| bench.affine())?];
     rows.push(row("mean_spin", None, many, &|| bench.mean_spin())?);
     for tolerance in &methods.tolerances {
-        rows.push(row("cg", Some(*tolerance), many, &|| bench.solved(Solver::Iterative, *tolerance))?);
+        rows.push(row("cg", Some(*tolerance), many, &|| bench.solved(*tolerance))?);
     }
-    if slow {
-        rows.push(row("direct", Some(DIRECT), many, &|| bench.solved(Solver::Direct, DIRECT))?);
+    if packing.grains() as u64 <= methods.slow_up_to {
         for amplitude in &methods.amplitudes {
             rows.push(row("probe", Some(*amplitude), 1, &|| bench.probed(*amplitude))?);
         }
@@ -148,24 +143,12 @@ impl Bench<'_> {
         Ok((uniform_rotation_stiffness(&network, &network.affine_stiffness()), None))
     }
 
-    fn solved(&self, solver: Solver, tolerance: f64) -> Found {
+    fn solved(&self, tolerance: f64) -> Found {
         let most = grainlab_micromechanics::Settings::default().max_iterations;
         let network = self.network()?;
-        let found = relaxed_stiffness(&network, solver, tolerance, most).map_err(|e| e.to_string())?;
+        let found = relaxed_stiffness(&network, tolerance, most).map_err(|e| e.to_string())?;
         let found = found.ok_or_else(|| NotJammed::Floppy { contacts: network.contacts() }.to_string())?;
         Ok((found.relaxed, Some(found.iterations)))
-    }
-
-    /// The reference for errors, with its name: near isostaticity only the factorisation converges that far.
-    fn converged(&self, direct: bool) -> Result<(Stiffness, &'static str), Failure> {
-        let by = |solver, name| self.solved(solver, CONVERGED).map(|found| (found.0, name));
-        let iterated = by(Solver::Iterative, "frozen network by cg at 1e-13");
-        let found = if direct {
-            iterated.or_else(|_| by(Solver::Direct, "frozen network directly at 1e-13"))
-        } else {
-            iterated
-        };
-        found.map_err(|why| Failure::new(Exit::PhysicsInvalid, why))
     }
 
     fn probed(&self, amplitude: f64) -> Found {

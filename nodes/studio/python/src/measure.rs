@@ -6,29 +6,24 @@ use crate::packing::PyPacking;
 use crate::values;
 use grainlab_core::Vec3;
 use grainlab_core::results::QUANTITIES;
-use grainlab_micromechanics::network::{Solver, SpringNetwork, Springs, relaxed_stiffness};
+use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
 use grainlab_micromechanics::{PackingView, Settings, analyze as measure};
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-fn settings(axis: [f64; 3], solver: &str, springs: &str, tolerance: f64) -> PyResult<Settings> {
-    let unknown = |name: &str, value: &str, known: &str| {
-        PyValueError::new_err(format!("{name} is {value:?}; it must be one of: {known}"))
-    };
+fn settings(axis: [f64; 3], springs: &str, tolerance: f64) -> PyResult<Settings> {
     Ok(Settings {
         axis: Vec3::from(axis),
-        solver: match solver {
-            "cg" => Solver::Iterative,
-            "direct" => Solver::Direct,
-            other => return Err(unknown("solver", other, "cg, direct")),
-        },
         springs: match springs {
             "carried" => Springs::Carried,
             "both" => Springs::NormalAndTangential,
             "normal" => Springs::Normal,
-            other => return Err(unknown("springs", other, "carried, both, normal")),
+            other => {
+                let known = "it must be one of: carried, both, normal";
+                return Err(PyValueError::new_err(format!("springs is {other:?}; {known}")));
+            }
         },
         tolerance,
         ..Settings::default()
@@ -37,16 +32,15 @@ fn settings(axis: [f64; 3], solver: &str, springs: &str, tolerance: f64) -> PyRe
 
 /// Everything that `grainlab analyze` reports of a packing, by key.
 #[pyfunction]
-#[pyo3(signature = (packing, *, axis=[0.0, 0.0, 1.0], solver="cg", springs="carried", tolerance=1e-9))]
+#[pyo3(signature = (packing, *, axis=[0.0, 0.0, 1.0], springs="carried", tolerance=1e-9))]
 pub(crate) fn analyze<'py>(
     py: Python<'py>,
     packing: &Bound<'py, PyPacking>,
     axis: [f64; 3],
-    solver: &str,
     springs: &str,
     tolerance: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let settings = settings(axis, solver, springs, tolerance)?;
+    let settings = settings(axis, springs, tolerance)?;
     let (packing, position) = (packing.get().packing(), packing.get().position());
     let mut found = py.detach(|| measure(packing, &settings)).map_err(error::physics)?;
     position.inspect(|position| position.judge_strain(&mut found.report));
@@ -55,20 +49,19 @@ pub(crate) fn analyze<'py>(
 
 /// The stiffness of the contact network, Pa, shape `(6, 6)`: relaxed, or affine (Voigt).
 #[pyfunction]
-#[pyo3(signature = (packing, *, affine=false, solver="cg", springs="carried", tolerance=1e-9))]
+#[pyo3(signature = (packing, *, affine=false, springs="carried", tolerance=1e-9))]
 pub(crate) fn stiffness<'py>(
     py: Python<'py>,
     packing: &Bound<'py, PyPacking>,
     affine: bool,
-    solver: &str,
     springs: &str,
     tolerance: f64,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let settings = settings([0.0, 0.0, 1.0], solver, springs, tolerance)?;
+    let settings = settings([0.0, 0.0, 1.0], springs, tolerance)?;
     let packing = packing.get().packing();
     let solve = || {
         let network = SpringNetwork::new(&PackingView::new(packing)?, settings.springs)?;
-        relaxed_stiffness(&network, settings.solver, settings.tolerance, settings.max_iterations)
+        relaxed_stiffness(&network, settings.tolerance, settings.max_iterations)
     };
     let found = py.detach(solve).map_err(error::physics)?;
     let found =

@@ -4,7 +4,7 @@ use crate::error::VerificationError;
 use crate::reference::table;
 use crate::row::{Measure, Point, Row};
 use grainlab_core::Packing;
-use grainlab_micromechanics::network::{Solver, Springs};
+use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::{Settings, analyze};
 
 /// The name of the suite.
@@ -20,7 +20,7 @@ pub fn rows(packing: &Packing, matscipy: &str) -> Result<Vec<Row>, VerificationE
     ];
     let mut rows = Vec::new();
     for ((what, springs), theirs) in cases.into_iter().zip(theirs.chunks(6)) {
-        let settings = Settings { springs, solver: Solver::Direct, ..Settings::default() };
+        let settings = Settings { springs, ..Settings::default() };
         let report =
             analyze(packing, &settings).map_err(|e| VerificationError::Measurement(e.to_string()))?.report;
         let found = report.elasticity;

@@ -42,7 +42,7 @@ pub struct ElasticStiffness {
     pub stddev: Stiffness,
     /// Relative residual of the solve, or of the probe's relaxation; the worst of the six columns.
     pub residual: f64,
-    /// Iterations of the solve, or steps of the probe; 0 for a direct solve.
+    /// Iterations of the solve, or steps of the probe.
     pub iterations: u32,
     /// Stiffnesses of the contact network in closed form, whatever the method.
     pub bounds: StiffnessBounds,

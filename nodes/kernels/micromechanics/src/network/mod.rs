@@ -2,13 +2,12 @@
 //!
 //! - [`SpringNetwork`]: grains and springs as an operator for any number of right-hand sides at once
 //! - [`solve()`]: conjugate gradients on the singular operator, preconditioned by symmetric Gauss–Seidel with the grains'
-//!   own blocks ([`generalised_inverse`]); [`solve_directly`]: the same by a sparse Cholesky factorisation
+//!   own blocks ([`generalised_inverse`])
 //! - [`relaxed_stiffness()`]: C = A − ΞᵀK⁺Ξ/V and its checks
 //! - [`uniform_rotation_stiffness`], [`bulk_reuss_bound`]: closed forms above and below it
 
 mod bounds;
 mod conjugate_gradient;
-mod direct;
 mod gauss_seidel;
 mod lanes;
 mod preconditioner;
@@ -17,8 +16,7 @@ mod solve;
 mod spring_network;
 
 pub use bounds::{bulk_reuss_bound, uniform_rotation_stiffness};
-pub use direct::solve as solve_directly;
 pub use preconditioner::{Block, generalised_inverse};
 pub use relaxed_stiffness::{NetworkStiffness, relaxed_stiffness};
-pub use solve::{Solution, Solver, solve};
+pub use solve::{Solution, solve};
 pub use spring_network::{ContactSpring, GrainDofs, SpringNetwork, Springs};

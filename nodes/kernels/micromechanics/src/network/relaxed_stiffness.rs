@@ -1,8 +1,7 @@
 //! C = A − ΞᵀK⁺Ξ/V and its checks.
 
 use super::bounds::uniform_rotation_stiffness;
-use super::direct;
-use super::solve::{Solution, Solver, left, solve};
+use super::solve::{Solution, left, solve};
 use super::spring_network::{GrainDofs, SpringNetwork};
 use crate::error::MicroError;
 use grainlab_core::Stiffness;
@@ -59,7 +58,6 @@ pub struct NetworkStiffness {
 /// tenth of r.
 pub fn relaxed_stiffness(
     network: &SpringNetwork,
-    solver: Solver,
     tolerance: f64,
     max_iterations: u32,
 ) -> Result<Option<NetworkStiffness>, MicroError> {
@@ -69,25 +67,22 @@ pub fn relaxed_stiffness(
     // The difference of the two is xᵀr/V; x grows with the softest modes, which takes the factor.
     let limit = 1e3 * tolerance;
     let at = |tolerance: f64| {
-        let solution = match solver {
-            Solver::Iterative => solve(network, &loads, &norms, tolerance, max_iterations),
-            Solver::Direct => direct::solve(network, &loads, &norms, tolerance, max_iterations),
-        }?;
+        let solution = solve(network, &loads, &norms, tolerance, max_iterations)?;
         let (relaxed, by_stress) = network.stiffness_with(&solution.motion);
         let relative = (relaxed - by_stress).amax() / scale;
-        Ok::<_, MicroError>((solution, relaxed, by_stress, relative))
+        Ok::<_, MicroError>((solution, relaxed, relative))
     };
     let mut found = at(tolerance)?;
     if found.1.amax() <= FLOPPY.max(tolerance) * scale {
         return Ok(None);
     }
-    if found.3 > limit {
+    if found.2 > limit {
         // Near the isostatic point the modes are softer than that. A finer solve may be below the rounding of double
         // precision: then the difference stays, and is stated.
-        let finer: Result<_, MicroError> = at((0.1 * tolerance * limit / found.3).max(FINEST));
+        let finer: Result<_, MicroError> = at((0.1 * tolerance * limit / found.2).max(FINEST));
         found = finer.unwrap_or(found);
     }
-    let (solution, relaxed, by_stress, relative) = found;
+    let (solution, relaxed, relative) = found;
     let limit = limit.max(COARSEST);
     if relative.is_nan() || relative > limit {
         return Err(MicroError::Inconsistent { relative, limit });
@@ -104,12 +99,8 @@ pub fn relaxed_stiffness(
             return Err(MicroError::OutOfBounds { what, eigenvalue });
         }
     }
-    let left = match solver {
-        Solver::Iterative => left_by_iterations(network, &loads, &norms, &solution, max_iterations),
-        // The residual is at no right angle to the motion.
-        Solver::Direct => (relaxed - by_stress).abs(),
-    };
-    let stddev = left.map(|left| left.max(ROUNDING * scale));
+    let error = error_left(network, &loads, &norms, &solution, max_iterations);
+    let stddev = error.map(|error| error.max(ROUNDING * scale));
     Ok(Some(NetworkStiffness {
         relaxed: Stiffness(relaxed),
         stddev: Stiffness(stddev),
@@ -122,7 +113,7 @@ pub fn relaxed_stiffness(
 
 /// Error of each entry of C by energy, Pa: √(e_aᵀ K e_a · e_bᵀ K e_b)/V with the errors e of the motions, at least |e_aᵀ K e_b|/V.
 /// Where they cannot be solved for, they are taken to be as large as the motions.
-fn left_by_iterations(
+fn error_left(
     network: &SpringNetwork,
     loads: &[GrainDofs<6>],
     norms: &[f64; 6],

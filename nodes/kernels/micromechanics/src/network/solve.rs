@@ -31,15 +31,6 @@ const SINGLE_ROUND: u32 = 500;
 
 /// Negative eigenvalues of a block up to this fraction of its largest one are rounding.
 const ROUNDING: f64 = 1e-12;
-/// Method of the solve.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Solver {
-    /// Iterations, by [`solve()`].
-    #[default]
-    Iterative,
-    /// Factorisation, by [`super::solve_directly()`].
-    Direct,
-}
 
 /// Solution of a solve.
 #[derive(Clone, Debug)]
@@ -75,17 +66,6 @@ pub fn solve<const L: usize>(
     refinement.solution()
 }
 
-/// Adds `share` times `x`, column by column, to `sum`.
-pub(crate) fn add<const L: usize>(share: &[f64; L], x: &[GrainDofs<L>], sum: &mut [GrainDofs<L>]) {
-    for (x, sum) in x.iter().zip(sum) {
-        for k in 0..6 {
-            for l in 0..L {
-                sum[k][l] += share[l] * x[k][l];
-            }
-        }
-    }
-}
-
 /// Loads less the forces that answer a motion, where there is a scale.
 pub(crate) fn left<const L: usize>(
     load: &[GrainDofs<L>],
@@ -98,7 +78,7 @@ pub(crate) fn left<const L: usize>(
 }
 
 /// Solution and residual so far, in double precision.
-pub(crate) struct Refinement<'a, const L: usize> {
+struct Refinement<'a, const L: usize> {
     load: &'a [GrainDofs<L>],
     scale: &'a [f64; L],
     tolerance: f64,
@@ -114,7 +94,7 @@ pub(crate) struct Refinement<'a, const L: usize> {
 }
 
 impl<'a, const L: usize> Refinement<'a, L> {
-    pub(crate) fn new(
+    fn new(
         network: &SpringNetwork,
         load: &'a [GrainDofs<L>],
         scale: &'a [f64; L],
@@ -175,17 +155,6 @@ impl<'a, const L: usize> Refinement<'a, L> {
         Ok(())
     }
 
-    /// The residual; zero in columns that stay at zero.
-    pub(crate) fn left(&self) -> Vec<GrainDofs<L>> {
-        left(self.load, &self.image, self.scale)
-    }
-
-    pub(crate) fn advance(&mut self, network: &SpringNetwork, step: &[GrainDofs<L>], length: &[f64; L]) {
-        add(length, step, &mut self.motion);
-        self.iterations += 1;
-        self.renew(network);
-    }
-
     /// Recomputes the residual from the motion.
     fn renew(&mut self, network: &SpringNetwork) {
         network.apply(&self.motion, &mut self.image);
@@ -193,12 +162,12 @@ impl<'a, const L: usize> Refinement<'a, L> {
     }
 
     /// True if more iterations are needed and allowed.
-    pub(crate) fn goes_on(&self) -> bool {
+    fn goes_on(&self) -> bool {
         self.residual > self.tolerance && self.iterations < self.max_iterations
     }
 
     /// The solution, if it has converged.
-    pub(crate) fn solution(self) -> Result<Solution<L>, MicroError> {
+    fn solution(self) -> Result<Solution<L>, MicroError> {
         let Self { motion, residual, tolerance, iterations, .. } = self;
         if residual <= tolerance {
             Ok(Solution { motion, residual, iterations })

@@ -97,7 +97,7 @@ pub struct ContactSpring {
 /// The frozen contact network of a packing: grains, springs, volume.
 #[derive(Clone, Debug)]
 pub struct SpringNetwork {
-    pub(crate) springs: Vec<Spring>,
+    pub(super) springs: Vec<Spring>,
     grains: usize,
     volume: f64,
     spin_scale: f64,
@@ -244,7 +244,7 @@ impl SpringNetwork {
         let mut blocks = vec![[[0.0; 6]; 6]; self.grains];
         for s in &self.springs {
             let mut add = |grain: u32, a: &GrainDofs<6>, b: &GrainDofs<6>| {
-                let block = s.energies([a, b], [a, b]);
+                let block = s.energies(a, b);
                 for (row, entries) in blocks[grain as usize].iter_mut().enumerate() {
                     for (column, entry) in entries.iter_mut().enumerate() {
                         *entry += block[row][column];
@@ -324,16 +324,10 @@ impl SpringNetwork {
 }
 
 impl Spring {
-    /// The 6×6 block of K between grains i (rows) and j (columns), N/m; for different ones.
-    pub(crate) fn coupling(&self) -> Block {
-        self.energies([&UNIT, &ZERO], [&ZERO, &UNIT])
-    }
-
-    /// The work of the motions `a` of both grains against the forces of the motions `b`, every column with
-    /// every column.
-    fn energies(&self, a: [&GrainDofs<6>; 2], b: [&GrainDofs<6>; 2]) -> Block {
-        let (w, d) = (self.relative(a[0], a[1]), self.apart(a[0], a[1]));
-        let (f, h) = (self.force(&self.relative(b[0], b[1])), self.turned(&self.apart(b[0], b[1])));
+    /// The work of the motions `a` and `b` of both grains against their own forces, every column with every column.
+    fn energies(&self, a: &GrainDofs<6>, b: &GrainDofs<6>) -> Block {
+        let (w, d) = (self.relative(a, b), self.apart(a, b));
+        let (f, h) = (self.force(&w), self.turned(&d));
         let sum = |row: usize, column: usize| {
             (0..3).map(|k| w[k][row] * f[k][column] + d[k][row] * h[k][column]).sum()
         };

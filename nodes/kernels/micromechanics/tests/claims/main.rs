@@ -2,8 +2,8 @@
 
 mod bounds;
 mod dense;
-mod direct;
 mod directions;
+mod factorised;
 mod forces;
 mod golden;
 mod hard;
