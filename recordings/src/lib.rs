@@ -10,7 +10,6 @@
 //! - [`OneRun`]: whether packings and requests are of one run
 //! - `player`: the schedule of a playback, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and recordings
-//! - [`export`]: packings to CSV and LAMMPS dump files
 //! - [`input`]: external files, regular and of bounded size; [`runs`]: run directories; [`Lock`], [`run_state()`]: one process at a time in each, and how far it came; [`scenes`]: scenes by name or path
 //! - [`strangers`]: processes that are not part of a run, and the writers of its results
 //!
@@ -21,7 +20,6 @@ mod bag_metadata;
 mod compression;
 pub mod copy;
 mod definitions;
-pub mod export;
 pub mod import;
 pub mod input;
 mod ledger;

@@ -332,6 +332,37 @@ fn what_a_dump_must_not_be_is_refused() {
 }
 
 #[test]
+fn a_frame_of_extended_xyz_with_a_fault_names_its_line() {
+    let header = "Lattice=\"1 0 0 0 1 0 0 0 1\" Properties=pos:R:3:radius:R:1";
+    let read = |text: String| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.xyz");
+        std::fs::write(&path, text).unwrap();
+        let options = ImportOptions {
+            shear_modulus: Some(1e9),
+            poisson_ratio: Some(0.2),
+            density: Some(1e3),
+            friction: Some(0.0),
+            ..ImportOptions::default()
+        };
+        load(&path, &options).map(|loaded| loaded.packings.len()).map_err(|e| e.to_string())
+    };
+    assert_eq!(read(format!("1\n{header}\n0 0 0 0.1\n")), Ok(1));
+    for (text, words) in [
+        (format!("2\n{header}\n0 0 0 0.1\n"), "1 of 2"),
+        (format!("1\n{header}\n0 0 0\n"), "line 3"),
+        (format!("1\n{header}\n0 0 x 0.1\n"), "line 3"),
+        (format!("1\n{}\n0 0 0 0.1\n", header.replace("pos", "position")), "pos:R:3"),
+        (format!("1\n{}\n0 0 0 0.1\n", header.replace("1 0 0 0 1", "1 0 0 0")), "Lattice has 8"),
+        (format!("1\n{}\n0 0 0 0.1\n", header.replace("R:3:", "R:9999999:")), "width of pos"),
+        (format!("1\n{}\n0 0 0 0.1\n", header.replace("radius", "size")), "radius"),
+    ] {
+        let error = read(text.clone()).unwrap_err();
+        assert!(error.contains(words), "{text}: {error}");
+    }
+}
+
+#[test]
 fn contact_forces_of_a_dump_local_are_taken() {
     let frame = &DUMP[..DUMP.rfind("ITEM: TIMESTEP").unwrap()];
     let local = "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ENTRIES\n1\nITEM: BOX BOUNDS pp pp pp\n-1 1\n-1 1\n-1 1\n\

@@ -3,10 +3,14 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
+use crate::reference_packing::reference;
 use crate::support::{ROBOT, SIMULATOR, START, clock, contract, options, run_in, sample, stress, write_run};
-use grainlab_msgs::{from_cdr, msg};
+use grainlab_core::Packing;
+use grainlab_msgs::boundary::packing_message;
+use grainlab_msgs::{from_cdr, msg, to_cdr, topics};
+use grainlab_recordings::import::{ImportOptions, load};
 use grainlab_recordings::{
-    METADATA_RECORD, Outcome, Recording, RunWriter, Selection, WriteError, WriterOptions,
+    METADATA_RECORD, Outcome, Recording, RunWriter, Selection, TopicSpec, WriteError, WriterOptions,
 };
 
 #[test]
@@ -281,4 +285,28 @@ fn a_whole_file_of_another_program_is_sound_and_its_losses_are_not_judged() {
     let check = Recording::open(&path).unwrap().check();
     assert!(check.warnings.is_empty() && check.unaccounted.is_empty(), "{check:?}");
     assert_eq!((check.messages, check.lost, check.unjudged), (1, None, vec![path]));
+}
+
+#[test]
+fn a_recorded_packing_comes_back_bit_for_bit() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path().join("r");
+    let p = Packing { time: 0.1 + 0.2, friction: f64::INFINITY, ..reference().packing };
+    let row = &topics::PACKING;
+    let spec = TopicSpec::of_contract(row, &row.absolute_name());
+    let mut run = RunWriter::create(&directory, "r", &[spec], options()).unwrap();
+    for (n, step) in [(1, 10), (2, 20)] {
+        let body = to_cdr(&packing_message(&Packing { step, ..p.clone() }, "demo", vec![1, 2]));
+        run.write("/packing", &sample(SIMULATOR, n, START, &body)).unwrap();
+    }
+    run.finish().unwrap();
+    let loaded = load(&directory, &ImportOptions::default()).unwrap();
+    assert_eq!(loaded.packings.iter().map(|i| i.step).collect::<Vec<_>>(), [10, 20]);
+    assert_eq!(loaded.packings[0].packing, Packing { step: 10, ..p });
+    // Truncated in the last chunk, the file still has the first packing, and the loss is reported.
+    let file = directory.join("r_0.mcap");
+    let bytes = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &bytes[..bytes.len() * 6 / 10]).unwrap();
+    let loaded = load(&directory, &ImportOptions::default()).unwrap();
+    assert_eq!((loaded.packings.len(), loaded.warnings.len()), (1, 1));
 }
