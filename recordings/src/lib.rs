@@ -20,6 +20,7 @@ mod bag_metadata;
 mod compression;
 pub mod copy;
 mod definitions;
+mod failures;
 pub mod import;
 pub mod input;
 mod ledger;
@@ -38,18 +39,18 @@ pub mod strangers;
 mod writer;
 
 pub use compression::Compression;
-pub use definitions::{DefinitionError, Definitions};
+pub use definitions::Definitions;
 pub use ledger::{Ledger, TopicTally, WriterTally, merge};
 pub use lock::Lock;
 pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 pub use new_path::NewPath;
 pub use one_run::{OneRun, RunSign, SeveralRuns};
-pub use player::{Play, PlayError, PlayOptions, Player};
-pub use qos::{QosError, QosOverrides, adapted, offered_profiles, profiles};
+pub use player::{Play, PlayOptions, Player};
+pub use qos::{QosOverrides, adapted, offered_profiles, profiles};
 pub use reader::{
     ChannelInfo, Check, Info, Message, Messages, Payload, ReadError, Recording, Selection, StoredDefinition,
     StoredFile, TopicInfo, Warning, WarningKind,
 };
-pub use recover::{RecoverError, RecoveredFile, Recovery, recover};
+pub use recover::{RecoveredFile, Recovery, recover};
 pub use run_state::{RunState, end_reason, run_state};
-pub use writer::{Finished, Incoming, Outcome, RunWriter, TopicSpec, WriteError, WriterOptions};
+pub use writer::{Finished, Incoming, Outcome, RunWriter, TopicSpec, WriterOptions};
