@@ -11,49 +11,12 @@ const PADDING: usize = 3;
 
 /// Why bytes are not a valid message.
 #[derive(Debug, thiserror::Error)]
-pub enum DecodeError {
-    /// Too few bytes for a header.
-    #[error("{type_name}: {length} bytes are too few for a CDR header of 4")]
-    NoHeader {
-        /// The expected type.
-        type_name: &'static str,
-        /// Number of bytes.
-        length: usize,
-    },
-    /// Not plain CDR.
-    #[error(
-        "{type_name}: encapsulation {found:02x?} is not plain CDR ([00, 01] little endian or [00, 00] big endian)"
-    )]
-    Encapsulation {
-        /// The expected type.
-        type_name: &'static str,
-        /// First two bytes.
-        found: [u8; 2],
-    },
-    /// The bytes end within the message: truncated, a false length prefix, or another type.
-    #[error("{type_name}: the {length} bytes end within the message (truncated, or another type)")]
-    Truncated {
-        /// The expected type.
-        type_name: &'static str,
-        /// Number of bytes.
-        length: usize,
-    },
-    /// A value that its type does not allow.
-    #[error("{type_name}: {reason}")]
-    Value {
-        /// The expected type.
-        type_name: &'static str,
-        /// Description of the fault.
-        reason: String,
-    },
-    /// Bytes after the message.
-    #[error("{type_name}: {extra} bytes follow the message (at most 3 of padding may; another type?)")]
-    Trailing {
-        /// The expected type.
-        type_name: &'static str,
-        /// Number of extra bytes.
-        extra: usize,
-    },
+#[error("{type_name}: {problem}")]
+pub struct DecodeError {
+    /// The expected type.
+    pub type_name: &'static str,
+    /// Description of the fault.
+    pub problem: String,
 }
 
 /// A message as CDR, little endian, with the encapsulation header `00 01 00 00`.
@@ -76,22 +39,30 @@ pub fn to_cdr<T: Message>(message: &T) -> Vec<u8> {
 /// Decodes a message from `bytes` including the header. Never panics, and does not trust length prefixes:
 /// memory is reserved only as elements arrive.
 pub fn from_cdr<T: Message>(bytes: &[u8]) -> Result<T, DecodeError> {
-    let type_name = T::TYPE;
+    let fault = |problem: String| DecodeError { type_name: T::TYPE, problem };
     let length = bytes.len();
     let Some((header, body)) = bytes.split_at_checked(HEADER) else {
-        return Err(DecodeError::NoHeader { type_name, length });
+        return Err(fault(format!("{length} bytes are too few for a CDR header of 4")));
     };
     // Bytes 2 and 3 are options: some writers store the number of padding bytes there.
     let found = [header[0], header[1]];
     let decoded = match found {
         LITTLE_ENDIAN => cdr_encoding::from_bytes::<T, LittleEndian>(body),
         BIG_ENDIAN => cdr_encoding::from_bytes::<T, BigEndian>(body),
-        _ => return Err(DecodeError::Encapsulation { type_name, found }),
+        _ => {
+            let plain = "[00, 01] little endian or [00, 00] big endian";
+            return Err(fault(format!("encapsulation {found:02x?} is not plain CDR ({plain})")));
+        }
     };
     match decoded {
         Ok((message, used)) if body.len() - used <= PADDING => Ok(message),
-        Ok((_, used)) => Err(DecodeError::Trailing { type_name, extra: body.len() - used }),
-        Err(cdr_encoding::Error::Eof) => Err(DecodeError::Truncated { type_name, length }),
-        Err(e) => Err(DecodeError::Value { type_name, reason: e.to_string() }),
+        Ok((_, used)) => Err(fault(format!(
+            "{} bytes follow the message (at most 3 of padding may; another type?)",
+            body.len() - used
+        ))),
+        Err(cdr_encoding::Error::Eof) => {
+            Err(fault(format!("the {length} bytes end within the message (truncated, or another type)")))
+        }
+        Err(e) => Err(fault(e.to_string())),
     }
 }

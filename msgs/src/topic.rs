@@ -17,8 +17,6 @@ pub struct Topic {
     /// True if every recorded byte is a function of scene and seed: without a wall clock or a counter of a
     /// process. If it is transient local, too, the recorder writes each message to disk at once.
     pub reproducible: bool,
-    /// Content in one line.
-    pub summary: &'static str,
 }
 
 /// Quality of service that a writer offers. History is always keep last.
@@ -84,7 +82,7 @@ impl Topic {
             fields: &[],
             definition: "",
         });
-        Some(Self { name: constant(name), info, qos, writer: "", reproducible: false, summary: "" })
+        Some(Self { name: constant(name), info, qos, writer: "", reproducible: false })
     }
 
     /// Name in a recording without namespace: `/stress`.

@@ -1,6 +1,6 @@
 //! The contract: every topic with its type, QoS and writer. Topics are named only here.
 
-use crate::message::TypeInfo;
+use crate::message::{Message, TypeInfo};
 use crate::topic::{Qos, Topic};
 use crate::{diagnostic_msgs, msg, rcl_interfaces, rosgraph_msgs, sensor_msgs, tf2_msgs, visualization_msgs};
 
@@ -46,195 +46,77 @@ impl Topic {
     }
 }
 
-/// Requests to the servo.
-pub const STRESS: Topic = Topic {
-    name: "stress",
-    info: TypeInfo::of::<msg::Stress>(),
-    qos: Qos::STREAM,
-    writer: "dem_simulator",
-    reproducible: true,
-    summary: "one request of the lockstep: stress, setpoints, clamps, tangent stiffness",
-};
+const fn row<T: Message>(name: &'static str, qos: Qos, writer: &'static str) -> Topic {
+    Topic { name, info: TypeInfo::of::<T>(), qos, writer, reproducible: false }
+}
 
-/// Some of the requests on [`STRESS`], for viewers: reading all of them costs a run time.
-pub const STRESS_SAMPLED: Topic = Topic {
-    name: "stress_sampled",
-    info: TypeInfo::of::<msg::Stress>(),
-    qos: Qos::SAMPLED,
-    writer: "dem_simulator",
-    reproducible: false,
-    summary: "some of the requests, for viewers; never recorded, all requests are",
-};
+/// Row of a topic of which every recorded byte is a function of scene and seed.
+const fn exact<T: Message>(name: &'static str, qos: Qos, writer: &'static str) -> Topic {
+    Topic { reproducible: true, ..row::<T>(name, qos, writer) }
+}
 
-/// Answers of the servo.
-pub const STRAIN_RATE: Topic = Topic {
-    name: "strain_rate",
-    info: TypeInfo::of::<msg::StrainRate>(),
-    qos: Qos::STREAM,
-    writer: "servo_controller",
-    reproducible: true,
-    summary: "the answer to one request: six strain rates",
-};
+/// Requests to the servo, one for each exchange of the lockstep: stress, setpoints, clamps, tangent stiffness.
+pub const STRESS: Topic = exact::<msg::Stress>("stress", Qos::STREAM, "dem_simulator");
 
-/// The complete mechanical state.
-pub const PACKING: Topic = Topic {
-    name: "packing",
-    info: TypeInfo::of::<msg::Packing>(),
-    qos: Qos::LATCHED,
-    writer: "dem_simulator",
-    reproducible: true,
-    summary: "the complete mechanical state: grains, contacts, loading path",
-};
+/// Some of the requests on [`STRESS`], for viewers: reading all of them costs a run time. They are never recorded.
+pub const STRESS_SAMPLED: Topic = row::<msg::Stress>("stress_sampled", Qos::SAMPLED, "dem_simulator");
+
+/// Answers of the servo: six strain rates for one request.
+pub const STRAIN_RATE: Topic = exact::<msg::StrainRate>("strain_rate", Qos::STREAM, "servo_controller");
+
+/// The complete mechanical state: grains, contacts, loading path.
+pub const PACKING: Topic = exact::<msg::Packing>("packing", Qos::LATCHED, "dem_simulator");
 
 /// Parts of packings that are too large for one sample of [`PACKING`]. Recorders write the whole packing.
-pub const PACKING_CHUNK: Topic = Topic {
-    name: "packing_chunk",
-    info: TypeInfo::of::<msg::PackingChunk>(),
-    qos: Qos::PARTS,
-    writer: "dem_simulator",
-    reproducible: false,
-    summary: "parts of a packing over 2 MB; never recorded, the whole packing is",
-};
+pub const PACKING_CHUNK: Topic = row::<msg::PackingChunk>("packing_chunk", Qos::PARTS, "dem_simulator");
 
 /// The parts that each reader of packings has.
-pub const PACKING_CREDIT: Topic = Topic {
-    name: "packing_credit",
-    info: TypeInfo::of::<msg::PackingCredit>(),
-    qos: Qos::PARTS,
-    writer: "every reader of packings",
-    reproducible: false,
-    summary: "the parts that a reader has, and whether it takes more; never recorded",
-};
+pub const PACKING_CREDIT: Topic =
+    row::<msg::PackingCredit>("packing_credit", Qos::PARTS, "every reader of packings");
 
-/// Everything that is measured on a packing.
-pub const PACKING_REPORT: Topic = Topic {
-    name: "packing_report",
-    info: TypeInfo::of::<msg::PackingReport>(),
-    qos: Qos::LATCHED,
-    writer: "fabric_analyzer",
-    reproducible: true,
-    summary: "structure, stress and stiffness of a packing",
-};
+/// Everything that is measured on a packing: structure, stress, stiffness.
+pub const PACKING_REPORT: Topic =
+    exact::<msg::PackingReport>("packing_report", Qos::LATCHED, "fabric_analyzer");
 
-/// Moduli of a sample.
-pub const MODULI: Topic = Topic {
-    name: "moduli",
-    info: TypeInfo::of::<msg::Moduli>(),
-    qos: Qos::LATCHED,
-    writer: "an instrument",
-    reproducible: true,
-    summary: "moduli of a sample and the other inputs of an inversion; written only by instruments and other programs",
-};
+/// Moduli of a sample, and the other inputs of an inversion: written only by instruments and other programs.
+pub const MODULI: Topic = exact::<msg::Moduli>("moduli", Qos::LATCHED, "an instrument");
 
-/// Wave speeds, real or virtual.
-pub const WAVE_SPEEDS: Topic = Topic {
-    name: "wave_speeds",
-    info: TypeInfo::of::<msg::WaveSpeeds>(),
-    qos: Qos::LATCHED,
-    writer: "acoustic_probe",
-    reproducible: true,
-    summary: "wave speeds by direction and polarisation; an instrument may write them, too",
-};
+/// Wave speeds by direction and polarisation, real or virtual: an instrument may write them, too.
+pub const WAVE_SPEEDS: Topic = exact::<msg::WaveSpeeds>("wave_speeds", Qos::LATCHED, "acoustic_probe");
 
 /// Traces of the wave speeds, one message per wave.
-pub const WAVEFORM: Topic = Topic {
-    name: "waveform",
-    info: TypeInfo::of::<msg::Waveform>(),
-    qos: Qos::LATCHED_SET,
-    writer: "acoustic_probe",
-    reproducible: true,
-    summary: "the traces of the wave speeds, one message per wave",
-};
+pub const WAVEFORM: Topic = exact::<msg::Waveform>("waveform", Qos::LATCHED_SET, "acoustic_probe");
 
-/// Inferred microstructure of a packing.
-pub const MICROSTRUCTURE: Topic = Topic {
-    name: "microstructure",
-    info: TypeInfo::of::<msg::Microstructure>(),
-    qos: Qos::LATCHED,
-    writer: "emt_inversion",
-    reproducible: true,
-    summary: "inferred microstructure, one estimate per model",
-};
+/// Inferred microstructure of a packing, one estimate for each model.
+pub const MICROSTRUCTURE: Topic =
+    exact::<msg::Microstructure>("microstructure", Qos::LATCHED, "emt_inversion");
 
-/// Phase and progress of the run.
-pub const RUN_STATE: Topic = Topic {
-    name: "run_state",
-    info: TypeInfo::of::<msg::RunState>(),
-    qos: Qos::LATCHED,
-    writer: "dem_simulator",
-    reproducible: false,
-    summary: "phase, progress, finished, step of the last packing",
-};
+/// Phase and progress of the run, and the step of the last packing.
+pub const RUN_STATE: Topic = row::<msg::RunState>("run_state", Qos::LATCHED, "dem_simulator");
 
 /// Energy balance of a phase, one message per phase, if the scene asks for it.
-pub const ENERGY: Topic = Topic {
-    name: "energy",
-    info: TypeInfo::of::<msg::EnergyBalance>(),
-    qos: Qos::LATCHED_SET,
-    writer: "dem_simulator",
-    reproducible: false,
-    summary: "the energy balance of each phase, if the scene has energy_balance = true",
-};
+pub const ENERGY: Topic = row::<msg::EnergyBalance>("energy", Qos::LATCHED_SET, "dem_simulator");
 
-/// Simulated time, for tools; no node of grainlab waits for it.
-pub const CLOCK: Topic = Topic {
-    name: "/clock",
-    info: TypeInfo::of::<rosgraph_msgs::Clock>(),
-    qos: Qos::CLOCK,
-    writer: "dem_simulator",
-    reproducible: false,
-    summary: "simulated time, at most 100 Hz of wall time",
-};
+/// Simulated time, at most 100 times in a second, for tools; no node of grainlab waits for it.
+pub const CLOCK: Topic = row::<rosgraph_msgs::Clock>("/clock", Qos::CLOCK, "dem_simulator");
 
-/// Logs of all nodes.
-pub const ROSOUT: Topic = Topic {
-    name: "/rosout",
-    info: TypeInfo::of::<rcl_interfaces::Log>(),
-    qos: Qos::ROSOUT,
-    writer: "every node",
-    reproducible: false,
-    summary: "logs",
-};
+/// Lines of the logs of all nodes.
+pub const ROSOUT: Topic = row::<rcl_interfaces::Log>("/rosout", Qos::ROSOUT, "every node");
 
-/// Health. Deeper than ROS 2's 10, so that a recording is complete.
-pub const DIAGNOSTICS: Topic = Topic {
-    name: "/diagnostics",
-    info: TypeInfo::of::<diagnostic_msgs::DiagnosticArray>(),
-    qos: Qos::STREAM,
-    writer: "every node",
-    reproducible: false,
-    summary: "health and counters of every node",
-};
+/// Health and counters of every node. Deeper than ROS 2's 10, so that a recording is complete.
+pub const DIAGNOSTICS: Topic =
+    row::<diagnostic_msgs::DiagnosticArray>("/diagnostics", Qos::STREAM, "every node");
 
-/// Frames for viewers.
-pub const TF_STATIC: Topic = Topic {
-    name: "/tf_static",
-    info: TypeInfo::of::<tf2_msgs::TFMessage>(),
-    qos: Qos::LATCHED,
-    writer: "dem_simulator",
-    reproducible: false,
-    summary: "the frame of the cell, for viewers",
-};
+/// Frame of the cell, for viewers.
+pub const TF_STATIC: Topic = row::<tf2_msgs::TFMessage>("/tf_static", Qos::LATCHED, "dem_simulator");
 
-/// Grains for viewers.
-pub const PACKING_POINTS: Topic = Topic {
-    name: "packing/points",
-    info: TypeInfo::of::<sensor_msgs::PointCloud2>(),
-    qos: Qos::LATCHED,
-    writer: "packing_pictures",
-    reproducible: true,
-    summary: "the grains of the packing as points, for viewers",
-};
+/// Grains of the packing as points, for viewers.
+pub const PACKING_POINTS: Topic =
+    exact::<sensor_msgs::PointCloud2>("packing/points", Qos::LATCHED, "packing_pictures");
 
-/// Grains, contacts and cell for viewers.
-pub const PACKING_MARKERS: Topic = Topic {
-    name: "packing/markers",
-    info: TypeInfo::of::<visualization_msgs::MarkerArray>(),
-    qos: Qos::LATCHED,
-    writer: "packing_pictures",
-    reproducible: true,
-    summary: "grains, contacts and cell of the packing as markers, for viewers",
-};
+/// Grains, contacts and cell of the packing as markers, for viewers.
+pub const PACKING_MARKERS: Topic =
+    exact::<visualization_msgs::MarkerArray>("packing/markers", Qos::LATCHED, "packing_pictures");
 
 /// Pictures of the packing. They follow from [`PACKING`] at any time, so that a run does not record them.
 pub const PICTURES: &[Topic] = &[PACKING_POINTS, PACKING_MARKERS];

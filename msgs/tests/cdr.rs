@@ -7,7 +7,7 @@ use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::msg::{Estimate, Packing, StrainRate};
 use grainlab_msgs::std_msgs::Header;
-use grainlab_msgs::{DecodeError, Message, from_cdr, to_cdr};
+use grainlab_msgs::{Message, from_cdr, to_cdr};
 use proptest::array::uniform9;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -83,11 +83,9 @@ proptest! {
     fn a_message_cut_anywhere_is_refused(packing in any_packing(), at in any::<prop::sample::Index>()) {
         let bytes = to_cdr(&packing);
         let cut = &bytes[..at.index(bytes.len())];
-        let refused = matches!(
-            from_cdr::<Packing>(cut),
-            Err(DecodeError::Truncated { .. } | DecodeError::NoHeader { .. })
-        );
-        prop_assert!(refused, "{} of {} bytes", cut.len(), bytes.len());
+        let fault = from_cdr::<Packing>(cut).unwrap_err().problem;
+        let refused = fault.contains("end within the message") || fault.contains("too few for a CDR header");
+        prop_assert!(refused, "{} of {} bytes: {fault}", cut.len(), bytes.len());
     }
 }
 
@@ -114,7 +112,7 @@ fn padding_is_tolerated_and_more_is_not() {
         assert!(from_cdr::<StrainRate>(&bytes).is_ok());
     }
     bytes.push(0);
-    assert!(matches!(from_cdr::<StrainRate>(&bytes), Err(DecodeError::Trailing { extra: 4, .. })));
+    assert!(from_cdr::<StrainRate>(&bytes).unwrap_err().problem.starts_with("4 bytes follow"));
 }
 
 #[test]
@@ -122,13 +120,10 @@ fn values_that_their_type_does_not_allow_are_refused() {
     let mut bytes = to_cdr(&StrainRate::default());
     let last = bytes.len() - 1;
     bytes[last] = 2;
-    assert!(matches!(from_cdr::<StrainRate>(&bytes), Err(DecodeError::Value { .. })), "a bool of 2");
+    assert!(from_cdr::<StrainRate>(&bytes).is_err(), "a bool of 2");
     let mut bytes = to_cdr(&KeyValue { key: "abc".into(), value: String::new() });
     bytes[8] = 0xff;
-    assert!(
-        matches!(from_cdr::<KeyValue>(&bytes), Err(DecodeError::Value { .. })),
-        "a string that is not UTF-8"
-    );
+    assert!(from_cdr::<KeyValue>(&bytes).is_err(), "a string that is not UTF-8");
 }
 
 #[test]

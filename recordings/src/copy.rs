@@ -14,13 +14,11 @@
 //! The output is written under a temporary name and renamed at the end. An existing one is never overwritten.
 
 mod channels;
-mod error;
 mod extras;
 mod options;
 mod output;
 mod pictures;
 mod work;
 
-pub use error::CopyError;
 pub use options::{CopyOptions, Preset, Select};
 pub use work::{Copied, copy};

@@ -1,10 +1,9 @@
 //! Definitions of message types: of this project, of ROS 2, and of folders with message files.
 
 use std::collections::BTreeSet;
-use std::io;
 use std::path::{Path, PathBuf};
 
-use grainlab_any_message::{Schema, SchemaError};
+use grainlab_any_message::Schema;
 use grainlab_msgs::TypeInfo;
 
 use crate::input;
@@ -16,35 +15,6 @@ const SEPARATOR: &str = "=======================================================
 #[derive(Clone, Debug, Default)]
 pub struct Definitions {
     folders: Vec<PathBuf>,
-}
-
-/// Why there is no schema of a type.
-#[derive(Debug, thiserror::Error)]
-pub enum DefinitionError {
-    /// No folder has it.
-    #[error(
-        "the definition of {type_name} is not known to this program: give a folder that contains {type_name}.msg with --msg-path"
-    )]
-    Unknown {
-        /// Name of the type.
-        type_name: String,
-    },
-    /// A message file cannot be read.
-    #[error("{path}: cannot read the definition of a message: {source}")]
-    Io {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error that was returned.
-        source: io::Error,
-    },
-    /// A definition is not valid.
-    #[error("{type_name} from --msg-path: {source}")]
-    Invalid {
-        /// Name of the type.
-        type_name: String,
-        /// Description of the fault.
-        source: SchemaError,
-    },
 }
 
 impl Definitions {
@@ -59,24 +29,26 @@ impl Definitions {
     ///
     /// # Errors
     /// If no definition is found, or one is not valid.
-    pub fn text(&self, type_name: &str, hash: &str) -> Result<String, DefinitionError> {
+    pub fn text(&self, type_name: &str, hash: &str) -> Result<String, String> {
         let same = |info: &&TypeInfo| hash.is_empty() || hash == info.hash;
         if let Some(info) = TypeInfo::by_name(type_name).filter(same) {
             return Ok(info.definition.to_owned());
         }
         let Some(root) = self.read(type_name)? else {
-            return Err(DefinitionError::Unknown { type_name: type_name.to_owned() });
+            return Err(format!(
+                "the definition of {type_name} is not known to this program: give a folder that contains {type_name}.msg with \
+                 --msg-path"
+            ));
         };
         let text = self.with_dependencies(root, type_name)?;
-        let type_name = type_name.to_owned();
-        match Schema::parse(&type_name, &text) {
+        match Schema::parse(type_name, &text) {
             Ok(_) => Ok(text),
-            Err(source) => Err(DefinitionError::Invalid { type_name, source }),
+            Err(fault) => Err(format!("{type_name} from --msg-path: {fault}")),
         }
     }
 
     /// The text of the type's own file.
-    fn read(&self, type_name: &str) -> Result<Option<String>, DefinitionError> {
+    fn read(&self, type_name: &str) -> Result<Option<String>, String> {
         // A type name from the network is not a path: it has three parts of letters, digits and underscores.
         let plain =
             |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
@@ -87,14 +59,12 @@ impl Definitions {
         let Some(path) = self.folders.iter().map(file).find(|path: &PathBuf| Path::exists(path)) else {
             return Ok(None);
         };
-        match input::text(&path, input::SETTINGS) {
-            Ok(text) => Ok(Some(text)),
-            Err(source) => Err(DefinitionError::Io { path, source }),
-        }
+        let unread = |e| format!("{}: cannot read the definition of a message: {e}", path.display());
+        input::text(&path, input::SETTINGS).map(Some).map_err(unread)
     }
 
     /// The text with the definitions of all types that it uses.
-    fn with_dependencies(&self, root: String, type_name: &str) -> Result<String, DefinitionError> {
+    fn with_dependencies(&self, root: String, type_name: &str) -> Result<String, String> {
         let mut text = root.clone();
         let mut done = BTreeSet::from([type_name.to_owned()]);
         let mut open = used(&root, type_name);
@@ -161,7 +131,7 @@ mod tests {
         let expected =
             r#"{"header":{"stamp":{"sec":5,"nanosec":6},"frame_id":"a"},"ones":[{"value":7},{"value":8}]}"#;
         assert_eq!(grainlab_any_message::Shown::new(&message).json(), expected);
-        let error = definitions.text("demo_msgs/msg/Other", "").unwrap_err().to_string();
+        let error = definitions.text("demo_msgs/msg/Other", "").unwrap_err();
         assert!(error.contains("demo_msgs/msg/Other.msg") && error.contains("--msg-path"), "{error}");
         assert!(definitions.text("../../etc/passwd", "").is_err());
     }
@@ -178,7 +148,7 @@ mod tests {
     #[test]
     fn a_message_file_that_is_not_valid_is_named_with_its_line() {
         let (_folder, definitions) = folder(&[("a_msgs/msg/B.msg", "uint8 a\nuint8 1a\n")]);
-        let error = definitions.text("a_msgs/msg/B", "").unwrap_err().to_string();
+        let error = definitions.text("a_msgs/msg/B", "").unwrap_err();
         assert!(error.contains("a_msgs/msg/B") && error.contains("line 2"), "{error}");
     }
 }

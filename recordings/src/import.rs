@@ -32,4 +32,4 @@ pub use imported::Imported;
 pub use load::{Loaded, each, load, text};
 pub use setting::Setting;
 pub use settings::ImportOptions;
-pub use start::{Start, StartError, start};
+pub use start::{Start, start};

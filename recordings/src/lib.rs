@@ -10,7 +10,6 @@
 //! - [`OneRun`]: whether packings and requests are of one run
 //! - `player`: the schedule of a playback, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and recordings
-//! - [`export`]: packings to CSV and LAMMPS dump files
 //! - [`input`]: external files, regular and of bounded size; [`runs`]: run directories; [`Lock`], [`run_state()`]: one process at a time in each, and how far it came; [`scenes`]: scenes by name or path
 //! - [`strangers`]: processes that are not part of a run, and the writers of its results
 //!
@@ -21,7 +20,7 @@ mod bag_metadata;
 mod compression;
 pub mod copy;
 mod definitions;
-pub mod export;
+mod failures;
 pub mod import;
 pub mod input;
 mod ledger;
@@ -40,18 +39,18 @@ pub mod strangers;
 mod writer;
 
 pub use compression::Compression;
-pub use definitions::{DefinitionError, Definitions};
+pub use definitions::Definitions;
 pub use ledger::{Ledger, TopicTally, WriterTally, merge};
 pub use lock::Lock;
 pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 pub use new_path::NewPath;
 pub use one_run::{OneRun, RunSign, SeveralRuns};
-pub use player::{Play, PlayError, PlayOptions, Player};
-pub use qos::{QosError, QosOverrides, adapted, offered_profiles, profiles};
+pub use player::{Play, PlayOptions, Player};
+pub use qos::{QosOverrides, adapted, offered_profiles, profiles};
 pub use reader::{
     ChannelInfo, Check, Info, Message, Messages, Payload, ReadError, Recording, Selection, StoredDefinition,
     StoredFile, TopicInfo, Warning, WarningKind,
 };
-pub use recover::{RecoverError, RecoveredFile, Recovery, recover};
+pub use recover::{RecoveredFile, Recovery, recover};
 pub use run_state::{RunState, end_reason, run_state};
-pub use writer::{Finished, Incoming, Outcome, RunWriter, TopicSpec, WriteError, WriterOptions};
+pub use writer::{Finished, Incoming, Outcome, RunWriter, TopicSpec, WriterOptions};

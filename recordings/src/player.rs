@@ -10,7 +10,9 @@ use std::iter::Peekable;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::reader::{ChannelInfo, Message, Messages, ReadError, Recording, Selection};
+use grainlab_console::Failure;
+
+use crate::reader::{ChannelInfo, Message, Messages, Recording, Selection};
 
 /// Lateness above which the schedule is delayed instead of catching up.
 const PATIENCE: Duration = Duration::from_millis(20);
@@ -34,25 +36,6 @@ impl Default for PlayOptions {
     fn default() -> Self {
         Self { topics: None, exclude: Vec::new(), rate: 1.0, start_offset: Duration::ZERO, duration: None }
     }
-}
-
-/// Errors of a playback.
-#[derive(Debug, thiserror::Error)]
-pub enum PlayError {
-    /// The recording has no such topic.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// The rate is not positive.
-    #[error("rate {0} is out of range: it must be more than 0 (1 is the speed of the recording)")]
-    Rate(f64),
-    /// Nothing is left to play.
-    #[error("start offset {offset:?} is beyond the end: the recording lasts {length:?}")]
-    BeyondEnd {
-        /// The offset set.
-        offset: Duration,
-        /// Length of the recording.
-        length: Duration,
-    },
 }
 
 /// The next action of the caller.
@@ -89,7 +72,7 @@ impl<'r> Player<'r> {
     ///
     /// # Errors
     /// If a topic does not exist, the rate is not positive, or the offset is beyond the end.
-    pub fn new(recording: &'r Recording, options: &PlayOptions) -> Result<Self, PlayError> {
+    pub fn new(recording: &'r Recording, options: &PlayOptions) -> Result<Self, Failure> {
         check_rate(options.rate)?;
         let names = match &options.topics {
             Some(names) => names.clone(),
@@ -106,7 +89,9 @@ impl<'r> Player<'r> {
         let start = first.saturating_add(nanoseconds(options.start_offset));
         if start > last {
             let (offset, length) = (options.start_offset, Duration::from_nanos(last - first));
-            return Err(PlayError::BeyondEnd { offset, length });
+            return Err(Failure::usage(format!(
+                "start offset {offset:?} is beyond the end: the recording lasts {length:?}"
+            )));
         }
         let mut latched = Vec::new();
         for channel in channels.iter().filter(|c| c.is_latched()) {
@@ -212,7 +197,7 @@ impl<'r> Player<'r> {
     ///
     /// # Errors
     /// If it is not positive.
-    pub fn set_rate(&mut self, now: Duration, rate: f64) -> Result<(), PlayError> {
+    pub fn set_rate(&mut self, now: Duration, rate: f64) -> Result<(), Failure> {
         check_rate(rate)?;
         self.set_anchor(self.position(now), now);
         self.rate = rate;
@@ -233,8 +218,12 @@ impl<'r> Player<'r> {
     }
 }
 
-fn check_rate(rate: f64) -> Result<(), PlayError> {
-    if rate > 0.0 { Ok(()) } else { Err(PlayError::Rate(rate)) }
+fn check_rate(rate: f64) -> Result<(), Failure> {
+    if rate > 0.0 {
+        return Ok(());
+    }
+    let must = "it must be more than 0 (1 is the speed of the recording)";
+    Err(Failure::usage(format!("rate {rate} is out of range: {must}")))
 }
 
 fn nanoseconds(duration: Duration) -> u64 {

@@ -1,9 +1,9 @@
 //! Quality of service as rosbag2 writes it: the profiles of a channel, and files of overrides.
 
 use std::collections::BTreeMap;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use grainlab_console::Failure;
 use grainlab_msgs::Qos;
 use serde_json::Value;
 
@@ -16,39 +16,6 @@ use profile::Policies;
 /// QoS that rosbag2 requests and offers where nothing else is known.
 const DEFAULT: Qos = Qos { reliable: true, depth: 10, transient_local: false };
 
-/// Why a file of overrides cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum QosError {
-    /// It cannot be read.
-    #[error("{path}: cannot read the QoS profiles: {source}")]
-    Io {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error that was returned.
-        source: io::Error,
-    },
-    /// It is not YAML, or not a map from topics to profiles.
-    #[error(
-        "{path}: {problem}; it has to be YAML such as `/topic: {{reliability: best_effort, history: keep_last, depth: 10}}`"
-    )]
-    Format {
-        /// Path of the file.
-        path: PathBuf,
-        /// Description of the fault.
-        problem: String,
-    },
-    /// A profile is not valid.
-    #[error("{path}: profile of {topic}: {problem}")]
-    Profile {
-        /// Path of the file.
-        path: PathBuf,
-        /// Name of the topic.
-        topic: String,
-        /// Description of the fault, and what to write.
-        problem: String,
-    },
-}
-
 /// QoS by topic, from a file in the format of `ros2 bag --qos-profile-overrides-path`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct QosOverrides(BTreeMap<String, Policies>);
@@ -57,22 +24,26 @@ impl QosOverrides {
     /// Reads the file: a map from names of topics to profiles, whose policies are all optional.
     ///
     /// # Errors
-    /// See [`QosError`].
-    pub fn read(path: &Path) -> Result<Self, QosError> {
-        let text = input::text(path, input::SETTINGS)
-            .map_err(|source| QosError::Io { path: path.to_owned(), source })?;
+    /// If it cannot be read, is not YAML, or has a profile that is not valid.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let text = input::text(path, input::SETTINGS);
+        let text = text
+            .map_err(|e| Failure::usage(format!("{}: cannot read the QoS profiles: {e}", path.display())))?;
         Self::parse(path, &text)
     }
 
-    fn parse(path: &Path, text: &str) -> Result<Self, QosError> {
-        let wrong = |problem: String| QosError::Format { path: path.to_owned(), problem };
+    fn parse(path: &Path, text: &str) -> Result<Self, Failure> {
+        let wrong = |problem: String| {
+            let example = "`/topic: {reliability: best_effort, history: keep_last, depth: 10}`";
+            Failure::usage(format!("{}: {problem}; it has to be YAML such as {example}", path.display()))
+        };
         let file: Value = serde_saphyr::from_str(text).map_err(|e| wrong(e.to_string()))?;
         let Value::Object(topics) = file else {
             return Err(wrong("it is not a map from names of topics to profiles".to_owned()));
         };
         let profile = |(topic, value): (String, Value)| match Policies::strict(&value) {
             Ok(policies) => Ok((topic.trim_start_matches('/').to_owned(), policies)),
-            Err(problem) => Err(QosError::Profile { path: path.to_owned(), topic, problem }),
+            Err(problem) => Err(Failure::usage(format!("{}: profile of {topic}: {problem}", path.display()))),
         };
         topics.into_iter().map(profile).collect::<Result<_, _>>().map(Self)
     }

@@ -9,7 +9,6 @@
 //!
 //! The file is mapped into memory: no other process may shorten it meanwhile (it may grow).
 
-mod bytes;
 mod channel;
 mod chunk;
 mod definition;
@@ -40,4 +39,4 @@ pub use selection::Selection;
 pub(crate) use stored_file::FileCount;
 pub use stored_file::StoredFile;
 pub use verify::Check;
-pub(crate) use walk::{Walk, Walked};
+pub(crate) use walk::{Walked, place, walk};

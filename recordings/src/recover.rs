@@ -7,15 +7,19 @@
 //! `metadata.yaml`.
 
 use std::ffi::OsString;
+use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use grainlab_console::Failure;
+use grainlab_msgs::Exit;
 use serde::Serialize;
 
 use crate::bag_metadata::BagMetadata;
+use crate::failures::{cannot, reason};
 use crate::input;
-use crate::reader::{ReadError, Recording, Warning, WarningKind};
+use crate::reader::{Recording, Warning, WarningKind};
 use crate::writer::is_locked;
 
 mod rewrite;
@@ -56,59 +60,20 @@ impl Recovery {
     }
 }
 
-/// Errors of a recovery. The recording is unchanged.
-#[derive(Debug, thiserror::Error)]
-pub enum RecoverError {
-    /// It cannot be read at all.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A recorder is writing it.
-    #[error("{path} is being recorded: end the recorder first, it then finishes the file itself")]
-    InUse {
-        /// Path of the file.
-        path: PathBuf,
-    },
-    /// It is complete but damaged: writing it again could only lose more.
-    #[error(
-        "{path} is complete but damaged ({first}): nothing was changed; its readable part can be used as it is, and `grainlab bag check` lists all damage"
-    )]
-    Damaged {
-        /// Path of the file.
-        path: PathBuf,
-        /// The first error.
-        first: Box<Warning>,
-    },
-    /// The file system returned an error.
-    #[error("{path}: cannot {action}: {source}; the recording is unchanged")]
-    Io {
-        /// Path of the file.
-        path: PathBuf,
-        /// The attempted action.
-        action: &'static str,
-        /// Error that was returned.
-        source: io::Error,
-    },
-    /// The new file does not equal the original.
-    #[error("{path}: the new file does not equal the original ({problem}); the recording is unchanged")]
-    Check {
-        /// The new file.
-        path: PathBuf,
-        /// Difference that was found.
-        problem: String,
-    },
-}
-
 /// Completes the file, or all incomplete files of the directory, of a killed recorder. A second call changes
 /// nothing.
 ///
 /// # Errors
 /// If a recorder is writing it, a complete file is damaged, the file system fails, or there is no recording.
-pub fn recover(path: &Path) -> Result<Recovery, RecoverError> {
+pub fn recover(path: &Path) -> Result<Recovery, Failure> {
     let recording = Recording::open(path)?;
     let paths = recording.paths();
     for path in &paths {
         if input::open(path).is_ok_and(|(file, _)| is_locked(&file)) {
-            return Err(RecoverError::InUse { path: path.clone() });
+            let path = path.display();
+            return Err(Failure::failed(format!(
+                "{path} is being recorded: end the recorder first, it then finishes the file itself"
+            )));
         }
     }
     drop(recording);
@@ -120,7 +85,7 @@ pub fn recover(path: &Path) -> Result<Recovery, RecoverError> {
     Ok(Recovery { path: path.to_owned(), files, metadata_written })
 }
 
-fn file(path: PathBuf) -> Result<RecoveredFile, RecoverError> {
+fn file(path: PathBuf) -> Result<RecoveredFile, Failure> {
     let recording = Recording::open(&path)?;
     let opened = recording.warnings();
     let needs_end = |w: &Warning| matches!(w.kind, WarningKind::Truncated | WarningKind::NoIndex);
@@ -130,22 +95,23 @@ fn file(path: PathBuf) -> Result<RecoveredFile, RecoverError> {
                 let messages = recording.parts().iter().map(|p| p.messages).sum();
                 Ok(RecoveredFile { path, messages, original: None, unreadable: Vec::new() })
             }
-            Some(first) => Err(RecoverError::Damaged { path, first: Box::new(first) }),
+            // Writing it again could only lose more.
+            Some(first) => {
+                let what =
+                    format!("{} is complete but damaged ({first}): nothing was changed", path.display());
+                let rest =
+                    "its readable part can be used as it is, and `grainlab bag check` lists all damage";
+                Err(Failure::new(Exit::DataLoss, format!("{what}; {rest}")))
+            }
         };
     }
-    let io = |action: &'static str| {
-        let path = path.clone();
-        move |source| RecoverError::Io { path, action, source }
-    };
+    let io = |action| unchanged(&path, action);
     let new = beside(&path, ".recovering");
-    let wrong = |problem: String| RecoverError::Check { path: new.clone(), problem };
-    let written = rewrite::rewrite(&path, &new);
-    let written = written.map_err(|e| match e {
-        rewrite::RewriteError::Read(e) => RecoverError::Read(e),
-        rewrite::RewriteError::Write(source) => {
-            RecoverError::Io { path: new.clone(), action: "write", source }
-        }
-    });
+    let wrong = |problem: String| {
+        let what = format!("the new file does not equal the original ({problem})");
+        Failure::failed(format!("{}: {what}; the recording is unchanged", new.display()))
+    };
+    let written = rewrite::rewrite(&recording, &new).map_err(|e| unchanged(&new, "write")(reason(e)));
     let outcome = written.and_then(|written| {
         let faults = Recording::open(&new)?.verify_files();
         match faults.first() {
@@ -198,7 +164,7 @@ fn keep(path: &Path) -> io::Result<PathBuf> {
 }
 
 /// Writes `metadata.yaml` if it is missing, files were recovered, or it does not list all of them; true if written.
-fn bring_up_to_date(directory: &Path, files: &[RecoveredFile]) -> Result<bool, RecoverError> {
+fn bring_up_to_date(directory: &Path, files: &[RecoveredFile]) -> Result<bool, Failure> {
     let recording = Recording::open(directory)?;
     let unlisted = recording.warnings().iter().any(|w| w.kind == WarningKind::Unlisted);
     let missing = !directory.join("metadata.yaml").exists();
@@ -206,9 +172,13 @@ fn bring_up_to_date(directory: &Path, files: &[RecoveredFile]) -> Result<bool, R
         return Ok(false);
     }
     let written = BagMetadata::of(&recording).write(directory);
-    let path = directory.to_owned();
-    written.map_err(|source| RecoverError::Io { path, action: "write metadata.yaml", source })?;
+    written.map_err(unchanged(directory, "write metadata.yaml"))?;
     Ok(true)
+}
+
+fn unchanged<E: Display>(path: &Path, action: &str) -> impl FnOnce(E) -> Failure + use<E> {
+    let fails = cannot(path, action);
+    move |reason| fails(format!("{reason}; the recording is unchanged"))
 }
 
 fn beside(path: &Path, suffix: &str) -> PathBuf {

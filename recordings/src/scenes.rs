@@ -1,6 +1,6 @@
 //! Scenes by name or path, with their bases and overrides.
 
-use crate::import::{StartError, start};
+use crate::import::start;
 use crate::input;
 use grainlab_console::Failure;
 use grainlab_core::Packing;
@@ -47,10 +47,8 @@ pub fn read(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
     for set in sets.iter().chain(&seed) {
         draft.set(assignment(set).map_err(refused)?).map_err(refused)?;
     }
-    let start = draft.start().map(|file| start(&draft, &file)).transpose().map_err(|e| {
-        let message = format!("{}: {e}", with(sets));
-        if matches!(e, StartError::File { .. }) { Failure::failed(message) } else { Failure::usage(message) }
-    })?;
+    let start = draft.start().map(|file| start(&draft, &file)).transpose();
+    let start = start.map_err(|f| Failure::new(f.exit, format!("{}: {f}", with(sets))))?;
     let of_start =
         start.iter().flat_map(|s| s.notes.iter().map(|note| format!("{}: {note}", s.path.display())));
     let notes = of_start.collect();

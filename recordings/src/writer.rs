@@ -20,21 +20,21 @@ use mcap::records::Metadata;
 use mcap::{Attachment, McapError};
 
 use crate::bag_metadata::{BagMetadata, TopicCount};
+use crate::failures::{cannot, reason};
 use crate::ledger::Ledger;
 use crate::metadata_keys::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 use crate::reader::Recording;
+use grainlab_console::Failure;
 use grainlab_msgs::Guid;
 
 mod counted;
 mod device_sync;
-mod error;
 mod free_space;
 mod names;
 mod options;
 pub(crate) mod part;
 mod topic_spec;
 
-pub use error::WriteError;
 pub(crate) use free_space::free_space;
 pub(crate) use names::is_locked;
 use names::{next_number, part_path, session};
@@ -128,7 +128,7 @@ impl RunWriter {
         name: &str,
         topics: &[TopicSpec],
         options: WriterOptions,
-    ) -> Result<Self, WriteError> {
+    ) -> Result<Self, Failure> {
         Self::begin(directory, name, topics, options, 0, BagMetadata::default())
     }
 
@@ -145,7 +145,7 @@ impl RunWriter {
         name: &str,
         topics: &[TopicSpec],
         options: WriterOptions,
-    ) -> Result<Self, WriteError> {
+    ) -> Result<Self, Failure> {
         let number = next_number(directory, name)?;
         let before = match Recording::open(directory) {
             Ok(recording) => BagMetadata::of(&recording),
@@ -161,13 +161,12 @@ impl RunWriter {
         options: WriterOptions,
         number: u64,
         before: BagMetadata,
-    ) -> Result<Self, WriteError> {
-        fs::create_dir_all(directory).map_err(WriteError::io(directory, "create the directory"))?;
+    ) -> Result<Self, Failure> {
+        fs::create_dir_all(directory).map_err(cannot(directory, "create the directory"))?;
         let file = part_path(directory, name, number);
-        let free = free_space(directory).map_err(WriteError::io(directory, "query the free space"))?;
+        let free = free_space(directory).map_err(cannot(directory, "query the free space"))?;
         if free < options.free_to_start {
-            let needed = options.free_to_start;
-            return Err(WriteError::NoSpace { path: file, free, needed, state: "not begun" });
+            return Err(no_space(&file, free, options.free_to_start, "not begun"));
         }
         let part = Part::create(file.clone(), &options, Instant::now())?;
         let mut writer = Self {
@@ -202,15 +201,18 @@ impl RunWriter {
     ///
     /// # Errors
     /// If the topic exists with another type, schema or QoS, or the file cannot be written.
-    pub fn add_topic(&mut self, topic: &TopicSpec) -> Result<(), WriteError> {
+    pub fn add_topic(&mut self, topic: &TopicSpec) -> Result<(), Failure> {
         self.declare(topic)?;
         self.flush()
     }
 
-    fn declare(&mut self, topic: &TopicSpec) -> Result<(), WriteError> {
+    fn declare(&mut self, topic: &TopicSpec) -> Result<(), Failure> {
         if let Some(known) = self.bag.topics.get(&topic.name) {
             if known.spec != *topic {
-                return Err(WriteError::ConflictingTopic(topic.name.clone()));
+                return Err(Failure::failed(format!(
+                    "topic {} is already recorded with another type, schema or QoS",
+                    topic.name
+                )));
             }
             if self.topics.contains(&topic.name) {
                 return Ok(());
@@ -231,13 +233,18 @@ impl RunWriter {
     /// # Errors
     /// If the topic was not declared, the sample is not CDR, or the recording has ended (disk full, write
     /// failure).
-    pub fn write(&mut self, topic: &str, sample: &Incoming<'_>) -> Result<Outcome, WriteError> {
+    pub fn write(&mut self, topic: &str, sample: &Incoming<'_>) -> Result<Outcome, Failure> {
         if !self.topics.contains(topic) {
-            return Err(WriteError::UnknownTopic(topic.to_owned()));
+            return Err(Failure::failed(format!(
+                "topic {topic} was not declared to the recording: add it with its type before its first message"
+            )));
         }
         if sample.payload.len() < 4 {
-            let (topic, sequence) = (topic.to_owned(), sample.sequence);
-            return Err(WriteError::NotCdr { topic, sequence, bytes: sample.payload.len() });
+            return Err(Failure::failed(format!(
+                "message {} on {topic} has {} bytes: CDR starts with a 4-byte encapsulation header",
+                sample.sequence,
+                sample.payload.len()
+            )));
         }
         if self.ledger.holds(topic, &sample.guid, sample.sequence) {
             self.ledger.enter(topic, sample.guid, sample.sequence);
@@ -276,7 +283,7 @@ impl RunWriter {
     ///
     /// # Errors
     /// If the file cannot be written, or a sync failed.
-    pub fn tick(&mut self, now: Instant) -> Result<(), WriteError> {
+    pub fn tick(&mut self, now: Instant) -> Result<(), Failure> {
         if self
             .pending
             .is_some_and(|since| now.saturating_duration_since(since) >= self.options.flush_interval)
@@ -289,7 +296,7 @@ impl RunWriter {
         part.sync.request(now, self.options.sync_interval);
         match part.sync.failure() {
             Some(source) => {
-                let error = WriteError::io(&self.file, "sync the recording to the device")(source);
+                let error = cannot(&self.file, "sync the recording to the device")(source);
                 self.ended = Some(error.to_string());
                 Err(error)
             }
@@ -301,7 +308,7 @@ impl RunWriter {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn attach(&mut self, name: &str, media_type: &str, bytes: &[u8]) -> Result<(), WriteError> {
+    pub fn attach(&mut self, name: &str, media_type: &str, bytes: &[u8]) -> Result<(), Failure> {
         let time =
             SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
         let attachment = Attachment {
@@ -341,13 +348,13 @@ impl RunWriter {
     ///
     /// # Errors
     /// If the recording cannot be completed. It then has no `metadata.yaml`.
-    pub fn finish(mut self) -> Result<Finished, WriteError> {
+    pub fn finish(mut self) -> Result<Finished, Failure> {
         self.close(true)
     }
 
-    fn close(&mut self, finished: bool) -> Result<Finished, WriteError> {
+    fn close(&mut self, finished: bool) -> Result<Finished, Failure> {
         self.close_part(if finished { "true" } else { "false" })?;
-        self.bag.write(&self.directory).map_err(WriteError::io(&self.file, "write metadata.yaml"))?;
+        self.bag.write(&self.directory).map_err(cannot(&self.file, "write metadata.yaml"))?;
         Ok(Finished {
             file: self.file.clone(),
             files: std::mem::take(&mut self.files),
@@ -358,7 +365,7 @@ impl RunWriter {
     }
 
     /// Completes the file being written, with the ledger so far.
-    fn close_part(&mut self, finished: &str) -> Result<(), WriteError> {
+    fn close_part(&mut self, finished: &str) -> Result<(), Failure> {
         let Some(part) = self.part.take() else {
             return Err(self.already_ended());
         };
@@ -368,7 +375,7 @@ impl RunWriter {
             metadata.insert("ended_by".into(), reason.clone());
         }
         let tallies = serde_json::to_string(&self.ledger.tallies())
-            .map_err(|e| WriteError::io(&self.file, "write the ledger as JSON")(e.into()))?;
+            .map_err(cannot(&self.file, "write the ledger as JSON"))?;
         metadata.insert(LEDGER_KEY.into(), tallies);
         let closed = match part.close(Metadata { name: METADATA_RECORD.into(), metadata }) {
             Ok(closed) => closed,
@@ -384,7 +391,7 @@ impl RunWriter {
     }
 
     /// Begins the next file if this one is old or large enough.
-    fn split_if_due(&mut self, now: Instant) -> Result<(), WriteError> {
+    fn split_if_due(&mut self, now: Instant) -> Result<(), Failure> {
         let Some(part) = self.part.as_ref().filter(|part| part.has_messages()) else { return Ok(()) };
         let old = now.saturating_duration_since(part.began()) >= self.options.split_after;
         if !old && part.bytes() < self.options.split_bytes {
@@ -397,7 +404,7 @@ impl RunWriter {
             let specs = self.topics.iter().filter_map(|name| self.bag.topics.get(name));
             for topic in specs {
                 let declared = next.declare(&topic.spec);
-                declared.map_err(|e| WriteError::mcap(&self.file, "declare a topic", e))?;
+                declared.map_err(|e| cannot(&self.file, "declare a topic")(reason(e)))?;
             }
             self.part = Some(next);
             self.flush()
@@ -405,25 +412,20 @@ impl RunWriter {
         split.inspect_err(|error| self.ended = Some(error.to_string()))
     }
 
-    fn flush(&mut self) -> Result<(), WriteError> {
+    fn flush(&mut self) -> Result<(), Failure> {
         self.with("write a chunk", Part::flush)?;
         self.pending = None;
         Ok(())
     }
 
-    fn require_space(&mut self) -> Result<(), WriteError> {
+    fn require_space(&mut self) -> Result<(), Failure> {
         self.unchecked = 0;
-        let free =
-            free_space(&self.directory).map_err(WriteError::io(&self.directory, "query the free space"))?;
+        let free = free_space(&self.directory).map_err(cannot(&self.directory, "query the free space"))?;
         if free >= self.options.free_to_continue {
             return Ok(());
         }
-        let error = WriteError::NoSpace {
-            path: self.file.clone(),
-            free,
-            needed: self.options.free_to_continue,
-            state: "stopped (what is recorded stays readable)",
-        };
+        let state = "stopped (what is recorded stays readable)";
+        let error = no_space(&self.file, free, self.options.free_to_continue, state);
         self.ended = Some(error.to_string());
         Err(error)
     }
@@ -433,21 +435,30 @@ impl RunWriter {
         &mut self,
         what: &'static str,
         action: impl FnOnce(&mut Part) -> Result<T, McapError>,
-    ) -> Result<T, WriteError> {
+    ) -> Result<T, Failure> {
         let Some(part) = self.part.as_mut().filter(|_| self.ended.is_none()) else {
             return Err(self.already_ended());
         };
         action(part).map_err(|source| {
-            let error = WriteError::mcap(&self.file, what, source);
+            let error = format!("{}; what was written before stays readable", reason(source));
+            let error = cannot(&self.file, what)(error);
             self.ended = Some(error.to_string());
             error
         })
     }
 
-    fn already_ended(&self) -> WriteError {
-        let reason = self.ended.clone().unwrap_or_else(|| "it was finished".into());
-        WriteError::Ended { path: self.file.clone(), reason }
+    fn already_ended(&self) -> Failure {
+        let (path, reason) = (self.file.display(), self.ended.as_deref().unwrap_or("it was finished"));
+        Failure::failed(format!("{path}: an earlier error ended this recording: {reason}"))
     }
+}
+
+fn no_space(path: &Path, free: u64, needed: u64, state: &str) -> Failure {
+    Failure::failed(format!(
+        "{}: only {free} bytes are free on this file system and {needed} are needed; the recording was {state}: free space \
+         and run again",
+        path.display()
+    ))
 }
 
 impl Drop for RunWriter {

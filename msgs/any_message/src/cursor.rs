@@ -1,12 +1,5 @@
 //! Aligned reading of CDR.
 
-/// The bytes end before a value does.
-pub(crate) struct Short {
-    /// Bytes needed from `at` on.
-    pub(crate) needed: u64,
-    pub(crate) at: usize,
-}
-
 pub(crate) struct Cursor<'a> {
     body: &'a [u8],
     at: usize,
@@ -55,8 +48,14 @@ impl<'a> Cursor<'a> {
     }
 
     /// An error unless at least `bytes` are left.
-    pub(crate) fn require(&self, bytes: u64) -> Result<(), Short> {
-        if bytes <= self.left() as u64 { Ok(()) } else { Err(Short { needed: bytes, at: self.at }) }
+    pub(crate) fn require(&self, bytes: u64) -> Result<(), String> {
+        let (at, left) = (self.at, self.left());
+        if bytes <= left as u64 {
+            return Ok(());
+        }
+        Err(format!(
+            "at byte {at} needs {bytes} bytes or more, and {left} are left (truncated, or another type)"
+        ))
     }
 
     fn align(&mut self, size: usize) {
@@ -66,7 +65,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    pub(crate) fn bytes(&mut self, count: usize) -> Result<&'a [u8], Short> {
+    pub(crate) fn bytes(&mut self, count: usize) -> Result<&'a [u8], String> {
         self.require(count as u64)?;
         let bytes = &self.body[self.at..self.at + count];
         self.at += count;
@@ -74,13 +73,13 @@ impl<'a> Cursor<'a> {
     }
 
     #[inline]
-    pub(crate) fn one<T: Fixed>(&mut self) -> Result<T, Short> {
+    pub(crate) fn one<T: Fixed>(&mut self) -> Result<T, String> {
         self.align(T::SIZE);
         let big_endian = self.big_endian;
         Ok(T::from(self.bytes(T::SIZE)?, big_endian))
     }
 
-    pub(crate) fn many<T: Fixed>(&mut self, count: usize) -> Result<Vec<T>, Short> {
+    pub(crate) fn many<T: Fixed>(&mut self, count: usize) -> Result<Vec<T>, String> {
         // An empty array has no padding behind its length.
         if count == 0 {
             return Ok(Vec::new());

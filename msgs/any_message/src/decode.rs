@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::cursor::{Cursor, Short};
+use crate::cursor::Cursor;
 use crate::schema::Schema;
 use crate::types::{Element, FieldType, Length, MessageType, Primitive};
 use crate::value::{Array, Message, Value};
@@ -16,81 +16,12 @@ const PADDING: usize = 3;
 
 /// Why bytes are not a message of the schema.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum DecodeError {
-    /// Too few bytes for a header.
-    #[error("{type_name}: {length} bytes are too few for a CDR header of 4")]
-    NoHeader {
-        /// Name of the type.
-        type_name: String,
-        /// Number of bytes.
-        length: usize,
-    },
-    /// Not plain CDR.
-    #[error(
-        "{type_name}: encapsulation {found:02x?} is not plain CDR ([00, 01] little endian or [00, 00] big endian)"
-    )]
-    Encapsulation {
-        /// Name of the type.
-        type_name: String,
-        /// First two bytes.
-        found: [u8; 2],
-    },
-    /// The bytes end within a field: truncated, a false length, or another type.
-    #[error(
-        "{type_name}: {field} at byte {at} needs {needed} bytes or more, and {left} are left (truncated, or another type)"
-    )]
-    Truncated {
-        /// Name of the type.
-        type_name: String,
-        /// Name of the field.
-        field: String,
-        /// Byte after the header at which it starts.
-        at: usize,
-        /// Number of bytes needed.
-        needed: u64,
-        /// Number of bytes left.
-        left: usize,
-    },
-    /// An array or a string is longer than its type allows.
-    #[error("{type_name}: {field} has {length} entries, and its type allows at most {bound}")]
-    TooLong {
-        /// Name of the type.
-        type_name: String,
-        /// Name of the field.
-        field: String,
-        /// Number of its entries.
-        length: u32,
-        /// The bound in the schema.
-        bound: u32,
-    },
-    /// Bytes after the message.
-    #[error("{type_name}: {extra} bytes follow the message (at most 3 of padding may; another type?)")]
-    Trailing {
-        /// Name of the type.
-        type_name: String,
-        /// Number of extra bytes.
-        extra: usize,
-    },
-    /// The values would take far more memory than the bytes.
-    #[error("{type_name}: its {length} bytes would take more than {PER_BYTE} times their size in memory")]
-    Expands {
-        /// Name of the type.
-        type_name: String,
-        /// Number of bytes.
-        length: usize,
-    },
-}
-
-enum Fault {
-    Short(Short),
-    TooLong { length: u32, bound: u32 },
-    Expands,
-}
-
-impl From<Short> for Fault {
-    fn from(short: Short) -> Self {
-        Self::Short(short)
-    }
+#[error("{type_name}: {problem}")]
+pub struct DecodeError {
+    /// Name of the type.
+    pub type_name: String,
+    /// Description of the fault, beginning with the name of the field if it is of one.
+    pub problem: String,
 }
 
 impl Schema {
@@ -100,42 +31,33 @@ impl Schema {
     /// # Errors
     /// See [`DecodeError`].
     pub fn decode(&self, bytes: &[u8]) -> Result<Message, DecodeError> {
-        let type_name = || self.root().name.clone();
+        let fault = |problem: String| DecodeError { type_name: self.root().name.clone(), problem };
         let length = bytes.len();
         let Some((header, body)) = bytes.split_at_checked(4) else {
-            return Err(DecodeError::NoHeader { type_name: type_name(), length });
+            return Err(fault(format!("{length} bytes are too few for a CDR header of 4")));
         };
         // Bytes 2 and 3 are options: some writers store the number of padding bytes there.
         let found = [header[0], header[1]];
         let big_endian = match found {
             [0, 0] => true,
             [0, 1] => false,
-            _ => return Err(DecodeError::Encapsulation { type_name: type_name(), found }),
+            _ => {
+                let plain = "[00, 01] little endian or [00, 00] big endian";
+                return Err(fault(format!("encapsulation {found:02x?} is not plain CDR ({plain})")));
+            }
         };
         let mut decoder = Decoder {
             cursor: Cursor::new(body, big_endian),
             budget: length.saturating_mul(PER_BYTE).saturating_add(ALWAYS),
             field: String::new(),
         };
-        let message = decoder.message(self.root()).map_err(|fault| match fault {
-            Fault::Short(Short { needed, at }) => {
-                let left = body.len() - at;
-                DecodeError::Truncated {
-                    type_name: type_name(),
-                    field: decoder.field.clone(),
-                    at,
-                    needed,
-                    left,
-                }
-            }
-            Fault::TooLong { length, bound } => {
-                DecodeError::TooLong { type_name: type_name(), field: decoder.field.clone(), length, bound }
-            }
-            Fault::Expands => DecodeError::Expands { type_name: type_name(), length },
-        })?;
+        let message = decoder.message(self.root());
+        let message = message.map_err(|problem| fault(format!("{} {problem}", decoder.field)))?;
         match decoder.cursor.left() {
             0..=PADDING => Ok(message),
-            extra => Err(DecodeError::Trailing { type_name: type_name(), extra }),
+            extra => Err(fault(format!(
+                "{extra} bytes follow the message (at most {PADDING} of padding may; another type?)"
+            ))),
         }
     }
 }
@@ -149,13 +71,14 @@ struct Decoder<'a> {
 }
 
 impl Decoder<'_> {
-    fn spend(&mut self, count: usize, size: usize) -> Result<(), Fault> {
-        let cost = count.checked_mul(size).ok_or(Fault::Expands)?;
-        self.budget = self.budget.checked_sub(cost).ok_or(Fault::Expands)?;
+    fn spend(&mut self, count: usize, size: usize) -> Result<(), String> {
+        let left = count.checked_mul(size).and_then(|cost| self.budget.checked_sub(cost));
+        let expands = || format!("would take the memory to more than {PER_BYTE} times the bytes");
+        self.budget = left.ok_or_else(expands)?;
         Ok(())
     }
 
-    fn message(&mut self, kind: &Arc<MessageType>) -> Result<Message, Fault> {
+    fn message(&mut self, kind: &Arc<MessageType>) -> Result<Message, String> {
         self.spend(kind.fields.len(), size_of::<Value>())?;
         let mut values = Vec::with_capacity(kind.fields.len());
         if kind.fields.is_empty() {
@@ -172,7 +95,7 @@ impl Decoder<'_> {
         Ok(Message { kind: kind.clone(), values })
     }
 
-    fn value(&mut self, kind: &FieldType) -> Result<Value, Fault> {
+    fn value(&mut self, kind: &FieldType) -> Result<Value, String> {
         let length = match kind.length {
             Length::One => return self.one(&kind.element),
             Length::Fixed(length) => length,
@@ -185,7 +108,7 @@ impl Decoder<'_> {
         Ok(Value::Array(self.array(&kind.element, length as usize)?))
     }
 
-    fn one(&mut self, element: &Element) -> Result<Value, Fault> {
+    fn one(&mut self, element: &Element) -> Result<Value, String> {
         let c = &mut self.cursor;
         Ok(match element {
             Element::Primitive(primitive) => match primitive {
@@ -207,7 +130,7 @@ impl Decoder<'_> {
         })
     }
 
-    fn array(&mut self, element: &Element, length: usize) -> Result<Array, Fault> {
+    fn array(&mut self, element: &Element, length: usize) -> Result<Array, String> {
         // Nothing is reserved for values that cannot be there.
         self.cursor.require(element.least().saturating_mul(length as u64))?;
         if let Element::Primitive(primitive) = element {
@@ -237,8 +160,8 @@ impl Decoder<'_> {
     fn each<T>(
         &mut self,
         length: usize,
-        mut read: impl FnMut(&mut Self) -> Result<T, Fault>,
-    ) -> Result<Vec<T>, Fault> {
+        mut read: impl FnMut(&mut Self) -> Result<T, String>,
+    ) -> Result<Vec<T>, String> {
         self.spend(length, size_of::<T>())?;
         let mut values = Vec::with_capacity(length);
         for _ in 0..length {
@@ -248,7 +171,7 @@ impl Decoder<'_> {
     }
 
     /// Length with the final zero, and the bytes.
-    fn string(&mut self, bound: Option<u32>) -> Result<String, Fault> {
+    fn string(&mut self, bound: Option<u32>) -> Result<String, String> {
         let length = self.cursor.one::<u32>()?;
         let bytes = self.cursor.bytes(length as usize)?;
         let bytes = bytes.strip_suffix(&[0]).unwrap_or(bytes);
@@ -259,7 +182,7 @@ impl Decoder<'_> {
     }
 
     /// Number of UTF-16 units, and each unit as four bytes, without a final zero: as rmw_fastrtps and rmw_cyclonedds.
-    fn wide_string(&mut self, bound: Option<u32>) -> Result<String, Fault> {
+    fn wide_string(&mut self, bound: Option<u32>) -> Result<String, String> {
         let length = self.cursor.one::<u32>()?;
         within(length, bound)?;
         self.cursor.require(u64::from(length) * 4)?;
@@ -270,9 +193,11 @@ impl Decoder<'_> {
     }
 }
 
-fn within(length: u32, bound: Option<u32>) -> Result<(), Fault> {
+fn within(length: u32, bound: Option<u32>) -> Result<(), String> {
     match bound {
-        Some(bound) if length > bound => Err(Fault::TooLong { length, bound }),
+        Some(bound) if length > bound => {
+            Err(format!("has {length} entries, and its type allows at most {bound}"))
+        }
         _ => Ok(()),
     }
 }

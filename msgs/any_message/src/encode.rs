@@ -70,19 +70,13 @@ impl Writer {
 
     fn array(&mut self, array: &Array, element: &Element) {
         match array {
-            Array::Bool(all) => all.iter().for_each(|v| self.put([u8::from(*v)])),
-            Array::I8(all) => all.iter().for_each(|v| self.put(v.to_le_bytes())),
             Array::U8(all) => self.bytes.extend(all),
-            Array::I16(all) => all.iter().for_each(|v| self.put(v.to_le_bytes())),
-            Array::U16(all) => all.iter().for_each(|v| self.put(v.to_le_bytes())),
-            Array::I32(all) => all.iter().for_each(|v| self.put(v.to_le_bytes())),
-            Array::U32(all) => all.iter().for_each(|v| self.put(v.to_le_bytes())),
-            Array::I64(all) => all.iter().for_each(|v| self.put(v.to_le_bytes())),
-            Array::U64(all) => all.iter().for_each(|v| self.put(v.to_le_bytes())),
-            Array::F32(all) => all.iter().for_each(|v| self.put(v.to_le_bytes())),
             Array::F64(all) => all.iter().for_each(|v| self.put(v.to_le_bytes())),
             Array::Text(all) => all.iter().for_each(|text| self.text(text, element)),
             Array::Message(all) => all.iter().for_each(|message| self.message(message)),
+            numbers => {
+                (0..numbers.len()).filter_map(|at| numbers.get(at)).for_each(|v| self.one(&v, element));
+            }
         }
     }
 

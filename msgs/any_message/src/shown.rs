@@ -94,21 +94,13 @@ impl Serialize for List<'_> {
         let shown = self.array.len().min(self.longest);
         let mut list = to.serialize_seq(None)?;
         match self.array {
-            Array::F32(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(&Single(*v)))?,
             Array::F64(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(&Double(*v)))?,
             Array::Message(v) => v[..shown]
                 .iter()
                 .try_for_each(|message| list.serialize_element(&Shown { message, longest: self.longest }))?,
-            Array::Bool(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
-            Array::I8(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
-            Array::U8(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
-            Array::I16(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
-            Array::U16(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
-            Array::I32(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
-            Array::U32(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
-            Array::I64(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
-            Array::U64(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
-            Array::Text(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
+            others => (0..shown).filter_map(|at| others.get(at)).try_for_each(|value| {
+                list.serialize_element(&Part { value: &value, longest: self.longest })
+            })?,
         }
         if shown < self.array.len() {
             list.serialize_element(&left_out(self.array.len() - shown))?;

@@ -100,50 +100,31 @@ pub enum Primitive {
     F64,
 }
 
+/// Each primitive with its name in a message file and its bytes, in the order of the list.
+const PRIMITIVES: [(Primitive, &str, usize); 11] = [
+    (Primitive::Bool, "bool", 1),
+    (Primitive::I8, "int8", 1),
+    (Primitive::U8, "uint8", 1),
+    (Primitive::I16, "int16", 2),
+    (Primitive::U16, "uint16", 2),
+    (Primitive::I32, "int32", 4),
+    (Primitive::U32, "uint32", 4),
+    (Primitive::I64, "int64", 8),
+    (Primitive::U64, "uint64", 8),
+    (Primitive::F32, "float32", 4),
+    (Primitive::F64, "float64", 8),
+];
+
 impl Primitive {
     /// The type of this name in a message file. `char` is `uint8` in ROS 2, and so is `byte`.
     pub(crate) fn by_name(name: &str) -> Option<Self> {
-        Some(match name {
-            "bool" => Self::Bool,
-            "int8" => Self::I8,
-            "uint8" | "byte" | "char" => Self::U8,
-            "int16" => Self::I16,
-            "uint16" => Self::U16,
-            "int32" => Self::I32,
-            "uint32" => Self::U32,
-            "int64" => Self::I64,
-            "uint64" => Self::U64,
-            "float32" => Self::F32,
-            "float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    /// Name in a message file.
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Bool => "bool",
-            Self::I8 => "int8",
-            Self::U8 => "uint8",
-            Self::I16 => "int16",
-            Self::U16 => "uint16",
-            Self::I32 => "int32",
-            Self::U32 => "uint32",
-            Self::I64 => "int64",
-            Self::U64 => "uint64",
-            Self::F32 => "float32",
-            Self::F64 => "float64",
-        }
+        let name = if ["byte", "char"].contains(&name) { "uint8" } else { name };
+        PRIMITIVES.iter().find(|(_, known, _)| *known == name).map(|(primitive, ..)| *primitive)
     }
 
     /// Bytes of a value, which is also its alignment.
     pub const fn size(self) -> usize {
-        match self {
-            Self::Bool | Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
+        PRIMITIVES[self as usize].2
     }
 }
 
@@ -173,7 +154,7 @@ impl fmt::Display for FieldType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let bound = |bound: &Option<u32>| bound.map_or_else(String::new, |n| format!("<={n}"));
         match &self.element {
-            Element::Primitive(primitive) => f.write_str(primitive.name())?,
+            Element::Primitive(primitive) => f.write_str(PRIMITIVES[*primitive as usize].1)?,
             Element::String(most) => write!(f, "string{}", bound(most))?,
             Element::WString(most) => write!(f, "wstring{}", bound(most))?,
             Element::Message(kind) => f.write_str(&kind.name)?,

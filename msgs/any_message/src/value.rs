@@ -65,30 +65,24 @@ impl Message {
     }
 }
 
-/// Runs the same expression for every kind of array.
-macro_rules! for_each_array {
-    ($array:expr, $values:ident => $result:expr) => {
-        match $array {
-            $crate::Array::Bool($values) => $result,
-            $crate::Array::I8($values) => $result,
-            $crate::Array::U8($values) => $result,
-            $crate::Array::I16($values) => $result,
-            $crate::Array::U16($values) => $result,
-            $crate::Array::I32($values) => $result,
-            $crate::Array::U32($values) => $result,
-            $crate::Array::I64($values) => $result,
-            $crate::Array::U64($values) => $result,
-            $crate::Array::F32($values) => $result,
-            $crate::Array::F64($values) => $result,
-            $crate::Array::Text($values) => $result,
-            $crate::Array::Message($values) => $result,
-        }
-    };
-}
 impl Array {
     /// Number of values.
     pub fn len(&self) -> usize {
-        for_each_array!(self, values => values.len())
+        match self {
+            Self::Bool(v) => v.len(),
+            Self::I8(v) => v.len(),
+            Self::U8(v) => v.len(),
+            Self::I16(v) => v.len(),
+            Self::U16(v) => v.len(),
+            Self::I32(v) => v.len(),
+            Self::U32(v) => v.len(),
+            Self::I64(v) => v.len(),
+            Self::U64(v) => v.len(),
+            Self::F32(v) => v.len(),
+            Self::F64(v) => v.len(),
+            Self::Text(v) => v.len(),
+            Self::Message(v) => v.len(),
+        }
     }
 
     /// True if it has no values.

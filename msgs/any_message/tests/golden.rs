@@ -1,6 +1,6 @@
 //! Hand-made bytes of every type, in both byte orders, and the JSON that they mean.
 
-use grainlab_any_message::{DecodeError, Schema, Shown};
+use grainlab_any_message::{Schema, Shown};
 use proptest::prelude::*;
 
 const SCHEMA: &str = "\
@@ -140,45 +140,35 @@ fn a_message_cut_anywhere_is_an_error_that_names_the_field() {
     for length in 0..bytes.len() {
         assert!(schema().decode(&bytes[..length]).is_err(), "{length} bytes");
     }
-    let DecodeError::Truncated { field, .. } = schema().decode(&bytes[..bytes.len() - 32]).unwrap_err()
-    else {
-        panic!("another error")
-    };
-    assert_eq!(field, "inner.pair");
+    let problem = |bytes: &[u8]| schema().decode(bytes).unwrap_err().problem;
+    assert!(problem(&bytes[..bytes.len() - 32]).starts_with("inner.pair at byte"));
     let longer = [&bytes[..], &[0; 4]].concat();
-    assert_eq!(
-        schema().decode(&longer).unwrap_err(),
-        DecodeError::Trailing { type_name: "p/Every".into(), extra: 4 }
-    );
+    assert!(problem(&longer).starts_with("4 bytes follow"));
     assert!(schema().decode(&longer[..longer.len() - 1]).is_ok(), "three bytes of padding are allowed");
-    assert!(matches!(schema().decode(&[0, 3, 0, 0]), Err(DecodeError::Encapsulation { found: [0, 3], .. })));
+    assert!(problem(&[0, 3, 0, 0]).starts_with("encapsulation [00, 03] is not plain CDR"));
 }
 
 #[test]
 fn a_false_length_is_an_error_before_anything_is_reserved() {
     let of = |text: &str, bytes: &[u8]| {
         let whole = [&[0, 1, 0, 0], bytes].concat();
-        Schema::parse("p/msg/A", text).unwrap().decode(&whole).unwrap_err()
+        Schema::parse("p/msg/A", text).unwrap().decode(&whole).unwrap_err().problem
     };
     let claim = u32::MAX.to_le_bytes();
     for text in ["float64[] a", "string a", "wstring a", "string[] a", "builtin_interfaces/Time[] a"] {
-        assert!(matches!(of(text, &claim), DecodeError::Truncated { .. }), "{text}");
+        assert!(of(text, &claim).starts_with("a at byte"), "{text}");
     }
-    assert!(matches!(of("uint8[4000000000] a", &claim), DecodeError::Truncated { .. }));
-    assert!(matches!(
-        of("uint8[<=4] a", &[5, 0, 0, 0, 1, 2, 3, 4, 5]),
-        DecodeError::TooLong { length: 5, .. }
-    ));
-    assert!(matches!(
-        of("string<=2 a", &[4, 0, 0, 0, 65, 66, 67, 0]),
-        DecodeError::TooLong { length: 3, .. }
-    ));
+    assert!(of("uint8[4000000000] a", &claim).starts_with("a at byte"));
+    let long = of("uint8[<=4] a", &[5, 0, 0, 0, 1, 2, 3, 4, 5]);
+    assert_eq!(long, "a has 5 entries, and its type allows at most 4");
+    let long = of("string<=2 a", &[4, 0, 0, 0, 65, 66, 67, 0]);
+    assert_eq!(long, "a has 3 entries, and its type allows at most 2");
     // Sixty levels of messages around one byte, ten thousand times.
     let bar = "=".repeat(80);
     let chain: String = (1..60).map(|n| format!("{bar}\nMSG: p/T{n}\nT{} t\n", n + 1)).collect();
     let deep = format!("T1[] a\n{chain}{bar}\nMSG: p/T60\nbool b\n");
     let bytes = [&10_000u32.to_le_bytes()[..], &[1; 10_000]].concat();
-    assert!(matches!(of(&deep, &bytes), DecodeError::Expands { .. }));
+    assert!(of(&deep, &bytes).contains("more than 256 times"));
 }
 
 proptest! {

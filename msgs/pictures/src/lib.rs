@@ -20,5 +20,5 @@ mod spheres;
 pub use colours::{Colour, MOST_CONTACTS, RAMP, RATTLER, by_coordination, ramp};
 pub use drawn::{Drawn, DrawnContact};
 pub use markers::markers;
-pub use picture::{Picture, PictureError, packing};
+pub use picture::{Picture, packing};
 pub use points::points;

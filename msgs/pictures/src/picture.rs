@@ -4,8 +4,7 @@ use crate::drawn::Drawn;
 use crate::markers::markers;
 use crate::points::points;
 use grainlab_core::Packing;
-use grainlab_msgs::boundary::BoundaryError;
-use grainlab_msgs::{DecodeError, Topic, from_cdr, msg, to_cdr, topics};
+use grainlab_msgs::{Topic, from_cdr, msg, to_cdr, topics};
 
 /// A picture of a packing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -14,17 +13,6 @@ pub enum Picture {
     Points,
     /// Message of [`markers`].
     Markers,
-}
-
-/// Why there is no picture of a message.
-#[derive(Debug, thiserror::Error)]
-pub enum PictureError {
-    /// It is not a message of a packing.
-    #[error(transparent)]
-    Decode(#[from] DecodeError),
-    /// The values are not those of a packing.
-    #[error(transparent)]
-    Refused(#[from] BoundaryError),
 }
 
 impl Picture {
@@ -61,7 +49,7 @@ impl Picture {
 ///
 /// # Errors
 /// If the bytes are not a message of a packing, or its values are not those of a packing.
-pub fn packing(body: &[u8]) -> Result<Packing, PictureError> {
-    let message: msg::Packing = from_cdr(body)?;
-    Ok(Packing::try_from(&message)?)
+pub fn packing(body: &[u8]) -> Result<Packing, String> {
+    let message: msg::Packing = from_cdr(body).map_err(|e| e.to_string())?;
+    Packing::try_from(&message).map_err(|e| e.to_string())
 }

@@ -7,6 +7,7 @@ use crate::std_msgs::Header;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::StrainRatios;
 use grainlab_core::{Mat3, Material, SymTensor, Vec3};
+use std::fmt::Display;
 
 /// Frame of every header.
 const FRAME: &str = "cell";
@@ -18,11 +19,15 @@ pub(super) struct Check(pub(super) &'static str);
 type Checked<T> = Result<T, BoundaryError>;
 
 impl Check {
+    pub(super) fn refused(self, field: &str, found: impl Display, must: impl Display) -> BoundaryError {
+        BoundaryError(format!("{}.{field} = {found} is refused: it must {must}", self.0))
+    }
+
     pub(super) fn that(self, good: bool, field: &str, value: f64, requirement: &'static str) -> Checked<f64> {
         if good {
             return Ok(value);
         }
-        Err(BoundaryError::Value { message: self.0, field: field.to_owned(), value, requirement })
+        Err(self.refused(field, format_args!("{value:?}"), format_args!("be {requirement}")))
     }
 
     pub(super) fn finite(self, field: &str, value: f64) -> Checked<f64> {
@@ -80,8 +85,8 @@ impl Check {
 
     /// The contact law of this name with these parameters.
     pub(super) fn contact_law(self, name: &str, parameters: &[f64]) -> Checked<ContactLaw> {
-        ContactLaw::new(name, parameters)
-            .map_err(|fault| BoundaryError::ContactLaw { message: self.0, fault })
+        let refused = |fault| BoundaryError(format!("{}.contact_law is refused: {fault}", self.0));
+        ContactLaw::new(name, parameters).map_err(refused)
     }
 
     /// The contact law, with an empty name for unknown.
@@ -103,8 +108,9 @@ impl Check {
         self.that(is_known || stddev == 0.0, field, stddev, "0 where the quantity is not known")
     }
 
+    /// A code that is not one of the constants of the message.
     pub(super) fn code(self, field: &str, value: u8, allowed: &'static str) -> BoundaryError {
-        BoundaryError::Code { message: self.0, field: field.to_owned(), value, allowed }
+        self.refused(field, value, format_args!("be one of {allowed}"))
     }
 
     pub(super) fn length(
@@ -117,7 +123,10 @@ impl Check {
         if found == expected {
             return Ok(());
         }
-        Err(BoundaryError::Length { message: self.0, field: field.to_owned(), found, expected, reason })
+        let message = self.0;
+        Err(BoundaryError(format!(
+            "{message}.{field} has {found} entries and is refused: it must have {expected} ({reason})"
+        )))
     }
 
     pub(super) fn header(self, header: &Header) -> Checked<()> {
@@ -219,8 +228,7 @@ impl Check {
         allowed: &[&'static str],
         listed: &'static str,
     ) -> Checked<&'static str> {
-        let refused =
-            || BoundaryError::Word { message: self.0, field, value: word.to_owned(), allowed: listed };
+        let refused = || self.refused(field, format_args!("{word:?}"), format_args!("be one of {listed}"));
         allowed.iter().find(|w| **w == word).copied().ok_or_else(refused)
     }
 }

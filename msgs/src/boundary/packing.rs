@@ -56,13 +56,9 @@ impl TryFrom<&msg::Packing> for Packing {
         CHECK.all_finite("cell", &m.cell)?;
         let matrix = Mat3::from_row_slice(&m.cell);
         let Some(cell) = Cell::new(matrix) else {
-            let volume = matrix.determinant();
-            return Err(BoundaryError::Value {
-                message: "Packing",
-                field: "cell (volume)".to_owned(),
-                value: volume,
-                requirement: "the volume of a right-handed cell, finite and more than 0",
-            });
+            let (volume, must) =
+                (matrix.determinant(), "be the volume of a right-handed cell, finite and more than 0");
+            return Err(CHECK.refused("cell (volume)", format_args!("{volume:?}"), must));
         };
         let law = CHECK.contact_law(&m.contact_law, &m.contact_law_parameters)?;
         let packing = Packing {

@@ -1,6 +1,6 @@
 use super::refuses;
 use grainlab_core::results::InferredQuantity;
-use grainlab_msgs::boundary::{DATA, Interval, MicrostructureReading, ModelResult, Quantities};
+use grainlab_msgs::boundary::{DATA, Interval, ModelResult, Quantities};
 use grainlab_msgs::msg::{Estimate, Microstructure};
 use grainlab_msgs::{from_cdr, to_cdr};
 
@@ -44,7 +44,7 @@ fn message(estimates: Vec<Estimate>) -> Microstructure {
 
 fn read(estimate: Estimate) -> ModelResult {
     let received: Microstructure = from_cdr(&to_cdr(&message(vec![estimate]))).unwrap();
-    MicrostructureReading::try_from(&received).unwrap().estimates.remove(0)
+    received.results().unwrap().remove(0)
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn each_quantity_is_read_from_its_own_field() {
         let expected: Vec<Option<f64>> = (0..5).map(|j| (j == i).then_some(0.5)).collect();
         assert_eq!(read(e.clone()).values.0.to_vec(), expected);
         field(&mut e)[0] = NAN;
-        let refused = MicrostructureReading::try_from(&message(vec![e])).unwrap_err().to_string();
+        let refused = message(vec![e]).results().unwrap_err().to_string();
         assert_eq!(
             refused,
             format!("Estimate.{} = NaN is refused: it must be finite", InferredQuantity::ALL[i].name())
@@ -167,6 +167,6 @@ fn each_fault_of_an_estimate_is_refused_by_name() {
                 "Estimate.sum of information[39..52] = 1.5 is refused: it must be 1",
             ),
         ],
-        |m| MicrostructureReading::try_from(m),
+        |m| m.results(),
     );
 }

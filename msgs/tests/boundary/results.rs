@@ -8,7 +8,7 @@ use grainlab_core::stress::Stress;
 use grainlab_core::{
     Mat3, Material, Stiffness, SymTensor, Symmetry, TransverseIsotropy, Vec3, min_contacts, symmetry,
 };
-use grainlab_msgs::boundary::{ModuliReading, RunStateReading, RunStatus, packing_report_message};
+use grainlab_msgs::boundary::{ModuliReading, packing_report_message};
 use grainlab_msgs::msg;
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{from_cdr, stamp, to_cdr};
@@ -312,10 +312,9 @@ fn each_fault_of_a_report_is_refused_by_name() {
 fn a_run_state_is_read_and_its_faults_are_refused_by_name() {
     let good =
         msg::RunState { state: msg::RunState::FINISHED, progress: 1.0, step: 9, ..msg::RunState::default() };
-    let reading = RunStateReading::try_from(&good).unwrap();
-    assert_eq!((reading.status, reading.step, reading.last_packing_step), (RunStatus::Finished, 9, None));
+    assert_eq!((good.checked().unwrap(), good.last_packing()), (&good, None));
     let with_packing = msg::RunState { packings: 2, last_packing_step: 8, ..good.clone() };
-    assert_eq!(RunStateReading::try_from(&with_packing).unwrap().last_packing_step, Some(8));
+    assert_eq!(with_packing.last_packing(), Some(8));
     refuses(
         &good,
         &[
@@ -323,6 +322,6 @@ fn a_run_state_is_read_and_its_faults_are_refused_by_name() {
             (|m| m.progress = 1.5, "RunState.progress = 1.5 is refused: it must be between 0 and 1"),
             (|m| m.progress = NAN, "RunState.progress = NaN is refused"),
         ],
-        |m| RunStateReading::try_from(m),
+        |m| m.checked().cloned(),
     );
 }

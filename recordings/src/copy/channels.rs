@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use grainlab_any_message::Schema;
+use grainlab_console::Failure;
 
-use super::error::CopyError;
 use super::options::Select;
 use crate::reader::{ChannelInfo, Recording};
 
@@ -23,7 +23,7 @@ pub(super) struct Channels {
 
 impl Channels {
     /// The wanted channels of all recordings.
-    pub(super) fn of(recordings: &[Recording], select: &Select<'_>) -> Result<Self, CopyError> {
+    pub(super) fn of(recordings: &[Recording], select: &Select<'_>) -> Result<Self, Failure> {
         let mut all = Self::default();
         for recording in recordings {
             for channel in recording.all_channels().filter(|c| (select.topic)(c)) {
@@ -39,7 +39,7 @@ impl Channels {
         known.iter().map(|(place, _)| *place).find(|place| same_messages(&self.list[*place], channel))
     }
 
-    fn add(&mut self, recording: &Recording, channel: &Arc<ChannelInfo>) -> Result<(), CopyError> {
+    fn add(&mut self, recording: &Recording, channel: &Arc<ChannelInfo>) -> Result<(), Failure> {
         let path = recording.path();
         if let Some(place) = self.place(channel) {
             let kept = &self.list[place];
@@ -52,13 +52,15 @@ impl Channels {
         }
         let known = self.by_topic.entry(channel.topic.clone()).or_default();
         if let Some((place, first)) = known.iter().find(|(_, from)| from != path) {
-            return Err(CopyError::Clash {
-                topic: channel.topic.clone(),
-                first: first.clone(),
-                first_type: self.list[*place].ros_type.clone(),
-                second: path.to_owned(),
-                second_type: channel.ros_type.clone(),
-            });
+            return Err(Failure::usage(format!(
+                "{} is {} in {} and {}, with other fields, in {}: readers such as rosbags take one definition for a type and \
+                 would misread the other messages. Leave the topic out with --exclude, or merge the recordings that agree",
+                channel.topic,
+                self.list[*place].ros_type,
+                first.display(),
+                channel.ros_type,
+                path.display()
+            )));
         }
         known.push((self.list.len(), path.to_owned()));
         self.list.push(channel.clone());

@@ -8,12 +8,13 @@ use std::path::{Path, PathBuf};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapError};
 
-use super::error::CopyError;
 use super::options::CopyOptions;
 use crate::bag_metadata::{BagMetadata, TopicCount};
+use crate::failures::{cannot, reason};
 use crate::new_path::NewPath;
 use crate::reader::{ChannelInfo, FileCount, StoredFile};
 use crate::writer::TopicSpec;
+use grainlab_console::Failure;
 
 /// Bytes collected before they are passed to the system.
 const BUFFER: usize = 1 << 20;
@@ -35,8 +36,8 @@ pub(super) struct Output {
 
 impl Output {
     /// Begins `path`: one file if its name ends with `.mcap`, else a directory.
-    pub(super) fn begin(path: &Path, profile: &str, options: &CopyOptions) -> Result<Self, CopyError> {
-        let io = |action| CopyError::io(path, action);
+    pub(super) fn begin(path: &Path, profile: &str, options: &CopyOptions) -> Result<Self, Failure> {
+        let io = |action| cannot::<io::Error>(path, action);
         let new = NewPath::begin(path).map_err(|e| exists_or(path, "begin the output", e))?;
         let is_directory = path.extension().is_none_or(|e| e != "mcap");
         let file = if is_directory {
@@ -60,7 +61,7 @@ impl Output {
         };
         let opened = File::create_new(&output.file).map_err(io("create the file"))?;
         let mcap = options.writer(profile).create(BufWriter::with_capacity(BUFFER, opened));
-        output.mcap = Some(mcap.map_err(|e| CopyError::mcap(path, "write the header", e))?);
+        output.mcap = Some(mcap.map_err(|e| cannot(path, "write the header")(reason(e)))?);
         Ok(output)
     }
 
@@ -68,16 +69,16 @@ impl Output {
         &mut self,
         action: &'static str,
         run: impl FnOnce(&mut mcap::Writer<BufWriter<File>>) -> Result<T, McapError>,
-    ) -> Result<T, CopyError> {
+    ) -> Result<T, Failure> {
         let outcome = match self.mcap.as_mut() {
             Some(mcap) => run(mcap),
             None => Err(McapError::AttemptedWriteAfterFailure),
         };
-        outcome.map_err(|e| CopyError::mcap(&self.path, action, e))
+        outcome.map_err(|e| cannot(&self.path, action)(reason(e)))
     }
 
     /// Declares the next channel.
-    pub(super) fn declare(&mut self, channel: &ChannelInfo) -> Result<(), CopyError> {
+    pub(super) fn declare(&mut self, channel: &ChannelInfo) -> Result<(), Failure> {
         let id = self.with("declare a topic", |mcap| {
             let schema = match channel.ros_type.is_empty() && channel.schema.is_empty() {
                 true => 0,
@@ -100,7 +101,7 @@ impl Output {
         log_time: u64,
         publish_time: u64,
         payload: &[u8],
-    ) -> Result<(), CopyError> {
+    ) -> Result<(), Failure> {
         let header = MessageHeader { channel_id: self.channels[place].0, sequence, log_time, publish_time };
         self.with("write a message", |mcap| mcap.write_to_known_channel(&header, payload))?;
         self.counts[place] += 1;
@@ -109,7 +110,7 @@ impl Output {
         Ok(())
     }
 
-    pub(super) fn store(&mut self, file: &StoredFile) -> Result<(), CopyError> {
+    pub(super) fn store(&mut self, file: &StoredFile) -> Result<(), Failure> {
         let attachment = Attachment {
             log_time: file.time,
             create_time: file.time,
@@ -120,14 +121,14 @@ impl Output {
         self.with("store a file", |mcap| mcap.attach(&attachment))
     }
 
-    pub(super) fn metadata(&mut self, metadata: &Metadata) -> Result<(), CopyError> {
+    pub(super) fn metadata(&mut self, metadata: &Metadata) -> Result<(), Failure> {
         self.with("write the metadata", |mcap| mcap.write_metadata(metadata))
     }
 
     /// Completes the output and gives it its name. Returns its size, bytes.
-    pub(super) fn finish(mut self) -> Result<u64, CopyError> {
+    pub(super) fn finish(mut self) -> Result<u64, Failure> {
         let path = self.path.clone();
-        let io = |action| CopyError::io(&path, action);
+        let io = |action| cannot::<io::Error>(&path, action);
         self.with("write the index", |mcap| mcap.finish().map(drop))?;
         if let Some(mcap) = self.mcap.take() {
             let file = mcap.into_inner().into_inner();
@@ -150,9 +151,12 @@ impl Output {
     }
 }
 
-fn exists_or(path: &Path, action: &'static str, source: io::Error) -> CopyError {
+fn exists_or(path: &Path, action: &str, source: io::Error) -> Failure {
     match source.kind() {
-        io::ErrorKind::AlreadyExists => CopyError::Exists { path: path.to_owned() },
-        _ => CopyError::io(path, action)(source),
+        io::ErrorKind::AlreadyExists => {
+            let path = path.display();
+            Failure::usage(format!("{path} exists: choose another output; nothing is overwritten"))
+        }
+        _ => cannot(path, action)(source),
     }
 }

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use grainlab_console::Failure;
 use grainlab_msgs::{Message as _, Topic, msg};
 use grainlab_pictures::{Drawn, Picture, packing};
 
 use super::channels::Channels;
-use super::error::CopyError;
 use crate::reader::{ChannelInfo, Message, StoredDefinition};
 use crate::writer::TopicSpec;
 
@@ -26,7 +26,7 @@ pub(super) struct Pictures {
 
 impl Pictures {
     /// Those of all topics with packings.
-    pub(super) fn of(copied: &Channels) -> Result<Self, CopyError> {
+    pub(super) fn of(copied: &Channels) -> Result<Self, Failure> {
         let mut all = Self::default();
         for (place, channel) in copied.list.iter().enumerate() {
             if channel.ros_type != msg::Packing::TYPE || channel.message_encoding != "cdr" {
@@ -36,19 +36,25 @@ impl Pictures {
             for picture in Picture::ALL {
                 let topic = picture.beside(&channel.topic);
                 if copied.list.iter().any(|c| c.topic == topic) {
-                    return Err(CopyError::Pictured { topic });
+                    return Err(Failure::usage(format!(
+                        "there is a topic {topic} already: leave it out with --exclude {topic}"
+                    )));
                 }
                 all.channels.push(Arc::new(described(picture.topic(), &topic)));
             }
         }
-        if all.places.is_empty() { Err(CopyError::NoPackings) } else { Ok(all) }
+        if all.places.is_empty() {
+            let none = "there is no topic of type grainlab_msgs/msg/Packing of which pictures could be made";
+            return Err(Failure::usage(none));
+        }
+        Ok(all)
     }
 
     /// The place and the bytes of each picture of a message of the channel at `place`: none if it has no packing, or the
     /// packing is not valid, which is noted.
     pub(super) fn made(&mut self, place: usize, message: &Message) -> Vec<(usize, Vec<u8>)> {
         let Some(first) = self.places.get(&place) else { return Vec::new() };
-        match message.own_bytes().and_then(|bytes| packing(&bytes).map_err(|e| e.to_string())) {
+        match message.own_bytes().and_then(|bytes| packing(&bytes)) {
             Ok(packing) => {
                 let drawn = Drawn::new(&packing);
                 Picture::ALL.iter().enumerate().map(|(n, p)| (first + n, p.encoded(&drawn))).collect()

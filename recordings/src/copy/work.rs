@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use grainlab_console::Failure;
 use serde::Serialize;
 
 use super::channels::Channels;
-use super::error::CopyError;
 use super::extras::Extras;
 use super::options::{CopyOptions, Select};
 use super::output::Output;
@@ -45,7 +45,7 @@ pub fn copy(
     select: &Select<'_>,
     to: &Path,
     options: &CopyOptions,
-) -> Result<Copied, CopyError> {
+) -> Result<Copied, Failure> {
     let channels = Channels::of(recordings, select)?;
     let extras = Extras::of(recordings, &options.operation);
     let mut pictures = if options.pictures { Pictures::of(&channels)? } else { Pictures::default() };
@@ -103,7 +103,7 @@ fn write(
     place: usize,
     log_time: u64,
     message: &Message,
-) -> Result<u64, CopyError> {
+) -> Result<u64, Failure> {
     let (sequence, publish_time) = (message.sequence, message.publish_time);
     output.message(place, sequence, log_time, publish_time, &message.payload)?;
     let made = pictures.made(place, message);

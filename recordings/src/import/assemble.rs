@@ -199,17 +199,13 @@ pub(super) fn packing(
     mut notes: Vec<String>,
 ) -> Result<Imported, ImportError> {
     if grains.ids.is_empty() {
-        return Err(ImportError::Empty);
+        return Err(ImportError::empty());
     }
     let mut index = BTreeMap::new();
     for (k, id) in grains.ids.iter().enumerate() {
         if let Some(first) = index.insert(*id, k) {
             let [before, line] = [first, k].map(|k| grains.lines[k]);
-            return Err(ImportError::DuplicateId {
-                id: *id,
-                line: line.max(before),
-                before: line.min(before),
-            });
+            return Err(ImportError::twice(*id, line.max(before), line.min(before)));
         }
     }
     let printed = grains.digits;
@@ -281,7 +277,7 @@ fn listed_contact(
     index: &BTreeMap<u32, usize>,
     c: &ListedContact,
 ) -> Result<Contact, ImportError> {
-    let find = |id: u32| index.get(&id).copied().ok_or(ImportError::UnknownId { line: c.line, id });
+    let find = |id: u32| index.get(&id).copied().ok_or_else(|| ImportError::unknown_id(c.line, id));
     let (first, second) = (find(c.ids.0)?, find(c.ids.1)?);
     // The first grain of the file becomes i unless its index is the larger one; then all signs change.
     let swapped = first > second;
@@ -307,13 +303,12 @@ fn listed_contact(
         return Err(SearchError::Coincident(c.ids.0 as usize, c.ids.1 as usize).into());
     }
     let measured = branch / distance;
-    let contradiction = |quantity, given, found| ImportError::Contradiction {
-        line: c.line,
-        i: c.ids.0,
-        j: c.ids.1,
-        quantity,
-        given,
-        found,
+    let contradiction = |quantity: &str, given: f64, found: f64| {
+        let (i, j) = c.ids;
+        let why =
+            "positions, cell and contacts are not of the same state, or have too few digits (17 are needed)";
+        let what = format!("{quantity} of the contact of grains {i} and {j} is {given:e}");
+        ImportError::line(c.line, format_args!("{what}, but positions give {found:e}: {why}"))
     };
     // Rounding of 17 digits: a few units in the last place of the coordinates.
     let rounding =

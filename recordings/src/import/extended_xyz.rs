@@ -54,7 +54,7 @@ pub fn each(
             break;
         }
     }
-    if any { Ok(()) } else { Err(ImportError::Empty) }
+    if any { Ok(()) } else { Err(ImportError::empty()) }
 }
 
 /// The comment of a frame.

@@ -61,6 +61,10 @@ pub(super) fn check(
     let skew = |part: &str, count: usize, columns: &[&str]| {
         (count > 0).then(|| format!("{part} ({}) in {count} of {} contacts", columns.join(" "), known.len()))
     };
+    let refused = |problem: &str| {
+        let likely = likely(&known[..known.len().min(SAMPLE)], names, columns);
+        ImportError::Invalid(format!("contact forces: {problem}; {likely}"))
+    };
     if columns.len() < 8 {
         // The whole force need not be along the line, but it presses the grains apart.
         let pulling = known.iter().filter(|(r, d)| r.normal.dot(d) <= 0.0).count();
@@ -68,8 +72,7 @@ pub(super) fn check(
             return Ok(());
         }
         let problem = skew("the force does not press the grains apart", pulling, &columns[2..5]);
-        let likely = likely(&known[..known.len().min(SAMPLE)], names, columns);
-        return Err(ImportError::Columns { problem: problem.unwrap_or_default(), likely });
+        return Err(refused(&problem.unwrap_or_default()));
     }
     let off = known.iter().filter(|(r, d)| !is_along(&r.normal, d)).count();
     let whole = |r: &Row<'_>| r.normal.norm() + r.tangential.norm();
@@ -84,8 +87,7 @@ pub(super) fn check(
     if faults.is_empty() {
         return Ok(());
     }
-    let likely = likely(&known[..known.len().min(SAMPLE)], names, columns);
-    Err(ImportError::Columns { problem: faults.join(", and "), likely })
+    Err(refused(&faults.join(", and ")))
 }
 
 /// The columns that fit: three in a row along the line between the centres, and three in a row across it that are no part of

@@ -161,7 +161,7 @@ impl DataFile {
         let (v, w) = (line.vector("velocity", [vx, vy, vz])?, line.vector("angular velocity", [wx, wy, wz])?);
         let id = line.id("id", id)?;
         match self.motion.insert(id, (line.number, v, w)) {
-            Some((before, ..)) => Err(ImportError::DuplicateId { id, line: line.number, before }),
+            Some((before, ..)) => Err(ImportError::twice(id, line.number, before)),
             None => Ok(()),
         }
     }
@@ -178,21 +178,21 @@ impl DataFile {
                 None if moving > 0 => {
                     let problem =
                         format!("{moving} velocities, but none of grain {id}: the file is incomplete");
-                    return Err(ImportError::Syntax { line: self.grains.lines[k], problem });
+                    return Err(ImportError::line(self.grains.lines[k], problem));
                 }
                 None => {}
             }
         }
         if let Some((id, (line, ..))) = self.motion.pop_first() {
-            return Err(ImportError::UnknownId { line, id });
+            return Err(ImportError::unknown_id(line, id));
         }
         let found = self.grains.ids.len();
         if let Some(expected) = self.expected.filter(|n| *n != found) {
-            return Err(ImportError::Count { what: "atoms", stated: expected, found });
+            return Err(ImportError::count("atoms", expected, found));
         }
         if self.edges.iter().any(Option::is_some) && self.bounds.iter().any(Option::is_some) {
             let problem = "the header has a box twice: xlo xhi and avec".to_owned();
-            return Err(ImportError::Syntax { line: 1, problem });
+            return Err(ImportError::line(1, problem));
         }
         let cell: Option<Mat3> = match (self.edges, self.bounds) {
             ([Some(a), Some(b), Some(c)], _) => Some(Mat3::from_columns(&[a, b, c])),

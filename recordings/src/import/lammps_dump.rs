@@ -59,7 +59,7 @@ pub fn each(
             break;
         }
     }
-    if number == 0 { Err(ImportError::Empty) } else { Ok(()) }
+    if number == 0 { Err(ImportError::empty()) } else { Ok(()) }
 }
 
 /// Forms of a position may differ by this fraction of the cell: numbers of six digits do.

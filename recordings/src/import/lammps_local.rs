@@ -119,9 +119,12 @@ pub(super) fn contacts<'a>(text: &'a str, chosen: &[String], step: u64) -> Resul
         }
     }
     match (last, entries) {
-        (None, _) => Err(ImportError::Empty),
+        (None, _) => Err(ImportError::empty()),
         _ if !steps.is_empty() && !steps.contains(&step) => {
-            Err(ImportError::OtherStep { forces: steps, grains: step })
+            let (some, both) = (some(&steps), "dump both at the same step");
+            Err(ImportError::Invalid(format!(
+                "the contact forces are of step {some} and the grains of step {step}: {both}"
+            )))
         }
         (Some(line), _) if frames == 0 => Err(line.error(NEEDED)),
         (Some(line), Some(entries)) if entries != rows => {
@@ -155,7 +158,13 @@ impl Local<'_> {
             |c: &grainlab_core::Contact| c.tangential_force.norm() <= CENTRAL * c.normal_force.abs();
         let lacking = !self.tangential && packing.friction > 0.0 && packing.contacts.iter().all(central);
         if lacking && !packing.contacts.is_empty() {
-            return Err(ImportError::NoTangentialForces { friction: packing.friction });
+            return Err(ImportError::Invalid(format!(
+                "contact forces all point along their contacts, with a friction of {}: for granular pair styles LAMMPS gives \
+                 the normal force alone as fx fy fz. Add the tangential force, p1 p2 p3: compute pl all property/local patom1 \
+                 patom2, compute pf all pair/local dist fx fy fz p1 p2 p3, dump forces all local 1 forces.dump c_pl[*] c_pf[*], \
+                 dump_modify forces format float %.17g; or give --friction 0 if there is none",
+                packing.friction
+            )));
         }
         Ok(())
     }
@@ -203,4 +212,14 @@ fn find(names: &[&str], chosen: &[String]) -> Result<Vec<usize>, String> {
         }
     }
     Err(NEEDED.to_owned())
+}
+
+/// The steps, or the first and the last of many.
+fn some(steps: &[u64]) -> String {
+    match steps {
+        [first, second, .., last] if steps.len() > 6 => {
+            format!("{first}, {second}, ... {last} ({} frames)", steps.len())
+        }
+        _ => steps.iter().map(u64::to_string).collect::<Vec<_>>().join(", "),
+    }
 }

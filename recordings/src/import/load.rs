@@ -72,14 +72,14 @@ pub fn each(
     }
     if starts_with(path, vtkhdf::MAGIC) {
         if options.contact_forces.is_some() {
-            return Err(inside(ImportError::ForcesBeside));
+            return Err(inside(ImportError::forces_beside()));
         }
         return hdf(path, options, take).map_err(inside);
     }
     let text = text(path)?;
     match format(&extension, &stem, &text).map_err(inside)? {
         Format::Csv | Format::Xyz | Format::Yade if options.contact_forces.is_some() => {
-            Err(ImportError::ForcesBeside)
+            Err(ImportError::forces_beside())
         }
         Format::Csv => {
             let sidecar = path.with_file_name(format!("{stem}.json"));
@@ -121,7 +121,7 @@ fn stem_and_extension(path: &Path) -> (String, String) {
 /// The format of a text, from its first lines or else from its name.
 fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError> {
     let mut full = lines(text).filter(|l| !l.text.trim().is_empty());
-    let first = full.next().ok_or(ImportError::Empty)?;
+    let first = full.next().ok_or_else(ImportError::empty)?;
     let begins = |prefix: &str| first.text.trim_start().starts_with(prefix);
     let unsupported = |what: &str, reason| Err(ImportError::unsupported(first.number, what, reason));
     if begins("# vtk DataFile") {
@@ -151,13 +151,16 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
     } else if begins("LAMMPS") || text.lines().take(HEADER).any(atoms) {
         Ok(Format::Data)
     } else {
-        by_name(extension, stem)
-            .ok_or_else(|| ImportError::UnknownFormat { line: first.number, first: shown(first.text.trim()) })
+        by_name(extension, stem).ok_or_else(|| {
+            ImportError::Invalid(format!("line {}, {}, {UNKNOWN}", first.number, shown(first.text.trim())))
+        })
     }
 }
 
 const FROM_YADE: &str =
     "from YADE, export with textExt, or with the script of `grainlab analyze --yade-script`";
+
+const UNKNOWN: &str = "has an unknown format: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor extended XYZ (N, then Properties=...), nor a YADE export (#format ...), each also as .gz, nor VTKHDF, nor a recording (.mcap or its directory)";
 
 /// Number of first lines that must contain the number of atoms of a LAMMPS data file; its first line is
 /// arbitrary.

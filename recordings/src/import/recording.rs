@@ -25,7 +25,11 @@ pub fn each(
 ) -> Result<(), ImportError> {
     let given = options.flags_given();
     if !given.is_empty() {
-        return Err(ImportError::HasItsOwn(given));
+        return Err(ImportError::Given(format!(
+            "a recording has its own cell, grains, material, friction and forces: leave out {}, or export the packing with \
+             `grainlab bag export` and analyze the file",
+            given.join(", ")
+        )));
     }
     let channels = recording.channels();
     let mut of_packings = channels.iter().filter(|c| c.ros_type == msg::Packing::TYPE);
@@ -54,7 +58,7 @@ pub fn each(
             break;
         }
     }
-    if any { Ok(()) } else { Err(ImportError::Empty) }
+    if any { Ok(()) } else { Err(ImportError::empty()) }
 }
 
 /// The sign in the packings of a topic that they are of several runs.
@@ -69,10 +73,9 @@ fn several_runs(recording: &Recording, topic: &str) -> Result<Option<RunSign>, R
 /// # Errors
 /// If the message does not decode, or its packing is invalid.
 pub fn packing(message: &Message) -> Result<Imported, ImportError> {
-    let fail = |problem: String| ImportError::Message {
-        topic: message.channel.topic.clone(),
-        sequence: message.sequence,
-        problem,
+    let fail = |problem: String| {
+        let (topic, sequence) = (&message.channel.topic, message.sequence);
+        ImportError::Invalid(format!("message {sequence} on {topic}: {problem}"))
     };
     let decoded: msg::Packing = message.decoded().map_err(fail)?;
     let packing = Packing::try_from(&decoded).map_err(|e| fail(e.to_string()))?;

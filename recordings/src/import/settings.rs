@@ -109,8 +109,11 @@ impl Known {
             missing.sort();
             return Err(ImportError::Missing(missing));
         };
-        let rows = std::array::from_fn(|k| matrix[(k / 3, k % 3)]);
-        let cell = Cell::new(matrix).ok_or(ImportError::Cell(rows))?;
+        let cell = Cell::new(matrix).ok_or_else(|| {
+            let rows = matrix.transpose();
+            let form = "row-major, columns are the edge vectors, m";
+            ImportError::Given(format!("the cell {:?} ({form}) has no positive volume", rows.as_slice()))
+        })?;
         let material = Material { shear_modulus, poisson_ratio, density };
         let cells = |m: Mat3| format!("{:?}", m.transpose().as_slice());
         let notes = [

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use grainlab_console::Failure;
 use grainlab_core::{Contact, Packing};
 use grainlab_scene::{Draft, StartFile, StartPath};
 
@@ -25,54 +26,15 @@ pub struct Start {
     pub notes: Vec<String>,
 }
 
-/// Why a scene cannot start from its packing.
-#[derive(Debug, thiserror::Error)]
-pub enum StartError {
-    /// A file cannot be read.
-    #[error("start.{key}: {source}")]
-    File {
-        /// The key of `[start]` that names it.
-        key: &'static str,
-        /// Reason of the failure.
-        source: Box<ImportError>,
-    },
-    /// The file lacks data that the scene has to give.
-    #[error(
-        "start.packing: {0}; name shear_modulus, poisson_ratio and density under [material], and the friction of the first phase"
-    )]
-    Lacks(Box<ImportError>),
-    /// The file has no packing of the step.
-    #[error("start.step: {path} has no packing of step {step}")]
-    NoStep {
-        /// Path of the file.
-        path: PathBuf,
-        /// The step asked for.
-        step: u64,
-    },
-    /// The step is that of several packings.
-    #[error(
-        "start.step: {path} has several different packings of step {step}: it is of several runs. Name the file of one of them"
-    )]
-    Ambiguous {
-        /// Path of the file.
-        path: PathBuf,
-        /// The step asked for.
-        step: u64,
-    },
-    /// The last packing depends on the run.
-    #[error("start.packing: {0}; or name the packing by start.step, if only one run has it")]
-    SeveralRuns(SeveralRuns),
-}
-
 /// Reads the packing named by `file`: that of its step, or the last one. Data that the file lacks are taken from the scene.
 ///
 /// # Errors
-/// See [`StartError`].
-pub fn start(draft: &Draft, file: &StartFile) -> Result<Start, StartError> {
+/// If a file cannot be read, lacks data that the scene has to give, or has no packing, or several, of the step.
+pub fn start(draft: &Draft, file: &StartFile) -> Result<Start, Failure> {
     let path = whole("packing", &file.packing)?;
     let contact_forces =
         file.contact_forces.as_ref().map(|forces| whole("contact_forces", forces)).transpose()?;
-    let failed = |key| move |source: ImportError| StartError::File { key, source: Box::new(source) };
+    let failed = |key| move |error: ImportError| Failure::failed(format!("start.{key}: {error}"));
     let given = ImportOptions {
         contact_forces: contact_forces.as_deref().map(text).transpose().map_err(failed("contact_forces"))?,
         contact_columns: file.contact_columns.clone(),
@@ -86,32 +48,45 @@ pub fn start(draft: &Draft, file: &StartFile) -> Result<Start, StartError> {
         found => found,
     };
     let (found, sign) = found.map_err(|e| match missing(&e) {
-        Some(_) => StartError::Lacks(Box::new(e)),
+        Some(_) => Failure::usage(format!(
+            "start.packing: {e}; name shear_modulus, poisson_ratio and density under [material], and the friction of the \
+             first phase"
+        )),
         None => failed("packing")(e),
     })?;
     let Imported { packing, step, mut notes, .. } = match (found, file.step) {
         (Picked::One(found), Some(_)) => *found,
         (Picked::One(found), None) => {
             if let Some(sign) = several_runs(&path, sign) {
-                return Err(StartError::SeveralRuns(SeveralRuns { path, sign }));
+                let several = SeveralRuns { path, sign };
+                return Err(Failure::usage(format!(
+                    "start.packing: {several}; or name the packing by start.step, if only one run has it"
+                )));
             }
             *found
         }
         (Picked::Several, step) => {
-            return Err(StartError::Ambiguous { path, step: step.unwrap_or_default() });
+            return Err(Failure::usage(format!(
+                "start.step: {} has several different packings of step {}: it is of several runs. Name the file of one of them",
+                path.display(),
+                step.unwrap_or_default()
+            )));
         }
-        (Picked::None, step) => return Err(StartError::NoStep { path, step: step.unwrap_or_default() }),
+        (Picked::None, step) => {
+            let (path, step) = (path.display(), step.unwrap_or_default());
+            return Err(Failure::usage(format!("start.step: {path} has no packing of step {step}")));
+        }
     };
     notes.extend(draft.first_friction().and_then(|friction| cut(&packing, friction)));
     Ok(Start { packing, path, contact_forces, step, notes })
 }
 
 /// The whole path of a file named under a key of `[start]`.
-fn whole(key: &'static str, file: &StartPath) -> Result<PathBuf, StartError> {
+fn whole(key: &'static str, file: &StartPath) -> Result<PathBuf, Failure> {
     let folder = file.from.as_deref().map(Path::new).and_then(Path::parent).unwrap_or(Path::new(""));
     let path = folder.join(&file.path);
-    path.canonicalize()
-        .map_err(|source| StartError::File { key, source: Box::new(ImportError::Io { path, source }) })
+    let failed = |e| Failure::failed(format!("start.{key}: {}: {e}", path.display()));
+    path.canonicalize().map_err(failed)
 }
 
 /// Packings of a step in a file.

@@ -12,8 +12,8 @@ pub(super) struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    pub(super) fn error(&self, problem: impl Into<String>) -> ImportError {
-        ImportError::Syntax { line: self.number, problem: problem.into() }
+    pub(super) fn error(&self, problem: impl std::fmt::Display) -> ImportError {
+        ImportError::line(self.number, problem)
     }
 
     pub(super) fn words(&self) -> Vec<&'a str> {

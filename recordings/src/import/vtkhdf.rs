@@ -69,7 +69,7 @@ pub fn packing(
 struct Data(File);
 
 fn damaged(problem: impl std::fmt::Display) -> ImportError {
-    ImportError::Hdf(problem.to_string())
+    ImportError::Invalid(format!("HDF5: {problem}"))
 }
 
 impl Data {
@@ -197,7 +197,7 @@ impl Data {
         let count = points.len() / 3;
         let stated = self.numbers::<i64>("NumberOfPoints")?.map(|n| n.iter().sum::<i64>());
         if let Some(stated) = stated.and_then(|n| usize::try_from(n).ok()).filter(|n| *n != count) {
-            return Err(ImportError::Count { what: "grains", stated, found: count });
+            return Err(ImportError::count("grains", stated, count));
         }
         if let Some(radii) = radii.as_ref().filter(|radii| radii.len() != count) {
             return Err(damaged(format!("{} radii for {count} points", radii.len())));

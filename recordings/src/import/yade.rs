@@ -29,7 +29,7 @@ pub const EXPORTER: &str = include_str!("yade/grainlab_export.py");
 /// If the text is invalid or of another format, or settings are missing.
 pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportError> {
     let mut lines = lines(text).filter(|l| !l.text.trim().is_empty());
-    let first = lines.next().ok_or(ImportError::Empty)?;
+    let first = lines.next().ok_or_else(ImportError::empty)?;
     let Some(name) = first.text.trim().strip_prefix("#format").map(str::trim) else {
         return Err(first.error(format!("#format … expected, found {}", shown(first.text))));
     };

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
+use grainlab_console::Failure;
 use serde::Serialize;
 
 /// Why a recording cannot be read at all.
@@ -41,6 +42,15 @@ pub enum ReadError {
         /// The existing topics.
         known: String,
     },
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::NoSuchTopic { .. } => Self::usage(error),
+            other => Self::failed(other),
+        }
+    }
 }
 
 /// A part that could not be read, or that contradicts another; the rest of the recording is used.

@@ -12,16 +12,15 @@ use memmap2::Mmap;
 
 use crate::input;
 
-use super::bytes::Bytes;
 use super::error::{ReadError, Warning, WarningKind};
 use super::held::Content;
 use super::index::{Block, Entry, Index, loose_blocks};
 use super::records::Records;
 use super::stored_file::{FileCount, StoredFile};
 
-pub(super) struct OpenFile {
+pub(crate) struct OpenFile {
     pub(super) path: PathBuf,
-    bytes: Arc<Bytes>,
+    bytes: Arc<Mmap>,
     pub(super) index: Index,
     /// Blocks of a file without chunks, once they were needed.
     loose: OnceLock<Vec<Block>>,
@@ -42,31 +41,16 @@ impl OpenFile {
         }
         // SAFETY: the mapping is read-only; the user must ensure that no process shortens the file meanwhile
         // (see the module).
-        let map = unsafe { Mmap::map(&file) }.map_err(io)?;
-        Self::new(path, Bytes::Mapped(map), warnings)
-    }
-
-    pub(super) fn in_memory(
-        path: &Path,
-        bytes: Vec<u8>,
-        warnings: &mut BTreeSet<Warning>,
-    ) -> Result<Self, ReadError> {
-        Self::new(path, Bytes::Owned(bytes), warnings)
-    }
-
-    fn new(path: &Path, bytes: Bytes, warnings: &mut BTreeSet<Warning>) -> Result<Self, ReadError> {
-        let (path, bytes) = (path.to_owned(), Arc::new(bytes));
-        let mut file = Self { path, bytes, index: Index::default(), loose: OnceLock::new() };
-        if !file.bytes().starts_with(MAGIC) {
-            let bytes = file.bytes().len() as u64;
-            return Err(ReadError::NotMcap { path: file.path, bytes });
+        let bytes = Arc::new(unsafe { Mmap::map(&file) }.map_err(io)?);
+        if !bytes.starts_with(MAGIC) {
+            return Err(ReadError::NotMcap { path: path.to_owned(), bytes: size });
         }
-        file.index = Index::build(&file.path, file.bytes(), warnings);
-        Ok(file)
+        let index = Index::build(path, &bytes, warnings);
+        Ok(Self { path: path.to_owned(), bytes, index, loose: OnceLock::new() })
     }
 
-    pub(super) fn bytes(&self) -> &[u8] {
-        self.bytes.bytes()
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.bytes
     }
 
     /// A part of the file that messages share.
@@ -94,7 +78,7 @@ impl OpenFile {
         }
     }
 
-    pub(super) fn warning(&self, offset: usize, kind: WarningKind, detail: String) -> Warning {
+    pub(crate) fn warning(&self, offset: usize, kind: WarningKind, detail: String) -> Warning {
         Warning { path: self.path.clone(), offset: offset as u64, kind, detail }
     }
 

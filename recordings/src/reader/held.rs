@@ -1,6 +1,6 @@
 //! The amount of a recording in memory.
 
-use super::bytes::Bytes;
+use memmap2::Mmap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -35,7 +35,7 @@ pub(super) enum Content {
     /// Content that was decompressed.
     Own { bytes: Vec<u8>, memory: Arc<Memory> },
     /// A part of the file, which needs no memory of its own.
-    Part { file: Arc<Bytes>, range: Range<usize> },
+    Part { file: Arc<Mmap>, range: Range<usize> },
 }
 
 impl Held {
@@ -63,7 +63,7 @@ impl Content {
     pub(super) fn bytes(&self) -> &[u8] {
         match self {
             Self::Own { bytes, .. } => bytes,
-            Self::Part { file, range } => &file.bytes()[range.clone()],
+            Self::Part { file, range } => &file[range.clone()],
         }
     }
 }

@@ -9,10 +9,10 @@ use mcap::MAGIC;
 use mcap::records::{Channel, Footer, MessageHeader, Record, SchemaHeader, op};
 
 use super::channel::ChannelInfo;
-use super::chunk;
 use super::definition::StoredDefinition;
 use super::error::{Warning, WarningKind};
 use super::records::{FRAME, RawRecord, Records};
+use super::walk::{Walked, place, walk};
 
 /// A block of messages: a chunk, or messages outside chunks.
 #[derive(Clone, Debug)]
@@ -103,6 +103,22 @@ fn add_loose(blocks: &mut Vec<Block>, record: &RawRecord<'_>, header: &MessageHe
     }
 }
 
+/// The messages of a chunk that is being read.
+#[derive(Default)]
+struct Inside {
+    /// First and last log time, ns since 1970.
+    bounds: Option<(u64, u64)>,
+    channels: BTreeSet<u16>,
+}
+
+impl Inside {
+    fn add(&mut self, header: &MessageHeader) {
+        let time = header.log_time;
+        self.bounds = Some(self.bounds.map_or((time, time), |(a, b)| (a.min(time), b.max(time))));
+        self.channels.insert(header.channel_id);
+    }
+}
+
 impl Index {
     /// The index of a file that starts with the MCAP magic.
     pub(super) fn build(path: &Path, bytes: &[u8], warnings: &mut BTreeSet<Warning>) -> Self {
@@ -173,32 +189,69 @@ impl Index {
     }
 
     fn from_scan(path: &Path, bytes: &[u8], reason: &str, warnings: &mut BTreeSet<Warning>) -> Self {
-        let mut scan = Scan { index: Self::default(), path, warnings };
-        let mut stop = None;
-        for record in Records::new(bytes, MAGIC.len()) {
-            match record {
-                Ok(record) if record.opcode == op::DATA_END => {
-                    scan.index.complete = true;
-                    scan.warn(record.offset, WarningKind::NoIndex, reason.to_owned());
-                    return scan.index;
+        let (mut index, mut inside) = (Self::default(), Inside::default());
+        let mut warn = |(offset, kind): (usize, WarningKind), detail: String| {
+            warnings.insert(Warning { path: path.to_owned(), offset: offset as u64, kind, detail });
+        };
+        let end = walk(bytes, &mut |item| {
+            match item {
+                Walked::Record(record, _) if record.opcode == op::DATA_END => {
+                    index.complete = true;
+                    warn((record.offset, WarningKind::NoIndex), reason.to_owned());
                 }
-                Ok(record) => {
-                    stop = Some(record.end());
-                    scan.record(&record);
+                Walked::Record(record, chunk) => {
+                    let messages = chunk.map(|_| &mut inside);
+                    index.add(&record, messages).unwrap_or_else(|detail| warn(place(&record, chunk), detail));
                 }
-                Err(at) => {
-                    stop = Some(at);
-                    break;
+                Walked::ChunkEnd(chunk) => index.close(&chunk, std::mem::take(&mut inside)),
+                Walked::Unreadable(at, kind, detail) => warn((at, kind), detail),
+            }
+            true
+        });
+        if !index.complete {
+            let detail = match bytes.len().saturating_sub(end) {
+                0 => "its end record is missing".to_owned(),
+                left => format!("its last {left} bytes are an incomplete record"),
+            };
+            warn((end, WarningKind::Truncated), detail);
+        }
+        index
+    }
+
+    /// Adds a record outside chunks, or inside the open one.
+    fn add(&mut self, record: &RawRecord<'_>, inside: Option<&mut Inside>) -> Result<(), String> {
+        if [op::CHUNK, op::MESSAGE_INDEX].contains(&record.opcode) {
+            return Ok(());
+        }
+        let offset = record.offset as u64;
+        match (record.parse()?, inside) {
+            (Record::Message { header, .. }, inside) => {
+                if self.channels.contains_key(&header.channel_id) {
+                    *self.counts.entry(header.channel_id).or_default() += 1;
+                }
+                match inside {
+                    Some(inside) => inside.add(&header),
+                    None => add_loose(&mut self.blocks, record, &header),
                 }
             }
+            (Record::Attachment { header, .. }, None) => {
+                self.attachments.push(Entry { offset, name: header.name })
+            }
+            (Record::Metadata(m), None) => self.metadata.push(Entry { offset, name: m.name }),
+            (other, _) => self.declare(other)?,
         }
-        let end = stop.unwrap_or(MAGIC.len());
-        let detail = match bytes.len().saturating_sub(end) {
-            0 => "its end record is missing".to_owned(),
-            left => format!("its last {left} bytes are an incomplete record"),
-        };
-        scan.warn(end, WarningKind::Truncated, detail);
-        scan.index
+        Ok(())
+    }
+
+    /// Adds a chunk after what is inside it.
+    fn close(&mut self, chunk: &RawRecord<'_>, Inside { bounds, channels }: Inside) {
+        if let Ok(Record::Chunk { header, .. }) = chunk.parse() {
+            self.compressions.insert(header.compression);
+        }
+        if let Some((start, end)) = bounds {
+            let (offset, end_offset, channels) = (chunk.offset, chunk.end(), Some(channels));
+            self.blocks.push(Block { offset, end_offset, start, end, channels, is_chunk: true });
+        }
     }
 
     /// Adds a schema or a channel; other records are ignored.
@@ -254,92 +307,5 @@ fn footer(bytes: &[u8]) -> Result<(Footer, usize), String> {
     match Records::at(bytes, at as u64).map(|r| (r.opcode, r.parse())) {
         Some((op::FOOTER, Ok(Record::Footer(footer)))) => Ok((footer, at)),
         _ => Err("there is no footer before the end magic".into()),
-    }
-}
-
-/// Reads a whole file, and decodes each chunk once to index it.
-struct Scan<'a> {
-    index: Index,
-    path: &'a Path,
-    warnings: &'a mut BTreeSet<Warning>,
-}
-
-impl Scan<'_> {
-    fn warn(&mut self, offset: usize, kind: WarningKind, detail: String) {
-        self.warnings.insert(Warning { path: self.path.to_owned(), offset: offset as u64, kind, detail });
-    }
-
-    fn record(&mut self, record: &RawRecord<'_>) {
-        let outcome = match record.opcode {
-            op::CHUNK => return self.chunk(record),
-            op::MESSAGE_INDEX => Ok(()),
-            _ => record.parse().and_then(|parsed| self.top_level(record, parsed)),
-        };
-        if let Err(detail) = outcome {
-            self.warn(record.offset, WarningKind::DamagedRecord, detail);
-        }
-    }
-
-    fn top_level(&mut self, raw: &RawRecord<'_>, parsed: Record<'_>) -> Result<(), String> {
-        let offset = raw.offset as u64;
-        match parsed {
-            Record::Attachment { header, .. } => {
-                self.index.attachments.push(Entry { offset, name: header.name })
-            }
-            Record::Metadata(m) => self.index.metadata.push(Entry { offset, name: m.name }),
-            Record::Message { header, .. } => {
-                self.count(header.channel_id);
-                add_loose(&mut self.index.blocks, raw, &header);
-            }
-            other => self.index.declare(other)?,
-        }
-        Ok(())
-    }
-
-    fn count(&mut self, channel: u16) {
-        if self.index.channels.contains_key(&channel) {
-            *self.index.counts.entry(channel).or_default() += 1;
-        }
-    }
-
-    fn chunk(&mut self, record: &RawRecord<'_>) {
-        let content = match chunk::content(record) {
-            Ok(content) => content,
-            Err(detail) => return self.warn(record.offset, WarningKind::DamagedChunk, detail),
-        };
-        if let Ok(Record::Chunk { header, .. }) = record.parse() {
-            self.index.compressions.insert(header.compression);
-        }
-        let (mut bounds, mut channels) = (None, BTreeSet::new());
-        for inner in Records::new(&content, 0) {
-            let parsed = match inner {
-                Ok(inner) => inner.parse(),
-                Err(at) => Err(format!("an incomplete record starts at byte {at} of its content")),
-            };
-            let outcome = parsed.and_then(|parsed| match parsed {
-                Record::Message { header, .. } => {
-                    let t = header.log_time;
-                    bounds = Some(bounds.map_or((t, t), |(a, b): (u64, u64)| (a.min(t), b.max(t))));
-                    channels.insert(header.channel_id);
-                    self.count(header.channel_id);
-                    Ok(())
-                }
-                other => self.index.declare(other),
-            });
-            if let Err(detail) = outcome {
-                self.warn(record.offset, WarningKind::DamagedChunk, detail);
-            }
-        }
-        if let Some((start, end)) = bounds {
-            let (offset, end_offset) = (record.offset, record.end());
-            self.index.blocks.push(Block {
-                offset,
-                end_offset,
-                start,
-                end,
-                channels: Some(channels),
-                is_chunk: true,
-            });
-        }
     }
 }

@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[derive(Debug)]
 pub struct Recording {
     pub(super) path: PathBuf,
-    pub(super) files: Vec<OpenFile>,
+    pub(crate) files: Vec<OpenFile>,
     warnings: Mutex<BTreeSet<Warning>>,
 }
 
@@ -49,16 +49,6 @@ impl Recording {
             return Err(ReadError::Empty { path: path.to_owned() });
         }
         Ok(Self { path: path.to_owned(), files, warnings: Mutex::new(warnings) })
-    }
-
-    /// Reads an MCAP file in memory; `name` replaces its path in messages.
-    ///
-    /// # Errors
-    /// If the bytes are not MCAP.
-    pub fn from_bytes(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
-        let mut warnings = BTreeSet::new();
-        let file = OpenFile::in_memory(Path::new(name), bytes, &mut warnings)?;
-        Ok(Self { path: PathBuf::from(name), files: vec![file], warnings: Mutex::new(warnings) })
     }
 
     /// Size of all files, bytes.

@@ -7,8 +7,8 @@ use super::lengths;
 
 /// A record in the file or in a chunk.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RawRecord<'a> {
-    pub(super) opcode: u8,
+pub(crate) struct RawRecord<'a> {
+    pub(crate) opcode: u8,
     /// Offset of its opcode from the start of the bytes.
     pub(super) offset: usize,
     pub(super) body: &'a [u8],
@@ -24,7 +24,7 @@ impl<'a> RawRecord<'a> {
     }
 
     /// The parsed record, or the error.
-    pub(super) fn parse(&self) -> Result<Record<'a>, String> {
+    pub(crate) fn parse(&self) -> Result<Record<'a>, String> {
         if !lengths::fit(self.opcode, self.body) {
             return Err(format!("the lengths in it do not fit a record of type 0x{:02x}", self.opcode));
         }

@@ -3,16 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use mcap::MAGIC;
 use mcap::records::{Record, op};
 use serde::Serialize;
 
-use super::chunk;
 use super::definition::StoredDefinition;
 use super::error::{Warning, WarningKind};
 use super::file::OpenFile;
 use super::recording::Recording;
-use super::records::{FRAME, RawRecord, Records};
+use super::records::{FRAME, RawRecord};
+use super::walk::{Walked, walk};
 
 /// The result of a complete check.
 #[derive(Clone, Debug, Serialize)]
@@ -112,73 +111,43 @@ impl Found {
     /// Reports everything in `file` that is damaged or contradicts its index.
     fn file(&mut self, file: &OpenFile, warn: &mut dyn FnMut(Warning)) {
         let mut counts = BTreeMap::<u16, u64>::new();
-        let mut chunks = BTreeSet::new();
-        let mut ended = false;
-        for record in Records::new(file.bytes(), MAGIC.len()) {
-            let record = match record {
-                Ok(record) => record,
-                Err(at) => {
-                    // Opening a file without its proper end has already given a warning.
-                    if file.index.complete {
-                        let detail =
-                            "no complete record starts here; later ones can be reached by the index only"
-                                .to_owned();
-                        warn(file.warning(at, WarningKind::Inconsistent, detail));
+        let (mut chunks, mut ended) = (BTreeSet::new(), false);
+        let end = walk(file.bytes(), &mut |item| {
+            match item {
+                Walked::Record(record, chunk) => {
+                    self.records += 1;
+                    match (record.opcode, chunk) {
+                        (op::MESSAGE, _) => {
+                            let at = chunk.unwrap_or(record.offset);
+                            self.message(file, &record, at, &mut counts, warn);
+                        }
+                        (op::CHUNK, None) => _ = chunks.insert(record.offset),
+                        (op::DATA_END, None) => {
+                            ended = true;
+                            data_checksum(file, &record).into_iter().for_each(&mut *warn);
+                        }
+                        (opcode, None) => match record.parse() {
+                            Ok(_) => self.attachments += u64::from(opcode == op::ATTACHMENT),
+                            Err(detail) => {
+                                warn(file.warning(record.offset, WarningKind::DamagedRecord, detail))
+                            }
+                        },
+                        _ => {}
                     }
-                    break;
                 }
-            };
-            self.records += 1;
-            match record.opcode {
-                op::CHUNK => {
-                    chunks.insert(record.offset);
-                    match chunk::content(&record) {
-                        Ok(content) => self.chunk(file, &record, &content, &mut counts, warn),
-                        Err(detail) => warn(file.warning(record.offset, WarningKind::DamagedChunk, detail)),
-                    }
-                }
-                op::MESSAGE => self.message(file, &record, record.offset, &mut counts, warn),
-                op::DATA_END => {
-                    if let Some(detail) = data_checksum(file, &record) {
-                        warn(file.warning(record.offset, WarningKind::Inconsistent, detail));
-                    }
-                    ended = true;
-                    break;
-                }
-                opcode => match record.parse() {
-                    Ok(_) => self.attachments += u64::from(opcode == op::ATTACHMENT),
-                    Err(detail) => warn(file.warning(record.offset, WarningKind::DamagedRecord, detail)),
-                },
+                Walked::ChunkEnd(_) => self.chunks += 1,
+                Walked::Unreadable(at, kind, detail) => warn(file.warning(at, kind, detail)),
             }
+            true
+        });
+        // Opening a file without its proper end has already given a warning.
+        if !ended && end < file.bytes().len() && file.index.complete {
+            let detail = "no complete record starts here; later ones can be reached by the index only";
+            warn(file.warning(end, WarningKind::Inconsistent, detail.to_owned()));
         }
         self.last = self.last.max(self.last_of_file.unwrap_or(0));
         if ended || !file.index.complete {
             against_index(file, counts, &chunks, warn);
-        }
-    }
-
-    fn chunk(
-        &mut self,
-        file: &OpenFile,
-        chunk: &RawRecord<'_>,
-        content: &[u8],
-        counts: &mut BTreeMap<u16, u64>,
-        warn: &mut dyn FnMut(Warning),
-    ) {
-        self.chunks += 1;
-        for record in Records::new(content, 0) {
-            match record {
-                Ok(record) => {
-                    self.records += 1;
-                    if record.opcode == op::MESSAGE {
-                        self.message(file, &record, chunk.offset, counts, warn);
-                    }
-                }
-                Err(at) => {
-                    let detail = format!("an incomplete record starts at byte {at} of its content");
-                    warn(file.warning(chunk.offset, WarningKind::DamagedChunk, detail));
-                }
-            }
         }
     }
 
@@ -228,16 +197,15 @@ fn against_index(
     }
 }
 
-fn data_checksum(file: &OpenFile, end: &RawRecord<'_>) -> Option<String> {
+fn data_checksum(file: &OpenFile, end: &RawRecord<'_>) -> Option<Warning> {
+    let wrong = |detail| Some(file.warning(end.offset, WarningKind::Inconsistent, detail));
     let Ok(Record::DataEnd(claimed)) = end.parse() else {
-        return Some(format!("the end record has {} bytes", end.body.len() + FRAME));
+        return wrong(format!("the end record has {} bytes", end.body.len() + FRAME));
     };
-    let crc = crc32fast::hash(&file.bytes()[..end.offset]);
+    let (crc, claimed) = (crc32fast::hash(&file.bytes()[..end.offset]), claimed.data_section_crc);
     // 0 means "not computed".
-    (claimed.data_section_crc != 0 && claimed.data_section_crc != crc).then(|| {
-        format!(
-            "the checksum of the whole data is {crc:08x}, not {:08x}: bytes were altered",
-            claimed.data_section_crc
-        )
-    })
+    if claimed == 0 || claimed == crc {
+        return None;
+    }
+    wrong(format!("the checksum of the whole data is {crc:08x}, not {claimed:08x}: bytes were altered"))
 }

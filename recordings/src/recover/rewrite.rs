@@ -6,12 +6,11 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
 
-use mcap::records::{Channel, MessageHeader, Metadata, Record, SchemaHeader};
+use mcap::records::{Channel, MessageHeader, Metadata, Record, SchemaHeader, op};
 use mcap::{Attachment, McapError};
 
 use crate::metadata_keys::METADATA_RECORD;
-use crate::reader::{ReadError, Warning};
-use crate::reader::{Walk, Walked};
+use crate::reader::{Recording, Walked, Warning, WarningKind, place, walk};
 use crate::writer::part;
 
 /// The result of a rewrite.
@@ -20,33 +19,14 @@ pub(super) struct Written {
     pub(super) unreadable: Vec<Warning>,
 }
 
-pub(super) enum RewriteError {
-    Read(ReadError),
-    Write(io::Error),
-}
-
-impl From<McapError> for RewriteError {
-    fn from(error: McapError) -> Self {
-        Self::Write(match error {
-            McapError::Io(source) => source,
-            other => io::Error::other(other),
-        })
-    }
-}
-
-impl From<io::Error> for RewriteError {
-    fn from(error: io::Error) -> Self {
-        Self::Write(error)
-    }
-}
-
-/// Writes the readable part of `from` to the new file `to`, and syncs it to the device.
-pub(super) fn rewrite(from: &Path, to: &Path) -> Result<Written, RewriteError> {
-    let walk = Walk::open(from).map_err(RewriteError::Read)?;
+/// Writes the readable part of the only file of `from` to the new file `to`, and syncs it to the device.
+pub(super) fn rewrite(from: &Recording, to: &Path) -> Result<Written, McapError> {
+    let profile = from.profile();
+    let [from] = &from.files[..] else { return Err(io::Error::other("it has several files").into()) };
     // Remove the file of an earlier attempt.
     let file = File::create(to)?;
     let mcap = part::options(" (recovered)")
-        .profile(walk.profile())
+        .profile(profile)
         // Chunks end as in the original.
         .chunk_size(None)
         .create(BufWriter::with_capacity(64 << 10, file))?;
@@ -58,14 +38,27 @@ pub(super) fn rewrite(from: &Path, to: &Path) -> Result<Written, RewriteError> {
         known: BTreeMap::new(),
         messages: 0,
     };
-    let mut unreadable = Vec::new();
-    let mut failure = None;
-    walk.each(&mut |walked| {
-        let outcome = match walked {
-            Walked::Record(record) => copy.record(record),
-            Walked::ChunkEnd => copy.mcap.flush().map_err(RewriteError::from),
-            Walked::Unreadable(warning) => {
-                unreadable.push(warning);
+    let (mut unreadable, mut failure, mut ended) = (Vec::new(), None, false);
+    let end = walk(from.bytes(), &mut |item| {
+        let outcome = match item {
+            Walked::Record(record, chunk) => match record.opcode {
+                op::CHUNK | op::MESSAGE_INDEX | op::HEADER => Ok(()),
+                op::DATA_END => {
+                    ended = true;
+                    Ok(())
+                }
+                _ => match record.parse() {
+                    Ok(record) => copy.record(record),
+                    Err(detail) => {
+                        let (at, kind) = place(&record, chunk);
+                        unreadable.push(from.warning(at, kind, detail));
+                        Ok(())
+                    }
+                },
+            },
+            Walked::ChunkEnd(_) => copy.mcap.flush(),
+            Walked::Unreadable(at, kind, detail) => {
+                unreadable.push(from.warning(at, kind, detail));
                 Ok(())
             }
         };
@@ -75,7 +68,16 @@ pub(super) fn rewrite(from: &Path, to: &Path) -> Result<Written, RewriteError> {
     if let Some(failure) = failure {
         return Err(failure);
     }
-    copy.finish(&mut unreadable, &walk)
+    let left = from.bytes().len() - end;
+    if !ended && left > 0 {
+        let detail = format!("its last {left} bytes are an incomplete record");
+        unreadable.push(from.warning(end, WarningKind::Truncated, detail));
+    }
+    for channel in &copy.orphans {
+        let detail = format!("messages of channel {channel}, whose declaration was lost, are left out");
+        unreadable.push(from.warning(0, WarningKind::Orphans, detail));
+    }
+    copy.finish(unreadable)
 }
 
 struct Copy {
@@ -91,7 +93,7 @@ struct Copy {
 }
 
 impl Copy {
-    fn record(&mut self, record: Record<'_>) -> Result<(), RewriteError> {
+    fn record(&mut self, record: Record<'_>) -> Result<(), McapError> {
         match record {
             Record::Schema { header, data } => {
                 self.schemas.entry(header.id).or_insert((header, data.into_owned()));
@@ -113,7 +115,7 @@ impl Copy {
         Ok(())
     }
 
-    fn channel(&mut self, channel: &Channel) -> Result<(), RewriteError> {
+    fn channel(&mut self, channel: &Channel) -> Result<(), McapError> {
         if self.channels.contains_key(&channel.id) {
             return Ok(());
         }
@@ -129,7 +131,7 @@ impl Copy {
         Ok(())
     }
 
-    fn message(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), RewriteError> {
+    fn message(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), McapError> {
         let Some(channel_id) = self.channels.get(&header.channel_id).copied() else {
             self.orphans.insert(header.channel_id);
             return Ok(());
@@ -139,8 +141,7 @@ impl Copy {
         Ok(())
     }
 
-    fn finish(mut self, unreadable: &mut Vec<Warning>, walk: &Walk) -> Result<Written, RewriteError> {
-        unreadable.extend(self.orphans.iter().map(|id| walk.orphans(*id)));
+    fn finish(mut self, unreadable: Vec<Warning>) -> Result<Written, McapError> {
         let mut metadata = std::mem::take(&mut self.known);
         metadata.insert("recovered".into(), "true".into());
         metadata.entry("finished".into()).or_insert_with(|| "false".into());
@@ -150,6 +151,6 @@ impl Copy {
         self.mcap.finish()?;
         let file = self.mcap.into_inner().into_inner().map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
-        Ok(Written { messages: self.messages, unreadable: std::mem::take(unreadable) })
+        Ok(Written { messages: self.messages, unreadable })
     }
 }

@@ -4,7 +4,8 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use super::WriteError;
+use crate::failures::cannot;
+use grainlab_console::Failure;
 
 /// Part `number` of the recording `name`.
 pub(super) fn part_path(directory: &Path, name: &str, number: u64) -> PathBuf {
@@ -12,8 +13,8 @@ pub(super) fn part_path(directory: &Path, name: &str, number: u64) -> PathBuf {
 }
 
 /// The number after those of all existing parts.
-pub(super) fn next_number(directory: &Path, name: &str) -> Result<u64, WriteError> {
-    let io = |source| WriteError::io(directory, "read the directory")(source);
+pub(super) fn next_number(directory: &Path, name: &str) -> Result<u64, Failure> {
+    let io = |source: std::io::Error| cannot(directory, "read the directory")(source);
     let mut next = 0;
     if !directory.exists() {
         return Ok(next);
@@ -25,7 +26,8 @@ pub(super) fn next_number(directory: &Path, name: &str) -> Result<u64, WriteErro
         let part = part.and_then(|t| t.strip_suffix(".mcap")).and_then(|n| n.parse::<u64>().ok());
         let Some(part) = part else { continue };
         if File::open(&path).is_ok_and(|f| is_locked(&f)) {
-            return Err(WriteError::InUse { path });
+            let path = path.display();
+            return Err(Failure::failed(format!("{path} is being recorded: end that recorder first")));
         }
         next = next.max(part.saturating_add(1));
     }

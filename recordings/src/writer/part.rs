@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufWriter, ErrorKind};
+use std::io::{self, BufWriter, ErrorKind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,8 +13,10 @@ use mcap::{Attachment, Compression, McapError, WriteOptions};
 
 use super::counted::Counted;
 use super::device_sync::DeviceSync;
-use super::{TopicSpec, WriteError, WriterOptions};
+use super::{TopicSpec, WriterOptions};
+use crate::failures::{cannot, reason};
 use crate::reader::FileCount;
+use grainlab_console::Failure;
 
 type Writer = mcap::Writer<Counted<BufWriter<File>>>;
 
@@ -41,10 +43,15 @@ pub(super) struct Closed {
 impl Part {
     /// Begins the file, which must not exist. It stays locked while it is open, so that no process recovers a file
     /// being recorded.
-    pub(super) fn create(path: PathBuf, of: &WriterOptions, began: Instant) -> Result<Self, WriteError> {
-        let io = |action| WriteError::io(&path, action);
+    pub(super) fn create(path: PathBuf, of: &WriterOptions, began: Instant) -> Result<Self, Failure> {
+        let io = |action| cannot::<io::Error>(&path, action);
         let file = match File::create_new(&path) {
-            Err(e) if e.kind() == ErrorKind::AlreadyExists => return Err(WriteError::Exists { path }),
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => {
+                return Err(Failure::failed(format!(
+                    "{} exists: choose another run directory; a recording is never overwritten",
+                    path.display()
+                )));
+            }
             other => other.map_err(io("create the file"))?,
         };
         // A file system without locks cannot report another recorder.
@@ -57,7 +64,7 @@ impl Part {
             .compression(of.compression.of_chunks())
             .chunk_size(Some(of.chunk_size))
             .create(counted)
-            .map_err(|source| WriteError::mcap(&path, "write the header", source))?;
+            .map_err(|e| cannot(&path, "write the header")(reason(e)))?;
         let channels = BTreeMap::new();
         Ok(Self { path, mcap, sync, written, channels, messages: 0, bounds: None, began })
     }
@@ -116,12 +123,11 @@ impl Part {
     }
 
     /// Writes the metadata record and the index, and syncs the file to the device.
-    pub(super) fn close(mut self, metadata: Metadata) -> Result<Closed, WriteError> {
+    pub(super) fn close(mut self, metadata: Metadata) -> Result<Closed, Failure> {
         let path = self.path.clone();
-        let format = |action, source| WriteError::mcap(&path, action, source);
-        let io = |action| WriteError::io(&path, action);
-        self.mcap.write_metadata(&metadata).map_err(|e| format("write the ledger", e))?;
-        self.mcap.finish().map_err(|e| format("write the index", e))?;
+        let io = |action| cannot::<io::Error>(&path, action);
+        self.mcap.write_metadata(&metadata).map_err(|e| cannot(&path, "write the ledger")(reason(e)))?;
+        self.mcap.finish().map_err(|e| cannot(&path, "write the index")(reason(e)))?;
         let handle = self
             .mcap
             .into_inner()

@@ -5,7 +5,7 @@ use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::to_cdr;
 use grainlab_pictures::{Drawn, Picture};
-use grainlab_recordings::copy::{CopyError, CopyOptions, Preset, Select, copy};
+use grainlab_recordings::copy::{CopyOptions, Preset, Select, copy};
 use grainlab_recordings::{
     COPY_RECORD, ChannelInfo, Compression, METADATA_RECORD, Recording, RunSign, RunWriter, Selection,
     SeveralRuns, TopicSpec,
@@ -180,7 +180,7 @@ fn other_fields_and_comments(hash: &str) {
     let recordings = [with("c", "int8 x"), with("d", "int16 x")];
     let to = root.path().join("never");
     let error = copy(&recordings, &Select::default(), &to, &CopyOptions::default()).unwrap_err();
-    assert!(matches!(&error, CopyError::Clash { topic, .. } if topic == "/a"), "{error}");
+    assert!(error.to_string().starts_with("/a is p/msg/A"), "{error}");
     assert!(!to.exists());
 }
 
@@ -191,7 +191,7 @@ fn an_existing_output_is_never_touched() {
     let before = std::fs::read_dir(root.path()).unwrap().count();
     for to in [run.clone(), run.join("demo-7-1_0.mcap")] {
         let error = copy(&[open(&run)], &Select::default(), &to, &CopyOptions::default()).unwrap_err();
-        assert!(matches!(error, CopyError::Exists { .. }), "{error}");
+        assert!(error.to_string().contains("nothing is overwritten"), "{error}");
     }
     assert_eq!(std::fs::read(run.join("demo-7-1_0.mcap")).unwrap(), bytes);
     assert_eq!(std::fs::read_dir(root.path()).unwrap().count(), before, "no temporary file is left");
@@ -255,10 +255,10 @@ fn pictures_stand_beside_their_packings_and_a_packing_without_one_is_named() {
     assert_eq!(without, said(&sound(&plain)), "nothing else differs");
 
     let again = copy(&[made], &Select::default(), &root.path().join("again"), &with);
-    assert!(matches!(again, Err(CopyError::Pictured { topic }) if topic == "/packing/points"));
+    assert!(again.unwrap_err().to_string().starts_with("there is a topic /packing/points already"));
     let stress = Select { topic: &|c| c.topic == "/stress", ..Select::default() };
     let none = copy(&source, &stress, &root.path().join("none"), &with);
-    assert!(matches!(none, Err(CopyError::NoPackings)));
+    assert!(none.unwrap_err().to_string().contains("of which pictures could be made"));
 }
 
 /// Two grains that touch.

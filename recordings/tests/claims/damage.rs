@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::support::run_in;
+use crate::support::{of_bytes, run_in};
 use grainlab_recordings::{ReadError, Recording, Selection, WarningKind};
 
 fn read(bytes: &[u8]) -> (Vec<(String, u32)>, Vec<WarningKind>) {
-    let recording = Recording::from_bytes("damaged.mcap", bytes.to_vec()).unwrap();
+    let recording = of_bytes(bytes);
     let messages = recording.messages(&Selection::default()).unwrap();
     let found = messages.map(|m| (m.channel.topic.clone(), m.sequence)).collect();
     let _ = (recording.stored_files(), recording.info().to_string(), recording.ledger());
@@ -59,7 +59,7 @@ fn a_flipped_bit_in_a_chunk_costs_that_chunk_and_is_named() {
         } else {
             undamaged += 1
         }
-        let recording = Recording::from_bytes("flipped.mcap", copy).unwrap();
+        let recording = of_bytes(&copy);
         assert!(!recording.check().warnings.is_empty(), "bit flipped at {at} goes unnoticed");
     }
     assert!(damaged > 20 && undamaged > 5, "{damaged} {undamaged}");
@@ -115,7 +115,7 @@ fn false_lengths_do_not_exhaust_memory() {
 fn a_topic_that_is_not_there_is_answered_with_those_that_are() {
     let root = tempfile::tempdir().unwrap();
     let (_, bytes) = run_in(&root, 10);
-    let recording = Recording::from_bytes("r.mcap", bytes).unwrap();
+    let recording = of_bytes(&bytes);
     let error = recording.messages(&Selection::topics(["stresses"])).err().unwrap().to_string();
     assert!(error.contains("/stress,") && error.contains("stresses"), "{error}");
 }
@@ -157,7 +157,7 @@ fn a_small_chunk_with_a_stated_size_of_a_hundred_megabytes_is_refused() {
 
 #[test]
 fn chunks_that_claim_the_same_time_are_not_all_in_memory_together() {
-    let recording = Recording::from_bytes("bomb.mcap", bomb(20, 60 << 20)).unwrap();
+    let recording = of_bytes(&bomb(20, 60 << 20));
     let mut held = Vec::new();
     let mut messages = recording.messages(&Selection::default()).unwrap();
     held.extend(messages.by_ref().take(1));

@@ -2,16 +2,16 @@
 
 use std::time::Duration;
 
-use grainlab_recordings::{Play, PlayError, PlayOptions, Player, Recording};
+use grainlab_recordings::{Play, PlayOptions, Player, Recording};
 
-use crate::support::run_in;
+use crate::support::{of_bytes, run_in};
 
 const MS: Duration = Duration::from_millis(1);
 
 fn recording() -> Recording {
     let root = tempfile::tempdir().unwrap();
     let (_, bytes) = run_in(&root, 500);
-    Recording::from_bytes("r.mcap", bytes).unwrap()
+    of_bytes(&bytes)
 }
 
 /// Plays to the end, sleeping exactly as requested; returns topic, sequence and time of each message.
@@ -101,12 +101,10 @@ fn what_cannot_be_played_is_refused() {
     let recording = recording();
     let error = |options: PlayOptions| Player::new(&recording, &options).err().unwrap();
     for rate in [0.0, -1.0, f64::NAN] {
-        assert!(matches!(error(PlayOptions { rate, ..Default::default() }), PlayError::Rate(_)));
+        assert!(error(PlayOptions { rate, ..Default::default() }).to_string().starts_with("rate "));
     }
-    assert!(matches!(
-        error(PlayOptions { start_offset: Duration::from_secs(9), ..Default::default() }),
-        PlayError::BeyondEnd { .. }
-    ));
+    let late = error(PlayOptions { start_offset: Duration::from_secs(9), ..Default::default() });
+    assert!(late.to_string().contains("beyond the end"), "{late}");
     let missing =
         error(PlayOptions { topics: Some(vec!["nothing".into()]), ..Default::default() }).to_string();
     assert!(missing.contains("nothing") && missing.contains("/stress"), "{missing}");

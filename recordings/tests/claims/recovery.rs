@@ -4,9 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::support::{SIMULATOR, START, contract, options, run_in, sample, stress};
-use grainlab_recordings::{
-    METADATA_RECORD, Recording, RecoverError, RunWriter, Selection, WarningKind, recover,
-};
+use grainlab_recordings::{METADATA_RECORD, Recording, RunWriter, Selection, WarningKind, recover};
 
 type Said = (String, u32, u64, u64, Vec<u8>);
 
@@ -90,7 +88,7 @@ fn a_whole_recording_is_left_alone_and_a_damaged_one_is_refused() {
     bytes[3000] ^= 1;
     fs::write(&file, &bytes).unwrap();
     let error = recover(&directory).unwrap_err();
-    assert!(matches!(error, RecoverError::Damaged { .. }), "{error}");
+    assert!(error.to_string().contains("is complete but damaged"), "{error}");
     assert_eq!(fs::read(&file).unwrap(), bytes);
 }
 
@@ -101,7 +99,7 @@ fn a_recording_under_way_is_refused_and_recovered_when_its_recorder_is_gone() {
     let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
     run.write("/stress", &sample(SIMULATOR, 1, START, &stress(1))).unwrap();
     let error = recover(&directory).unwrap_err();
-    assert!(matches!(error, RecoverError::InUse { .. }), "{error}");
+    assert!(error.to_string().contains("is being recorded"), "{error}");
     run.finish().unwrap();
     assert!(!recover(&directory).unwrap().changed());
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::topics::TOPICS;
 use grainlab_msgs::{Guid, Topic, msg, rosgraph_msgs, stamp, std_msgs, to_cdr};
-use grainlab_recordings::{Finished, Incoming, RunWriter, TopicSpec, WriterOptions};
+use grainlab_recordings::{Finished, Incoming, Recording, RunWriter, TopicSpec, WriterOptions};
 
 pub(crate) const START: u64 = 1_700_000_000_000_000_000;
 pub(crate) const SIMULATOR: Guid = Guid([7; 16]);
@@ -65,4 +65,11 @@ pub(crate) fn run_in(root: &tempfile::TempDir, count: u64) -> (PathBuf, Vec<u8>)
     let finished = write_run(&directory, count);
     let bytes = std::fs::read(&finished.file).unwrap();
     (directory, bytes)
+}
+
+/// A recording in one file with these bytes.
+pub(crate) fn of_bytes(bytes: &[u8]) -> Recording {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), bytes).unwrap();
+    Recording::open(file.path()).unwrap()
 }

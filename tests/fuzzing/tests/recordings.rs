@@ -44,13 +44,15 @@ const MEMORY: (usize, usize) = (384 << 20, 64 + 64);
 #[test]
 fn a_recording_gives_messages_or_warnings() {
     let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fuzz.mcap");
     Target {
         name: "mcap",
         seeds: seeds(&folder.path().join("r")),
         words: &["grainlab", "zstd", "lz4", "ros2", "rosbag2"],
         memory: MEMORY,
         decode: &mut |bytes| {
-            let Ok(recording) = Recording::from_bytes("fuzz.mcap", bytes.to_vec()) else { return };
+            std::fs::write(&path, bytes).unwrap();
+            let Ok(recording) = Recording::open(&path) else { return };
             for message in recording.messages(&Selection::default()).unwrap() {
                 drop(message);
             }

@@ -1,6 +1,7 @@
 //! `grainlab bag`: commands for recordings, as `ros2 bag`.
 
 mod check;
+#[cfg(feature = "studio")]
 mod export;
 mod info;
 mod record;
@@ -23,6 +24,7 @@ pub(crate) enum Command {
     /// Read every record of a recording and list all faults.
     Check(check::Args),
     /// Write the packings of a recording as LAMMPS dump or CSV files.
+    #[cfg(feature = "studio")]
     Export(export::Args),
     /// Complete a recording whose recorder was killed, so that other tools read it.
     Recover(recover::Args),
@@ -38,6 +40,7 @@ pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Play(args) => play::run(args),
         Command::Info(args) => info::run(args),
         Command::Check(args) => check::run(args),
+        #[cfg(feature = "studio")]
         Command::Export(args) => export::run(args),
         Command::Recover(args) => recover::run(args),
         #[cfg(feature = "studio")]

@@ -8,7 +8,6 @@ use crate::partner::AnswerSource;
 use crate::question::Question;
 use crate::speculative_step::SpeculativeStep;
 use grainlab_experiment::{ExperimentError, StepOutcome};
-use grainlab_msgs::boundary::StrainRateAnswer;
 use grainlab_msgs::msg::{RunState, Stress};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, BusError, Exit, Next, NodeError};
@@ -40,9 +39,8 @@ impl DemSimulator {
                     continue;
                 }
             }
-            let answer = StrainRateAnswer::try_from(&message)
-                .map_err(|e| e.to_string())
-                .and_then(|answer| self.lockstep.receive(&answer).map_err(|e| e.to_string()));
+            let answer = message.checked().map_err(|e| e.to_string());
+            let answer = answer.and_then(|answer| self.lockstep.receive(answer).map_err(|e| e.to_string()));
             match answer {
                 Ok(AnswerKind::New) => {
                     if self.partner.stay_with(info.writer) {

@@ -2,7 +2,7 @@
 
 use crate::Settings;
 use crate::question::{Question, Violation};
-use grainlab_msgs::boundary::StrainRateAnswer;
+use grainlab_msgs::msg::StrainRate;
 use std::time::Duration;
 
 /// Number of consecutive invalid answers that ends a run.
@@ -87,8 +87,8 @@ impl Lockstep {
 
     /// Receives an answer. It is accepted if sequence number and stamp are those of the current request and the rates are
     /// allowed by it.
-    pub(crate) fn receive(&mut self, answer: &StrainRateAnswer) -> Result<AnswerKind, Violation> {
-        let asked = |q: &&Question| (q.sequence, q.stamp) == (answer.sequence, answer.stamp);
+    pub(crate) fn receive(&mut self, answer: &StrainRate) -> Result<AnswerKind, Violation> {
+        let asked = |q: &&Question| (q.sequence, q.stamp) == (answer.sequence, answer.header.stamp);
         let Some(question) = self.question.as_ref().filter(asked) else {
             self.counts.stale += 1;
             return Ok(AnswerKind::Stale);
@@ -163,6 +163,7 @@ mod tests {
     use super::*;
     use grainlab_core::ComponentControl;
     use grainlab_msgs::builtin_interfaces::Time;
+    use grainlab_msgs::std_msgs::Header;
 
     const MS: Duration = Duration::from_millis(1);
 
@@ -178,13 +179,9 @@ mod tests {
         lockstep
     }
 
-    fn answer(sequence: u64, nanosec: u32) -> StrainRateAnswer {
-        StrainRateAnswer {
-            stamp: Time { sec: 1, nanosec },
-            sequence,
-            rate: [sequence as f64; 6],
-            saturated: [false; 6],
-        }
+    fn answer(sequence: u64, nanosec: u32) -> StrainRate {
+        let header = Header { stamp: Time { sec: 1, nanosec }, ..Header::default() };
+        StrainRate { header, sequence, rate: [sequence as f64; 6], saturated: [false; 6] }
     }
 
     #[test]
@@ -203,9 +200,7 @@ mod tests {
     #[test]
     fn an_answer_received_before_the_first_request_is_ignored() {
         let mut lockstep = Lockstep::new(&Settings::default());
-        let early =
-            StrainRateAnswer { stamp: Time::default(), sequence: 0, rate: [0.0; 6], saturated: [false; 6] };
-        assert_eq!(lockstep.receive(&early), Ok(AnswerKind::Stale));
+        assert_eq!(lockstep.receive(&StrainRate::default()), Ok(AnswerKind::Stale));
         lockstep.ask(Question { stamp: Time::default(), ..question(0) }, vec![0], MS);
         assert_eq!(lockstep.pass(MS), None);
     }
@@ -214,7 +209,7 @@ mod tests {
     fn another_rate_for_the_same_request_is_a_contradiction_and_changes_nothing() {
         let mut lockstep = lockstep();
         assert_eq!(lockstep.receive(&answer(7, 7)), Ok(AnswerKind::New));
-        let other = StrainRateAnswer { rate: [1.0; 6], ..answer(7, 7) };
+        let other = StrainRate { rate: [1.0; 6], ..answer(7, 7) };
         assert_eq!(lockstep.receive(&other), Ok(AnswerKind::Contradicts));
         assert_eq!((lockstep.pass(MS), lockstep.counts.contradictions), (Some([7.0; 6]), 1));
     }
@@ -222,7 +217,7 @@ mod tests {
     #[test]
     fn an_answer_beyond_the_rate_limit_is_refused() {
         let mut lockstep = lockstep();
-        let fast = StrainRateAnswer { rate: [101.0; 6], ..answer(7, 7) };
+        let fast = StrainRate { rate: [101.0; 6], ..answer(7, 7) };
         assert!(lockstep.receive(&fast).is_err());
         assert_eq!(lockstep.pass(MS), None);
     }

@@ -3,7 +3,7 @@
 use crate::phase_line::{self, PhaseName, Rest};
 use crate::watch::PhaseReport;
 use grainlab_console::{Pace, Terminal, draw_live_line, erase_live_line, say, say_line};
-use grainlab_msgs::boundary::{RunStateReading, RunStatus};
+use grainlab_msgs::msg::RunState;
 use std::time::{Duration, Instant};
 
 /// Interval of the lines during a long phase, where there is no terminal.
@@ -83,15 +83,14 @@ impl Progress {
     }
 
     /// Takes the state of the run: a phase began, is over, or takes long.
-    pub(crate) fn show(&mut self, state: &RunStateReading) {
-        match state.status {
-            RunStatus::Finished if !std::mem::replace(&mut self.finished, true) => {
+    pub(crate) fn show(&mut self, state: &RunState) {
+        match state.state {
+            RunState::FINISHED if !std::mem::replace(&mut self.finished, true) => {
                 self.end_phase(state.step);
                 self.activity = "waiting for the results of the last packing";
                 self.say(&format!("the loading path is done at step {}", state.step));
             }
-            RunStatus::Finished | RunStatus::Failed => {}
-            RunStatus::Running => {
+            RunState::RUNNING => {
                 let phase = self.phase.as_ref();
                 if phase.is_none_or(|p| p.index != state.phase) {
                     // A restarted simulator may return to an earlier phase.
@@ -103,11 +102,12 @@ impl Progress {
                     self.go_on(state.step);
                 }
             }
+            _ => {}
         }
         self.draw();
     }
 
-    fn begin_phase(&mut self, state: &RunStateReading) {
+    fn begin_phase(&mut self, state: &RunState) {
         self.printed_at = Instant::now();
         let name = PhaseName { number: state.phase, of: self.phases, name: state.phase_name.clone() };
         self.phase = Some(Phase {

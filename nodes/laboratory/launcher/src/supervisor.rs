@@ -15,7 +15,7 @@ use crate::last_packing;
 use crate::nodes::NodeKind;
 use crate::run::Run;
 use grainlab_console::{Failure, worse};
-use grainlab_msgs::boundary::{RunStateReading, RunStatus};
+use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{Exit, Names};
 use std::collections::{BTreeMap, BTreeSet};
@@ -80,7 +80,7 @@ pub struct Supervisor {
     simulator: Option<String>,
     /// The step at which the run began or resumed.
     pub(super) first_step: Option<u64>,
-    finished: Option<RunStateReading>,
+    finished: Option<RunState>,
     failed: Option<String>,
     /// The watch failed: the end of the run would not be noticed.
     blind: bool,
@@ -260,7 +260,7 @@ impl Supervisor {
                     continue;
                 }
             }
-            let Some(last) = self.finished.as_ref().map(|s| s.last_packing_step) else { continue };
+            let Some(last) = self.finished.as_ref().map(RunState::last_packing) else { continue };
             let Some(step) = last else { return self.caught_up().await };
             match self.pending.state_of(step) {
                 ResultState::Complete => return self.caught_up().await,
@@ -314,12 +314,12 @@ impl Supervisor {
         match event {
             Event::State(state) => {
                 let first = *self.first_step.get_or_insert(state.step);
-                self.begun |= state.step != first || state.status != RunStatus::Running;
+                self.begun |= state.step != first || state.state != RunState::RUNNING;
                 self.progress.show(&state);
-                match state.status {
-                    RunStatus::Running => {}
-                    RunStatus::Finished => self.finished = Some(state),
-                    RunStatus::Failed => self.failed = Some(state.message),
+                match state.state {
+                    RunState::RUNNING => {}
+                    RunState::FINISHED => self.finished = Some(state),
+                    _ => self.failed = Some(state.message),
                 }
             }
             Event::Phase(report) => self.progress.report(report),

@@ -5,8 +5,8 @@ use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::{Failure, say};
 use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
 use grainlab_emt::{Status, recommended};
-use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
+use grainlab_msgs::msg::RunState;
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::{
@@ -56,7 +56,7 @@ const OF_THE_RUN: [Topic; 9] = [
 #[derive(Debug)]
 pub(crate) enum Event {
     /// The state of the run.
-    State(RunStateReading),
+    State(RunState),
     /// The packing of this step was measured: its data were published on this topic.
     Measured(&'static str, u64),
     /// Wave speeds with step 0 and the stamp of a packing that a run starts from.
@@ -195,8 +195,8 @@ impl RunSubscriptions {
                 }
                 continue;
             }
-            match RunStateReading::try_from(&state) {
-                Ok(reading) => send(Event::State(reading)),
+            match state.checked().cloned() {
+                Ok(state) => send(Event::State(state)),
                 Err(e) => log::warn!("{e}"),
             }
         }

@@ -151,9 +151,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let patience = seconds("wait-for-subscribers", args.wait_for_subscribers)?;
     let recording = Recording::open(&args.path).map_err(Failure::failed)?;
     // Errors of the options are found before anything is published.
-    let overrides = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose();
-    let overrides = overrides.map_err(Failure::usage)?.unwrap_or_default();
-    let wanted = Player::new(&recording, &options).map_err(play_failure)?.channels().to_vec();
+    let overrides = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose()?;
+    let overrides = overrides.unwrap_or_default();
+    let wanted = Player::new(&recording, &options)?.channels().to_vec();
     let topics: Vec<(&str, &str)> = wanted.iter().map(|c| (c.topic.as_str(), c.ros_type.as_str())).collect();
     check_remaps(&args.remap, &topics).map_err(Failure::usage)?;
     let is_played = |name: &&str| topics.iter().any(|(topic, _)| topic.trim_start_matches('/') == *name);
@@ -214,7 +214,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let mut finished = true;
     let mut is_paused = args.start_paused || args.step;
     loop {
-        let mut player = Player::new(&recording, &options).map_err(play_failure)?;
+        let mut player = Player::new(&recording, &options)?;
         if std::mem::take(&mut is_paused) {
             player.pause(session.bus.now());
         }
@@ -255,17 +255,6 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 fn frequency(text: &str) -> Result<f64, String> {
     let hz = text.parse::<f64>().ok().filter(|hz| (0.001..=10_000.0).contains(hz));
     hz.ok_or_else(|| format!("{text:?} is out of range: 0.001 to 10000 per second"))
-}
-
-fn play_failure(error: grainlab_recordings::PlayError) -> Failure {
-    match &error {
-        grainlab_recordings::PlayError::Read(e)
-            if !matches!(e, grainlab_recordings::ReadError::NoSuchTopic { .. }) =>
-        {
-            Failure::failed(error)
-        }
-        _ => Failure::usage(error),
-    }
 }
 
 #[cfg(test)]

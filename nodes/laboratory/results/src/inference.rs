@@ -149,7 +149,6 @@ mod tests {
     use super::*;
     use grainlab_core::Material;
     use grainlab_emt::{Calibration, Measured, Observation, StrainRatio};
-    use grainlab_msgs::boundary::MicrostructureReading;
     use grainlab_msgs::msg::Moduli;
 
     #[test]
@@ -170,9 +169,8 @@ mod tests {
             &grainlab_emt_inversion::Settings::default(),
         )
         .message;
-        let reading = MicrostructureReading::try_from(&sent).unwrap();
-        let at = reading.estimates.iter().position(|e| e.model == "ratio").unwrap();
-        let read = Inference::from(reading.estimates[at].clone());
+        let results = sent.results().unwrap();
+        let read = Inference::from(results.into_iter().find(|e| e.model == "ratio").unwrap());
         let mut observation =
             Observation::from_g12_g13_theta(121.71e6, 127.37e6, 144.38e6, 50e3, StrainRatio::ZERO);
         observation.conditions.solid_fraction = Some(Measured::exact(0.636));

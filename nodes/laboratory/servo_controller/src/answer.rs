@@ -1,7 +1,7 @@
 //! From one `Stress` to one `StrainRate`.
 
-use grainlab_msgs::boundary::{BoundaryError, StrainRateAnswer};
-use grainlab_msgs::{msg, stamp};
+use grainlab_msgs::boundary::BoundaryError;
+use grainlab_msgs::msg;
 use grainlab_servo::ServoRequest;
 
 /// Why there is no answer to a stress.
@@ -25,11 +25,12 @@ pub fn answer(stress: &msg::Stress) -> Result<msg::StrainRate, Refusal> {
     let request = ServoRequest::try_from(stress)?;
     let output = grainlab_servo::control(&request.input)
         .map_err(|reason| Refusal::Servo { sequence: request.sequence, reason })?;
-    let message = msg::StrainRate::try_from(&StrainRateAnswer {
-        stamp: stamp(request.time),
+    let message = msg::StrainRate {
+        header: stress.header.clone(),
         sequence: request.sequence,
         rate: output.rate,
         saturated: output.saturated,
-    })?;
-    Ok(msg::StrainRate { header: stress.header.clone(), ..message })
+    };
+    message.checked()?;
+    Ok(message)
 }

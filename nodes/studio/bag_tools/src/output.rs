@@ -6,7 +6,7 @@ use crate::times::Interval;
 use grainlab_console::{Failure, count, print, say, worse};
 use grainlab_msgs::Exit;
 use grainlab_recordings::Compression;
-use grainlab_recordings::copy::{self, CopyError, CopyOptions, Preset, Select};
+use grainlab_recordings::copy::{self, CopyOptions, Preset, Select};
 use std::path::{Path, PathBuf};
 
 /// Output of a copy, and its options.
@@ -97,14 +97,7 @@ impl Job<'_> {
         self.topics.check(&recordings)?;
         let (start, end) = self.interval.of(&recordings)?;
         let select = Select { topic: &|c| self.topics.take(c), start, end, latched: self.latched };
-        let copied = copy::copy(&recordings, &select, output, &options);
-        let copied = copied.map_err(|e| match e {
-            CopyError::Clash { .. }
-            | CopyError::Exists { .. }
-            | CopyError::NoPackings
-            | CopyError::Pictured { .. } => Failure::usage(e),
-            other => Failure::failed(other),
-        })?;
+        let copied = copy::copy(&recordings, &select, output, &options)?;
         copied.notes.iter().for_each(|note| say!("grainlab: {note}"));
         let latched = match copied.latched {
             0 => String::new(),

@@ -3,7 +3,6 @@
 use grainlab_console::Pace;
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
-use grainlab_msgs::boundary::{MicrostructureReading, RunStateReading, RunStatus};
 use grainlab_msgs::{msg, simulated_seconds};
 use grainlab_node_kit::{Exit, Report, RunId};
 use grainlab_report::Timeline;
@@ -52,7 +51,7 @@ pub struct Laboratory {
     pub(crate) scene: String,
     pub(crate) timeline: Timeline,
     pub(crate) latest: Option<ServoRequest>,
-    pub(crate) state: Option<RunStateReading>,
+    pub(crate) state: Option<msg::RunState>,
     /// The last measured packing.
     pub(crate) report: Option<PackingReport>,
     /// The estimates from one packing, with its step.
@@ -112,17 +111,17 @@ impl Laboratory {
 
     /// Takes the state of the run.
     pub fn run_state(&mut self, message: &msg::RunState, now: Duration) {
-        let Ok(state) = RunStateReading::try_from(message) else { return self.refused += 1 };
+        let Ok(state) = message.checked() else { return self.refused += 1 };
         self.heard = now;
         self.timeline.name(state.phase, &state.phase_name);
         self.steps.push(now, state.step as f64);
-        self.end = match state.status {
+        self.end = match state.state {
             // A restarted simulator goes on.
-            RunStatus::Running => None,
-            RunStatus::Finished => Some(End::Complete),
-            RunStatus::Failed => Some(End::Early(state.message.clone())),
+            msg::RunState::RUNNING => None,
+            msg::RunState::FINISHED => Some(End::Complete),
+            _ => Some(End::Early(state.message.clone())),
         };
-        self.state = Some(state);
+        self.state = Some(state.clone());
     }
 
     /// Takes a packing.
@@ -146,15 +145,15 @@ impl Laboratory {
 
     /// Takes what was inferred from a packing.
     pub fn microstructure(&mut self, message: &msg::Microstructure) {
-        let Ok(reading) = MicrostructureReading::try_from(message) else { return self.refused += 1 };
+        let Ok(results) = message.results() else { return self.refused += 1 };
         let (step, known) = &mut self.inferred;
-        if *step != reading.source_step {
-            (*step, *known) = (reading.source_step, Vec::new());
+        if *step != message.source_step {
+            (*step, *known) = (message.source_step, Vec::new());
         }
-        for result in reading.estimates {
+        for result in results {
             // A name tells several measurements of a packing apart.
-            let measurement = (!reading.name.is_empty()).then(|| Measurement::named(&reading.name));
-            let found = Inference { source: Some(reading.source.clone()), by: None, measurement, result };
+            let measurement = (!message.name.is_empty()).then(|| Measurement::named(&message.name));
+            let found = Inference { source: Some(message.source.clone()), by: None, measurement, result };
             if known.len() < ESTIMATES && !known.contains(&found) {
                 known.push(found);
             }

@@ -2,7 +2,7 @@
 
 use crate::laboratory::{End, Laboratory};
 use grainlab_console::{count, duration};
-use grainlab_msgs::boundary::RunStatus;
+use grainlab_msgs::msg;
 use grainlab_node_kit::{Level, Liveliness, Peer, run_of};
 use grainlab_page::{Cell, Html, heading, html, paragraph, table, verdict};
 use std::time::Duration;
@@ -74,7 +74,7 @@ impl Laboratory {
     fn progress_bar(&self) -> Html {
         let Some(state) = &self.state else { return Html::default() };
         let percent = 100.0 * state.progress;
-        let is_noted = state.status == RunStatus::Running && !state.message.is_empty();
+        let is_noted = state.state == msg::RunState::RUNNING && !state.message.is_empty();
         let note = is_noted.then(|| paragraph(format!("This phase is computed {}.", state.message)));
         let phase = self.phase().map(|n| {
             let name = self.timeline.phase_name(n);

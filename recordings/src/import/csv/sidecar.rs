@@ -10,6 +10,10 @@ use crate::import::error::ImportError;
 use crate::import::settings::Known;
 use crate::import::stated;
 
+fn wrong(problem: impl std::fmt::Display) -> ImportError {
+    ImportError::Invalid(format!("sidecar: {problem}"))
+}
+
 #[derive(Debug, Default, Deserialize)]
 pub(super) struct Sidecar {
     #[serde(rename = "G", alias = "shear_modulus")]
@@ -60,7 +64,7 @@ enum Friction {
 impl Sidecar {
     pub(super) fn parse(text: Option<&str>) -> Result<Self, ImportError> {
         let Some(text) = text else { return Ok(Self::default()) };
-        serde_json::from_str(text).map_err(|e| ImportError::Sidecar(e.to_string()))
+        serde_json::from_str(text).map_err(wrong)
     }
 
     /// Refuses other numbers of grains and contacts than it states.
@@ -69,7 +73,7 @@ impl Sidecar {
             [("grains", self.grains, grains), ("contacts", self.n_contacts, contacts)]
         {
             if let Some(stated) = stated.filter(|stated| *stated != found) {
-                return Err(ImportError::Count { what, stated, found });
+                return Err(ImportError::count(what, stated, found));
             }
         }
         Ok(())
@@ -80,7 +84,7 @@ impl Sidecar {
         self.pbc.as_ref().map_or(Ok(()), |pbc| stated::periodic(1, &pbc.to_string()))?;
         for (what, value) in [("walls", &self.walls), ("gravity", &self.gravity)] {
             if value.as_ref().is_some_and(|value| !is_nothing(value)) {
-                return Err(ImportError::Sidecar(format!("{what}: packings are periodic, without {what}")));
+                return Err(wrong(format_args!("{what}: packings are periodic, without {what}")));
             }
         }
         let friction = match &self.mu_prep {
@@ -88,9 +92,7 @@ impl Sidecar {
             Some(Friction::Number(mu)) => Some(*mu),
             Some(Friction::Word(word)) if word == "inf" => Some(f64::INFINITY),
             Some(Friction::Word(word)) => {
-                return Err(ImportError::Sidecar(format!(
-                    "mu_prep is {word:?}: a number or \"inf\" is needed"
-                )));
+                return Err(wrong(format_args!("mu_prep is {word:?}: a number or \"inf\" is needed")));
             }
         };
         let law = self.contact_law.as_deref().map(|name| ContactLaw::new(name, &self.contact_law_parameters));
@@ -100,7 +102,7 @@ impl Sidecar {
             shear_modulus: self.shear_modulus,
             poisson_ratio: self.nu,
             density: self.density,
-            law: law.transpose().map_err(|e| ImportError::Sidecar(e.to_string()))?,
+            law: law.transpose().map_err(wrong)?,
             friction,
         })
     }

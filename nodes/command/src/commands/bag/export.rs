@@ -4,8 +4,8 @@ use crate::commands::packings::import as import_flags;
 use grainlab_console::{Failure, print, say};
 use grainlab_core::Packing;
 use grainlab_experiment::{PathPosition, StrainOrigin};
+use grainlab_export::{ExportFormat, Exporter, FilePart};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::export::{ExportFormat, Exporter, FilePart};
 use grainlab_recordings::import::{self, Imported};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -155,7 +155,7 @@ impl<'a> Writer<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_recordings::export::lammps_dump;
+    use grainlab_export::lammps_dump;
     use grainlab_recordings::import::{ImportOptions, load};
 
     const SIDECAR: &str = r#"{"G": 29e9, "nu": 0.2, "density": 2500, "mu_prep": 0.3, "box_L": [1, 1, 1]}"#;

@@ -124,8 +124,8 @@ fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
     }
     let mut topics = contract_topics(&[])?;
     topics.retain(|topic| wanted.takes(&topic.absolute_name()));
-    let qos = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose();
-    let qos = qos.map_err(Failure::usage)?.unwrap_or_default();
+    let qos = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose()?;
+    let qos = qos.unwrap_or_default();
     if let Some(name) = qos.topics().map(|name| format!("/{name}")).find(|name| !wanted.takes(name)) {
         return Err(Failure::usage(format!("--qos-profile-overrides-path: {name} is not recorded")));
     }

@@ -23,13 +23,7 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let done = grainlab_recordings::recover(&args.path).map_err(|e| {
-        let exit = match e {
-            grainlab_recordings::RecoverError::Damaged { .. } => Exit::DataLoss,
-            _ => Exit::Failure,
-        };
-        Failure::new(exit, e)
-    })?;
+    let done = grainlab_recordings::recover(&args.path)?;
     let mut text = String::new();
     for file in &done.files {
         let path = file.path.display();

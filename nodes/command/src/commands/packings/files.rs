@@ -134,10 +134,7 @@ fn read(
         }
         Err(error) => {
             let mut exit = match without_path(&error) {
-                ImportError::Missing(_)
-                | ImportError::Cell(_)
-                | ImportError::HasItsOwn(_)
-                | ImportError::ForcesBeside => Exit::Usage,
+                ImportError::Missing(_) | ImportError::Given(_) => Exit::Usage,
                 _ => Exit::Failure,
             };
             let mut complaints = Vec::new();

@@ -13,7 +13,7 @@ use grainlab_core::results::{
 use grainlab_core::stress::Stress;
 use grainlab_core::{Material, Stiffness, SymTensor, Vec3};
 use grainlab_emt_inversion::{Settings, microstructure_of_moduli, microstructure_of_report};
-use grainlab_msgs::boundary::{MicrostructureReading, packing_report_message};
+use grainlab_msgs::boundary::packing_report_message;
 use grainlab_msgs::msg::{self, Estimate, Microstructure, Moduli};
 use grainlab_msgs::stamp;
 use grainlab_msgs::std_msgs::Header;
@@ -91,6 +91,6 @@ fn of_data(e: &Estimate, at: usize) -> f64 {
 }
 
 fn of_ratio(message: Microstructure) -> Estimate {
-    assert!(MicrostructureReading::try_from(&message).is_ok(), "a reader refuses {message:?}");
+    assert!(message.results().is_ok(), "a reader refuses {message:?}");
     message.estimates.into_iter().find(|e| e.model == "ratio").unwrap()
 }

@@ -148,7 +148,7 @@ impl Session<'_> {
                 Key::Step => player.step(now),
                 Key::Faster | Key::Slower => {
                     let factor = if key == Key::Faster { 1.1 } else { 1.0 / 1.1 };
-                    player.set_rate(now, player.rate() * factor).map_err(Failure::usage)?;
+                    player.set_rate(now, player.rate() * factor)?;
                     say!("grainlab: rate {:.3}\r", player.rate());
                 }
                 Key::End => return Ok(true),

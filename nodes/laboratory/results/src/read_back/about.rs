@@ -5,7 +5,7 @@ use crate::measurements::{Identity, Measurement, Measurements};
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
 use grainlab_experiment::PathPosition;
-use grainlab_msgs::boundary::{BoundaryError, MicrostructureReading, ModuliReading, WaveSpeedsReading};
+use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::{Topic, msg, topics};
 use grainlab_recordings::{Message, OneRun, RunSign};
@@ -208,7 +208,7 @@ pub(super) fn enter(
         _ => {
             let message: msg::Microstructure = read(recorded)?;
             let step = message.source_step;
-            let reading = MicrostructureReading::try_from(&message).map_err(refused(step))?;
+            let results = message.results().map_err(refused(step))?;
             let by = by.map(str::to_owned);
             let about = about(all, step);
             let identity = Identity::new(&message.name, message.header.stamp);
@@ -221,7 +221,7 @@ pub(super) fn enter(
                 measurement: None,
                 result,
             };
-            let estimates = reading.estimates.into_iter().map(of).collect();
+            let estimates = results.into_iter().map(of).collect();
             about.answers.push(Answer { source: message.source, identity, nth, estimates });
             Ok(step)
         }

@@ -9,7 +9,7 @@ use grainlab_acoustics::{Measurement, with_speed_noise};
 use grainlab_console::Failure;
 use grainlab_core::Packing;
 use grainlab_core::results::{InferredQuantity, PackingReport};
-use grainlab_msgs::boundary::{MicrostructureReading, packing_report_message};
+use grainlab_msgs::boundary::packing_report_message;
 use grainlab_node_kit::Exit;
 use rayon::prelude::*;
 
@@ -86,8 +86,7 @@ fn compared(answer: grainlab_emt_inversion::Answer, truth: &PackingReport) -> Re
     if let Some(why) = answer.refused {
         return Err(Failure::new(Exit::PhysicsInvalid, why.to_string()));
     }
-    let reading = MicrostructureReading::try_from(&answer.message).ok();
-    let inferred = reading.and_then(|r| r.estimates.into_iter().next());
+    let inferred = answer.message.results().ok().and_then(|all| all.into_iter().next());
     let of = |(_, quantity): (Family, InferredQuantity)| {
         let inferred = inferred.as_ref()?;
         let error = inferred.values[quantity]? - truth.counted(quantity)?;

@@ -1,7 +1,6 @@
 //! The recording of a run in memory, by the rules of the recorder.
 
 use grainlab_core::Packing;
-use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use grainlab_msgs::{Guid, Topic, from_cdr, msg, topics};
 use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, SubscriptionId, member_of};
 use grainlab_recorder::repeats::{Novelty, Repeats};
@@ -20,7 +19,7 @@ pub(super) struct Record {
     /// Whole bodies by topic, each once.
     bodies: BTreeMap<&'static str, Vec<Vec<u8>>>,
     /// The last run state.
-    pub(super) state: Option<RunStateReading>,
+    pub(super) state: Option<msg::RunState>,
     /// Samples received, including repeats.
     pub(super) seen: u64,
     /// Messages that contradict a recorded one.
@@ -40,10 +39,9 @@ impl Record {
 
     /// True if the path is done and the last packing is inverted.
     pub(super) fn is_complete(&self) -> bool {
-        let Some(state) = self.state.as_ref().filter(|s| s.status == RunStatus::Finished) else {
-            return false;
-        };
-        let Some(step) = state.last_packing_step else { return true };
+        let finished = |s: &&msg::RunState| s.state == msg::RunState::FINISHED;
+        let Some(state) = self.state.as_ref().filter(finished) else { return false };
+        let Some(step) = state.last_packing() else { return true };
         let found = self.bodies.get(topics::MICROSTRUCTURE.name).into_iter().flatten();
         found.filter_map(|body| from_cdr::<msg::Microstructure>(body).ok()).any(|m| m.source_step == step)
     }
@@ -119,9 +117,7 @@ impl Node for MemoryRecorder {
         }
         while let Some(sample) = bus.take(self.states)? {
             let state = from_cdr::<msg::RunState>(&sample.body).ok();
-            if let Some(state) = state.and_then(|s| RunStateReading::try_from(&s).ok()) {
-                record.state = Some(state);
-            }
+            record.state = state.filter(|s| s.checked().is_ok()).or(record.state.take());
         }
         Ok(Next::Wait(Duration::from_secs(3600)))
     }

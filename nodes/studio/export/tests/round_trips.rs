@@ -2,17 +2,15 @@
 
 use grainlab_core::contact::{ContactLaw, Linear, RollingResistance, SpringLaw};
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_msgs::boundary::packing_message;
-use grainlab_msgs::{Topic, to_cdr, topics};
-use grainlab_recordings::import::{ImportOptions, csv, lammps_data, lammps_dump, load};
-use grainlab_recordings::{RunWriter, TopicSpec, export};
+use grainlab_export as export;
+use grainlab_recordings::import::{ImportOptions, csv, lammps_data, lammps_dump};
 
-use crate::reference_packing::reference;
-use crate::support::{SIMULATOR, START, options, sample};
+mod reference;
+use reference::reference;
 
 /// The reference packing with other values for all its defaults.
 fn rich() -> Packing {
-    let mut p = reference().packing;
+    let mut p = reference();
     (p.step, p.time, p.time_step, p.friction) = (123_456, 0.1 + 0.2, 3e-8, f64::INFINITY);
     let springs = SpringLaw::Linear(Linear { normal_stiffness: 1.5e8, stiffness_ratio: 0.4 });
     let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
@@ -37,30 +35,6 @@ fn csv_and_sidecar_bring_back_the_packing_bit_for_bit() {
     let back = csv::packing(&export::csv(&p), Some(&export::sidecar(&p)), &ImportOptions::default()).unwrap();
     assert_eq!(back.packing, p);
     assert_eq!((back.step, back.notes.len()), (p.step, 0));
-}
-
-#[test]
-fn a_recorded_packing_comes_back_bit_for_bit() {
-    let root = tempfile::tempdir().unwrap();
-    let directory = root.path().join("r");
-    let p = rich();
-    let row: &Topic = &topics::PACKING;
-    let spec = TopicSpec::of_contract(row, &row.absolute_name());
-    let mut run = RunWriter::create(&directory, "r", &[spec], options()).unwrap();
-    for (n, step) in [(1, 10), (2, 20)] {
-        let body = to_cdr(&packing_message(&Packing { step, ..p.clone() }, "demo", vec![1, 2]));
-        run.write("/packing", &sample(SIMULATOR, n, START, &body)).unwrap();
-    }
-    run.finish().unwrap();
-    let loaded = load(&directory, &ImportOptions::default()).unwrap();
-    assert_eq!(loaded.packings.iter().map(|i| i.step).collect::<Vec<_>>(), [10, 20]);
-    assert_eq!(loaded.packings[0].packing, Packing { step: 10, ..p.clone() });
-    // Truncated in the last chunk, the file still has the first packing, and the loss is reported.
-    let file = directory.join("r_0.mcap");
-    let bytes = std::fs::read(&file).unwrap();
-    std::fs::write(&file, &bytes[..bytes.len() * 6 / 10]).unwrap();
-    let loaded = load(&directory, &ImportOptions::default()).unwrap();
-    assert_eq!((loaded.packings.len(), loaded.warnings.len()), (1, 1));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Writes VTK XML files, which ParaView and PyVista open: grains as points, contacts as lines, and a collection of the
 //! states of a run.
 
-use super::columns::{self, Column, Values};
+use crate::columns::{self, Column, Values};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use grainlab_core::{Packing, Vec3};

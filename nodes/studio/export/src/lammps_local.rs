@@ -1,12 +1,12 @@
 //! Writes the contacts of a packing as a LAMMPS `dump local`.
 
-use super::lammps_dump::ids;
+use crate::lammps_dump::ids;
 use grainlab_core::Packing;
 use std::fmt::Write as _;
 
 /// One frame: ids of the two grains, normal force and tangential force on the first one, N, under the names that
-/// [`ImportOptions::contact_forces`](crate::import::ImportOptions::contact_forces) expects. Ids are those of
-/// [`lammps_dump`](super::lammps_dump()).
+/// `ImportOptions::contact_forces` expects. Ids are those of
+/// [`lammps_dump`](crate::lammps_dump()).
 pub fn lammps_local(packing: &Packing) -> String {
     let mut text = format!(
         "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ENTRIES\n{}\nITEM: ENTRIES patom1 patom2 fx fy fz p1 p2 p3\n",

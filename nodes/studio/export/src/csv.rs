@@ -1,4 +1,4 @@
-//! Writes the CSV format of [`crate::import::csv`] without loss: numbers have enough digits to read them
+//! Writes the CSV format of `grainlab_recordings::import::csv` without loss: numbers have enough digits to read them
 //! back exactly.
 
 use std::fmt::Write as _;

@@ -1,6 +1,6 @@
 //! Writes VTKHDF files: HDF5 with the layout of `vtkPolyData`, for ParaView, VTK and every reader of HDF5.
 
-use super::columns::{self, Column, Values};
+use crate::columns::{self, Column, Values};
 use grainlab_core::{Packing, Vec3};
 use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, GroupBuilder};
 
@@ -9,7 +9,7 @@ use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, GroupBuilder};
 #[error("HDF5: {0}")]
 pub struct HdfError(#[from] hdf5_pure::Error);
 
-/// The grains as points folded into the cell, with the columns of [`vtp_grains`](super::vtp_grains).
+/// The grains as points folded into the cell, with the columns of [`vtp_grains`](crate::vtp_grains).
 ///
 /// # Errors
 /// If there are more numbers than the format can address.
@@ -19,7 +19,7 @@ pub fn vtkhdf_grains(packing: &Packing) -> Result<Vec<u8>, HdfError> {
     poly_data(packing, &points, cells, ("PointData", &columns::grains(packing)))
 }
 
-/// The contacts as lines between centres, with the columns of [`vtp_contacts`](super::vtp_contacts).
+/// The contacts as lines between centres, with the columns of [`vtp_contacts`](crate::vtp_contacts).
 ///
 /// # Errors
 /// As [`vtkhdf_grains`].

@@ -4,7 +4,7 @@ use grainlab_core::{Contact, Packing, Vec3};
 
 /// Numbers of one kind.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Values {
+pub(crate) enum Values {
     Float(Vec<f64>),
     Unsigned(Vec<u32>),
     Signed(Vec<i32>),
@@ -12,11 +12,11 @@ pub(super) enum Values {
 
 /// A named column.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Column {
-    pub(super) name: &'static str,
+pub(crate) struct Column {
+    pub(crate) name: &'static str,
     /// Numbers in each row.
-    pub(super) components: usize,
-    pub(super) values: Values,
+    pub(crate) components: usize,
+    pub(crate) values: Values,
 }
 
 fn scalars(name: &'static str, values: Vec<f64>) -> Column {
@@ -33,7 +33,7 @@ fn counts(name: &'static str, components: usize, values: Vec<u32>) -> Column {
 
 /// Columns of the grains. Lengths in m, m/s, rad/s, kg. `position_unwrapped` is the position as held, to which the images of contacts
 /// refer.
-pub(super) fn grains(packing: &Packing) -> Vec<Column> {
+pub(crate) fn grains(packing: &Packing) -> Vec<Column> {
     let mut coordination = vec![0; packing.grains()];
     for contact in &packing.contacts {
         coordination[contact.i as usize] += 1;
@@ -53,7 +53,7 @@ pub(super) fn grains(packing: &Packing) -> Vec<Column> {
 
 /// Columns of the contacts. `pair` has ids. Forces in N, overlap in m; the normal points from the first grain to the second one, and the
 /// tangential force acts on the first one. `mobilisation` is the tangential force over friction times normal force.
-pub(super) fn contacts(packing: &Packing) -> Vec<Column> {
+pub(crate) fn contacts(packing: &Packing) -> Vec<Column> {
     let list = &packing.contacts;
     let of = |value: fn(&Contact) -> f64| list.iter().map(value).collect::<Vec<_>>();
     let id = |index: u32| packing.ids[index as usize];
@@ -82,7 +82,7 @@ pub(super) fn contacts(packing: &Packing) -> Vec<Column> {
 }
 
 /// Columns of the whole packing: SI units, matrices row by row, the edge vectors of the cell as columns.
-pub(super) fn state(packing: &Packing) -> Vec<Column> {
+pub(crate) fn state(packing: &Packing) -> Vec<Column> {
     let rows = |m: &grainlab_core::Mat3| m.transpose().as_slice().to_vec();
     vec![
         scalars("TimeValue", vec![packing.time]),
@@ -98,14 +98,14 @@ pub(super) fn state(packing: &Packing) -> Vec<Column> {
 }
 
 /// Positions folded into the cell, m.
-pub(super) fn folded(packing: &Packing) -> Vec<Vec3> {
+pub(crate) fn folded(packing: &Packing) -> Vec<Vec3> {
     let cell = &packing.cell;
     let fold = |x: &Vec3| x - cell.matrix() * cell.fractional(x).map(f64::floor);
     packing.positions.iter().map(fold).collect()
 }
 
 /// The ends of each contact, m: the folded centre of the first grain, and from there along the branch vector.
-pub(super) fn ends(packing: &Packing) -> Vec<Vec3> {
+pub(crate) fn ends(packing: &Packing) -> Vec<Vec3> {
     let folded = folded(packing);
     let ends = |c: &Contact| {
         let first = folded[c.i as usize];

@@ -1,4 +1,7 @@
-//! Writes packings as files of other programs.
+//! Packings as files of other programs.
+//!
+//! - `files`: the files of one packing or of a run, by format; `columns`: what formats with named columns hold
+//! - `csv`, `lammps_*`, `extended_xyz`, `vtp`, `vtkhdf`: one format each
 
 mod columns;
 mod csv;

@@ -1,6 +1,6 @@
 //! Writes LAMMPS data files of `atom_style sphere`.
 
-use super::lammps_dump::{ids, restricted};
+use crate::lammps_dump::{ids, restricted};
 use grainlab_core::Packing;
 use std::fmt::Write as _;
 

@@ -1,7 +1,7 @@
 //! The files of one packing, or of a run, by format.
 
-use super::vtkhdf::HdfError;
-use super::{
+use crate::vtkhdf::HdfError;
+use crate::{
     csv, extended_xyz, lammps_data, lammps_dump, lammps_local, pvd, sidecar, vtkhdf_contacts, vtkhdf_grains,
     vtp_contacts, vtp_grains,
 };

@@ -6,21 +6,21 @@ use grainlab_core::{Packing, Vec3};
 
 /// The tilt factors xy, xz, yz of a cell with edge vectors (lx, 0, 0), (xy, ly, 0), (xz, yz, lz), m; `None` for any other
 /// cell, which LAMMPS calls a general triclinic one.
-pub(super) fn restricted(packing: &Packing) -> Option<[f64; 3]> {
+pub(crate) fn restricted(packing: &Packing) -> Option<[f64; 3]> {
     let m = packing.cell.matrix();
     let below = [(1, 0), (2, 0), (2, 1)];
     below.into_iter().all(|at| m[at] == 0.0).then(|| [m[(0, 1)], m[(0, 2)], m[(1, 2)]])
 }
 
 /// The ids of the grains in every file for LAMMPS, which counts from 1: those of the packing, or one more if it has an id 0.
-pub(super) fn ids(packing: &Packing) -> Vec<u64> {
+pub(crate) fn ids(packing: &Packing) -> Vec<u64> {
     let first = u64::from(packing.ids.contains(&0));
     packing.ids.iter().map(|id| u64::from(*id) + first).collect()
 }
 
 /// One frame of a LAMMPS dump: id, type, radius, mass, unwrapped positions, velocities, angular velocities,
 /// and the number of contacts as `c_contacts`. Frames can be concatenated. Contact forces are not
-/// part of the format. Ids are those of the packing, or one more if it has an id 0, as in [`lammps_data`](super::lammps_data()). A cell that is not in the restricted triclinic form of LAMMPS is written as a general one, by its edge
+/// part of the format. Ids are those of the packing, or one more if it has an id 0, as in [`lammps_data`](crate::lammps_data()). A cell that is not in the restricted triclinic form of LAMMPS is written as a general one, by its edge
 /// vectors (`BOX BOUNDS abc origin`, LAMMPS from April 2024 on).
 pub fn lammps_dump(packing: &Packing) -> String {
     let mut text = format!(
