@@ -6,7 +6,6 @@ use grainlab_console::{Failure, say};
 use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};
 use grainlab_emt::{Status, recommended};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::msg::RunState;
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::{

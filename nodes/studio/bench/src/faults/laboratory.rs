@@ -277,7 +277,7 @@ impl Laboratory<'_> {
             "{why}: at {:.1} s, {} samples, state {:?}, not running: {:?}",
             self.hub.now().as_secs_f64(),
             record.seen,
-            record.state.as_ref().map(|s| (s.status, s.step)),
+            record.state.as_ref().map(|s| (s.state, s.step)),
             crashed.collect::<Vec<_>>()
         )
     }
