@@ -83,38 +83,30 @@ const FORMS: [([&str; 3], bool); 4] = [
 /// Origin and edge vectors. LAMMPS writes the bounding box of a tilted cell, not its edges.
 fn bounds(item: &Line<'_>, words: &str, rows: &[Line<'_>; 3]) -> Result<(Vec3, Mat3), ImportError> {
     let words: Vec<&str> = words.split_whitespace().collect();
-    let general = words.starts_with(&["abc", "origin"]);
-    let tilted = words.starts_with(&["xy", "xz", "yz"]);
-    let boundaries = &words[if general {
-        2
-    } else if tilted {
-        3
-    } else {
-        0
-    }..];
+    // A line has the bounds of one direction and its tilt, or an edge vector and a component of the origin.
+    let (width, boundaries) = match words[..] {
+        ["abc", "origin", ref rest @ ..] => (4, rest),
+        ["xy", "xz", "yz", ref rest @ ..] => (3, rest),
+        ref rest => (2, rest),
+    };
     if let Some(other) = boundaries.iter().find(|b| **b != "pp") {
         let reason = "the cell must be periodic in all directions (pp)";
         return Err(ImportError::unsupported(item.number, format!("boundary {other}"), reason));
     }
-    if general {
-        return edges(rows);
-    }
-    let (mut low, mut high, mut tilt) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-    for (k, row) in rows.iter().enumerate() {
-        match (row.words().as_slice(), tilted) {
-            ([lo, hi], false) => {
-                (low[k], high[k]) = (row.number("lower bound", lo)?, row.number("upper bound", hi)?)
-            }
-            ([lo, hi, t], true) => {
-                (low[k], high[k]) = (row.number("lower bound", lo)?, row.number("upper bound", hi)?);
-                tilt[k] = row.number("tilt", t)?;
-            }
-            (words, _) => {
-                let n = if tilted { 3 } else { 2 };
-                return Err(row.error(format!("a bound has {n} numbers, not {}", words.len())));
-            }
+    let mut numbers = [[0.0; 4]; 3];
+    for (row, numbers) in rows.iter().zip(&mut numbers) {
+        let words = row.words();
+        if words.len() != width {
+            return Err(row.error(format!("a bound has {width} numbers, not {}", words.len())));
+        }
+        for (word, number) in words.iter().zip(numbers) {
+            *number = row.finite("a bound", word)?;
         }
     }
+    if width == 4 {
+        return Ok((numbers.map(|n| n[3]).into(), Mat3::from_fn(|r, c| numbers[c][r])));
+    }
+    let (mut low, mut high, tilt) = (numbers.map(|n| n[0]), numbers.map(|n| n[1]), numbers.map(|n| n[2]));
     let [xy, xz, yz] = tilt;
     let spread = |values: &[f64]| values.iter().fold((0.0f64, 0.0f64), |(a, b), v| (a.min(*v), b.max(*v)));
     for (k, values) in [vec![xy, xz, xy + xz], vec![yz], vec![]].iter().enumerate() {
@@ -169,19 +161,4 @@ fn packing(
     let contacts = forces.map(|forces| forces.contacts.as_slice());
     let state = State { time: *time, ..State::at(step.unwrap_or(0)) };
     assemble::packing(grains, &settings, contacts, state, source, Vec::new())
-}
-
-/// Origin and edge vectors of a general triclinic box: one edge a line, followed by a component of the origin.
-fn edges(rows: &[Line<'_>; 3]) -> Result<(Vec3, Mat3), ImportError> {
-    let (mut origin, mut cell) = (Vec3::zeros(), Mat3::zeros());
-    for (k, row) in rows.iter().enumerate() {
-        let [x, y, z, o] = *row.words().as_slice() else {
-            return Err(
-                row.error(format!("an edge has 4 numbers with its origin, not {}", row.words().len()))
-            );
-        };
-        cell.set_column(k, &row.vector("edge vector", [x, y, z])?);
-        origin[k] = row.number("origin", o)?;
-    }
-    Ok((origin, cell))
 }

@@ -115,7 +115,7 @@ impl Recorder {
         let before = if settings.append { Recording::open(&directory).ok() } else { None };
         if let Some(recording) = &before {
             authors = strangers::authors(recording);
-            disputes.remember(strangers::noted_disputes(recording));
+            disputes.lines = strangers::noted_disputes(recording);
             if let Some(repeats) = &mut repeats {
                 repeats.remember(recording).map_err(|e| failed(&e))?;
             }
@@ -402,8 +402,8 @@ impl Node for Recorder {
         }
         let express = |value: serde_json::Result<String>| value.map_err(|e| lost(&e));
         writer.set_metadata(strangers::STRANGERS, &express(serde_json::to_string(&strangers))?);
-        if !self.disputes.lines().is_empty() {
-            writer.set_metadata(strangers::DISPUTES, &express(serde_json::to_string(self.disputes.lines()))?);
+        if !self.disputes.lines.is_empty() {
+            writer.set_metadata(strangers::DISPUTES, &express(serde_json::to_string(&self.disputes.lines))?);
         }
         writer.set_metadata(strangers::AUTHORS, &express(serde_json::to_string(&self.authors))?);
         if let Some(run) = self.binding.as_ref().and_then(Binding::run) {
@@ -437,10 +437,10 @@ impl Node for Recorder {
             );
             return Ok(Exit::DataLoss);
         }
-        if self.disputes.found_scene() {
+        if self.disputes.of_scene {
             return Ok(Exit::Failure);
         }
-        if self.disputes.found_processes() || self.contradictions > 0 {
+        if self.disputes.of_processes || self.contradictions > 0 {
             log::error!(
                 "two processes wrote results of one run: it is unknown which of them is right. Start the processes of a run \
                  with a run of their own (GRAINLAB_RUN=any_name for each of them)"
