@@ -7,6 +7,7 @@
 //! not list contacts, they are found from positions, with Hertz normal forces and without tangential forces.
 
 mod assemble;
+mod columns;
 pub mod contacts;
 pub mod csv;
 mod error;
@@ -16,6 +17,7 @@ mod lammps_cell;
 mod lammps_columns;
 pub mod lammps_data;
 pub mod lammps_dump;
+mod lammps_items;
 mod lammps_local;
 mod load;
 pub mod recording;

@@ -31,7 +31,7 @@ struct Writer {
 impl Writer {
     /// Number of messages before the first received one; all reported ones if none was received.
     fn before_first(&self) -> u64 {
-        self.sequence.first().map_or(self.reported.unwrap_or(0), |first| (first - 1).max(0) as u64)
+        self.sequence.first.map_or(self.reported.unwrap_or(0), |first| (first - 1).max(0) as u64)
     }
 }
 
@@ -114,11 +114,11 @@ impl Ledger {
     /// Number of messages reported as published but not received: an ending recorder
     /// may still wait for them.
     pub fn outstanding(&self) -> u64 {
-        let of_interest = |w: &&Writer| w.left_out == 0 || w.left_out < w.sequence.held();
+        let of_interest = |w: &&Writer| w.left_out == 0 || w.left_out < w.sequence.held;
         let of_topic = |(name, writers): (&String, &BTreeMap<Guid, Writer>)| -> u64 {
             let missed = |w: &Writer| {
                 let before = if self.from_first.contains(name) { w.before_first() } else { 0 };
-                w.reported.unwrap_or(0).saturating_sub(w.sequence.held() + before)
+                w.reported.unwrap_or(0).saturating_sub(w.sequence.held + before)
             };
             writers.values().filter(of_interest).map(missed).sum()
         };
@@ -135,21 +135,21 @@ impl Ledger {
         for (guid, writer) in writers {
             let s = &writer.sequence;
             // No message was received: those published before are not counted as lost.
-            if writer.left_out > 0 && writer.left_out == s.held() {
+            if writer.left_out > 0 && writer.left_out == s.held {
                 continue;
             }
             let before = if self.from_first.contains(name) { writer.before_first() } else { 0 };
-            let held = s.held();
+            let held = s.held;
             let recorded = held - writer.same - writer.conflicting - writer.left_out;
             // A report below the highest received number is out of date; it does not mean a negative loss.
-            let published = writer.reported.unwrap_or(0).max(s.highest().max(0) as u64).max(held) - before;
+            let published = writer.reported.unwrap_or(0).max(s.highest.max(0) as u64).max(held) - before;
             tallies.push(WriterTally {
                 guid: guid.to_string(),
                 node: self.nodes.get(guid).cloned(),
                 recorded,
                 reported: writer.reported,
-                first: s.first(),
-                last: (held > 0).then(|| s.highest()),
+                first: s.first,
+                last: (held > 0).then_some(s.highest),
                 lost: published.saturating_sub(held),
                 gaps: s
                     .gaps()
@@ -158,7 +158,7 @@ impl Ledger {
                     .collect(),
                 repeated: writer.same,
                 conflicting: writer.conflicting,
-                redelivered: s.redelivered(),
+                redelivered: s.redelivered,
             });
         }
         merge::topic(name.to_owned(), tallies)

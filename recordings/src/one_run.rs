@@ -15,7 +15,7 @@ const REQUESTS: usize = 1 << 20;
 
 /// A recording holds several runs.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{path} holds several runs: {sign}. Results of several runs are not joined: {}", sign.way_out())]
+#[error("{path} holds several runs: {sign}. Results of several runs are not joined: {}", sign.way_out)]
 pub struct SeveralRuns {
     /// Path of the recording.
     pub path: PathBuf,
@@ -40,74 +40,18 @@ impl SeveralRuns {
 
 /// Sign that a recording holds several runs.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum RunSign {
-    /// One step is that of two states.
-    #[error("there are two different packings of step {step}")]
-    Packings {
-        /// Number of the step.
-        step: u64,
-    },
-    /// The steps begin again.
-    #[error("a packing of step {step} comes after one of step {before}")]
-    Restart {
-        /// The step of the later packing.
-        step: u64,
-        /// The step of the earlier one.
-        before: u64,
-    },
-    /// Grains were exchanged, which no run does.
-    #[error("there are packings of {first} and of {second} grains")]
-    Grains {
-        /// Grains of the first packing.
-        first: usize,
-        /// Grains of another one.
-        second: usize,
-    },
-    /// Packings of several laboratories.
-    #[error("there are packings on {first} and on {second}")]
-    Topics {
-        /// Topic of a laboratory.
-        first: String,
-        /// Topic of another one.
-        second: String,
-    },
-    /// The recording has several scenes.
-    #[error("it has {count} different scenes ({names})")]
-    Scenes {
-        /// Number of scenes.
-        count: usize,
-        /// Names of the stored files.
-        names: String,
-    },
-    /// One number is that of two requests of the lockstep.
-    #[error("there are two different requests of number {sequence} on stress")]
-    Requests {
-        /// Number of the request.
-        sequence: u64,
-    },
-    /// A result is not that of the packing of its step.
-    #[error("the {topic} of step {step} is not that of the packing of this step: {difference}")]
-    Result {
-        /// Topic of the result.
-        topic: &'static str,
-        /// Number of the step.
-        step: u64,
-        /// Quantity that differs.
-        difference: String,
-    },
+#[error("{what}")]
+pub struct RunSign {
+    what: String,
+    /// Advice how to get a recording of one run.
+    way_out: &'static str,
 }
 
 impl RunSign {
-    /// Advice how to get a recording of one run.
-    fn way_out(&self) -> &'static str {
-        match self {
-            Self::Topics { .. } => "take the topics of one of them (grainlab bag filter)",
-            // A cut keeps all stored files.
-            Self::Scenes { .. } => {
-                "give one of the recordings that it was merged from, which its metadata grainlab_copy names"
-            }
-            _ => "give the recording of one of them, or cut one out by its time (grainlab bag cut)",
-        }
+    /// What was found in the messages.
+    pub fn new(what: String) -> Self {
+        let way_out = "give the recording of one of them, or cut one out by its time (grainlab bag cut)";
+        Self { what, way_out }
     }
 }
 
@@ -130,19 +74,26 @@ impl OneRun {
     pub fn packing(&mut self, topic: &str, packing: &Packing) -> Result<(), RunSign> {
         let first = self.topic.get_or_insert_with(|| topic.to_owned());
         if first != topic {
-            return Err(RunSign::Topics { first: first.clone(), second: topic.to_owned() });
+            let what = format!("there are packings on {first} and on {topic}");
+            return Err(RunSign { what, way_out: "take the topics of one of them (grainlab bag filter)" });
         }
         let (step, grains) = (packing.step, packing.grains());
         let first = *self.grains.get_or_insert(grains);
         if first != grains {
-            return Err(RunSign::Grains { first, second: grains });
+            return Err(RunSign::new(format!("there are packings of {first} and of {grains} grains")));
         }
         let last = self.packings.last_key_value().map(|(step, _)| *step);
         let found = state(packing);
         match (self.packings.get(&step), last) {
             (Some(known), _) if *known == found => {}
-            (Some(_), _) => return Err(RunSign::Packings { step }),
-            (None, Some(before)) if before > step => return Err(RunSign::Restart { step, before }),
+            (Some(_), _) => {
+                return Err(RunSign::new(format!("there are two different packings of step {step}")));
+            }
+            (None, Some(before)) if before > step => {
+                return Err(RunSign::new(format!(
+                    "a packing of step {step} comes after one of step {before}"
+                )));
+            }
             (None, _) => _ = self.packings.insert(step, found),
         }
         Ok(())
@@ -155,7 +106,10 @@ impl OneRun {
     pub fn request(&mut self, sequence: u64, content: &[u8]) -> Result<(), RunSign> {
         let found = fingerprint(|hasher| content.hash(hasher));
         match self.requests.get(&sequence) {
-            Some(known) if *known != found => return Err(RunSign::Requests { sequence }),
+            Some(known) if *known != found => {
+                let what = format!("there are two different requests of number {sequence} on stress");
+                return Err(RunSign::new(what));
+            }
             None if self.requests.len() < REQUESTS => _ = self.requests.insert(sequence, found),
             _ => {}
         }
@@ -199,7 +153,12 @@ impl OneRun {
             return Ok(());
         }
         let names: BTreeSet<&str> = scenes.iter().map(|file| file.name.as_str()).collect();
-        Err(RunSign::Scenes { count, names: names.into_iter().collect::<Vec<_>>().join(", ") })
+        let names = names.into_iter().collect::<Vec<_>>().join(", ");
+        Err(RunSign {
+            what: format!("it has {count} different scenes ({names})"),
+            // A cut keeps all stored files.
+            way_out: "give one of the recordings that it was merged from, which its metadata grainlab_copy names",
+        })
     }
 }
 
@@ -259,21 +218,23 @@ mod tests {
         );
         assert_eq!(last(&[packing(7, 1e-3, 2), packing(9, 1e-3, 2), again]), Ok(()), "published again");
         for (other, sign) in [
-            (packing(7, 1.1e-3, 2), RunSign::Packings { step: 7 }),
-            (packing(8, 1e-3, 2), RunSign::Restart { step: 8, before: 9 }),
-            (packing(10, 1e-3, 3), RunSign::Grains { first: 2, second: 3 }),
+            (packing(7, 1.1e-3, 2), "two different packings of step 7"),
+            (packing(8, 1e-3, 2), "step 8 comes after one of step 9"),
+            (packing(10, 1e-3, 3), "of 2 and of 3 grains"),
         ] {
-            assert_eq!(last(&[packing(7, 1e-3, 2), packing(9, 1e-3, 2), other]), Err(sign));
+            let found = last(&[packing(7, 1e-3, 2), packing(9, 1e-3, 2), other]).unwrap_err();
+            assert!(found.to_string().contains(sign), "{found}");
         }
         let mut run = OneRun::default();
         run.packing("/left/packing", &packing(0, 1e-3, 2)).unwrap();
-        assert!(matches!(run.packing("/right/packing", &packing(1, 1e-3, 2)), Err(RunSign::Topics { .. })));
+        let other = run.packing("/right/packing", &packing(1, 1e-3, 2)).unwrap_err();
+        assert!(other.to_string().contains("on /left/packing and on /right/packing"), "{other}");
     }
 
     #[test]
     fn a_number_is_that_of_one_request() {
         let mut run = OneRun::default();
         assert_eq!(run.request(0, b"a").and(run.request(1, b"b")).and(run.request(0, b"a")), Ok(()));
-        assert_eq!(run.request(1, b"c"), Err(RunSign::Requests { sequence: 1 }));
+        assert!(run.request(1, b"c").unwrap_err().to_string().contains("requests of number 1"));
     }
 }

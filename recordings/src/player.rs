@@ -95,7 +95,7 @@ impl<'r> Player<'r> {
         }
         let mut latched = Vec::new();
         for channel in channels.iter().filter(|c| c.is_latched()) {
-            latched.extend(recording.some_before(&channel.topic, start, 1)?);
+            latched.extend(recording.some_before(&channel.topic, Some(start), 1)?);
         }
         latched.sort_by_key(|m| m.log_time);
         let selection = Selection {

@@ -3,8 +3,6 @@
 use grainlab_launcher::Viewer;
 #[cfg(feature = "studio")]
 use grainlab_msgs::topics;
-#[cfg(feature = "studio")]
-use grainlab_node_kit::{Exit, NodeError};
 
 /// Nodes for viewers; none in a build without the studio.
 pub(crate) const VIEWERS: &[Viewer] = &[
@@ -23,8 +21,7 @@ pub(crate) const VIEWERS: &[Viewer] = &[
         parameters: grainlab_foxglove_bridge::parameters,
         topics: None,
         build: |bus, parameters| {
-            let settings = grainlab_foxglove_bridge::Settings::of(parameters)
-                .map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
+            let settings = grainlab_foxglove_bridge::Settings::of(parameters)?;
             Ok(Box::new(grainlab_foxglove_bridge::FoxgloveBridge::new(bus, settings)?))
         },
     },

@@ -134,7 +134,7 @@ fn before(recordings: &[Recording], channels: &Channels, start: u64) -> Vec<Mess
         let depth = channel.latched_depth();
         let mut of_topic: Vec<Message> = recordings
             .iter()
-            .filter_map(|r| r.some_before(&channel.topic, start, depth).ok())
+            .filter_map(|r| r.some_before(&channel.topic, Some(start), depth).ok())
             .flatten()
             .filter(|m| channels.place(&m.channel).is_some_and(|p| Arc::ptr_eq(&channels.list[p], channel)))
             .collect();

@@ -88,6 +88,6 @@ impl ImportError {
 }
 
 fn list(settings: &[Setting]) -> String {
-    let names: Vec<String> = settings.iter().map(|s| format!("{} (give {})", s.what(), s.flag())).collect();
-    names.join(", ")
+    let names = settings.iter().map(|s| s.described()).map(|(what, flag)| format!("{what} (give {flag})"));
+    names.collect::<Vec<_>>().join(", ")
 }

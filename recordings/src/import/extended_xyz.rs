@@ -8,10 +8,11 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
+use grainlab_core::Mat3;
 use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
+use super::columns::{Columns, Names, three};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::settings::{ImportOptions, Known};
@@ -43,27 +44,38 @@ pub fn each(
         let mut grains = GrainTable::default();
         for read in 0..count {
             let missing = || first.error(format!("the frame has {read} of {count} grains"));
-            frame.grain(&text.next().ok_or_else(missing)?, read, options, &mut grains)?;
+            frame.grain(&text.next().ok_or_else(missing)?, options, &mut grains)?;
         }
         any = true;
-        let notes = frame.unread();
         let density = frame.known.density.or_else(|| grains.density());
         let settings = Known { density, ..frame.known }.complete(options)?;
         let source = format!("extended XYZ, step {}", frame.state.step);
-        if take(assemble::packing(grains, &settings, None, frame.state, source, notes)?).is_break() {
+        if take(assemble::packing(grains, &settings, None, frame.state, source, frame.notes)?).is_break() {
             break;
         }
     }
     if any { Ok(()) } else { Err(ImportError::empty()) }
 }
 
+const NAMES: Names = Names {
+    first_id: 0,
+    radius: "radius",
+    density: "",
+    masses: ["mass", "masses"],
+    kind: "species",
+    velocity: ["velo:0", "velo:1", "velo:2"],
+    spin: ["angular_velocity:0", "angular_velocity:1", "angular_velocity:2"],
+};
+
 /// The comment of a frame.
 struct Frame {
     known: Known,
     state: State,
-    /// First field and number of fields of each column.
-    columns: BTreeMap<String, (usize, usize)>,
-    fields: usize,
+    columns: Columns,
+    /// Places of the position.
+    position: [usize; 3],
+    /// Notes on velocities under names that are not read.
+    notes: Vec<String>,
 }
 
 impl Frame {
@@ -87,19 +99,26 @@ impl Frame {
             }
         };
         let properties = entries.get("Properties").ok_or_else(|| line.error("Properties= is missing"))?;
-        let (mut columns, mut fields) = (BTreeMap::new(), 0);
+        // One name for each field: those of a column of several have a number.
+        let (mut bases, mut names) = (Vec::new(), Vec::new());
         let parts: Vec<&str> = properties.split(':').collect();
         for column in parts.chunks(3) {
-            let [name, _, width] = column else {
+            let [name, _, width] = *column else {
                 return Err(line.error("Properties must be a list of name:type:width"));
             };
             let width = width.parse().ok().filter(|w| (1..=1000).contains(w));
             let width: usize = width.ok_or_else(|| line.error(format!("the width of {name} is invalid")))?;
-            if columns.insert((*name).to_owned(), (fields, width)).is_some() {
+            if bases.contains(&name) {
                 return Err(line.error(format!("the column {name} occurs twice in Properties")));
             }
-            fields += width;
+            bases.push(name);
+            match width {
+                1 => names.push(name.to_owned()),
+                _ => names.extend((0..width).map(|k| format!("{name}:{k}"))),
+            }
         }
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let position = three(&names, ["pos:0", "pos:1", "pos:2"]).filter(|_| !names.contains(&"pos:3"));
         entries.get("units").map_or(Ok(()), |units| stated::units(line.number, units))?;
         entries.get("pbc").map_or(Ok(()), |pbc| stated::periodic(line.number, pbc))?;
         let step: Option<u64> = entries.get("step").map(|value| line.number("step", value)).transpose()?;
@@ -113,63 +132,33 @@ impl Frame {
                 friction: number("friction")?,
             },
             state: State { time: number("Time")?.unwrap_or(0.0), ..State::at(step.unwrap_or(0)) },
-            columns,
-            fields,
+            columns: Columns::new(line, &names, &NAMES)?,
+            position: position.ok_or_else(|| line.error("Properties has no column pos:R:3"))?,
+            notes: unread(&bases),
         })
-    }
-
-    /// A note where velocities are under names that are not read.
-    fn unread(&self) -> Vec<String> {
-        let is_other = |name: &&String| {
-            let name = name.to_lowercase();
-            ["vel", "moment"].iter().any(|of_motion| name.starts_with(of_motion)) && name != "velo"
-        };
-        let other = self.columns.keys().filter(is_other).filter(|_| !self.columns.contains_key("velo"));
-        other
-            .map(|name| format!("the column {name} is not read: velocities, velo:R:3, are taken as 0"))
-            .collect()
     }
 
     fn grain(
         &self,
         line: &Line<'_>,
-        index: usize,
         options: &ImportOptions,
         grains: &mut GrainTable,
     ) -> Result<(), ImportError> {
-        let fields: Vec<&str> = line.text.split_whitespace().collect();
-        if fields.len() != self.fields {
-            let (found, expected) = (fields.len(), self.fields);
-            return Err(line.error(format!("{found} fields; Properties announces {expected}")));
-        }
-        let column = |name: &str, width: usize| {
-            self.columns
-                .get(name)
-                .filter(|(_, w)| *w == width)
-                .map(|(first, _)| &fields[*first..first + width])
-        };
-        let vector = |name: &str| match column(name, 3) {
-            Some(&[x, y, z]) => line.vector(name, [x, y, z]).map(Some),
-            _ => Ok(None),
-        };
-        let position = vector("pos")?.ok_or_else(|| line.error("Properties has no column pos:R:3"))?;
-        let number = |name: &str| column(name, 1).map(|field| line.number::<f64>(name, field[0])).transpose();
-        let radius = grains.radius(stated::radius(line, number("radius")?, number("diameter")?)?, options)?;
-        let [mass, masses] = [number("mass")?, number("masses")?];
-        stated::same(line, "mass and masses", mass, masses)?;
-        grains.masses.extend(mass.or(masses));
-        grains.kinds.extend(column("species", 1).map(|kind| kind[0].to_owned()));
-        let id = match column("id", 1) {
-            Some(&[id]) => line.id("id", id)?,
-            _ => index as u32,
-        };
-        if let Some((first, _)) = self.columns.get("pos") {
-            grains.printed([fields[*first], fields[first + 1], fields[first + 2]]);
-        }
-        let velocity = vector("velo")?.unwrap_or_else(Vec3::zeros);
-        let spin = vector("angular_velocity")?.unwrap_or_else(Vec3::zeros);
-        grains.push(line, id, radius, [position, velocity, spin])
+        let words = self.columns.words(line)?;
+        let position = self.position.map(|k| words[k]);
+        grains.printed(position);
+        self.columns.grain(line, &words, line.vector("pos", position)?, options, grains)
     }
+}
+
+/// Notes on velocities under names that are not read.
+fn unread(names: &[&str]) -> Vec<String> {
+    let is_other = |name: &&&str| {
+        let name = name.to_lowercase();
+        ["vel", "moment"].iter().any(|of_motion| name.starts_with(of_motion)) && name != "velo"
+    };
+    let other = names.iter().filter(is_other).filter(|_| !names.contains(&"velo"));
+    other.map(|name| format!("the column {name} is not read: velocities, velo:R:3, are taken as 0")).collect()
 }
 
 /// The contact law of a comment.

@@ -21,8 +21,7 @@ use std::collections::BTreeMap;
 use super::assemble::{GrainTable, ListedContact, ListedForce};
 use super::error::ImportError;
 use super::lammps_columns::{self, Row};
-use super::stated;
-use super::text::lines;
+use super::lammps_items::{Frame, full_lines, next_frame};
 use grainlab_core::{Cell, Vec3};
 
 /// Ids of the two grains, normal force, tangential force.
@@ -52,86 +51,58 @@ pub(super) struct Local<'a> {
 /// The contacts of the frame of this step, that of the grains; a dump without steps has one frame. `chosen` are the columns in
 /// the default order, five or eight; none for the default ones.
 pub(super) fn contacts<'a>(text: &'a str, chosen: &[String], step: u64) -> Result<Local<'a>, ImportError> {
-    let mut columns: Option<Vec<usize>> = None;
-    let mut local = Local {
-        contacts: Vec::new(),
-        tangential: false,
-        names: Vec::new(),
-        columns: Vec::new(),
-        rows: Vec::new(),
+    let mut lines = full_lines(text);
+    if lines.peek().is_none() {
+        return Err(ImportError::empty());
+    }
+    let (mut steps, mut found) = (Vec::new(), None);
+    while let Some(frame) = next_frame(&mut lines, "ENTRIES")? {
+        steps.extend(frame.step);
+        if frame.step.is_some_and(|of| of != step) {
+            continue;
+        }
+        if found.is_some() {
+            let problem = format!("a second frame of contact forces for step {step}: leave one");
+            return Err(frame.head.error(problem));
+        }
+        found = Some(frame);
+    }
+    let Some(Frame { head, names, rows, .. }) = found else {
+        let (some, both) = (some(&steps), "dump both at the same step");
+        return Err(ImportError::Invalid(match steps.is_empty() {
+            true => NEEDED.to_owned(),
+            false => format!("the contact forces are of step {some} and the grains of step {step}: {both}"),
+        }));
     };
-    let (mut steps, mut is_of_step, mut frames) = (Vec::new(), true, 0);
-    let (mut entries, mut rows, mut last) = (None, 0usize, None);
-    let mut text = lines(text).filter(|l| !l.text.trim().is_empty());
-    while let Some(line) = text.next() {
-        last = Some(line);
-        if let Some(item) = line.text.trim().strip_prefix("ITEM:").map(str::trim) {
-            columns = None;
-            let mut follow =
-                || text.next().ok_or_else(|| line.error(format!("the file ends within ITEM: {item}")));
-            if item == "TIMESTEP" {
-                let value = follow()?;
-                steps.push(value.number("the time step", value.text)?);
-                is_of_step = steps.last() == Some(&step);
-            } else if item == "UNITS" {
-                let value = follow()?;
-                stated::lammps_units(value.number, value.text)?;
-            } else if item.starts_with("NUMBER OF") && is_of_step {
-                let value = follow()?;
-                entries = Some(value.number::<usize>("the number of entries", value.text)?);
-            } else if let Some(names) = item.strip_prefix("ENTRIES").filter(|_| is_of_step) {
-                frames += 1;
-                if frames > 1 {
-                    return Err(
-                        line.error(format!("a second frame of contact forces for step {step}: leave one"))
-                    );
-                }
-                let names: Vec<&str> = names.split_whitespace().collect();
-                let found = find(&names, chosen).map_err(|problem| line.error(problem))?;
-                local.tangential = found.len() == BY_NAME.len();
-                (local.names, local.columns) = (names, found.clone());
-                columns = Some(found);
-            }
-        } else if let Some(columns) = &columns {
-            rows += 1;
-            let words = line.words();
-            let field =
-                |k: usize| words.get(columns[k]).copied().ok_or_else(|| line.error("a column is missing"));
-            let normal = line.vector("force", [field(2)?, field(3)?, field(4)?])?;
-            let tangential = match local.tangential {
-                true => line.vector("tangential force", [field(5)?, field(6)?, field(7)?])?,
-                false => Vec3::zeros(),
-            };
-            let force = normal + tangential;
-            if normal == Vec3::zeros() && tangential == Vec3::zeros() {
-                continue;
-            }
-            let ids = (line.id("first grain", field(0)?)?, line.id("second grain", field(1)?)?);
-            local.rows.push(Row { ids, normal, tangential, text: line.text });
-            local.contacts.push(ListedContact {
-                rolling: Vec3::zeros(),
-                line: line.number,
-                ids,
-                normal: None,
-                overlap: None,
-                force: ListedForce::Total(force),
-            });
+    let columns = find(&names, chosen).map_err(|problem| head.error(problem))?;
+    let tangential = columns.len() == BY_NAME.len();
+    let mut local = Local { contacts: Vec::new(), tangential, names, columns, rows: Vec::new() };
+    for line in rows {
+        let words = line.words();
+        let field = |k: usize| {
+            let word = words.get(local.columns[k]).copied();
+            word.ok_or_else(|| line.error("a column is missing"))
+        };
+        let normal = line.vector("force", [field(2)?, field(3)?, field(4)?])?;
+        let tangential = match tangential {
+            true => line.vector("tangential force", [field(5)?, field(6)?, field(7)?])?,
+            false => Vec3::zeros(),
+        };
+        if normal == Vec3::zeros() && tangential == Vec3::zeros() {
+            continue;
         }
+        let ids = (line.id("first grain", field(0)?)?, line.id("second grain", field(1)?)?);
+        local.rows.push(Row { ids, normal, tangential, text: line.text });
+        local.contacts.push(ListedContact {
+            rolling: Vec3::zeros(),
+            line: line.number,
+            ids,
+            normal: None,
+            overlap: None,
+            force: ListedForce::Total(normal + tangential),
+        });
     }
-    match (last, entries) {
-        (None, _) => Err(ImportError::empty()),
-        _ if !steps.is_empty() && !steps.contains(&step) => {
-            let (some, both) = (some(&steps), "dump both at the same step");
-            Err(ImportError::Invalid(format!(
-                "the contact forces are of step {some} and the grains of step {step}: {both}"
-            )))
-        }
-        (Some(line), _) if frames == 0 => Err(line.error(NEEDED)),
-        (Some(line), Some(entries)) if entries != rows => {
-            Err(line.error(format!("the frame has {rows} of {entries} entries: the file is truncated")))
-        }
-        _ => Ok(local),
-    }
+    Ok(local)
 }
 
 impl Local<'_> {

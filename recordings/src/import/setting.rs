@@ -18,27 +18,15 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// Name in messages to the user.
-    pub fn what(self) -> &'static str {
+    /// Name in messages to the user, and flag on the command line with its unit.
+    pub fn described(self) -> (&'static str, &'static str) {
         match self {
-            Self::Cell => "the cell",
-            Self::ShearModulus => "the grain's shear modulus",
-            Self::PoissonRatio => "the grain's Poisson ratio",
-            Self::Density => "the grain's density",
-            Self::Friction => "the friction coefficient",
-            Self::Radius => "the radius of the grains",
-        }
-    }
-
-    /// Flag on the command line, with the unit.
-    pub fn flag(self) -> &'static str {
-        match self {
-            Self::Cell => "--cell LX,LY,LZ or nine numbers row by row, m",
-            Self::ShearModulus => "--shear-modulus PA",
-            Self::PoissonRatio => "--poisson NU",
-            Self::Density => "--density KG_PER_M3",
-            Self::Friction => "--friction MU",
-            Self::Radius => "--radius M",
+            Self::Cell => ("the cell", "--cell LX,LY,LZ or nine numbers row by row, m"),
+            Self::ShearModulus => ("the grain's shear modulus", "--shear-modulus PA"),
+            Self::PoissonRatio => ("the grain's Poisson ratio", "--poisson NU"),
+            Self::Density => ("the grain's density", "--density KG_PER_M3"),
+            Self::Friction => ("the friction coefficient", "--friction MU"),
+            Self::Radius => ("the radius of the grains", "--radius M"),
         }
     }
 }

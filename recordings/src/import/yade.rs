@@ -15,6 +15,7 @@
 use grainlab_core::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
+use super::columns::{Columns, Names, three};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::settings::{ImportOptions, Known};
@@ -33,8 +34,17 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
     let Some(name) = first.text.trim().strip_prefix("#format").map(str::trim) else {
         return Err(first.error(format!("#format … expected, found {}", shown(first.text))));
     };
-    let mut columns = Columns::of(&first, name)?;
-    let (mut cell, mut grains, mut materials) = (None, GrainTable::default(), Vec::new());
+    let known = FORMATS.iter().find(|(format, _)| *format == name);
+    let mut names = known.map(|(_, names)| names.to_vec()).ok_or_else(|| {
+        let reason = match name {
+            "x_y_z_r_clumpId" => "grains must be single spheres",
+            _ => {
+                "export with textExt in the format x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId or x_y_z_r_attrs"
+            }
+        };
+        ImportError::unsupported(first.number, format_args!("#format {}", cut(name)), reason)
+    })?;
+    let (mut cell, mut grains, mut columns) = (None, GrainTable::default(), None);
     for line in lines {
         if line.text.trim_start().starts_with('#') {
             // With attributes YADE joins the lines of a comment.
@@ -43,96 +53,54 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
                     if cell.replace(edges(&line, numbers)?).is_some() {
                         return Err(line.error("the cell occurs twice"));
                     }
-                } else if let Some(names) = comment.strip_prefix("x y z r") {
-                    columns.attributes(names);
+                } else if let Some(attributes) = comment.strip_prefix("x y z r") {
+                    names.truncate(4);
+                    names.extend(attributes.split_whitespace());
+                    columns = None;
                 }
             }
             continue;
         }
-        let material = columns.grain(&line, options, &mut grains)?;
-        if !materials.contains(&material) {
-            materials.push(material);
-        }
-    }
-    let settings = Known { cell, ..Known::default() }.complete(options)?;
-    let mut notes = Vec::new();
-    if materials.len() > 1 {
-        notes.push(format!(
-            "{} materials are in the file; the one given is used for all grains",
-            materials.len()
-        ));
-    }
-    let grains = grains.sorted_by_id().folded_if_far(&settings.cell);
-    let source = format!("YADE export, {name}");
-    assemble::packing(grains, &settings, None, State::at(0), source, notes)
-}
-
-/// The column of each quantity.
-struct Columns {
-    id: Option<usize>,
-    /// Column of x; y, z and r follow.
-    x: usize,
-    material: Option<usize>,
-    velocity: Option<usize>,
-    spin: Option<usize>,
-    /// Number of columns, if the format defines it.
-    count: Option<usize>,
-}
-
-impl Columns {
-    fn of(line: &Line<'_>, format: &str) -> Result<Self, ImportError> {
-        let plain = Self { id: None, x: 0, material: None, velocity: None, spin: None, count: None };
-        let reason = match format {
-            "x_y_z_r" => return Ok(Self { count: Some(4), ..plain }),
-            "x_y_z_r_matId" => return Ok(Self { material: Some(4), count: Some(5), ..plain }),
-            "id_x_y_z_r_matId" => {
-                return Ok(Self { id: Some(0), x: 1, material: Some(5), count: Some(6), ..plain });
-            }
-            "x_y_z_r_attrs" => return Ok(plain),
-            "x_y_z_r_clumpId" => "grains must be single spheres",
-            _ => {
-                "export with textExt in the format x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId or x_y_z_r_attrs"
+        let (columns, place) = match &mut columns {
+            Some(known) => known,
+            unknown => {
+                // Attributes need no names, and are then not read.
+                let all = if name.ends_with("attrs") && names.len() == 4 { line.words().len() } else { 0 };
+                let more: Vec<String> = (4..all).map(|k| format!("column {k}")).collect();
+                let all: Vec<&str> = names.iter().copied().chain(more.iter().map(String::as_str)).collect();
+                let place = three(&all, ["x", "y", "z"]).unwrap_or_default();
+                unknown.insert((Columns::new(&first, &all, &NAMES)?, place))
             }
         };
-        Err(ImportError::unsupported(line.number, format!("#format {}", cut(format)), reason))
+        let words = columns.words(&line)?;
+        let position = place.map(|k| words[k]);
+        grains.printed(position);
+        columns.grain(&line, &words, line.vector("position", position)?, options, &mut grains)?;
     }
-
-    /// The columns after x, y, z and r, from the comment.
-    fn attributes(&mut self, names: &str) {
-        let names: Vec<&str> = names.split_whitespace().collect();
-        let three = |wanted: [&str; 3]| names.windows(3).position(|w| *w == wanted).map(|k| k + 4);
-        self.velocity = three(["vx", "vy", "vz"]);
-        self.spin = three(["wx", "wy", "wz"]);
-        self.count = (!names.is_empty()).then_some(4 + names.len());
-    }
-
-    /// Adds the grain of a row; returns the name of its material.
-    fn grain<'a>(
-        &self,
-        line: &Line<'a>,
-        options: &ImportOptions,
-        grains: &mut GrainTable,
-    ) -> Result<Option<&'a str>, ImportError> {
-        let words = line.words();
-        let expected = self.count.unwrap_or(words.len().max(4));
-        if words.len() != expected {
-            return Err(line.error(format!("{} columns, {expected} were announced", words.len())));
-        }
-        let vector = |name: &str, at: usize| line.vector(name, [words[at], words[at + 1], words[at + 2]]);
-        let moving = |name: &str, at: Option<usize>| at.map_or(Ok(Vec3::zeros()), |at| vector(name, at));
-        // YADE counts bodies from 0.
-        let id = self.id.map_or(Ok(grains.ids.len() as u32), |k| line.id("id", words[k]))?;
-        let radius = grains.radius(Some(line.number("radius", words[self.x + 3])?), options)?;
-        let vectors = [
-            vector("position", self.x)?,
-            moving("velocity", self.velocity)?,
-            moving("angular velocity", self.spin)?,
-        ];
-        grains.printed([words[self.x], words[self.x + 1], words[self.x + 2]]);
-        grains.push(line, id, radius, vectors)?;
-        Ok(self.material.map(|k| words[k]))
-    }
+    let settings = Known { cell, ..Known::default() }.complete(options)?;
+    let grains = grains.sorted_by_id().folded_if_far(&settings.cell);
+    let source = format!("YADE export, {name}");
+    assemble::packing(grains, &settings, None, State::at(0), source, Vec::new())
 }
+
+/// Formats and their columns; the names of attributes are in a comment.
+const FORMATS: [(&str, &[&str]); 4] = [
+    ("x_y_z_r", &["x", "y", "z", "r"]),
+    ("x_y_z_r_matId", &["x", "y", "z", "r", "matId"]),
+    ("id_x_y_z_r_matId", &["id", "x", "y", "z", "r", "matId"]),
+    ("x_y_z_r_attrs", &["x", "y", "z", "r"]),
+];
+
+const NAMES: Names = Names {
+    // YADE counts bodies from 0.
+    first_id: 0,
+    radius: "r",
+    density: "",
+    masses: ["", ""],
+    kind: "matId",
+    velocity: ["vx", "vy", "vz"],
+    spin: ["wx", "wy", "wz"],
+};
 
 /// The cell in a comment, with any brackets of Python.
 fn edges(line: &Line<'_>, text: &str) -> Result<Mat3, ImportError> {

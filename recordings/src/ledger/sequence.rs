@@ -11,12 +11,12 @@ const MOST_GAPS: usize = 4096;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
     /// Highest received number; 0 before the first.
-    highest: i64,
-    first: Option<i64>,
+    pub(super) highest: i64,
+    pub(super) first: Option<i64>,
     /// Missing ranges below `highest`: first number → last number, both included.
     gaps: BTreeMap<i64, i64>,
-    held: u64,
-    redelivered: u64,
+    pub(super) held: u64,
+    pub(super) redelivered: u64,
 }
 
 impl Sequence {
@@ -61,22 +61,6 @@ impl Sequence {
     fn gap_of(&self, number: i64) -> Option<(i64, i64)> {
         let (start, end) = self.gaps.range(..=number).next_back()?;
         (number <= *end).then_some((*start, *end))
-    }
-
-    pub(super) fn highest(&self) -> i64 {
-        self.highest
-    }
-
-    pub(super) fn first(&self) -> Option<i64> {
-        self.first
-    }
-
-    pub(super) fn held(&self) -> u64 {
-        self.held
-    }
-
-    pub(super) fn redelivered(&self) -> u64 {
-        self.redelivered
     }
 
     pub(super) fn gaps(&self) -> impl Iterator<Item = (i64, i64)> + '_ {

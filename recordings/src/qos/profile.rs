@@ -17,28 +17,15 @@ pub(super) struct Policies {
     depth: Option<u32>,
 }
 
-/// A policy: its values as numbers of rmw and as words, and the meaning of each; `None` leaves it to the default.
-type Values<T> = &'static [(u64, &'static str, Option<T>)];
+/// A policy: its values as numbers of rmw and as words, and the meaning of each. All have 0, `system_default`, and 3,
+/// `unknown`, which leave it to the default.
+type Values = &'static [(u64, &'static str, bool)];
 
-const RELIABILITY: Values<bool> = &[
-    (0, "system_default", None),
-    (1, "reliable", Some(true)),
-    (2, "best_effort", Some(false)),
-    (3, "unknown", None),
-];
-const DURABILITY: Values<bool> = &[
-    (0, "system_default", None),
-    (1, "transient_local", Some(true)),
-    (2, "volatile", Some(false)),
-    (3, "unknown", None),
-];
-const HISTORY: Values<bool> = &[
-    (0, "system_default", None),
-    (1, "keep_last", Some(false)),
-    (2, "keep_all", Some(true)),
-    (3, "unknown", None),
-];
-const LIVELINESS: Values<()> = &[(0, "system_default", None), (1, "automatic", None)];
+const RELIABILITY: Values = &[(1, "reliable", true), (2, "best_effort", false)];
+const DURABILITY: Values = &[(1, "transient_local", true), (2, "volatile", false)];
+/// True: `keep_all`.
+const HISTORY: Values = &[(1, "keep_last", false), (2, "keep_all", true)];
+const LIVELINESS: Values = &[(1, "automatic", true)];
 
 /// The policies that a profile may have.
 const KEYS: [&str; 9] = [
@@ -70,12 +57,19 @@ impl Policies {
         if profile.get("avoid_ros_namespace_conventions").is_some_and(|value| *value != Value::Bool(false)) {
             return Err("avoid_ros_namespace_conventions: true is not supported: leave it out".to_owned());
         }
-        profile.get("liveliness").map_or(Ok(None), |value| one_of("liveliness", value, LIVELINESS))?;
+        // Here 3 is that of each topic.
+        if let Some(value) = profile.get("liveliness").filter(|value| value.as_u64() == Some(3)) {
+            return Err(format!("liveliness: {value} is not one of system_default, automatic"));
+        }
         if let Some(value) = profile.get("depth").filter(|value| depth(value).is_none_or(|n| n == 0)) {
             return Err(format!("depth: {value} is not a number of messages, 1 or more"));
         }
-        for (key, values) in [("reliability", RELIABILITY), ("durability", DURABILITY), ("history", HISTORY)]
-        {
+        for (key, values) in [
+            ("reliability", RELIABILITY),
+            ("durability", DURABILITY),
+            ("history", HISTORY),
+            ("liveliness", LIVELINESS),
+        ] {
             profile.get(key).map_or(Ok(None), |value| one_of(key, value, values))?;
         }
         Ok(Self::lenient(whole))
@@ -107,14 +101,15 @@ fn depth(value: &Value) -> Option<u32> {
 }
 
 /// The meaning of a value, written as a number or as a word.
-fn one_of<T: Copy>(key: &str, value: &Value, values: Values<T>) -> Result<Option<T>, String> {
-    let found = values
-        .iter()
-        .find(|(number, word, _)| value.as_u64() == Some(*number) || value.as_str() == Some(word));
-    found.map(|(_, _, meaning)| *meaning).ok_or_else(|| {
-        let words: Vec<&str> =
-            values.iter().map(|(_, word, _)| *word).filter(|word| *word != "unknown").collect();
-        format!("{key}: {value} is not one of {}", words.join(", "))
+fn one_of(key: &str, value: &Value, values: Values) -> Result<Option<bool>, String> {
+    let is = |number: u64, word: &str| value.as_u64() == Some(number) || value.as_str() == Some(word);
+    if is(0, "system_default") || is(3, "unknown") {
+        return Ok(None);
+    }
+    let found = values.iter().find(|(number, word, _)| is(*number, word));
+    found.map(|(_, _, meaning)| Some(*meaning)).ok_or_else(|| {
+        let words: Vec<&str> = values.iter().map(|(_, word, _)| *word).collect();
+        format!("{key}: {value} is not one of system_default, {}", words.join(", "))
     })
 }
 

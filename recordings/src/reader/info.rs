@@ -75,55 +75,54 @@ pub struct TopicInfo {
 impl Recording {
     /// Overview of the recording.
     pub fn info(&self) -> Info {
-        of(self)
-    }
-}
-
-fn of(recording: &Recording) -> Info {
-    let files = &recording.files;
-    let range = recording.time_range();
-    let tallies = recording.ledger().unwrap_or_default();
-    let tallies: BTreeMap<&str, &TopicTally> = tallies.iter().map(|t| (t.name.as_str(), t)).collect();
-    let topics: Vec<_> = recording
-        .channels()
-        .iter()
-        .map(|channel| {
-            let tally = tallies.get(channel.topic.as_str());
-            TopicInfo {
-                name: channel.topic.clone(),
-                ros_type: channel.ros_type.clone(),
-                definition: channel.stored.word(),
-                messages: recording.count(&channel.topic),
-                latched: channel.is_latched(),
-                published: tally.map(|t| t.published),
-                lost: tally.map(|t| t.lost),
-                repeated: tally.map(|t| t.repeated),
-            }
-        })
-        .collect();
-    let compressions: BTreeSet<&str> = files
-        .iter()
-        .flat_map(|f| &f.index.compressions)
-        .map(|c| if c.is_empty() { "none" } else { c })
-        .collect();
-    Info {
-        path: recording.path.display().to_string(),
-        files: files.iter().map(|f| f.path.display().to_string()).collect(),
-        bytes: recording.size(),
-        complete: files.iter().all(|f| f.index.complete),
-        profile: files.first().map(|f| f.index.profile.clone()).unwrap_or_default(),
-        library: files.first().map(|f| f.index.library.clone()).unwrap_or_default(),
-        compression: compressions.into_iter().map(str::to_owned).collect(),
-        chunks: files.iter().map(|f| f.index.blocks.iter().filter(|b| b.is_chunk).count() as u64).sum(),
-        start_ns: range.map(|r| r.0),
-        end_ns: range.map(|r| r.1),
-        duration_s: range.map_or(0.0, |(a, b)| (b - a) as f64 * 1e-9),
-        messages: topics.iter().map(|t| t.messages).sum(),
-        topics,
-        definitions: recording.differing(),
-        attachments: files.iter().flat_map(|f| f.index.attachments.iter().map(|a| a.name.clone())).collect(),
-        metadata: recording.metadata_names().into_iter().collect(),
-        warnings: recording.warnings(),
+        let files = &self.files;
+        let range = self.time_range();
+        let tallies = self.ledger().unwrap_or_default();
+        let tallies: BTreeMap<&str, &TopicTally> = tallies.iter().map(|t| (t.name.as_str(), t)).collect();
+        let topics: Vec<_> = self
+            .channels()
+            .iter()
+            .map(|channel| {
+                let tally = tallies.get(channel.topic.as_str());
+                TopicInfo {
+                    name: channel.topic.clone(),
+                    ros_type: channel.ros_type.clone(),
+                    definition: channel.stored.word(),
+                    messages: self.count(&channel.topic),
+                    latched: channel.is_latched(),
+                    published: tally.map(|t| t.published),
+                    lost: tally.map(|t| t.lost),
+                    repeated: tally.map(|t| t.repeated),
+                }
+            })
+            .collect();
+        let compressions: BTreeSet<&str> = files
+            .iter()
+            .flat_map(|f| &f.index.compressions)
+            .map(|c| if c.is_empty() { "none" } else { c })
+            .collect();
+        Info {
+            path: self.path.display().to_string(),
+            files: files.iter().map(|f| f.path.display().to_string()).collect(),
+            bytes: self.size(),
+            complete: files.iter().all(|f| f.index.complete),
+            profile: files.first().map(|f| f.index.profile.clone()).unwrap_or_default(),
+            library: files.first().map(|f| f.index.library.clone()).unwrap_or_default(),
+            compression: compressions.into_iter().map(str::to_owned).collect(),
+            chunks: files.iter().map(|f| f.index.blocks.iter().filter(|b| b.is_chunk).count() as u64).sum(),
+            start_ns: range.map(|r| r.0),
+            end_ns: range.map(|r| r.1),
+            duration_s: range.map_or(0.0, |(a, b)| (b - a) as f64 * 1e-9),
+            messages: topics.iter().map(|t| t.messages).sum(),
+            topics,
+            definitions: self.differing(),
+            attachments: files
+                .iter()
+                .flat_map(|f| f.index.attachments.iter().map(|a| a.name.clone()))
+                .collect(),
+            metadata: self.metadata_names().into_iter().collect(),
+            warnings: self.warnings(),
+        }
     }
 }
 

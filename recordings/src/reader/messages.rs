@@ -54,17 +54,44 @@ impl Recording {
     /// # Errors
     /// If the topic does not exist.
     pub fn last(&self, topic: &str) -> Result<Option<Message>, ReadError> {
-        let topic = self.channel(topic)?.topic.clone();
-        Ok(some_before(self, &topic, None, 1).pop())
+        Ok(self.some_before(topic, None, 1)?.pop())
     }
 
-    /// The last `count` messages on `topic` whose log time is below `time` (ns since 1970), in order of log time.
+    /// The last `count` messages on `topic` whose log time is below `time` (ns since 1970), or of all, in order of log time.
     ///
     /// # Errors
     /// If the topic does not exist.
-    pub fn some_before(&self, topic: &str, time: u64, count: usize) -> Result<Vec<Message>, ReadError> {
-        let topic = self.channel(topic)?.topic.clone();
-        Ok(some_before(self, &topic, Some(time), count))
+    pub fn some_before(
+        &self,
+        topic: &str,
+        time: Option<u64>,
+        count: usize,
+    ) -> Result<Vec<Message>, ReadError> {
+        let is_before = |at: u64| time.is_none_or(|time| at < time);
+        let topic = &self.channel(topic)?.topic;
+        let topics = BTreeSet::from([topic.to_owned()]);
+        let mut best: Vec<Message> = Vec::new();
+        let mut blocks: Vec<(&OpenFile, &Block)> =
+            self.files.iter().flat_map(|f| f.blocks().iter().map(move |b| (f, b))).collect();
+        blocks.retain(|(f, b)| is_before(b.start) && holds(f, b, Some(&topics)));
+        blocks.sort_by_key(|(_, b)| Reverse(b.end));
+        for (file, block) in blocks {
+            if best.len() >= count && best.first().is_some_and(|m| m.log_time >= block.end) {
+                break;
+            }
+            let wanted = |channel: u16| file.index.channels.get(&channel).filter(|info| info.topic == *topic);
+            let mut earlier = Vec::new();
+            decode(self, file, block, &Held::new(self.size()), wanted, |message| {
+                if is_before(message.log_time) {
+                    earlier.push(message);
+                }
+            });
+            // Messages of equal log time stay in the order of the file: those of an earlier block come first.
+            earlier.append(&mut best);
+            earlier.sort_by_key(|m| m.log_time);
+            best = earlier.split_off(earlier.len().saturating_sub(count));
+        }
+        Ok(best)
     }
 }
 
@@ -139,34 +166,6 @@ impl Iterator for Messages<'_> {
         self.reopen(f, offset, block);
         message
     }
-}
-
-/// The last `count` messages on `topic` before `time`, or of all.
-fn some_before(recording: &Recording, topic: &str, time: Option<u64>, count: usize) -> Vec<Message> {
-    let is_before = |at: u64| time.is_none_or(|time| at < time);
-    let topics = BTreeSet::from([topic.to_owned()]);
-    let mut best: Vec<Message> = Vec::new();
-    let mut blocks: Vec<(&OpenFile, &Block)> =
-        recording.files.iter().flat_map(|f| f.blocks().iter().map(move |b| (f, b))).collect();
-    blocks.retain(|(f, b)| is_before(b.start) && holds(f, b, Some(&topics)));
-    blocks.sort_by_key(|(_, b)| Reverse(b.end));
-    for (file, block) in blocks {
-        if best.len() >= count && best.first().is_some_and(|m| m.log_time >= block.end) {
-            break;
-        }
-        let wanted = |channel: u16| file.index.channels.get(&channel).filter(|info| info.topic == topic);
-        let mut earlier = Vec::new();
-        decode(recording, file, block, &Held::new(recording.size()), wanted, |message| {
-            if is_before(message.log_time) {
-                earlier.push(message);
-            }
-        });
-        // Messages of equal log time stay in the order of the file: those of an earlier block come first.
-        earlier.append(&mut best);
-        earlier.sort_by_key(|m| m.log_time);
-        best = earlier.split_off(earlier.len().saturating_sub(count));
-    }
-    best
 }
 
 fn holds(file: &OpenFile, block: &Block, topics: Option<&BTreeSet<String>>) -> bool {

@@ -75,8 +75,8 @@ fn a_time_range_includes_its_start_and_excludes_its_end() {
     let selection = Selection { start: Some(start), end: Some(end), ..Selection::topics(["/stress"]) };
     let found: Vec<_> = recording.messages(&selection).unwrap().map(|m| m.sequence).collect();
     assert_eq!(found, (100..200).collect::<Vec<u32>>());
-    assert_eq!(recording.some_before("stress", start, 1).unwrap()[0].sequence, 99);
-    assert!(recording.some_before("stress", START, 1).unwrap().is_empty());
+    assert_eq!(recording.some_before("stress", Some(start), 1).unwrap()[0].sequence, 99);
+    assert!(recording.some_before("stress", Some(START), 1).unwrap().is_empty());
 }
 
 #[test]
@@ -267,7 +267,7 @@ fn the_last_message_is_found_whatever_its_time() {
     run.finish().unwrap();
     let recording = Recording::open(&path).unwrap();
     assert_eq!(recording.last("stress").unwrap().unwrap().log_time, u64::MAX);
-    assert_eq!(recording.some_before("stress", u64::MAX, 1).unwrap()[0].log_time, START);
+    assert_eq!(recording.some_before("stress", Some(u64::MAX), 1).unwrap()[0].log_time, START);
     assert!(recording.last("/packing").unwrap().is_none() && recording.last("/none").is_err());
 }
 

@@ -77,7 +77,7 @@ fn a_comment_gives_the_cell_and_the_flag_goes_before_it() {
     let p = &imported.packing;
     assert_eq!(p.cell.matrix(), &grainlab_core::Mat3::new(1.0, 0.1, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.5));
     assert_eq!((p.ids.as_slice(), p.contacts.len()), (&[0, 1][..], 1));
-    assert!(imported.notes.iter().any(|n| n.contains("2 materials")), "{:?}", imported.notes);
+    assert!(imported.notes.iter().any(|n| n.contains("of 2 types")), "{:?}", imported.notes);
     let cube = ImportOptions { cell: Some(grainlab_core::Mat3::identity() * 2.0), ..glass() };
     assert_eq!(yade::packing(EXPORT, &cube).unwrap().packing.cell.volume(), 8.0);
     let three = EXPORT.replace("Matrix3(1,0.1,0, 0,1,0, 0,0,1.5)", "1 2 3");

@@ -4,7 +4,7 @@
 //! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`:
 //!   its types
 //! - `offer`: the topics, types and QoS that other processes publish
-//! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `worker`: long
+//! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `source`: samples of any topic; `worker`: long
 //!   computations
 //! - `dds`: the bus over DDS; `memory`: the bus in memory, with virtual time and faults, for tests
 //! - `identity`: the run of a process; `admission`: the samples that a process accepts
@@ -39,6 +39,7 @@ mod rosout;
 mod run;
 mod sample;
 mod services;
+mod source;
 mod tool_bus;
 mod typed;
 mod wall_clock;
@@ -70,6 +71,7 @@ pub use parameters::{
 pub use peers::{Liveliness, Peer, PeerWatch, Peers, SILENCE};
 pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};
 pub use sample::{Sample, SampleId, SampleInfo};
+pub use source::Source;
 pub use tool_bus::{bus_in, bus_named, tool_bus};
 pub use typed::{Publisher, Subscription};
 pub use worker::Worker;

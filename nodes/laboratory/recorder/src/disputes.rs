@@ -19,15 +19,18 @@ struct RunState {
 /// The disputes of one run.
 #[derive(Debug)]
 pub(crate) struct Disputes {
-    lines: Vec<String>,
+    /// One line each.
+    pub(crate) lines: Vec<String>,
     /// Fingerprint of the scene that is stored.
     scene: Option<u64>,
     /// Writers of packings that were compared with it.
     compared: BTreeSet<Guid>,
     /// Processes that reported under each name of a node, in the order of their first report.
     named: BTreeMap<String, Vec<Participant>>,
-    of_scene: bool,
-    of_processes: bool,
+    /// True if this recorder saw packings of another scene.
+    pub(crate) of_scene: bool,
+    /// True if this recorder saw two processes of one name or task.
+    pub(crate) of_processes: bool,
 }
 
 impl Disputes {
@@ -40,11 +43,6 @@ impl Disputes {
             of_scene: false,
             of_processes: false,
         }
-    }
-
-    /// Takes those of earlier recorders.
-    pub(crate) fn remember(&mut self, lines: Vec<String>) {
-        self.lines = lines;
     }
 
     /// A process published about the run in addition to the first one.
@@ -97,21 +95,6 @@ impl Disputes {
             self.lines.push(line);
         }
     }
-
-    /// One line each.
-    pub(crate) fn lines(&self) -> &[String] {
-        &self.lines
-    }
-
-    /// True if this recorder saw packings of another scene.
-    pub(crate) fn found_scene(&self) -> bool {
-        self.of_scene
-    }
-
-    /// True if this recorder saw two processes of one name or task.
-    pub(crate) fn found_processes(&self) -> bool {
-        self.of_processes
-    }
 }
 
 #[cfg(test)]
@@ -140,11 +123,11 @@ mod tests {
         let body = to_cdr(&report.to_message(0));
         let mut reports = |who| {
             disputes.report(&sample(who, body.clone()), |guid| guid.to_string());
-            disputes.lines().len()
+            disputes.lines.len()
         };
         assert_eq!([1, 1, 2, 2, 3].map(&mut reports), [0; 5], "each replaces the one before");
         assert_eq!(reports(2), 1);
-        assert!(disputes.found_processes() && disputes.lines()[0].contains("/emt_inversion"));
+        assert!(disputes.of_processes && disputes.lines[0].contains("/emt_inversion"));
     }
 
     #[test]
@@ -155,8 +138,8 @@ mod tests {
         };
         let mut disputes = Disputes::new(Some(u64::MAX));
         disputes.packing(&sample(1, packing(u64::MAX)));
-        assert!(!disputes.found_scene());
+        assert!(!disputes.of_scene);
         disputes.packing(&sample(2, packing(7)));
-        assert!(disputes.found_scene() && disputes.lines().len() == 1);
+        assert!(disputes.of_scene && disputes.lines.len() == 1);
     }
 }

@@ -12,8 +12,7 @@ use crate::tallies::losses;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Guid, Topic, from_cdr, topics};
 use grainlab_node_kit::{
-    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Published, Report, Sample,
-    Stranger, SubscriptionId,
+    Bus, Demand, Exit, Health, Next, Node, NodeError, Published, Report, Sample, Source, Stranger,
 };
 use grainlab_recordings::strangers::{self, Authors, StrangerView};
 use grainlab_recordings::{Finished, Incoming, Outcome, Recording, RunWriter, TopicSpec};
@@ -50,30 +49,6 @@ const SILENCE: Duration = Duration::from_millis(200);
 
 /// The recording that a recorder finished, for the code that started it.
 pub type ResultSlot = Rc<RefCell<Option<Finished>>>;
-
-/// Source of the messages of a topic.
-enum Source {
-    Samples(SubscriptionId),
-    /// Large ones in parts: recorded whole, as one sample.
-    Bulk(Box<BulkSubscription>),
-}
-
-impl Source {
-    fn open(bus: &mut dyn Bus, topic: &Topic, demand: Demand) -> Result<Self, BusError> {
-        Ok(if topic.info == topics::PACKING.info {
-            Self::Bulk(Box::new(BulkSubscription::subscribe(bus, topic, demand)?))
-        } else {
-            Self::Samples(bus.subscribe(topic, demand)?)
-        })
-    }
-
-    fn take(&mut self, bus: &mut dyn Bus) -> Result<Option<Sample>, BusError> {
-        match self {
-            Self::Samples(subscription) => bus.take(*subscription),
-            Self::Bulk(bulk) => bulk.take(bus),
-        }
-    }
-}
 
 struct Channel {
     topic: Topic,
@@ -124,13 +99,8 @@ impl Recorder {
         for topic in &settings.topics {
             let demand = Demand::reliable(backlog(topic));
             let asked = settings.others.as_ref().map_or(*topic, |others| others.requested(topic));
+            let name = bus.resolve(&asked)?;
             let source = Source::open(bus, &asked, demand)?;
-            let name = match &source {
-                Source::Bulk(bulk) => bulk.topic().to_owned(),
-                Source::Samples(_) => {
-                    bus.received().last().map_or_else(|| topic.absolute_name(), |r| r.topic.clone())
-                }
-            };
             specs.push(TopicSpec::of_contract(topic, &name));
             let reports = topic.name == topics::DIAGNOSTICS.name;
             let write_through = topic.qos.transient_local && topic.reproducible;
@@ -145,7 +115,7 @@ impl Recorder {
         let before = if settings.append { Recording::open(&directory).ok() } else { None };
         if let Some(recording) = &before {
             authors = strangers::authors(recording);
-            disputes.remember(strangers::noted_disputes(recording));
+            disputes.lines = strangers::noted_disputes(recording);
             if let Some(repeats) = &mut repeats {
                 repeats.remember(recording).map_err(|e| failed(&e))?;
             }
@@ -432,8 +402,8 @@ impl Node for Recorder {
         }
         let express = |value: serde_json::Result<String>| value.map_err(|e| lost(&e));
         writer.set_metadata(strangers::STRANGERS, &express(serde_json::to_string(&strangers))?);
-        if !self.disputes.lines().is_empty() {
-            writer.set_metadata(strangers::DISPUTES, &express(serde_json::to_string(self.disputes.lines()))?);
+        if !self.disputes.lines.is_empty() {
+            writer.set_metadata(strangers::DISPUTES, &express(serde_json::to_string(&self.disputes.lines))?);
         }
         writer.set_metadata(strangers::AUTHORS, &express(serde_json::to_string(&self.authors))?);
         if let Some(run) = self.binding.as_ref().and_then(Binding::run) {
@@ -467,10 +437,10 @@ impl Node for Recorder {
             );
             return Ok(Exit::DataLoss);
         }
-        if self.disputes.found_scene() {
+        if self.disputes.of_scene {
             return Ok(Exit::Failure);
         }
-        if self.disputes.found_processes() || self.contradictions > 0 {
+        if self.disputes.of_processes || self.contradictions > 0 {
             log::error!(
                 "two processes wrote results of one run: it is unknown which of them is right. Start the processes of a run \
                  with a run of their own (GRAINLAB_RUN=any_name for each of them)"

@@ -33,7 +33,7 @@ fn counts(name: &'static str, components: usize, values: Vec<u32>) -> Column {
 
 /// Columns of the grains. Lengths in m, m/s, rad/s, kg. `position_unwrapped` is the position as held, to which the images of contacts
 /// refer.
-pub(crate) fn grains(packing: &Packing) -> Vec<Column> {
+fn grains(packing: &Packing) -> Vec<Column> {
     let mut coordination = vec![0; packing.grains()];
     for contact in &packing.contacts {
         coordination[contact.i as usize] += 1;
@@ -53,7 +53,7 @@ pub(crate) fn grains(packing: &Packing) -> Vec<Column> {
 
 /// Columns of the contacts. `pair` has ids. Forces in N, overlap in m; the normal points from the first grain to the second one, and the
 /// tangential force acts on the first one. `mobilisation` is the tangential force over friction times normal force.
-pub(crate) fn contacts(packing: &Packing) -> Vec<Column> {
+fn contacts(packing: &Packing) -> Vec<Column> {
     let list = &packing.contacts;
     let of = |value: fn(&Contact) -> f64| list.iter().map(value).collect::<Vec<_>>();
     let id = |index: u32| packing.ids[index as usize];
@@ -98,18 +98,43 @@ pub(crate) fn state(packing: &Packing) -> Vec<Column> {
 }
 
 /// Positions folded into the cell, m.
-pub(crate) fn folded(packing: &Packing) -> Vec<Vec3> {
+fn folded(packing: &Packing) -> Vec<Vec3> {
     let cell = &packing.cell;
     let fold = |x: &Vec3| x - cell.matrix() * cell.fractional(x).map(f64::floor);
     packing.positions.iter().map(fold).collect()
 }
 
 /// The ends of each contact, m: the folded centre of the first grain, and from there along the branch vector.
-pub(crate) fn ends(packing: &Packing) -> Vec<Vec3> {
+fn ends(packing: &Packing) -> Vec<Vec3> {
     let folded = folded(packing);
     let ends = |c: &Contact| {
         let first = folded[c.i as usize];
         [first, first + packing.branch(c)]
     };
     packing.contacts.iter().flat_map(ends).collect()
+}
+
+/// A part of a packing as points and cells, which have so many consecutive points each.
+pub(crate) struct Piece {
+    pub(crate) points: Vec<Vec3>,
+    pub(crate) cells: usize,
+    pub(crate) points_per_cell: usize,
+    /// `PointData` or `CellData`.
+    pub(crate) place: &'static str,
+    pub(crate) data: Vec<Column>,
+}
+
+impl Piece {
+    /// The grains as points folded into the cell: radius, id, mass, velocities, number of contacts, position as held.
+    pub(crate) fn grains(packing: &Packing) -> Self {
+        let (cells, data) = (packing.grains(), grains(packing));
+        Self { points: folded(packing), cells, points_per_cell: 1, place: "PointData", data }
+    }
+
+    /// The contacts as lines between centres: pair of ids, image, overlap, normal force, normal, tangential force,
+    /// mobilisation.
+    pub(crate) fn contacts(packing: &Packing) -> Self {
+        let (cells, data) = (packing.contacts.len(), contacts(packing));
+        Self { points: ends(packing), cells, points_per_cell: 2, place: "CellData", data }
+    }
 }

@@ -1,10 +1,9 @@
 //! The files of one packing, or of a run, by format.
 
-use crate::vtkhdf::HdfError;
-use crate::{
-    csv, extended_xyz, lammps_data, lammps_dump, lammps_local, pvd, sidecar, vtkhdf_contacts, vtkhdf_grains,
-    vtp_contacts, vtp_grains,
-};
+use crate::columns::Piece;
+use crate::vtkhdf::vtkhdf;
+use crate::vtp::{pvd, vtp};
+use crate::{csv, extended_xyz, lammps_data, lammps_dump, lammps_local, sidecar};
 use clap::ValueEnum;
 use grainlab_core::Packing;
 
@@ -59,7 +58,7 @@ impl Exporter {
     ///
     /// # Errors
     /// If the format cannot hold the packing.
-    pub fn next(&mut self, packing: &Packing) -> Result<Vec<FilePart>, HdfError> {
+    pub fn next(&mut self, packing: &Packing) -> Result<Vec<FilePart>, String> {
         let n = self.states.len() + 1;
         let part = |name: String, content: Vec<u8>| FilePart { name, content };
         let text = |name: String, content: String| part(name, content.into_bytes());
@@ -75,12 +74,12 @@ impl Exporter {
             ExportFormat::LammpsData => vec![text(format!("packing_{n}.data"), lammps_data(packing))],
             ExportFormat::Xyz => vec![text("packings.xyz".into(), extended_xyz(packing))],
             ExportFormat::Vtk => vec![
-                text(format!("grains_{n}.vtp"), vtp_grains(packing)),
-                text(format!("contacts_{n}.vtp"), vtp_contacts(packing)),
+                text(format!("grains_{n}.vtp"), vtp(packing, &Piece::grains(packing))),
+                text(format!("contacts_{n}.vtp"), vtp(packing, &Piece::contacts(packing))),
             ],
             ExportFormat::VtkHdf => vec![
-                part(format!("grains_{n}.vtkhdf"), vtkhdf_grains(packing)?),
-                part(format!("contacts_{n}.vtkhdf"), vtkhdf_contacts(packing)?),
+                part(format!("grains_{n}.vtkhdf"), vtkhdf(packing, &Piece::grains(packing))?),
+                part(format!("contacts_{n}.vtkhdf"), vtkhdf(packing, &Piece::contacts(packing))?),
             ],
         };
         self.states.push((packing.time, parts.iter().map(|p| p.name.clone()).collect()));
@@ -92,11 +91,10 @@ impl Exporter {
         if self.format != ExportFormat::Vtk {
             return Vec::new();
         }
-        let of_part = |k: usize| -> Vec<(f64, Vec<String>)> {
-            self.states.iter().map(|(time, files)| (*time, vec![files[k].clone()])).collect()
+        let collection = |name: &str, k: usize| {
+            let states = self.states.iter().map(|(time, files)| (*time, files[k].as_str()));
+            FilePart { name: name.to_owned(), content: pvd(states).into_bytes() }
         };
-        let collection =
-            |name: &str, k| FilePart { name: name.to_owned(), content: pvd(&of_part(k)).into_bytes() };
         vec![collection("grains.pvd", 0), collection("contacts.pvd", 1)]
     }
 }

@@ -19,5 +19,3 @@ pub use files::{ExportFormat, Exporter, FilePart};
 pub use lammps_data::lammps_data;
 pub use lammps_dump::lammps_dump;
 pub use lammps_local::lammps_local;
-pub use vtkhdf::{HdfError, vtkhdf_contacts, vtkhdf_grains};
-pub use vtp::{pvd, vtp_contacts, vtp_grains};

@@ -1,41 +1,16 @@
 //! Writes VTKHDF files: HDF5 with the layout of `vtkPolyData`, for ParaView, VTK and every reader of HDF5.
 
-use crate::columns::{self, Column, Values};
-use grainlab_core::{Packing, Vec3};
+use crate::columns::{self, Column, Piece, Values};
+use grainlab_core::Packing;
 use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, GroupBuilder};
 
-/// A packing cannot be written as HDF5.
-#[derive(Debug, thiserror::Error)]
-#[error("HDF5: {0}")]
-pub struct HdfError(#[from] hdf5_pure::Error);
-
-/// The grains as points folded into the cell, with the columns of [`vtp_grains`](crate::vtp_grains).
+/// The piece as a file.
 ///
 /// # Errors
 /// If there are more numbers than the format can address.
-pub fn vtkhdf_grains(packing: &Packing) -> Result<Vec<u8>, HdfError> {
-    let points = columns::folded(packing);
-    let cells = ("Vertices", points.len(), 1);
-    poly_data(packing, &points, cells, ("PointData", &columns::grains(packing)))
-}
-
-/// The contacts as lines between centres, with the columns of [`vtp_contacts`](crate::vtp_contacts).
-///
-/// # Errors
-/// As [`vtkhdf_grains`].
-pub fn vtkhdf_contacts(packing: &Packing) -> Result<Vec<u8>, HdfError> {
-    let points = columns::ends(packing);
-    let cells = ("Lines", packing.contacts.len(), 2);
-    poly_data(packing, &points, cells, ("CellData", &columns::contacts(packing)))
-}
-
-/// `cells`: their kind, their number, and the points of each, which are consecutive.
-fn poly_data(
-    packing: &Packing,
-    points: &[Vec3],
-    (kind, count, each): (&str, usize, usize),
-    (place, data): (&str, &[Column]),
-) -> Result<Vec<u8>, HdfError> {
+pub(crate) fn vtkhdf(packing: &Packing, piece: &Piece) -> Result<Vec<u8>, String> {
+    let Piece { points, cells: count, points_per_cell: each, place, data } = piece;
+    let kind = if *each == 1 { "Vertices" } else { "Lines" };
     let mut file = FileBuilder::new();
     let mut root = file.create_group("VTKHDF");
     root.set_attr("Version", AttrValue::I64Array(vec![2, 0]));
@@ -44,7 +19,7 @@ fn poly_data(
     let coordinates: Vec<f64> = points.iter().flatten().copied().collect();
     root.create_dataset("Points").with_f64_data(&coordinates).with_shape(&[points.len() as u64, 3]);
     for name in ["Vertices", "Lines", "Polygons", "Strips"] {
-        let (cells, ends) = if name == kind { (count, points.len()) } else { (0, 0) };
+        let (cells, ends) = if name == kind { (*count, points.len()) } else { (0, 0) };
         let mut group = root.create_group(name);
         group.create_dataset("NumberOfConnectivityIds").with_i64_data(&[ends as i64]);
         group.create_dataset("NumberOfCells").with_i64_data(&[cells as i64]);
@@ -66,7 +41,7 @@ fn poly_data(
     own.set_attr("contact_law", AttrValue::AsciiString(packing.law.name().into()));
     own.set_attr("contact_law_parameters", AttrValue::F64Array(packing.law.parameters()));
     file.add_group(own.finish());
-    Ok(file.finish()?)
+    file.finish().map_err(|e| format!("HDF5: {e}"))
 }
 
 fn dataset(group: &mut GroupBuilder, column: &Column) {

@@ -1,59 +1,26 @@
 //! Writes VTK XML files, which ParaView and PyVista open: grains as points, contacts as lines, and a collection of the
 //! states of a run.
 
-use crate::columns::{self, Column, Values};
+use crate::columns::{self, Column, Piece, Values};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use grainlab_core::{Packing, Vec3};
+use grainlab_core::Packing;
 use std::fmt::Write as _;
 
-/// The grains as points folded into the cell (`.vtp`): radius, id, mass, velocities, number of contacts, position as held.
-pub fn vtp_grains(packing: &Packing) -> String {
-    let points = columns::folded(packing);
-    let vertices = Cells::new("Verts", points.len(), 1);
-    poly_data(packing, &points, &vertices, ("PointData", &columns::grains(packing)))
-}
-
-/// The contacts as lines between centres (`.vtp`): pair of ids, image, overlap, normal force, normal, tangential force,
-/// mobilisation.
-pub fn vtp_contacts(packing: &Packing) -> String {
-    let points = columns::ends(packing);
-    let lines = Cells::new("Lines", packing.contacts.len(), 2);
-    poly_data(packing, &points, &lines, ("CellData", &columns::contacts(packing)))
-}
-
-/// A collection (`.pvd`): the time of each state, s, and its files.
-pub fn pvd(states: &[(f64, Vec<String>)]) -> String {
+/// A collection (`.pvd`): the time of each state, s, and its file.
+pub(crate) fn pvd<'a>(states: impl Iterator<Item = (f64, &'a str)>) -> String {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
     );
-    for (time, files) in states {
-        for (part, file) in files.iter().enumerate() {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "<DataSet timestep=\"{time:e}\" part=\"{part}\" file=\"{file}\"/>");
-        }
+    for (time, file) in states {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "<DataSet timestep=\"{time:e}\" part=\"0\" file=\"{file}\"/>");
     }
     text + "</Collection>\n</VTKFile>\n"
 }
 
-/// Cells of one kind, with the same number of consecutive points each.
-struct Cells {
-    kind: &'static str,
-    count: usize,
-    points: usize,
-}
-
-impl Cells {
-    fn new(kind: &'static str, count: usize, points: usize) -> Self {
-        Self { kind, count, points }
-    }
-
-    fn of(&self, kind: &str) -> usize {
-        if kind == self.kind { self.count } else { 0 }
-    }
-}
-
-fn poly_data(packing: &Packing, points: &[Vec3], cells: &Cells, (place, data): (&str, &[Column])) -> String {
+/// The piece as a file (`.vtp`).
+pub(crate) fn vtp(packing: &Packing, piece: &Piece) -> String {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n",
@@ -62,7 +29,9 @@ fn poly_data(packing: &Packing, points: &[Vec3], cells: &Cells, (place, data): (
         // A field has rows of any number, so that its numbers are its tuples.
         array(&mut text, &Column { components: 1, ..column }, true);
     }
-    let (n, vertices, lines) = (points.len(), cells.of("Verts"), cells.of("Lines"));
+    let Piece { points, cells, points_per_cell: each, place, data } = piece;
+    let (n, each) = (points.len(), *each);
+    let (kind, vertices, lines) = if each == 1 { ("Verts", *cells, 0) } else { ("Lines", 0, *cells) };
     // Writing to a String cannot fail.
     let _ = writeln!(
         text,
@@ -75,13 +44,12 @@ fn poly_data(packing: &Packing, points: &[Vec3], cells: &Cells, (place, data): (
     let _ = writeln!(text, "</{place}>\n<Points>");
     let coordinates = Values::Float(points.iter().flatten().copied().collect());
     array(&mut text, &Column { name: "Points", components: 3, values: coordinates }, false);
-    let _ = writeln!(text, "</Points>\n<{}>", cells.kind);
-    let indices =
-        |count: usize, step: usize, first: usize| (0..count).map(move |k| (first + k * step) as i64);
-    data_array(&mut text, "connectivity", "Int64", 1, None, &bytes(indices(n, 1, 0).map(i64::to_le_bytes)));
-    let offsets = indices(cells.count, cells.points, cells.points);
-    data_array(&mut text, "offsets", "Int64", 1, None, &bytes(offsets.map(i64::to_le_bytes)));
-    let _ = writeln!(text, "</{}>\n</Piece>\n</PolyData>\n</VTKFile>", cells.kind);
+    let _ = writeln!(text, "</Points>\n<{kind}>");
+    let connectivity = bytes((0..n as i64).map(i64::to_le_bytes));
+    data_array(&mut text, "connectivity", "Int64", 1, None, &connectivity);
+    let offsets = bytes((1..=*cells).map(|k| ((k * each) as i64).to_le_bytes()));
+    data_array(&mut text, "offsets", "Int64", 1, None, &offsets);
+    let _ = writeln!(text, "</{kind}>\n</Piece>\n</PolyData>\n</VTKFile>");
     text
 }
 

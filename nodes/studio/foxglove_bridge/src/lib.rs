@@ -2,7 +2,7 @@
 //!
 //! - [`parameters`], [`Settings`]: port, address, folders with message files
 //! - [`FoxgloveBridge`]: the node
-//! - `topics`: the topics of the bus as channels; `source`: how samples of one are received
+//! - `topics`: the topics of the bus as channels
 //! - `pictures`: pictures of packings, made here
 //! - `server`: the WebSocket server and what its clients ask for; `client`: one of them; `protocol`: the messages
 //!
@@ -15,8 +15,7 @@ mod pictures;
 mod protocol;
 mod server;
 mod settings;
-mod source;
 mod topics;
 
 pub use node::FoxgloveBridge;
-pub use settings::{Settings, SettingsError, parameters};
+pub use settings::{Settings, parameters};

@@ -1,6 +1,6 @@
 //! Settings of the bridge.
 
-use grainlab_node_kit::{ParameterSpec, Parameters, Range};
+use grainlab_node_kit::{Exit, NodeError, ParameterSpec, Parameters, Range};
 use grainlab_recordings::Definitions;
 use std::net::IpAddr;
 use std::path::PathBuf;
@@ -17,17 +17,6 @@ pub struct Settings {
     pub port: u16,
     /// Source of the definitions of message types.
     pub definitions: Definitions,
-}
-
-/// A value that is not valid.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SettingsError {
-    /// Not an address.
-    #[error("address: {0:?} is not an IP address, such as 127.0.0.1, 0.0.0.0 or ::1")]
-    Address(String),
-    /// Not a folder.
-    #[error("msg_path: there is no folder {0}")]
-    Folder(String),
 }
 
 /// The parameters of the node.
@@ -53,15 +42,19 @@ impl Settings {
     ///
     /// # Errors
     /// If the address is none, or a folder does not exist.
-    pub fn of(parameters: &Parameters) -> Result<Self, SettingsError> {
+    pub fn of(parameters: &Parameters) -> Result<Self, NodeError> {
+        let wrong = |problem: String| NodeError::new(Exit::Usage, problem);
         let address: String = parameters.get("address");
+        let example = "such as 127.0.0.1, 0.0.0.0 or ::1";
         let folders: Vec<String> = parameters.get("msg_path");
         if let Some(missing) = folders.iter().find(|f| !PathBuf::from(f).is_dir()) {
-            return Err(SettingsError::Folder(missing.clone()));
+            return Err(wrong(format!("msg_path: there is no folder {missing}")));
         }
         let folders: Vec<PathBuf> = folders.into_iter().map(PathBuf::from).collect();
         Ok(Self {
-            address: address.parse().map_err(|_| SettingsError::Address(address))?,
+            address: address
+                .parse()
+                .map_err(|_| wrong(format!("address: {address:?} is not an IP address, {example}")))?,
             port: u16::try_from(parameters.get::<i64>("port")).unwrap_or_default(),
             definitions: Definitions::with_folders(&folders),
         })

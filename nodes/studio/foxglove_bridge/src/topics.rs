@@ -2,12 +2,15 @@
 
 use crate::pictures::Pictures;
 use crate::server::{Channel, Request, Server};
-use crate::source::Source;
 use grainlab_msgs::{Qos, Topic, topics};
-use grainlab_node_kit::{Bus, BusError, Offer, Sample};
+use grainlab_node_kit::{Bus, BusError, Demand, Offer, Sample, Source};
 use grainlab_recordings::{Definitions, adapted};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
+
+/// Samples queued between two steps of the node, and packings, which have megabytes each.
+const BACKLOG: u32 = 1_000;
+const PACKINGS: u32 = 8;
 
 /// Most latched samples kept of a topic for a client that subscribes after another one.
 const KEPT: usize = 128;
@@ -138,7 +141,7 @@ impl Topics {
     pub(crate) fn pass_on(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
         for bridged in self.all.values_mut() {
             match (bridged.wanted(), bridged.source.is_some()) {
-                (true, false) => bridged.source = Some(Source::open(bus, &bridged.topic)?),
+                (true, false) => bridged.source = Some(bridged.open(bus)?),
                 (false, true) => bridged.unsubscribe(bus),
                 _ => {}
             }
@@ -167,6 +170,15 @@ impl Topics {
 }
 
 impl Bridged {
+    /// Subscribes. A topic that keeps samples for late readers is read reliably, because only such a reader gets them; any
+    /// other one without repetition, so that its writer never waits for a viewer.
+    fn open(&self, bus: &mut dyn Bus) -> Result<Source, BusError> {
+        let latched = self.topic.qos.transient_local && self.topic.qos.reliable;
+        let qos = Qos { reliable: latched, transient_local: latched, ..self.topic.qos };
+        let depth = if self.pictures.is_some() { PACKINGS } else { BACKLOG };
+        Source::open(bus, &Topic { qos, ..self.topic }, Demand { reliable: latched, depth })
+    }
+
     fn wanted(&self) -> bool {
         self.channel.is_wanted() || self.pictures.as_ref().is_some_and(Pictures::wanted)
     }

@@ -141,7 +141,10 @@ impl About {
         } else {
             return None;
         };
-        Some(RunSign::Result { topic: topics::PACKING_REPORT.name, step: self.step, difference })
+        let (topic, step) = (topics::PACKING_REPORT.name, self.step);
+        let what =
+            format!("the {topic} of step {step} is not that of the packing of this step: {difference}");
+        Some(RunSign::new(what))
     }
 }
 

@@ -5,9 +5,7 @@ use crate::names::{absolute, unknown};
 use crate::observer::Observer;
 use grainlab_console::Failure;
 use grainlab_msgs::{Qos, Topic, topics};
-use grainlab_node_kit::{
-    BulkSubscription, Bus, BusError, DdsBus, Demand, Exit, Sample, SubscriptionId, Wake, tool_bus,
-};
+use grainlab_node_kit::{Bus, DdsBus, Demand, Exit, Sample, Source, Wake, tool_bus};
 use std::time::{Duration, Instant};
 
 /// Samples that may wait for this process: a second of the fastest topic.
@@ -15,36 +13,6 @@ const DEPTH: u32 = 20_000;
 
 /// Packings that may wait for this process.
 const PACKINGS: u32 = 16;
-
-/// Messages of one sample, or packings, which may come in parts.
-enum Source {
-    Samples(SubscriptionId),
-    Packings(Box<BulkSubscription>),
-}
-
-impl Source {
-    fn take(&mut self, bus: &mut DdsBus) -> Result<Option<Sample>, BusError> {
-        match self {
-            Self::Samples(id) => bus.take(*id),
-            Self::Packings(packings) => packings.take(bus),
-        }
-    }
-
-    fn writers(&self, bus: &DdsBus) -> usize {
-        match self {
-            Self::Samples(id) => bus.writers(*id),
-            Self::Packings(packings) => bus.writers(packings.id()),
-        }
-    }
-
-    /// Longest wait of this process.
-    fn patience(&self, bus: &DdsBus) -> Duration {
-        match self {
-            Self::Samples(_) => Duration::MAX,
-            Self::Packings(packings) => packings.patience(bus.now()),
-        }
-    }
-}
 
 /// A subscription to one topic, of which no type needs to be known.
 pub(crate) struct Listener {
@@ -84,20 +52,17 @@ impl Listener {
         };
         let mut bus = tool_bus("grainlab_topic")?;
         let demand = if reliable { Demand::reliable(DEPTH) } else { Demand::best_effort(DEPTH) };
-        let source = if whole && topic.info == topics::PACKING.info {
-            let demand = Demand { depth: PACKINGS, ..demand };
-            let packings = BulkSubscription::subscribe(&mut bus, &topic, demand);
-            Source::Packings(Box::new(packings.map_err(Failure::failed)?))
-        } else {
-            Source::Samples(bus.subscribe(&topic, demand).map_err(Failure::failed)?)
+        let source = match (whole, topic.info == topics::PACKING.info) {
+            (true, true) => Source::open(&mut bus, &topic, Demand { depth: PACKINGS, ..demand }),
+            _ => bus.subscribe(&topic, demand).map(Source::Samples),
         };
-        Ok(Self { bus, source, topic })
+        Ok(Self { bus, source: source.map_err(Failure::failed)?, topic })
     }
 
     /// Waits until a publisher is matched: a window begins when samples can arrive.
     pub(crate) fn wait_for_publisher(&mut self, patience: Duration) -> Result<(), Failure> {
         let end = Instant::now() + patience;
-        while self.source.writers(&self.bus) == 0 && Instant::now() < end {
+        while self.bus.writers(self.source.id()) == 0 && Instant::now() < end {
             if self.bus.wait(end.saturating_duration_since(Instant::now())) == Wake::Shutdown {
                 return Err(Failure::new(Exit::Interrupted, "interrupted"));
             }
@@ -121,7 +86,7 @@ impl Listener {
             if left.is_zero() {
                 return Ok(());
             }
-            if self.bus.wait(left.min(self.source.patience(&self.bus))) == Wake::Shutdown {
+            if self.bus.wait(left.min(self.source.patience(self.bus.now()))) == Wake::Shutdown {
                 return Err(Failure::new(Exit::Interrupted, "interrupted"));
             }
         }
