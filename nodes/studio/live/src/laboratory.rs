@@ -7,7 +7,7 @@ use grainlab_msgs::boundary::{MicrostructureReading, RunStateReading, RunStatus}
 use grainlab_msgs::{msg, simulated_seconds};
 use grainlab_node_kit::{Exit, Report, RunId};
 use grainlab_report::Timeline;
-use grainlab_results::{Inference, Measurement};
+use grainlab_results::{Inference, Measurement, Origin};
 use grainlab_servo::ServoRequest;
 use std::time::Duration;
 
@@ -154,7 +154,10 @@ impl Laboratory {
         for result in reading.estimates {
             // A name tells several measurements of a packing apart.
             let measurement = (!reading.name.is_empty()).then(|| Measurement::named(&reading.name));
-            let found = Inference { source: Some(reading.source.clone()), by: None, measurement, result };
+            let found = Inference {
+                origin: Origin { source: Some(reading.source.clone()), by: None, measurement },
+                result,
+            };
             if known.len() < ESTIMATES && !known.contains(&found) {
                 known.push(found);
             }
