@@ -2,7 +2,7 @@
 
 use super::answer::{Answer, More};
 use super::case::Case;
-use super::{evidence, explain, predictive, sampled};
+use super::{evidence, explain, predictive};
 use grainlab_console::{CsvText, Failure, Table, json};
 use grainlab_results::{Inference, inference_text};
 
@@ -55,7 +55,6 @@ impl Printer<'_> {
         let mut text = inference_text::table(&answer.inferences(self.cases));
         text += &more.explained.as_deref().map_or_else(String::new, explain::people);
         text += &more.predictive.as_deref().map_or_else(String::new, predictive::people);
-        text += &more.sampled.as_deref().map_or_else(String::new, sampled::people);
         text + &more.evidence.as_deref().map_or_else(String::new, evidence::people)
     }
 
