@@ -56,7 +56,6 @@ fn wrong_usage_ends_with_exit_code_2_and_names_what_is_wrong() {
         (&["invert", "--pressure", "5e4"], "G12"),
         (&["invert", "--table", "x.csv", "--g12", "1e8"], "--table"),
         (&["invert", "--pressure", "5e4", "--calibration", "x"], "paper"),
-        (&["invert", "--pressure", "5e4", "--g12", "1e8", "--samples", "100"], "--error"),
         (&["invert", "--table", "x.csv", "--by", "mu2"], "--judge"),
         (&["invert", "--pressure", "5e4", "--poisson", "0.7"], "--poisson 0.7"),
         (

@@ -1,10 +1,8 @@
 //! `grainlab calibrate`: constants of the models, learned from measured packings.
 //!
 //! - [`packings`]: from the rows of a table to samples
-//! - [`report`]: constants, errors and ranges as text
 
 mod packings;
-mod report;
 
 use grainlab_console::{Failure, print, say, write_whole};
 use grainlab_emt::learn;
@@ -52,7 +50,7 @@ pub(crate) struct Args {
     /// Name of the calibration, reported with every estimate [default: the name of the output file]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
-    /// Write the calibration to this file (TOML); - is the standard output, without the report
+    /// Write the calibration to this file (TOML); - is the standard output, as without this flag
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
 }
@@ -73,13 +71,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let calibration = learn(&name, &isotropic, &anisotropic, &other).map_err(invalid)?;
     let toml = calibration.to_toml().map_err(Failure::failed)?;
     match &args.out {
-        Some(path) if path.as_os_str() == "-" => print(&toml)?,
-        Some(path) => {
+        Some(path) if path.as_os_str() != "-" => {
             write_whole(path, toml).map_err(Failure::at(path))?;
-            print(&report::text(&calibration, [&isotropic, &anisotropic, &other]))?;
             say!("grainlab: {} is written; use it with --calibration {0}", path.display());
         }
-        None => print(&report::text(&calibration, [&isotropic, &anisotropic, &other]))?,
+        _ => print(&toml)?,
     }
     Ok(Exit::Done)
 }

@@ -45,24 +45,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    engine: EngineArgs,
-}
-
-/// Engine that runs the members, and its options.
-#[derive(Debug, clap::Args)]
-pub(crate) struct EngineArgs {
-    /// Machine that runs the members
-    #[arg(long, value_enum, default_value_t)]
-    engine: Engine,
-    /// Members at a time on this machine [default: one more than there are cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    jobs: Option<u16>,
-    /// Number of further trials of an interrupted member, the last one anew
-    #[arg(long, value_name = "N", default_value_t = 2)]
-    retries: u16,
-    /// Run members again that failed
-    #[arg(long)]
-    redo_failed: bool,
+    options: Options,
 }
 
 #[derive(Debug, clap::Subcommand)]
@@ -81,23 +64,6 @@ struct Place {
     folder: PathBuf,
 }
 
-impl EngineArgs {
-    /// Runs the members of a campaign, and gathers their states.
-    pub(crate) fn run(&self, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
-        let options = Options {
-            jobs: self.jobs.map(usize::from),
-            retries: self.retries.into(),
-            redo_failed: self.redo_failed,
-        };
-        self.engine.run(campaign, folder, options)
-    }
-
-    /// True if the commands are only printed.
-    pub(crate) fn only_prints(&self) -> bool {
-        self.engine == Engine::Print
-    }
-}
-
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     match (&args.command, &args.file) {
@@ -111,8 +77,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             let campaign = Campaign::read(file)?;
             let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));
             let (folder, _lock) = begin(&campaign, &root)?;
-            let exit = args.engine.run(&campaign, &folder)?;
-            if args.engine.only_prints() || exit == Exit::Interrupted {
+            let exit = args.options.run(&campaign, &folder)?;
+            if args.options.engine == Engine::Print || exit == Exit::Interrupted {
                 return Ok(exit);
             }
             Ok(worse(exit, gather::run(&campaign, &folder)?))

@@ -4,7 +4,7 @@
 //! - [`inputs`]: the inputs of a state; [`columns`], [`rows`]: a table, read in pieces, each row a
 //!   state; [`slips`]: columns whose names are almost those of inputs
 //! - [`table`], [`mod@print`]: results in order, as text
-//! - [`explain`]: contributions of the data to the uncertainty; [`sampled`]: estimates of sampled data
+//! - [`explain`]: contributions of the data to the uncertainty
 //! - [`prior`]: priors; [`drawn`], [`evidence`], [`predictive`]: draws from the posterior, marginal likelihoods, and the data
 //!   against their prediction; [`rank_test`]: ranks of simulated structures
 //! - [`speeds`]: the moduli of measured wave speeds
@@ -25,7 +25,6 @@ mod print;
 mod prior;
 mod rank_test;
 mod rows;
-mod sampled;
 mod slips;
 mod speeds;
 mod state;
@@ -33,7 +32,7 @@ mod table;
 
 use super::packings::import::in_range;
 use answer::{Answer, More};
-use case::{GammaChoice, cases};
+use case::cases;
 pub(super) use columns::{BadRow, Row};
 use grainlab_console::{Failure, Format, print, say};
 use grainlab_emt::{Measured, Modulus};
@@ -153,10 +152,10 @@ pub(crate) struct Args {
     /// States from a CSV file, as described below; - is the standard input
     #[arg(long, value_name = "FILE.csv")]
     table: Option<PathBuf>,
-    /// The gamma/Delta of a table for the models that use one [default: given, else total, else contact, else
-    /// zero]
-    #[arg(long, value_enum, value_name = "WHICH", requires = "table")]
-    gamma: Option<GammaChoice>,
+    /// The gamma/Delta of a table for the models that use one: that of its column gamma_over_delta, of g_total, g_elastic or
+    /// g_contact, 0, or each but the first [default: given, else total, else contact, else zero]
+    #[arg(long, value_name = "WHICH", value_parser = case::GAMMAS, requires = "table")]
+    gamma: Option<String>,
     /// Only these models, comma-separated [default: all]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     model: Vec<String>,
@@ -177,16 +176,12 @@ pub(crate) struct Args {
     #[cfg(feature = "studio")]
     #[arg(long, value_name = "FILE.svg", requires = "judge")]
     plot: Option<PathBuf>,
-    /// Also sample the distribution of the estimates by this number of draws of the data: for large errors,
-    /// for which linear error propagation is inaccurate; 20000 suffices
-    #[arg(long, value_name = "N", conflicts_with_all = ["table", "prior"], value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
-    samples: Option<u32>,
     /// Priors of k, k_hat, z, eps and eps_stiffness, or of some of them, in the form of --print-prior; a quantity without one has
     /// that of --print-prior
     #[arg(long, value_name = "FILE.toml")]
     prior: Option<PathBuf>,
     /// Print the prior of a model (default: relaxed) as a file for --prior, and do nothing else
-    #[arg(long, conflicts_with_all = ["table", "draws", "evidence", "samples", "explain"])]
+    #[arg(long, conflicts_with_all = ["table", "draws", "evidence", "explain"])]
     print_prior: bool,
     /// Write independent draws from the posterior of one model: .csv, or .json for arviz.from_json; with ln likelihood (of each
     /// modulus given the others), ln prior, predicted and observed moduli
@@ -207,9 +202,9 @@ pub(crate) struct Args {
     prior_odds: Vec<evidence::Odds>,
     /// Draw so many structures from the prior, simulate their moduli with the scatter of the model and --error, infer them, and
     /// print whether the ranks of the true values among draws are uniform
-    #[arg(long, value_name = "N", conflicts_with_all = ["table", "samples", "draws", "evidence", "explain", "speeds"], value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
+    #[arg(long, value_name = "N", conflicts_with_all = ["table", "draws", "evidence", "explain", "speeds"], value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
     rank_test: Option<u32>,
-    /// Seed of samples, draws and simulations: the same one gives the same numbers
+    /// Seed of draws and simulations: the same one gives the same numbers
     #[arg(long, value_name = "SEED", conflicts_with = "table", default_value_t = 0)]
     seed: u64,
     /// Print the contribution of each datum to the uncertainty of each unknown, the parts of the uncertainty due to the data and
@@ -233,7 +228,7 @@ fn plot_file(_: &Args) -> Option<&Path> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let mut cases = cases(&args.models(), &args.calibration, args.gamma)?;
+    let mut cases = cases(&args.models(), &args.calibration, args.gamma.as_deref())?;
     if let Some(path) = &args.prior {
         prior::apply(path, &mut cases)?;
     }
@@ -279,18 +274,13 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let more = More {
         explained: args.explain.then(|| explain::explained(&answer.outcomes, &cases)),
-        sampled: answer.state.as_ref().ok().zip(args.samples).map(|(state, draws)| {
-            sampled::sampled(state, &answer.outcomes, &cases, draws as usize, args.seed)
-        }),
         evidence: evidence.transpose()?,
         predictive,
     };
     print(&match args.format {
         Format::Json => printer.json(&answer, more)?,
-        Format::Csv if args.explain || args.samples.is_some() || args.evidence => {
-            return Err(Failure::usage(
-                "--explain, --samples and --evidence are printed as a table or as JSON",
-            ));
+        Format::Csv if args.explain || args.evidence => {
+            return Err(Failure::usage("--explain and --evidence are printed as a table or as JSON"));
         }
         Format::Csv => Printer::csv_header() + &printer.csv(&answer),
         Format::Table => printer.state(&answer, &more),
@@ -359,9 +349,6 @@ impl Args {
         state.grains = self.grains.map(f64::from);
         if let (Some(path), Some(value)) = (&self.speeds, self.density) {
             speeds::add(&mut state, path, Measured { value, stddev: self.density_sigma })?;
-        }
-        if self.samples.is_some() && self.error.is_none() && state.full_covariance.is_none() {
-            return Err(Failure::usage("--samples needs --error, or --speeds with speed_sigma"));
         }
         Ok(state)
     }

@@ -1,7 +1,7 @@
 //! `grainlab reproduce`: the tables and figures of the paper.
 
-use super::campaign::{self, EngineArgs, gather};
-use grainlab_campaign::{Campaign, Folder};
+use super::campaign::{self, gather};
+use grainlab_campaign::{Campaign, Engine, Folder, Options};
 use grainlab_console::{Failure, Format, Table, fixed, print, worse};
 use grainlab_node_kit::Exit;
 use grainlab_paper::{Distance, Observed, States};
@@ -47,7 +47,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR", conflicts_with_all = ["seeds", "first_seed", "grains", "quick", "out"])]
     distance: Option<PathBuf>,
     #[command(flatten)]
-    engine: EngineArgs,
+    options: Options,
     /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -64,8 +64,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let root =
         args.out.clone().unwrap_or_else(|| PathBuf::from(format!("recordings/campaigns/paper-{grains}")));
     let (folder, _lock) = campaign::begin(&campaign, &root)?;
-    let exit = args.engine.run(&campaign, &folder)?;
-    if args.engine.only_prints() || exit == Exit::Interrupted {
+    let exit = args.options.run(&campaign, &folder)?;
+    if args.options.engine == Engine::Print || exit == Exit::Interrupted {
         return Ok(exit);
     }
     let (states, gathered) = gather::states(&campaign, &folder)?;

@@ -56,15 +56,11 @@ pub(crate) struct Args {
     state: i64,
     /// Colours of the PNG: contacts of each grain that are not with rattlers, mean normal force of its contacts, or whether it
     /// carries force [default: coordination]
-    #[arg(long, value_name = "QUANTITY", value_parser = COLOURS.map(|(name, _)| name), requires = "png")]
+    #[arg(long, value_name = "QUANTITY", value_parser = Quantity::ALL.map(Quantity::name), requires = "png")]
     color: Option<String>,
     #[command(flatten)]
     import: import::Args,
 }
-
-/// Quantities that colours show, by name.
-const COLOURS: [(&str, Quantity); 3] =
-    [("coordination", Quantity::Coordination), ("force", Quantity::Force), ("rattlers", Quantity::Rattlers)];
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -183,8 +179,8 @@ fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
     let view = kept.pop_front().filter(|_| is_there).ok_or_else(|| {
         Failure::failed(format!("{}: no state {}: there are {count}", file.display(), args.state))
     })?;
-    let named = |(name, _): &(&str, Quantity)| args.color.as_deref() == Some(*name);
-    let colour = COLOURS.into_iter().find(named).map_or(Quantity::Coordination, |(_, quantity)| quantity);
+    let named = |quantity: &Quantity| args.color.as_deref() == Some(quantity.name());
+    let colour = Quantity::ALL.into_iter().find(named).unwrap_or_default();
     let bytes = Picture::with_legend(&view, colour, size).png().map_err(Failure::failed)?;
     write_whole(png, bytes).map_err(Failure::at(png))?;
     print(&format!("{}\n", png.display()))?;

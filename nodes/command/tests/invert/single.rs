@@ -81,24 +81,6 @@ fn the_error_of_the_model_is_separate_from_the_errors_of_the_data() {
     }
 }
 
-#[test]
-fn small_errors_sampled_agree_with_those_propagated_and_a_seed_repeats_them() {
-    let flags = ["--error=0.001", "--model=ratio", "--samples=20000", "--seed=7"];
-    let answer = json(&[&S1[..], &flags].concat());
-    let sampled = answer["sampled"].as_array().unwrap();
-    assert_eq!(sampled.iter().map(|s| s["quantity"].clone()).collect::<Vec<_>>(), ["k", "k_hat", "eps"]);
-    for s in sampled {
-        let quantity = s["quantity"].as_str().unwrap();
-        let linear = answer["results"][0]["sigma"][quantity].as_f64().unwrap();
-        // The standard deviation of 20,000 draws has an error of half a percent.
-        assert!((s["sigma"].as_f64().unwrap() / linear - 1.0).abs() < 0.02, "{s}");
-        assert_eq!((s["draws"].as_u64(), s["unsolved"].as_u64()), (Some(20000), Some(0)));
-    }
-    assert_eq!(answer, json(&[&S1[..], &flags].concat()));
-    let people = grainlab(&[&S1[..], &flags].concat(), b"");
-    assert!(text(&people.stdout).contains("without solution"));
-}
-
 /// v = √(C/ρ) along and across the axis.
 #[test]
 fn wave_speeds_give_what_their_moduli_give() {

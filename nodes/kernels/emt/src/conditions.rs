@@ -99,7 +99,7 @@ impl fmt::Display for StrainRatio {
 }
 
 /// A number with its standard deviation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
     /// Value of the number.
     pub value: f64,

@@ -42,13 +42,7 @@ impl fmt::Display for Failure {
 
 /// The worse of two results: a failure over lost data over success; an interruption over all.
 pub fn worse(a: Exit, b: Exit) -> Exit {
-    let rank = |e: Exit| match e {
-        Exit::Done => 0,
-        Exit::DataLoss => 1,
-        Exit::PhysicsInvalid => 2,
-        Exit::Usage => 3,
-        Exit::Failure => 4,
-        Exit::Interrupted => 5,
-    };
-    if rank(b) > rank(a) { b } else { a }
+    use Exit::*;
+    let ranks = [Done, DataLoss, PhysicsInvalid, Usage, Failure, Interrupted];
+    ranks.into_iter().rfind(|e| [a, b].contains(e)).unwrap_or(a)
 }

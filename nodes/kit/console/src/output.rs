@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use clap::ValueEnum;
 use serde::Serialize;
-use std::io::{ErrorKind, Write};
+use std::fmt::Write as _;
+use std::io::{ErrorKind, Write as _};
 
 /// The output format of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -137,7 +138,7 @@ impl Table {
 
     /// Comma-separated, quoted where necessary (RFC 4180, but with bare newlines).
     pub fn csv(&self) -> String {
-        let mut text = CsvText::new();
+        let mut text = CsvText::default();
         self.rows.iter().for_each(|row| text.row(row));
         text.finish()
     }
@@ -145,30 +146,51 @@ impl Table {
 
 /// Lines of CSV, one after the other.
 #[derive(Debug)]
-pub struct CsvText(csv::Writer<Vec<u8>>);
+pub struct CsvText {
+    lines: csv::Writer<Vec<u8>>,
+    /// Digits of the last number.
+    digits: String,
+}
 
 impl Default for CsvText {
     fn default() -> Self {
-        Self::new()
+        // The default buffer of 8 KiB costs more than a line.
+        let writer = csv::WriterBuilder::new().flexible(true).buffer_capacity(512).from_writer(Vec::new());
+        Self { lines: writer, digits: String::new() }
     }
 }
 
 impl CsvText {
-    /// A text without lines.
-    pub fn new() -> Self {
-        // The default buffer of 8 KiB costs more than a line.
-        Self(csv::WriterBuilder::new().flexible(true).buffer_capacity(512).from_writer(Vec::new()))
+    /// Adds a cell to the line that is not ended.
+    pub fn cell(&mut self, text: &str) {
+        // Writing to a vector cannot fail.
+        let _ = self.lines.write_field(text);
+    }
+
+    /// Adds a number at full precision to the line that is not ended; `None` is an empty cell.
+    pub fn number(&mut self, value: Option<f64>) {
+        self.digits.clear();
+        if let Some(v) = value.filter(|v| v.is_finite()) {
+            // Writing to a string cannot fail.
+            let _ = write!(self.digits, "{v}");
+        }
+        let _ = self.lines.write_field(&self.digits);
+    }
+
+    /// Ends the line of these cells.
+    pub fn end(&mut self) {
+        self.row(None::<&str>);
     }
 
     /// Adds a line.
     pub fn row<C: AsRef<[u8]>>(&mut self, cells: impl IntoIterator<Item = C>) {
         // Writing to a vector cannot fail.
-        let _ = self.0.write_record(cells);
+        let _ = self.lines.write_record(cells);
     }
 
     /// The lines so far.
     pub fn finish(self) -> String {
-        let bytes = self.0.into_inner().unwrap_or_default();
+        let bytes = self.lines.into_inner().unwrap_or_default();
         String::from_utf8(bytes).unwrap_or_default()
     }
 }

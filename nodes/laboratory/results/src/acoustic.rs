@@ -2,9 +2,9 @@
 
 use crate::measurements::Measurement;
 use crate::quantities::entries;
-use grainlab_core::MeasuredWave;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::*};
+use grainlab_core::{MeasuredWave, Stiffness};
 use grainlab_emt::{Conditions, Measured, Modulus, WaveModuli};
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -54,9 +54,9 @@ pub static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { AcousticReport:
     "degrees_of_freedom" "" "1" "speeds less combinations of moduli that they determine"
         Scalar, |a| a.medium.fitted.as_ref().ok().map(|f| f.degrees_of_freedom);
     "scatter" "" "1" "root mean square of the relative residuals of the speeds per degree of freedom"
-        Scalar, |a| a.scatter();
+        Scalar, |a| a.medium.fitted.as_ref().ok().and_then(|f| f.scatter());
     "departure" "" "1" "relative scatter of rho v^2 that is due to the packing; half of it is an error of every speed"
-        Aside, |a| a.departure();
+        Aside, |a| a.medium.fitted.as_ref().ok().and_then(|f| Some(f.anisotropy_scatter?.scatter));
 };
 
 impl AcousticReport {
@@ -74,27 +74,23 @@ impl AcousticReport {
         Self { measurement: None, reading, bulk_density, medium, modes: Vec::new() }
     }
 
-    /// Largest relative difference between the speed of a mode and that along its polarization in a medium isotropic about
-    /// the axis.
-    pub(crate) fn mode_shift(&self) -> Option<f64> {
-        let same = self.modes.len() == self.reading.speeds.len() && !self.modes.is_empty();
-        let shift =
-            |(mode, speed): (&MeasuredWave, &MeasuredWave)| (mode.wave.speed / speed.wave.speed - 1.0).abs();
-        same.then(|| self.modes.iter().zip(&self.reading.speeds).map(shift).fold(0.0, f64::max))
+    /// Moduli about the axis, with their names and those of a network of this stiffness.
+    pub fn moduli(&self, network: Option<&Stiffness>) -> [(&'static str, Modulus, Option<f64>); 6] {
+        let medium = network.map(|c| c.transverse_isotropy_about(&self.medium.axis));
+        [
+            ("C33", Modulus::C33, medium.map(|t| t.c33)),
+            ("C11", Modulus::C11, medium.map(|t| t.c11)),
+            ("C44 = G13", Modulus::G13, medium.map(|t| t.g13)),
+            ("C66 = G12", Modulus::G12, medium.map(|t| t.g12)),
+            ("C13", Modulus::C13, medium.map(|t| t.c13)),
+            ("Theta", Modulus::Theta, network.map(Stiffness::bulk_voigt)),
+        ]
     }
 
     pub(crate) fn method(&self) -> Option<&'static str> {
         let mut methods = self.reading.speeds.iter().map(|s| s.method);
         let first = methods.next()?;
         Some(if methods.all(|m| m == first) { first.word() } else { "several" })
-    }
-
-    pub(crate) fn scatter(&self) -> Option<f64> {
-        self.medium.fitted.as_ref().ok()?.scatter()
-    }
-
-    pub(crate) fn departure(&self) -> Option<f64> {
-        Some(self.medium.fitted.as_ref().ok()?.anisotropy_scatter?.scatter)
     }
 
     /// Θ, Pa, if all other moduli are known: in a table Θ follows from the other moduli, which must therefore

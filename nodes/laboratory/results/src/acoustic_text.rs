@@ -5,7 +5,6 @@ use crate::packing_text::indented;
 use grainlab_console::{Table, count, fixed};
 use grainlab_core::Stiffness;
 use grainlab_core::results::PackingReport;
-use grainlab_emt::Modulus;
 
 /// Summary of the speeds: `wave speeds (dispersion, 27 speeds, each +- 0.30 %)`.
 pub(crate) fn heading(a: &AcousticReport) -> String {
@@ -19,11 +18,10 @@ pub(crate) fn heading(a: &AcousticReport) -> String {
 pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
     let mut text = format!("  {}\n", heading(a));
     text += &format!(
-        "  density {:.1}{} kg/m3 moves with the waves, of {:.1} kg/m3 of all grains{}\n",
+        "  density {:.1}{} kg/m3 moves with the waves, of {:.1} kg/m3 of all grains\n",
         a.reading.density,
         a.reading.density_stddev.map_or_else(String::new, |s| format!(" +- {s:.1}")),
         a.bulk_density,
-        scatter(a),
     );
     let [x, y, z]: [f64; 3] = a.medium.axis.into();
     text += &match (&a.medium.no_axis, a.reading.axis) {
@@ -32,12 +30,6 @@ pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
         (None, Some(_)) => format!("  moduli about ({x:.3}, {y:.3}, {z:.3})\n"),
     };
     text += &indented(&moduli(a, report.stiffness().map(|s| &s.tensor)).without_empty_columns().text());
-    if let Some(shift) = a.mode_shift() {
-        text += &format!(
-            "  speeds of the packing's own modes, quasi-P and quasi-S, are up to {} from those along the ideal polarizations\n",
-            percent(shift)
-        );
-    }
     a.warnings().iter().for_each(|w| text += &format!("  note: {w}\n"));
     text
 }
@@ -47,25 +39,10 @@ fn percent(share: f64) -> String {
     if share < 5e-5 { format!("{:.0e} %", 100.0 * share) } else { format!("{:.2} %", 100.0 * share) }
 }
 
-/// Scatter of the speeds about one medium, and its effect on the errors.
-fn scatter(a: &AcousticReport) -> String {
-    let Some(scatter) = a.scatter() else { return String::new() };
-    let enlarged = if a.departure().is_some() { ", more than their errors, which were enlarged" } else { "" };
-    format!("; speeds scatter by {:.2} % about one medium{enlarged}", 100.0 * scatter)
-}
-
 /// The projection of the stiffness on media isotropic about the axis used, and the moduli from the speeds.
 fn moduli(a: &AcousticReport, stiffness: Option<&Stiffness>) -> Table {
-    let medium = stiffness.map(|c| c.transverse_isotropy_about(&a.medium.axis));
     let mut t = Table::new(["modulus", "network/MPa", "acoustic/MPa", "sigma", "difference", "in sigma"]);
-    for (name, network, modulus) in [
-        ("C33", medium.map(|t| t.c33), Modulus::C33),
-        ("C11", medium.map(|t| t.c11), Modulus::C11),
-        ("C44 = G13", medium.map(|t| t.g13), Modulus::G13),
-        ("C66 = G12", medium.map(|t| t.g12), Modulus::G12),
-        ("C13", medium.map(|t| t.c13), Modulus::C13),
-        ("Theta", stiffness.map(Stiffness::bulk_voigt), Modulus::Theta),
-    ] {
+    for (name, modulus, network) in a.moduli(stiffness) {
         let (value, sigma) = (a.medium.modulus(modulus), a.medium.stddev(modulus));
         let mega = |v: Option<f64>| fixed(v.map(|v| v / 1e6), 2);
         let off = value.zip(network).map(|(v, n)| v - n);

@@ -94,10 +94,11 @@ pub fn ended(code: u8, reason: Option<&str>, saved_step: Option<u64>) -> Option<
     Some(format!("with exit code {code}: {why}"))
 }
 
-/// A path for a shell.
-pub fn quoted(path: &str) -> String {
+/// A word for a shell.
+pub fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
-    if path.chars().all(is_plain) { path.to_owned() } else { format!("'{}'", path.replace('\'', "'\\''")) }
+    let is_plain = !word.is_empty() && word.chars().all(is_plain);
+    if is_plain { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
 fn row(name: &str, text: &str) -> String {
@@ -195,7 +196,7 @@ fn measured(r: &PackingReport) -> String {
 
 /// Data that were inverted and are not about a packing of the run.
 fn of_instruments(results: &[Inference]) -> Option<String> {
-    let data: BTreeSet<String> = results.iter().filter_map(|r| r.origin().data()).collect();
+    let data: BTreeSet<String> = results.iter().filter_map(|r| r.origin.data()).collect();
     let first = data.first()?;
     let more = match data.len() {
         1 => String::new(),

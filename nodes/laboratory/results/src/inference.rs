@@ -12,15 +12,9 @@ use std::ops::Deref;
 /// One model's result, and the origin of its data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inference {
-    /// Topic of the data; absent if they came from a command line or a file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    /// Node that inferred it; absent if unknown.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub by: Option<String>,
-    /// Measurement of the packing, where there are several; else absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub measurement: Option<Measurement>,
+    /// Origin of its data.
+    #[serde(flatten)]
+    pub origin: Origin,
     /// Result of the model.
     #[serde(flatten)]
     pub result: ModelResult,
@@ -36,18 +30,21 @@ impl Deref for Inference {
 
 impl From<ModelResult> for Inference {
     fn from(result: ModelResult) -> Self {
-        Self { source: None, by: None, measurement: None, result }
+        Self { origin: Origin::default(), result }
     }
 }
 
 /// Origin of results.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Origin {
-    /// Topic of the data.
+    /// Topic of the data; absent if they came from a command line or a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
-    /// Node that inferred.
+    /// Node that inferred; absent if unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
-    /// Measurement of the packing, where there are several.
+    /// Measurement of the packing, where there are several; else absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub measurement: Option<Measurement>,
 }
 
@@ -75,7 +72,7 @@ impl Origin {
 pub fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
     let mut groups = BTreeMap::<Origin, Vec<&Inference>>::new();
     for r in results {
-        groups.entry(r.origin()).or_default().push(r);
+        groups.entry(r.origin.clone()).or_default().push(r);
     }
     let mut groups: Vec<_> = groups.into_iter().collect();
     // The report of the packing comes first, and of one topic the results of a program that is not known come last.
@@ -86,11 +83,6 @@ pub fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
 }
 
 impl Inference {
-    /// Origin of the data.
-    pub fn origin(&self) -> Origin {
-        Origin { source: self.source.clone(), by: self.by.clone(), measurement: self.measurement.clone() }
-    }
-
     /// The recommended one among the results of all models from the same data.
     pub fn recommended<'a>(results: &[&'a Self]) -> Option<&'a Self> {
         let named = |r: &Self| {

@@ -1,7 +1,7 @@
 //! Results of the models, as cells of a table or of CSV.
 
 use crate::inference::Inference;
-use grainlab_console::{Table, exact, fixed};
+use grainlab_console::{CsvText, Table, fixed};
 use grainlab_core::results::InferredQuantity;
 
 impl Inference {
@@ -34,19 +34,19 @@ impl Inference {
         columns
     }
 
-    /// As cells at full precision.
-    pub fn exact_cells(&self) -> Vec<String> {
-        let mut cells = vec![self.model.clone(), self.calibration.clone()];
-        for numbers in [&self.values, &self.sigma, &self.sigma_model] {
-            cells.extend(numbers.0.map(exact));
-        }
-        for bound in self.interval.bounds.0 {
-            cells.extend([bound.map(|b| b[0]), bound.map(|b| b[1])].map(exact));
-        }
-        cells.push(exact(self.chi_square));
-        cells.push(self.degrees_of_freedom.map_or_else(String::new, |n| n.to_string()));
-        cells.extend([exact(self.condition_number), self.status.to_owned()]);
-        cells
+    /// Adds the cells at full precision to a line of CSV.
+    pub fn exact_cells(&self, line: &mut CsvText) {
+        line.cell(&self.model);
+        line.cell(&self.calibration);
+        let by_kind = [&self.values, &self.sigma, &self.sigma_model];
+        let bounds = self.interval.bounds.0.iter();
+        by_kind
+            .into_iter()
+            .flat_map(|numbers| numbers.0)
+            .chain(bounds.flat_map(|bound| [bound.map(|b| b[0]), bound.map(|b| b[1])]))
+            .chain([self.chi_square, self.degrees_of_freedom.map(|n| n as f64), self.condition_number])
+            .for_each(|number| line.number(number));
+        line.cell(self.status);
     }
 }
 
@@ -112,10 +112,14 @@ mod tests {
         (found.sigma_model.0[z], found.sigma_model.0[eps_stiffness]) = (Some(0.04), None);
         found.interval.bounds.0[eps_stiffness] = Some([-0.01, 0.05]);
         (found.chi_square, found.degrees_of_freedom) = (Some(1.5), Some(2));
-        let cells = r.exact_cells();
+        let mut line = CsvText::default();
+        r.exact_cells(&mut line);
+        line.end();
+        let line = line.finish();
+        let cells: Vec<&str> = line.trim_end().split(',').collect();
         let columns = Inference::exact_columns();
         assert_eq!(cells.len(), columns.len());
-        let cell = |name| cells[columns.iter().position(|c| *c == name).unwrap()].as_str();
+        let cell = |name| cells[columns.iter().position(|c| *c == name).unwrap()];
         assert_eq!((cell("model"), cell("status")), ("ratio", "ok"));
         assert_eq!((cell("z"), cell("sigma_z"), cell("eps_stiffness")), ("5.9", "", "0.02"));
         assert_eq!((cell("sigma_model_z"), cell("sigma_model_eps_stiffness")), ("0.04", ""));

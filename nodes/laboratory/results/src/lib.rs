@@ -36,4 +36,4 @@ pub use printer::{Printed, Printer};
 pub use probe::ProbeView;
 pub use probed::Probed;
 pub use state_warnings::{state_warnings, yields};
-pub use summary::{Launched, NodeEnd, Summary};
+pub use summary::{Launched, NodeEnd, Summary, TopicCount};

@@ -1,8 +1,7 @@
 //! One measured packing: the output of `grainlab analyze`, and an entry of `summary.json`.
 
 use crate::probe::ProbeView;
-use crate::quantities::{cells, columns, entries};
-use grainlab_console::Table;
+use crate::quantities::entries;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::Scalar};
 use grainlab_core::results::{PackingReport, QUANTITIES};
@@ -66,18 +65,10 @@ impl Serialize for MeasuredPacking {
     }
 }
 
-/// Packings as a table, one per row, at full precision.
-pub(crate) fn table(packings: &[MeasuredPacking]) -> Table {
-    let mut t = Table::new(columns(ORIGIN).chain(columns(QUANTITIES)));
-    for p in packings {
-        t.row(cells(ORIGIN, p).chain(cells(QUANTITIES, &p.report)));
-    }
-    t
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::printer::Printed;
     use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
     use grainlab_experiment::StrainOrigin;
     use grainlab_micromechanics::{Settings, analyze};
@@ -176,7 +167,7 @@ pub(crate) mod tests {
 
     #[test]
     fn every_row_is_as_long_as_the_header() {
-        let table = table(&[measured(&lattice(true)), measured(&lattice(false))]).csv();
+        let table = MeasuredPacking::table(&[measured(&lattice(true)), measured(&lattice(false))]).csv();
         let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
         assert_eq!(rows[0][..5], ["source", "step", "phase", "end_of_phase", "seconds"]);
         assert!(rows.iter().all(|r| r.len() == rows[0].len()), "{table}");

@@ -1,8 +1,8 @@
 //! A measured packing as text.
 
-use crate::measured_packing::{self, MeasuredPacking};
+use crate::measured_packing::{MeasuredPacking, ORIGIN};
 use crate::printer::Printed;
-use crate::quantities::typed_cells;
+use crate::quantities::{cells, columns, typed_cells};
 use grainlab_console::{Cell, Table, count};
 use grainlab_core::quantity::by_key;
 use grainlab_core::results::{PackingReport, QUANTITIES};
@@ -17,7 +17,11 @@ impl Printed for MeasuredPacking {
     }
 
     fn table(packings: &[Self]) -> Table {
-        measured_packing::table(packings)
+        let mut t = Table::new(columns(ORIGIN).chain(columns(QUANTITIES)));
+        for p in packings {
+            t.row(cells(ORIGIN, p).chain(cells(QUANTITIES, &p.report)));
+        }
+        t
     }
 }
 

@@ -14,7 +14,7 @@ pub fn csv(draws: &Draws, chains: usize) -> String {
     header.extend(of_each(|m| format!("log_likelihood_{m}")));
     header.extend(of_each(|m| format!("predicted_{m}_pa")));
     header.extend(of_each(|m| format!("observed_{m}_pa")));
-    let mut text = CsvText::new();
+    let mut text = CsvText::default();
     text.row(header);
     for (chain, part) in by_chain(draws, chains).enumerate() {
         for (number, draw) in part.iter().enumerate() {

@@ -5,7 +5,7 @@ use crate::read_back::{InvertedPacking, ReadBack, WithinPhases};
 use grainlab_msgs::{Exit, Report};
 use grainlab_recordings::TopicTally;
 use grainlab_recordings::strangers::StrangerView;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A launched run.
@@ -39,7 +39,8 @@ pub struct Summary {
 }
 
 /// One node of a run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(default)]
 pub struct NodeEnd {
     /// Name of the node.
     pub name: String,
@@ -52,13 +53,19 @@ pub struct NodeEnd {
 }
 
 /// Messages of one topic.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct TopicCount {
-    pub(crate) name: String,
-    pub(crate) published: u64,
-    pub(crate) recorded: u64,
-    pub(crate) lost: u64,
-    pub(crate) repeated: u64,
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(default)]
+pub struct TopicCount {
+    /// Name of the topic.
+    pub name: String,
+    /// All that were published: the sum of the others.
+    pub published: u64,
+    /// In the recording.
+    pub recorded: u64,
+    /// Published, and not received.
+    pub lost: u64,
+    /// Received again from a restarted process.
+    pub repeated: u64,
     /// Left out because others are recorded in their place, if any are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) conflicting: Option<u64>,

@@ -38,8 +38,7 @@ impl Campaign {
     /// # Errors
     /// Invalid TOML, unknown keys, no members, or two of one name. Scenes are not read.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let text = input::text(path, input::SETTINGS)
-            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+        let text = input::text(path, input::SETTINGS).map_err(Failure::at(path))?;
         let folder =
             path.canonicalize().ok().and_then(|p| p.parent().map(Path::to_owned)).unwrap_or_default();
         Self::parse(&text, &folder).map_err(|e| Failure::new(e.exit, format!("{}: {e}", path.display())))
@@ -85,7 +84,6 @@ impl Campaign {
         if let Some(twice) = members.iter().find(|m| !names.insert(m.name.as_str())) {
             return Err(Failure::usage(format!("two members are called {}", twice.name)));
         }
-        let plain = |v: &Value| v.as_str().map_or_else(|| v.to_string(), str::to_owned);
         Ok(Self {
             name: file.name,
             description: file.description,

@@ -4,6 +4,7 @@ use crate::campaign::Campaign;
 use crate::folder::Folder;
 use crate::member::Member;
 use grainlab_console::Failure;
+use grainlab_results::brief::quoted;
 
 /// Program and arguments that begin, continue or keep the run of a member.
 pub(crate) fn command(campaign: &Campaign, folder: &Folder, member: &Member) -> Result<Vec<String>, Failure> {
@@ -20,15 +21,7 @@ pub(crate) fn command(campaign: &Campaign, folder: &Folder, member: &Member) -> 
 
 /// A command as a line for a shell.
 pub(crate) fn line(words: &[String]) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
-    let quoted = |word: &String| {
-        if !word.is_empty() && word.chars().all(is_plain) {
-            word.clone()
-        } else {
-            format!("'{}'", word.replace('\'', "'\\''"))
-        }
-    };
-    words.iter().map(quoted).collect::<Vec<_>>().join(" ")
+    words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

@@ -30,17 +30,17 @@ pub enum Engine {
     Print,
 }
 
-impl Engine {
+impl Options {
     /// Runs the members that are not finished; the caller holds the lock of the folder. The exit is 0 if all are.
     ///
     /// # Errors
     /// A folder in use, a scheduler that cannot be reached, a folder that cannot be written.
-    pub fn run(self, campaign: &Campaign, folder: &Folder, options: Options) -> Result<Exit, Failure> {
-        if self == Self::Print {
+    pub fn run(self, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
+        if self.engine == Engine::Print {
             print::run(campaign, folder)?;
             return Ok(Exit::Done);
         }
-        if options.redo_failed {
+        if self.redo_failed {
             for member in
                 campaign.members.iter().filter(|m| matches!(folder.state(m), MemberState::Failed(_)))
             {
@@ -52,11 +52,11 @@ impl Engine {
         let finished = campaign.members.iter().filter(is_finished).count();
         let failed = campaign.members.len() - pending.len() - finished;
         let mut progress = Progress::new(campaign.members.len(), finished, failed);
-        let interrupted = match self {
+        let interrupted = match self.engine {
             _ if pending.is_empty() => false,
-            Self::Slurm => cluster::run(&cluster::SLURM, campaign, folder, options, &mut progress)?,
-            Self::Hq => cluster::run(&cluster::HYPER_QUEUE, campaign, folder, options, &mut progress)?,
-            _ => local::run(campaign, folder, options, pending, &mut progress)?,
+            Engine::Slurm => cluster::run(&cluster::SLURM, campaign, folder, self, &mut progress)?,
+            Engine::Hq => cluster::run(&cluster::HYPER_QUEUE, campaign, folder, self, &mut progress)?,
+            _ => local::run(campaign, folder, self, pending, &mut progress)?,
         };
         progress.end();
         let exit = report(campaign, folder);

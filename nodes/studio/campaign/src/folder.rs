@@ -2,7 +2,7 @@
 
 use crate::campaign::Campaign;
 use crate::member::Member;
-use grainlab_console::{Failure, json};
+use grainlab_console::{Failure, json, write_whole};
 use grainlab_msgs::Exit;
 use grainlab_recordings::{Lock, RunState, input, run_state};
 use std::io;
@@ -112,8 +112,7 @@ impl Folder {
     pub(crate) fn give_up(&self, member: &Member) -> Result<(), Failure> {
         let RunState::Ended(code) = run_state(&self.run(member)) else { return Ok(()) };
         let path = self.given_up(member);
-        std::fs::write(&path, format!("{code}\n"))
-            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
+        std::fs::write(&path, format!("{code}\n")).map_err(Failure::at(&path))
     }
 
     /// Removes the run of a member.
@@ -121,19 +120,15 @@ impl Folder {
         let run = self.run(member);
         let _ = std::fs::remove_file(self.given_up(member));
         match std::fs::remove_dir_all(&run) {
-            Err(e) if e.kind() != io::ErrorKind::NotFound => {
-                Err(Failure::failed(format!("{}: {e}", run.display())))
-            }
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Failure::at(&run)(e)),
             _ => Ok(()),
         }
     }
 
     /// Writes a file of the campaign at once.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<PathBuf, Failure> {
-        let (path, part) = (self.root.join(name), self.root.join(format!("{name}.part")));
-        std::fs::write(&part, content)
-            .and_then(|()| std::fs::rename(&part, &path))
-            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+        let path = self.root.join(name);
+        write_whole(&path, content).map_err(Failure::at(&path))?;
         Ok(path)
     }
 }

@@ -75,9 +75,14 @@ pub(crate) struct TopicEntry<'a> {
 }
 
 impl TopicEntry<'_> {
+    /// Publishers, then subscriptions.
+    pub(crate) fn endpoints(&self) -> impl Iterator<Item = &Endpoint> {
+        self.publishers.iter().chain(&self.subscriptions).copied()
+    }
+
     /// The types of its endpoints; more than one is a mistake.
     pub(crate) fn types(&self) -> BTreeSet<&str> {
-        self.publishers.iter().chain(&self.subscriptions).map(|e| e.type_name.as_str()).collect()
+        self.endpoints().map(|e| e.type_name.as_str()).collect()
     }
 }
 
@@ -118,6 +123,12 @@ impl Graph {
             || format!("participant {}", &Guid::of_participant(endpoint.participant()).to_string()[..24]),
             |node| node.name.clone(),
         )
+    }
+
+    /// Names of the owners, each once.
+    pub(crate) fn owners<'a>(&self, endpoints: impl IntoIterator<Item = &'a Endpoint>) -> String {
+        let owners: BTreeSet<String> = endpoints.into_iter().map(|e| self.owner(e)).collect();
+        owners.into_iter().collect::<Vec<_>>().join(", ")
     }
 
     /// The nodes of this program that publish reports: one a second. What others publish on this topic, and when, is their own.

@@ -6,7 +6,7 @@ use grainlab_core::results::PackingReport;
 use grainlab_msgs::{msg, simulated_seconds};
 use grainlab_node_kit::{Exit, Report, RunId};
 use grainlab_report::Timeline;
-use grainlab_results::{Inference, Measurement};
+use grainlab_results::{Inference, Measurement, Origin};
 use grainlab_servo::ServoRequest;
 use std::time::Duration;
 
@@ -153,7 +153,10 @@ impl Laboratory {
         for result in results {
             // A name tells several measurements of a packing apart.
             let measurement = (!message.name.is_empty()).then(|| Measurement::named(&message.name));
-            let found = Inference { source: Some(message.source.clone()), by: None, measurement, result };
+            let found = Inference {
+                origin: Origin { source: Some(message.source.clone()), by: None, measurement },
+                result,
+            };
             if known.len() < ESTIMATES && !known.contains(&found) {
                 known.push(found);
             }

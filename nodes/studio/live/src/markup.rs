@@ -121,7 +121,7 @@ impl Laboratory {
                 Cell::number(error.unwrap_or_default()),
             ]
         });
-        let which = best.filter(|b| b.measurement.is_some()).and_then(|b| b.origin().data());
+        let which = best.filter(|b| b.origin.measurement.is_some()).and_then(|b| b.origin.data());
         let which = which.map_or_else(String::new, |data| format!(" from {data}"));
         let by = best.map_or_else(String::new, |b| format!(", by model {}{which}", b.model));
         let caption = format!("Packing of step {step}{by}");

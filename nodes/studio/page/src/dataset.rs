@@ -36,7 +36,7 @@ impl Dataset {
 
     /// Comma-separated, with a header.
     pub fn csv(&self) -> String {
-        let mut text = CsvText::new();
+        let mut text = CsvText::default();
         text.row(&self.names);
         self.rows.iter().for_each(|row| text.row(row.iter().map(Cell::text)));
         text.finish()

@@ -73,7 +73,7 @@ pub fn figure(id: &str, plot: Html, caption: impl Into<Html>, csv: &str) -> Html
 
 /// Comma-separated data with a header.
 pub fn csv<const N: usize>(header: [&str; N], rows: impl IntoIterator<Item = [String; N]>) -> String {
-    let mut text = CsvText::new();
+    let mut text = CsvText::default();
     text.row(header);
     rows.into_iter().for_each(|row| text.row(row));
     text.finish()

@@ -109,6 +109,11 @@ fn ordered(means: &Means<'_>, quantity: Quantity, text: &str, falling: bool) -> 
             }
         }
     }
+    everywhere(text, &broken, known)
+}
+
+/// A claim on all means, and the places for which it does not hold; `known` if every mean is.
+fn everywhere(text: &str, broken: &[String], known: bool) -> Claim {
     let found =
         if broken.is_empty() { "in all means".to_owned() } else { format!("not for {}", broken.join(", ")) };
     Claim { text: text.into(), found, holds: known.then_some(broken.is_empty()) }
@@ -153,13 +158,7 @@ fn shear_moduli(means: &Means<'_>) -> Claim {
             }
         }
     }
-    let found =
-        if broken.is_empty() { "in all means".to_owned() } else { format!("not for {}", broken.join(", ")) };
-    Claim {
-        text: "G13 > G12, and both grow with pressure (Fig. 2)".into(),
-        found,
-        holds: known.then_some(broken.is_empty()),
-    }
+    everywhere("G13 > G12, and both grow with pressure (Fig. 2)", &broken, known)
 }
 
 /// The conclusion of the paper: ratios of moduli give k, absolute moduli do not. k by absolute moduli is that of Eq. 14 with

@@ -50,5 +50,5 @@ pub fn compare(states: &States) -> Vec<Comparison> {
         Some(Comparison { quantity, sample, pressure, ours, paper: quantity.in_paper(sample, pressure) })
     };
     let all = Quantity::ALL.into_iter();
-    all.flat_map(|q| States::places().filter_map(move |place| one(q, place))).collect()
+    all.flat_map(|(q, _)| States::places().filter_map(move |place| one(q, place))).collect()
 }

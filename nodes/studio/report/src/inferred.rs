@@ -16,11 +16,16 @@ const MOST_BARS: usize = 60;
 
 /// Name of a result: its model, and its data unless these are the report of the packing.
 fn name(e: &Inference) -> String {
-    let which = || e.measurement.as_ref().map_or_else(String::new, |m| format!(" {}", m.label));
-    let is_named = |s: &&str| *s != PACKING_REPORT.name || e.measurement.is_some();
-    let data = e.source.as_deref().filter(is_named).map(|s| format!(", {}{}", s.replace('_', " "), which()));
-    let by =
-        e.by.as_deref().filter(|b| *b != "/emt_inversion" && *b != "emt_inversion").map(|b| format!(", {b}"));
+    let which = || e.origin.measurement.as_ref().map_or_else(String::new, |m| format!(" {}", m.label));
+    let is_named = |s: &&str| *s != PACKING_REPORT.name || e.origin.measurement.is_some();
+    let data =
+        e.origin.source.as_deref().filter(is_named).map(|s| format!(", {}{}", s.replace('_', " "), which()));
+    let by = e
+        .origin
+        .by
+        .as_deref()
+        .filter(|b| *b != "/emt_inversion" && *b != "emt_inversion")
+        .map(|b| format!(", {b}"));
     format!("{}{}{}", e.model, data.unwrap_or_default(), by.unwrap_or_default())
 }
 
@@ -93,7 +98,7 @@ impl Run {
     fn of_instruments(&self) -> Html {
         let rows = self.of_instruments.iter().map(|e| {
             let cells = InferredQuantity::countable().map(|q| Cell::fixed(e.values[q], q.digits()));
-            [Cell::text(e.origin().data().unwrap_or_default()), Cell::text(model(e))].into_iter().chain(cells)
+            [Cell::text(e.origin.data().unwrap_or_default()), Cell::text(model(e))].into_iter().chain(cells)
         });
         let header = ["data", "model"].into_iter().chain(symbols());
         table("Inferred from data of no packing of the run", header, rows)
@@ -113,7 +118,7 @@ impl Run {
             });
             let best = recommended(s);
             let unknown = if s.results.is_empty() { "" } else { "unknown" };
-            let which = best.and_then(|b| b.measurement.as_ref()).map(|m| format!(", {}", m.label));
+            let which = best.and_then(|b| b.origin.measurement.as_ref()).map(|m| format!(", {}", m.label));
             let by = best.map_or_else(|| unknown.to_owned(), model) + &which.unwrap_or_default();
             [Cell::text(phase), Cell::fixed(r.pressure() / 1e3, 2), Cell::fixed(r.solid_fraction, 4)]
                 .into_iter()
@@ -124,9 +129,9 @@ impl Run {
         };
         // Each of several measurements of a packing has a row of its own.
         let further = |s: &InvertedPacking| -> Vec<Vec<Cell>> {
-            let first = recommended(s).map(Inference::origin);
+            let first = recommended(s).map(|best| &best.origin);
             let groups = grainlab_results::by_origin(&s.results);
-            let others = groups.iter().filter(|(o, _)| o.measurement.is_some() && Some(o) != first.as_ref());
+            let others = groups.iter().filter(|(o, _)| o.measurement.is_some() && Some(o) != first);
             let row = |(origin, results): &(grainlab_results::Origin, Vec<&Inference>)| {
                 let best = Inference::recommended(results);
                 let empty = std::iter::repeat_n(Cell::text(""), before - 1);

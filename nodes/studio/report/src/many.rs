@@ -79,7 +79,7 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         })
         .collect();
     let mut marked = 0;
-    let mut csv = CsvText::new();
+    let mut csv = CsvText::default();
     let names = columns.iter().map(|c| c.name.as_str());
     let header: Vec<&str> = ["run", "scene", "seed", "end"].into_iter().chain(names).collect();
     csv.row(&header);

@@ -12,24 +12,23 @@ const FEWEST: usize = 24;
 pub(crate) const MOST_PHASES: usize = 1000;
 
 /// A series with bins of its own in each phase, because phases differ much in length.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Phased {
-    bins: usize,
     /// In the order of the phases that have values.
     parts: Vec<(u32, Decimated)>,
 }
 
-impl Phased {
-    /// Without values, for a run of about this number of phases.
-    pub(crate) fn of_phases(phases: usize) -> Self {
-        Self { bins: (BINS / phases.max(1)).clamp(FEWEST, BINS / 2), parts: Vec::new() }
-    }
+/// Bins of each phase of a run of about this number of phases.
+pub(crate) fn bins_of(phases: usize) -> usize {
+    (BINS / phases.max(1)).clamp(FEWEST, BINS / 2)
+}
 
-    /// Adds a value of a phase.
-    pub(crate) fn push(&mut self, phase: u32, time: f64, value: f64) {
+impl Phased {
+    /// Adds a value of a phase, which has this number of bins.
+    pub(crate) fn push(&mut self, (phase, bins): (u32, usize), time: f64, value: f64) {
         let is_other = self.parts.last().is_none_or(|(known, _)| *known != phase);
         if is_other && self.parts.len() < MOST_PHASES {
-            self.parts.push((phase, Decimated::new(self.bins)));
+            self.parts.push((phase, Decimated::new(bins)));
         }
         if let Some((_, part)) = self.parts.last_mut() {
             part.push(time, value);
@@ -77,9 +76,9 @@ mod tests {
 
     #[test]
     fn a_short_phase_has_as_many_bins_as_a_long_one() {
-        let mut series = Phased::of_phases(10);
-        (0..5000).for_each(|n| series.push(0, f64::from(n), f64::from(n % 13)));
-        (0..5000).for_each(|n| series.push(1, 5000.0 + 1e-4 * f64::from(n), f64::from(n % 13)));
+        let (mut series, bins) = (Phased::default(), bins_of(10));
+        (0..5000).for_each(|n| series.push((0, bins), f64::from(n), f64::from(n % 13)));
+        (0..5000).for_each(|n| series.push((1, bins), 5000.0 + 1e-4 * f64::from(n), f64::from(n % 13)));
         let points = series.points();
         let late = points.iter().filter(|p| p.0 >= 5000.0).count();
         assert!(late > 80 && points.len() - late > 80, "{late} of {}", points.len());

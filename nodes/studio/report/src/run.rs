@@ -13,7 +13,7 @@ const NO_RECORDING: &str = "No recording";
 const NO_SUMMARY: &str = "No summary";
 
 /// A run with its files.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Run {
     /// Directory of the run.
     pub(crate) directory: PathBuf,
@@ -64,18 +64,8 @@ impl Run {
         let directory = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
         let mut run = Self {
             directory: path.to_owned(),
-            summary: SummaryFile::default(),
-            states: Vec::new(),
-            of_instruments: Vec::new(),
-            several_runs: None,
-            timeline: Timeline::of_phases(1),
-            scene_text: String::new(),
-            scene: None,
             launched: launched(&directory.join("launch.json")),
-            recorded_by: None,
-            uncounted_files: 0,
-            disputed: false,
-            missing: Vec::new(),
+            ..Self::default()
         };
         run.read_summary(&directory.join("summary.json"));
         let recording = Recording::open(path);
@@ -181,7 +171,7 @@ impl Run {
     /// This run for a table: without series and packings, which are large.
     #[must_use]
     pub fn without_series(self) -> Self {
-        Self { timeline: Timeline::of_phases(1), ..self }
+        Self { timeline: Timeline::default(), ..self }
     }
 
     /// Name of the directory.

@@ -1,5 +1,6 @@
 //! `summary.json` of a run, as far as a report needs it: everything in it may be missing.
 
+use grainlab_results::{NodeEnd, TopicCount};
 use serde::Deserialize;
 
 /// End of a run, and counts of its messages.
@@ -11,7 +12,7 @@ pub(crate) struct SummaryFile {
     pub(crate) run: String,
     pub(crate) domain: Option<u16>,
     pub(crate) wall_seconds: Option<f64>,
-    pub(crate) nodes: Vec<Node>,
+    pub(crate) nodes: Vec<NodeEnd>,
     pub(crate) topics: Vec<TopicCount>,
     pub(crate) strangers: Vec<serde_json::Value>,
     pub(crate) exchanges: Option<u64>,
@@ -21,26 +22,6 @@ pub(crate) struct SummaryFile {
     pub(crate) saved_step: Option<u64>,
     pub(crate) exit: Option<u8>,
     pub(crate) warnings: Vec<String>,
-}
-
-/// A process of the run.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(default)]
-pub(crate) struct Node {
-    pub(crate) name: String,
-    pub(crate) exit: Option<i32>,
-    pub(crate) restarts: usize,
-}
-
-/// Messages of a topic.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(default)]
-pub(crate) struct TopicCount {
-    pub(crate) name: String,
-    pub(crate) published: u64,
-    pub(crate) recorded: u64,
-    pub(crate) lost: u64,
-    pub(crate) repeated: u64,
 }
 
 impl SummaryFile {

@@ -1,6 +1,6 @@
 //! A run against time, from one pass over its recording.
 
-use crate::phased::{MOST_PHASES, PhaseAxis, Phased};
+use crate::phased::{MOST_PHASES, PhaseAxis, Phased, bins_of};
 use grainlab_core::results::PackingReport;
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_msgs::boundary::EnergyReading;
@@ -14,8 +14,10 @@ use std::collections::BTreeMap;
 const STRUCTURES: usize = 4096;
 
 /// A run against simulated time, s, in bounded memory.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Timeline {
+    /// Bins of each phase.
+    bins: usize,
     /// Pa, in the order of Voigt.
     pub(crate) stress: [Phased; 6],
     /// Imposed stress, Pa, in the order of Voigt: no values where a strain rate is imposed.
@@ -65,28 +67,7 @@ pub(crate) struct Structure {
 impl Timeline {
     /// Without data, for a run of this number of phases.
     pub fn of_phases(phases: usize) -> Self {
-        let series = || Phased::of_phases(phases);
-        Self {
-            stress: std::array::from_fn(|_| series()),
-            targets: std::array::from_fn(|_| series()),
-            pressure: series(),
-            deviator: series(),
-            strain: std::array::from_fn(|_| series()),
-            solid_fraction: series(),
-            coordination: series(),
-            unbalanced: series(),
-            phases: Vec::new(),
-            names: BTreeMap::new(),
-            end: 0.0,
-            fabrics: Vec::new(),
-            energy: Vec::new(),
-            film: Film::default(),
-            last: None,
-            unreadable: 0,
-            several_runs: None,
-            next: 0,
-            from_zero: false,
-        }
+        Self { bins: bins_of(phases), ..Self::default() }
     }
 
     /// Reads the recording of a run of this number of phases.
@@ -152,6 +133,7 @@ impl Timeline {
             self.phases.push((request.phase, time));
         }
         self.end = self.end.max(time);
+        let phase = (phase, self.bins);
         let push = |series: &mut [Phased; 6], values: [f64; 6]| {
             series.iter_mut().zip(values).for_each(|(s, v)| s.push(phase, time, v));
         };

@@ -3,7 +3,6 @@
 use crate::run::Run;
 use grainlab_console::count;
 use grainlab_core::{MeasuredWave, Stiffness, Vec3};
-use grainlab_emt::Modulus;
 use grainlab_page::plot::{Axis, Entry, Figure, Marker, Point, Series, Strip};
 use grainlab_page::{Cell, Html, csv, figure, grid, paragraph, six_digits, table};
 use grainlab_results::AcousticReport;
@@ -94,21 +93,12 @@ fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffn
 
 /// Moduli from speeds compared with those of the contact network.
 fn medium(acoustic: &AcousticReport, stiffness: Option<&Stiffness>) -> Html {
-    let t = stiffness.map(|c| c.transverse_isotropy_about(&acoustic.medium.axis));
-    let all = [
-        ("C33", Modulus::C33, t.map(|t| t.c33)),
-        ("C11", Modulus::C11, t.map(|t| t.c11)),
-        ("C44 = G13", Modulus::G13, t.map(|t| t.g13)),
-        ("C66 = G12", Modulus::G12, t.map(|t| t.g12)),
-        ("C13", Modulus::C13, t.map(|t| t.c13)),
-        ("Θ", Modulus::Theta, stiffness.map(Stiffness::bulk_voigt)),
-    ];
-    let rows = all.into_iter().map(|(name, modulus, network)| {
+    let rows = acoustic.moduli(stiffness).map(|(name, modulus, network)| {
         let (value, sigma) = (acoustic.medium.modulus(modulus), acoustic.medium.stddev(modulus));
         let mega = |v: Option<f64>| Cell::fixed(v.map(|v| v / 1e6), 2);
         let off = value.zip(network).map(|(v, n)| format!("{:+.2} %", 100.0 * (v / n - 1.0)));
         let off = Cell::number(off.as_deref().unwrap_or("–"));
-        [Cell::text(name), mega(network), mega(value), mega(sigma), off]
+        [Cell::text(name.replace("Theta", "Θ")), mega(network), mega(value), mega(sigma), off]
     });
     let of = acoustic.measurement.as_ref().map(|m| format!("the speeds of {}", m.label));
     let of = of.as_deref().unwrap_or("these speeds");

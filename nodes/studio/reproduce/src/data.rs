@@ -4,42 +4,33 @@ use crate::Reproduction;
 use grainlab_console::{Cell, Failure, json};
 use grainlab_page::Dataset;
 use grainlab_paper::inversion::Errors;
-use grainlab_paper::{PAPER, PRESSURE};
+use grainlab_paper::{Comparison, PAPER, PRESSURE};
 use serde_json::{Value, json as object};
+
+/// Columns of the comparisons.
+const COLUMNS: [(&str, fn(&Comparison) -> Cell); 11] = [
+    ("quantity", |c| Cell::Text(c.quantity.key().to_owned())),
+    ("sample", |c| Cell::Text(PAPER[c.sample].name.to_owned())),
+    ("pressure_pa", |c| Cell::Number(PRESSURE[c.pressure])),
+    ("ours", |c| Cell::Number(c.ours.value)),
+    ("standard_error", |c| number(c.ours.error)),
+    ("seeds", |c| Cell::Count(c.ours.count as u64)),
+    ("paper", |c| number(c.paper.map(|p| p.value))),
+    ("paper_rounding", |c| number(c.paper.map(|p| p.rounding))),
+    ("paper_is_printed", |c| c.paper.map_or(Cell::Unknown, |p| Cell::Flag(p.is_printed))),
+    ("difference", |c| number(c.difference())),
+    ("difference_in_errors", |c| number(c.in_errors())),
+];
+
+fn number(value: Option<f64>) -> Cell {
+    value.map_or(Cell::Unknown, Cell::Number)
+}
 
 impl Reproduction {
     /// Every comparison as a row.
     pub fn csv(&self) -> String {
-        let names = [
-            "quantity",
-            "sample",
-            "pressure_pa",
-            "ours",
-            "standard_error",
-            "seeds",
-            "paper",
-            "paper_rounding",
-            "paper_is_printed",
-            "difference",
-            "difference_in_errors",
-        ];
-        let mut table = Dataset::new(names.map(str::to_owned));
-        let number = |v: Option<f64>| v.map_or(Cell::Unknown, Cell::Number);
-        for c in &self.compared {
-            table.row([
-                Cell::Text(c.quantity.key().to_owned()),
-                Cell::Text(PAPER[c.sample].name.to_owned()),
-                Cell::Number(PRESSURE[c.pressure]),
-                Cell::Number(c.ours.value),
-                number(c.ours.error),
-                Cell::Count(c.ours.count as u64),
-                number(c.paper.map(|p| p.value)),
-                number(c.paper.map(|p| p.rounding)),
-                c.paper.map_or(Cell::Unknown, |p| Cell::Flag(p.is_printed)),
-                number(c.difference()),
-                number(c.in_errors()),
-            ]);
-        }
+        let mut table = Dataset::new(COLUMNS.map(|(name, _)| name.to_owned()));
+        self.compared.iter().for_each(|c| table.row(COLUMNS.map(|(_, cell)| cell(c))));
         table.csv()
     }
 

@@ -130,11 +130,11 @@ fn table(campaign: &Campaign, states: &[State<'_>]) -> Dataset {
 fn inferred(results: &[Inference]) -> BTreeMap<String, Cell> {
     let mut cells = BTreeMap::new();
     for r in results {
-        let data = r.source.as_deref().filter(|source| *source != topics::PACKING_REPORT.name);
+        let data = r.origin.source.as_deref().filter(|source| *source != topics::PACKING_REPORT.name);
         // Reports of several programs need their topic, too.
-        let data = if r.measurement.is_some() { r.source.as_deref() } else { data };
-        let measurement = r.measurement.as_ref().map(|m| m.label.as_str());
-        let by = r.by.as_deref().filter(|by| !by.ends_with("emt_inversion"));
+        let data = if r.origin.measurement.is_some() { r.origin.source.as_deref() } else { data };
+        let measurement = r.origin.measurement.as_ref().map(|m| m.label.as_str());
+        let by = r.origin.by.as_deref().filter(|by| !by.ends_with("emt_inversion"));
         let parts = [data, measurement, by, Some(&r.model)];
         let prefix = parts.into_iter().flatten().collect::<Vec<_>>().join(".");
         let number = |v: Option<f64>| v.map_or(Cell::Unknown, Cell::Number);

@@ -5,7 +5,6 @@ use super::columns::BadRow;
 use super::evidence::OfModel;
 use super::explain::Explained;
 use super::predictive::Predictive;
-use super::sampled::Sampled;
 use super::state::State;
 use grainlab_console::worse;
 use grainlab_emt::{EmtError, Estimate, Status, Warning, recommended};
@@ -41,8 +40,6 @@ pub(super) struct View<'a> {
 pub(super) struct More {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) explained: Option<Vec<Explained>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) sampled: Option<Vec<Sampled>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) predictive: Option<Vec<Predictive>>,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -5,22 +5,9 @@ use grainlab_console::Failure;
 use grainlab_emt::{Calibration, Model, Prior, StrainRatioSource};
 use std::sync::Arc;
 
-/// The γ/Δ of the models that use one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum GammaChoice {
-    /// The column gamma_over_delta, or --gamma-over-delta
-    Given,
-    /// The column g_total: of the strain since the reference state
-    Total,
-    /// The column g_elastic: of an isotropic stress increment
-    Elastic,
-    /// The column g_contact: of the overlaps of the contacts
-    Contact,
-    /// None: taken as 0
-    Zero,
-    /// Each of total, elastic, contact and zero
-    All,
-}
+/// Choices of γ/Δ for the models that use one: that of the column gamma_over_delta, those of g_total, g_elastic and g_contact, 0,
+/// and each of the last four.
+pub(super) const GAMMAS: [&str; 6] = ["given", "total", "elastic", "contact", "zero", "all"];
 
 /// One case to invert by: a model, its calibration, γ/Δ and prior.
 #[derive(Clone, Debug)]
@@ -33,11 +20,18 @@ pub(super) struct Case {
     pub(super) prior: Option<Arc<Prior>>,
 }
 
+impl Case {
+    /// The prior of the user; without one an empty prior.
+    pub(super) fn own_prior(&self) -> Prior {
+        self.prior.as_deref().cloned().unwrap_or_default()
+    }
+}
+
 /// Every model, or those of these names, with every calibration and every γ/Δ set.
 pub(super) fn cases(
     models: &[String],
     calibrations: &[String],
-    gamma: Option<GammaChoice>,
+    gamma: Option<&str>,
 ) -> Result<Vec<Case>, Failure> {
     let named = models.iter().map(|name| grainlab_emt::model(name).ok_or_else(|| no_model(name)));
     let named = named.collect::<Result<Vec<_>, _>>()?;
@@ -52,18 +46,15 @@ pub(super) fn cases(
     let models = if named.is_empty() { grainlab_emt::models().to_vec() } else { named };
     let choices = calibrations.iter().map(|name| calibrations::named(name)).collect::<Result<Vec<_>, _>>()?;
     use StrainRatioSource::{Contact, Elastic, Given, Total, Zero};
-    let gammas: &[Option<StrainRatioSource>] = match gamma {
-        None => &[None],
-        Some(GammaChoice::Given) => &[Some(Given)],
-        Some(GammaChoice::Total) => &[Some(Total)],
-        Some(GammaChoice::Elastic) => &[Some(Elastic)],
-        Some(GammaChoice::Contact) => &[Some(Contact)],
-        Some(GammaChoice::Zero) => &[Some(Zero)],
-        Some(GammaChoice::All) => &[Some(Total), Some(Elastic), Some(Contact), Some(Zero)],
+    let sources = [Given, Total, Elastic, Contact, Zero].into_iter();
+    let gammas: Vec<Option<StrainRatioSource>> = match gamma {
+        None => vec![None],
+        Some("all") => sources.skip(1).map(Some).collect(),
+        Some(name) => sources.filter(|source| source.name() == name).map(Some).collect(),
     };
     let mut cases = Vec::new();
     for model in models {
-        let gammas = if model.uses_gamma() { gammas } else { &[None] };
+        let gammas = if model.uses_gamma() { gammas.as_slice() } else { &[None] };
         for choice in &choices {
             let calibration = choice.clone().unwrap_or_else(|| Arc::new(model.default_calibration().clone()));
             let with =

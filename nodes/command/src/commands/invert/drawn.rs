@@ -4,7 +4,7 @@ use super::case::Case;
 use super::state::State;
 use grainlab_console::{Failure, json, say};
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Draws, EmtError, Estimate, Posterior, PosteriorSettings};
+use grainlab_emt::{Draws, EmtError, Estimate, PosteriorSettings};
 use grainlab_node_kit::Exit;
 use grainlab_results::posterior_draws;
 use serde_json::{Map, Value, json};
@@ -71,14 +71,11 @@ fn unlike(draws: &Draws, estimate: &Estimate, quantity: InferredQuantity) -> Opt
 }
 
 fn drawn(state: &State, case: &Case, count: usize, seed: u64) -> Result<(Draws, Estimate), EmtError> {
-    let prior = case.prior.as_deref().cloned().unwrap_or_default();
     let settings = PosteriorSettings { seed, ..PosteriorSettings::default() };
-    let observation = state.observation(case)?;
     // A state without an estimate has no posterior worth drawing from: it is far outside the packings of the calibration.
-    let estimate = case.model.infer(&observation, &case.calibration)?;
-    let posterior = Posterior::new(case.model, &observation, &case.calibration, &prior, settings)?;
+    let estimate = case.model.infer(&state.observation(case)?, &case.calibration)?;
     // With a prior of its own, a draw has it, too.
-    Ok((posterior.draws(count)?, state.infer(case).unwrap_or(estimate)))
+    Ok((state.posterior(case, settings)?.draws(count)?, state.infer(case).unwrap_or(estimate)))
 }
 
 fn attributes(case: &Case, draws: &Draws, seed: u64) -> Map<String, Value> {

@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::state::State;
 use grainlab_console::{Failure, Table, fixed};
-use grainlab_emt::{EmtError, Evidence, Modulus, Posterior, PosteriorSettings};
+use grainlab_emt::{EmtError, Evidence, Modulus, PosteriorSettings};
 use serde::Serialize;
 
 /// Number of points of the integration: an error of some 1e-3 in the logarithm.
@@ -97,10 +97,7 @@ fn are_same(a: &[(Modulus, f64)], b: &[(Modulus, f64)]) -> bool {
 }
 
 fn of_case(state: &State, case: &Case, seed: u64) -> Result<Found, EmtError> {
-    let settings = PosteriorSettings { points: POINTS, seed };
-    let prior = case.prior.as_deref().cloned().unwrap_or_default();
-    let observation = state.observation(case)?;
-    let posterior = Posterior::new(case.model, &observation, &case.calibration, &prior, settings)?;
+    let posterior = state.posterior(case, PosteriorSettings { points: POINTS, seed })?;
     Ok((posterior.observed(), posterior.evidence()?))
 }
 

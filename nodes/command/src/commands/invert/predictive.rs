@@ -3,12 +3,9 @@
 use super::case::Case;
 use super::state::State;
 use grainlab_console::{Table, fixed};
-use grainlab_emt::{Check, EmtError, Estimate, Posterior, PosteriorSettings};
+use grainlab_emt::{Check, EmtError, Estimate, PosteriorSettings};
 use rayon::prelude::*;
 use serde::Serialize;
-
-/// Number of points of the integration: probabilities above 1e-3 are accurate to a few percent of them.
-const POINTS: usize = 16_384;
 
 /// Prediction of one model.
 #[derive(Debug, Serialize)]
@@ -39,20 +36,13 @@ pub(super) fn of_ways(
     cases: &[Case],
 ) -> Vec<Predictive> {
     let of_case = |(case, outcome): (&Case, &mut Result<Estimate, EmtError>)| {
-        let check = check(state, case).ok()?;
+        let check = state.posterior(case, PosteriorSettings::default()).ok()?.check();
         if let Ok(estimate) = outcome {
             check.apply(estimate);
         }
         Some(view(case, &check))
     };
     cases.par_iter().zip(outcomes).filter_map(of_case).collect()
-}
-
-fn check(state: &State, case: &Case) -> Result<Check, EmtError> {
-    let settings = PosteriorSettings { points: POINTS, seed: 0 };
-    let prior = case.prior.as_deref().cloned().unwrap_or_default();
-    let observation = state.observation(case)?;
-    Ok(Posterior::new(case.model, &observation, &case.calibration, &prior, settings)?.check())
 }
 
 fn view(case: &Case, check: &Check) -> Predictive {

@@ -2,8 +2,8 @@
 
 use super::answer::{Answer, More};
 use super::case::Case;
-use super::{evidence, explain, predictive, sampled};
-use grainlab_console::{CsvText, Failure, Table, exact, json};
+use super::{evidence, explain, predictive};
+use grainlab_console::{CsvText, Failure, Table, json};
 use grainlab_results::{Inference, inference_text};
 
 /// Converts results to text.
@@ -16,7 +16,7 @@ impl Printer<'_> {
     pub(super) fn csv_header() -> String {
         let name = |name: &str| name.to_owned();
         let columns = ["sample", "pressure_pa"].map(name).into_iter().chain(Inference::exact_columns());
-        let mut text = CsvText::new();
+        let mut text = CsvText::default();
         text.row(columns.chain(["gamma_over_delta", "gamma_over_delta_source", "line", "reason"].map(name)));
         text.finish()
     }
@@ -24,15 +24,17 @@ impl Printer<'_> {
     /// One line per case.
     pub(super) fn csv(&self, answer: &Answer) -> String {
         let state = answer.state.as_ref().ok();
-        let label = [answer.sample().unwrap_or_default().to_owned(), exact(state.map(|s| s.pressure.value))];
         let line = answer.line.map_or_else(String::new, |l| l.to_string());
-        let mut text = CsvText::new();
+        let mut text = CsvText::default();
         for (result, case) in answer.inferences(self.cases).iter().zip(self.cases) {
-            let reason = result.warnings.join("; ");
-            let gamma =
-                [exact(result.gamma_over_delta), state.map_or("", |s| s.gamma_source(case)).to_owned()];
-            let (cells, end) = (result.exact_cells(), [&line, &reason]);
-            text.row(label.iter().chain(&cells).chain(&gamma).chain(end));
+            text.cell(answer.sample().unwrap_or_default());
+            text.number(state.map(|s| s.pressure.value));
+            result.exact_cells(&mut text);
+            text.number(result.gamma_over_delta);
+            text.cell(state.map_or("", |s| s.gamma_source(case)));
+            text.cell(&line);
+            text.cell(&result.warnings.join("; "));
+            text.end();
         }
         text.finish()
     }
@@ -53,7 +55,6 @@ impl Printer<'_> {
         let mut text = inference_text::table(&answer.inferences(self.cases));
         text += &more.explained.as_deref().map_or_else(String::new, explain::people);
         text += &more.predictive.as_deref().map_or_else(String::new, predictive::people);
-        text += &more.sampled.as_deref().map_or_else(String::new, sampled::people);
         text + &more.evidence.as_deref().map_or_else(String::new, evidence::people)
     }
 

@@ -37,8 +37,7 @@ pub(super) fn apply(path: &Path, cases: &mut [Case]) -> Result<(), Failure> {
 /// The whole prior of a case as a file.
 pub(super) fn text(case: &Case) -> Result<String, Failure> {
     let domain = case.model.prior_domain(&case.calibration);
-    let own = case.prior.as_deref().cloned().unwrap_or_default();
-    let prior = own.completed(&domain).map_err(Failure::usage)?;
+    let prior = case.own_prior().completed(&domain).map_err(Failure::usage)?;
     let mut text = format!(
         "# The prior of model {}, calibration {}: grainlab invert --prior FILE\n# distribution = \"normal\" (mean, stddev), \
          \"uniform\" (low, high) or \"truncated-normal\" (mean, stddev, low and high or one of them)\n",

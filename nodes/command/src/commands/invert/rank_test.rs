@@ -49,7 +49,7 @@ pub(super) fn run(
         moduli: [true; grainlab_emt::MODULI],
         seed,
     };
-    let prior = case.prior.as_deref().cloned().unwrap_or_default();
+    let prior = case.own_prior();
     let of = |index| simulated_ranks(case.model, &case.calibration, &prior, &settings, index);
     let all: Vec<Result<SimulatedRanks, EmtError>> =
         (0..u64::from(simulations)).into_par_iter().map(of).collect();

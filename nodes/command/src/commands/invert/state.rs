@@ -7,11 +7,11 @@ use grainlab_core::results::Microstructure;
 use grainlab_core::results::StrainRatios;
 use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Measured, Moduli, ModuliCovariance, Modulus, Observation,
-    StrainRatio, StrainRatioSource,
+    Posterior, PosteriorSettings, StrainRatio, StrainRatioSource,
 };
 
 /// One state, as given.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct State {
     pub(crate) sample: Option<String>,
     pub(crate) moduli: Moduli,
@@ -59,38 +59,6 @@ pub(crate) struct State {
     pub(crate) truth: Microstructure,
 }
 
-impl Default for State {
-    /// A state without data.
-    fn default() -> Self {
-        Self {
-            sample: None,
-            moduli: Moduli::NONE,
-            asymmetry: None,
-            projected: false,
-            grains: None,
-            sigma: [None; grainlab_emt::MODULI],
-            full_covariance: None,
-            relative_error: None,
-            theta_printed: None,
-            pressure: Measured::exact(0.0),
-            gamma: None,
-            measured_gamma: StrainRatios::default(),
-            phi: None,
-            stress_ratio: None,
-            size_spread: None,
-            grain_shear_modulus: None,
-            grain_shear_modulus_sigma: 0.0,
-            poisson: None,
-            poisson_sigma: 0.0,
-            smooth: false,
-            notes: Vec::new(),
-            in_conflict: false,
-            contact_law: None,
-            truth: Microstructure::default(),
-        }
-    }
-}
-
 impl State {
     /// The flags for all states that are given, with the keys of the inputs that they set; --error is for moduli without an error of
     /// their own.
@@ -130,6 +98,16 @@ impl State {
             Some(prior) => estimate.with_prior(prior)?.within(&case.model.prior_domain(&case.calibration)),
             None => Ok(estimate),
         }
+    }
+
+    /// The posterior of this case.
+    pub(super) fn posterior<'a>(
+        &self,
+        case: &'a Case,
+        settings: PosteriorSettings,
+    ) -> Result<Posterior<'a>, EmtError> {
+        let observation = self.observation(case)?;
+        Posterior::new(case.model, &observation, &case.calibration, &case.own_prior(), settings)
     }
 
     /// The observation for this case.

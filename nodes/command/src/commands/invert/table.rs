@@ -83,7 +83,8 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
                 Format::Json => printer.json_element(&answer)?,
                 Format::Table => String::new(),
             };
-            let (exit, complaint) = (answer.exit(printer.cases), answer.complaint(printer.cases));
+            let exit = answer.exit(printer.cases);
+            let complaint = if exit == Exit::Done { String::new() } else { answer.complaint(printer.cases) };
             // Only a text table collects all results before printing.
             Ok::<_, Failure>((text, exit, complaint, (format == Format::Table).then_some(answer)))
         })?;

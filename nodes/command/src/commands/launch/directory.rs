@@ -25,9 +25,8 @@ pub(super) enum Given {
 /// # Errors
 /// A run of another scene or launch file, and a run that is under way.
 pub(super) fn given(directory: &Path, scene: &SceneText, order: &Order) -> Result<Given, Failure> {
-    let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", directory.display()));
-    std::fs::create_dir_all(directory).map_err(failed)?;
-    let directory = directory.canonicalize().map_err(failed)?;
+    std::fs::create_dir_all(directory).map_err(Failure::at(directory))?;
+    let directory = directory.canonicalize().map_err(Failure::at(directory))?;
     let lock = Lock::take(&directory, TIME_LIMIT)?;
     if run_state(&directory) == RunState::Absent {
         return Ok(Given::Empty(directory, lock));

@@ -1,7 +1,7 @@
 //! The launch file and its arguments, kept beside the recording so that the run can be resumed.
 
 use crate::viewers::VIEWERS;
-use grainlab_console::{Failure, json};
+use grainlab_console::{Failure, json, write_whole};
 use grainlab_launcher::{LaunchFile, NodePlan};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
@@ -34,11 +34,8 @@ impl Order {
     /// Writes it into the run directory.
     pub(super) fn keep(&self, directory: &Path) -> Result<(), Failure> {
         let path = directory.join(FILE);
-        let partial = directory.join("launch.json.part");
         // At once: what has a launch file can be resumed.
-        std::fs::write(&partial, json(self)?)
-            .and_then(|()| std::fs::rename(&partial, &path))
-            .map_err(Failure::at(&path))
+        write_whole(&path, json(self)?).map_err(Failure::at(&path))
     }
 
     /// Reads it back.

@@ -82,49 +82,31 @@ fn summary(rows: &[Row]) -> String {
     text
 }
 
+/// Columns of CSV: of a curve the worst point.
+const COLUMNS: [(&str, fn(&Row) -> String); 17] = [
+    ("suite", |r| r.suite.to_owned()),
+    ("comparison", |r| r.name.clone()),
+    ("source", |r| r.source.clone()),
+    ("points", |r| r.points.len().to_string()),
+    ("at", |r| exact(r.worst().map(|p| p.at))),
+    ("theirs", |r| exact(r.worst().map(|p| p.theirs))),
+    ("ours", |r| exact(r.worst().map(|p| p.ours))),
+    ("explained", |r| exact(r.worst().and_then(|p| p.explained))),
+    ("unit", |r| r.unit.to_owned()),
+    ("measure", |r| r.measure.name().to_owned()),
+    ("difference", |r| exact(r.difference())),
+    ("unexplained_difference", |r| exact(r.unexplained())),
+    ("reproduced", |r| exact(r.worst().and_then(|p| p.reproduced))),
+    ("unreproduced_difference", |r| exact(r.unreproduced())),
+    ("tolerance", |r| exact(Some(r.tolerance))),
+    ("verdict", |r| r.verdict().name().to_owned()),
+    ("note", |r| r.note.clone()),
+];
+
 /// One line a comparison, with the point of the largest difference.
 pub(super) fn csv(rows: &[Row]) -> String {
-    let mut table = Table::new([
-        "suite",
-        "comparison",
-        "source",
-        "points",
-        "at",
-        "theirs",
-        "ours",
-        "explained",
-        "unit",
-        "measure",
-        "difference",
-        "unexplained_difference",
-        "reproduced",
-        "unreproduced_difference",
-        "tolerance",
-        "verdict",
-        "note",
-    ]);
-    for row in rows {
-        let worst = row.worst();
-        table.row([
-            row.suite.to_owned(),
-            row.name.clone(),
-            row.source.clone(),
-            row.points.len().to_string(),
-            exact(worst.map(|p| p.at)),
-            exact(worst.map(|p| p.theirs)),
-            exact(worst.map(|p| p.ours)),
-            exact(worst.and_then(|p| p.explained)),
-            row.unit.to_owned(),
-            row.measure.name().to_owned(),
-            exact(row.difference()),
-            exact(row.unexplained()),
-            exact(worst.and_then(|p| p.reproduced)),
-            exact(row.unreproduced()),
-            exact(Some(row.tolerance)),
-            row.verdict().name().to_owned(),
-            row.note.clone(),
-        ]);
-    }
+    let mut table = Table::new(COLUMNS.map(|(name, _)| name));
+    rows.iter().for_each(|row| table.row(COLUMNS.map(|(_, cell)| cell(row))));
     table.csv()
 }
 

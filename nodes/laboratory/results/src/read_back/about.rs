@@ -1,6 +1,6 @@
 //! The messages about one packing.
 
-use crate::inference::Inference;
+use crate::inference::{Inference, Origin};
 use crate::measurements::{Identity, Measurement, Measurements};
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
@@ -117,8 +117,8 @@ impl About {
             } else {
                 (&mut others, known.map(|k| k.named(&answer.identity, answer.nth, "answer ")))
             };
-            for estimate in answer.estimates {
-                let found = Inference { measurement: label.clone(), ..estimate };
+            for mut found in answer.estimates {
+                found.origin.measurement.clone_from(&label);
                 // A restarted process may have sent it again.
                 if !list.contains(&found) {
                     list.push(found);
@@ -218,12 +218,8 @@ pub(super) fn enter(
             let data = INVERTED.into_iter().find(|topic| *topic == message.source);
             let nth = data
                 .map_or(0, |data| about.data.entry(data).or_default().answered(identity.clone(), by.clone()));
-            let of = |result| Inference {
-                source: Some(message.source.clone()),
-                by: by.clone(),
-                measurement: None,
-                result,
-            };
+            let origin = Origin { source: Some(message.source.clone()), by, measurement: None };
+            let of = |result| Inference { origin: origin.clone(), result };
             let estimates = results.into_iter().map(of).collect();
             about.answers.push(Answer { source: message.source, identity, nth, estimates });
             Ok(step)

@@ -128,7 +128,7 @@ fn a_run_is_read_back_and_one_measurement_has_no_label() {
     assert_eq!((back.states.len(), back.complaints.len(), back.refused), (2, 0, 0), "{:?}", back.complaints);
     let state = &back.states[0];
     assert!(state.acoustic.is_some() && state.further_acoustic.is_empty());
-    assert!(state.results.iter().all(|r| r.measurement.is_none()));
+    assert!(state.results.iter().all(|r| r.origin.measurement.is_none()));
     let json = serde_json::to_value(state).unwrap();
     assert!(json.get("further_acoustic").is_none() && json["acoustic"].get("measurement").is_none());
 }
@@ -307,10 +307,10 @@ fn what_an_instrument_measured_elsewhere_is_no_result_of_the_packing_that_a_run_
     let state = &back.states[0];
     assert!(
         state.acoustic.is_none()
-            && state.results.iter().all(|r| r.source.as_deref() == Some("packing_report"))
+            && state.results.iter().all(|r| r.origin.source.as_deref() == Some("packing_report"))
     );
     assert!(!back.of_instruments.is_empty());
-    assert!(back.of_instruments.iter().all(|r| r.origin().data().unwrap() == "wave_speeds, glass beads"));
+    assert!(back.of_instruments.iter().all(|r| r.origin.data().unwrap() == "wave_speeds, glass beads"));
 }
 
 #[test]

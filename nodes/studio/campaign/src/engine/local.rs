@@ -19,7 +19,7 @@ const POLL_PERIOD: Duration = Duration::from_millis(10);
 #[derive(Clone, Copy, Debug)]
 struct Task {
     member: usize,
-    tries: usize,
+    tries: u16,
 }
 
 /// A running member.
@@ -39,7 +39,7 @@ pub(super) fn run(
 ) -> Result<bool, Failure> {
     let signals = Signals::install().map_err(Failure::failed)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let jobs = options.jobs.unwrap_or(cores + 1).max(1);
+    let jobs = options.jobs.map_or(cores + 1, usize::from);
     let mut waiting: VecDeque<Task> = pending.into_iter().map(|member| Task { member, tries: 0 }).collect();
     let mut running: Vec<Job> = Vec::new();
     let mut told = false;
@@ -92,10 +92,10 @@ fn start(campaign: &Campaign, folder: &Folder, n: usize) -> Result<Child, Failur
     let member = &campaign.members[n];
     let words = command(campaign, folder, member)?;
     let path = folder.logs().join(format!("{}.log", member.name));
-    let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", path.display()));
-    let log = OpenOptions::new().create(true).append(true).open(&path).map_err(failed)?;
+    let failed = Failure::at(&path);
+    let log = OpenOptions::new().create(true).append(true).open(&path).map_err(&failed)?;
     let mut command = Command::new(&words[0]);
-    command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(failed)?).stderr(log);
+    command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(&failed)?).stderr(log);
     // Each run finds a free domain.
     command.env_remove("ROS_DOMAIN_ID");
     // A group of its own: Ctrl-C reaches the campaign, which passes it on.

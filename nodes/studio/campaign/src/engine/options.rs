@@ -1,12 +1,21 @@
 //! Options of a campaign.
 
-/// Options of a campaign.
-#[derive(Clone, Copy, Debug)]
+use super::Engine;
+
+/// Engine that runs the members, and its options.
+#[derive(Clone, Copy, Debug, clap::Args)]
 pub struct Options {
-    /// Members at a time on this machine; `None`: one more than there are cores, since each waits at its start and end.
-    pub jobs: Option<usize>,
-    /// Number of times that an interrupted member is tried again; the last time anew.
-    pub retries: usize,
-    /// Run members again that failed.
-    pub redo_failed: bool,
+    /// Machine that runs the members
+    #[arg(long, value_enum, default_value_t)]
+    pub engine: Engine,
+    /// Members at a time on this machine [default: one more than there are cores]
+    // Each waits at its start and end.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) jobs: Option<u16>,
+    /// Number of further trials of an interrupted member, the last one anew
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    pub(crate) retries: u16,
+    /// Run members again that failed
+    #[arg(long)]
+    pub(crate) redo_failed: bool,
 }

@@ -3,7 +3,6 @@
 use super::finding::Finding;
 use crate::graph::{Endpoint, Graph, TopicEntry, is_reliable, is_transient_local};
 use grainlab_msgs::TypeInfo;
-use std::collections::BTreeSet;
 
 /// Findings about all topics.
 pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
@@ -27,17 +26,10 @@ fn types(graph: &Graph, name: &str, topic: &TopicEntry<'_>) -> Option<Finding> {
     if types.len() < 2 {
         return None;
     }
-    let of_type = |kind: &str| {
-        let owners: BTreeSet<String> = topic
-            .publishers
-            .iter()
-            .chain(&topic.subscriptions)
-            .filter(|e| e.type_name == kind)
-            .map(|e| graph.owner(e))
-            .collect();
-        format!("{kind} ({})", owners.into_iter().collect::<Vec<_>>().join(", "))
+    let of_type = |kind: &&str| {
+        format!("{kind} ({})", graph.owners(topic.endpoints().filter(|e| e.type_name == *kind)))
     };
-    let all: Vec<String> = types.iter().map(|t| of_type(t)).collect();
+    let all: Vec<String> = types.iter().map(of_type).collect();
     Some(Finding::error(
         "type_mismatch",
         format!("{name} has more than one type: {}", all.join(" and ")),
@@ -47,11 +39,10 @@ fn types(graph: &Graph, name: &str, topic: &TopicEntry<'_>) -> Option<Finding> {
 
 /// Endpoints with another definition of a type than this program: a reader would take one field for another.
 fn definitions(graph: &Graph, name: &str, topic: &TopicEntry<'_>) -> Vec<Finding> {
-    let differs = |e: &&&Endpoint| {
+    let differs = |e: &&Endpoint| {
         TypeInfo::by_name(&e.type_name).is_some_and(|t| !e.type_hash.is_empty() && e.type_hash != t.hash)
     };
-    let endpoints = topic.publishers.iter().chain(&topic.subscriptions);
-    let finding = |e: &&Endpoint| {
+    let finding = |e: &Endpoint| {
         Finding::error(
             "definition_mismatch",
             format!(
@@ -63,7 +54,7 @@ fn definitions(graph: &Graph, name: &str, topic: &TopicEntry<'_>) -> Vec<Finding
             "use one version of grainlab and of its message files on both sides",
         )
     };
-    endpoints.filter(differs).map(finding).collect()
+    topic.endpoints().filter(differs).map(finding).collect()
 }
 
 /// The policies in which a subscription requests more than a publisher offers (DDS 1.4, 2.2.3).
@@ -145,13 +136,13 @@ fn unpublished(graph: &Graph) -> Vec<Finding> {
                 && t.subscriptions.is_empty()
         });
         if let Some((other, there)) = elsewhere {
-            let readers: BTreeSet<String> = topic.subscriptions.iter().map(|e| graph.owner(e)).collect();
-            let writers: BTreeSet<String> = there.publishers.iter().map(|e| graph.owner(e)).collect();
-            let list = |names: BTreeSet<String>| names.into_iter().collect::<Vec<_>>().join(", ");
+            let readers = graph.owners(topic.subscriptions.iter().copied());
+            let writers = graph.owners(there.publishers.iter().copied());
             found.push(Finding::warning(
                 "namespace_mismatch",
-                format!("{name} is subscribed ({}) and not published; {other} is published ({}) and not subscribed",
-                    list(readers), list(writers)),
+                format!(
+                    "{name} is subscribed ({readers}) and not published; {other} is published ({writers}) and not subscribed"
+                ),
                 format!("start one of them in the namespace of the other (-r __ns:=), or remap (-r {name}:={other})"),
             ));
         }

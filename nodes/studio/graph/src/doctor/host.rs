@@ -1,6 +1,7 @@
 //! Network and environment of this host.
 
 use super::finding::Finding;
+use super::processes::udp_sockets;
 use grainlab_node_kit::{Network, Reach};
 use socket2::{Domain, Protocol, Socket, Type};
 use std::collections::BTreeSet;
@@ -20,7 +21,7 @@ const BUFFER: u64 = 1 << 20;
 const SAFE_DOMAIN: u16 = 101;
 
 /// The first port of a domain (RTPS 9.6.2.3).
-fn first_port(domain: u16) -> u16 {
+pub(super) fn first_port(domain: u16) -> u16 {
     7400 + 250 * domain
 }
 
@@ -160,18 +161,9 @@ fn receive_limit() -> Option<u64> {
 
 /// Domains in which a UDP port of discovery is in use on this host.
 fn domains_in_use() -> BTreeSet<u16> {
-    let text = std::fs::read_to_string("/proc/net/udp").unwrap_or_default();
-    let port = |line: &str| {
-        let (_, port) = line.split_whitespace().nth(1)?.split_once(':')?;
-        u16::from_str_radix(port, 16).ok()
-    };
     // The first port of a domain is that of multicast discovery, which every participant opens.
-    text.lines()
-        .skip(1)
-        .filter_map(port)
-        .filter(|p| *p >= 7400 && (p - 7400) % 250 == 0)
-        .map(|p| (p - 7400) / 250)
-        .collect()
+    let above = udp_sockets().into_iter().filter_map(|(port, _)| port.checked_sub(first_port(0)));
+    above.filter(|above| above % 250 == 0).map(|above| above / 250).collect()
 }
 
 #[cfg(test)]

@@ -38,11 +38,10 @@ pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
         let by_hand = || topic.publishers.iter().filter(|p| run_of_endpoint(p).is_none());
         let count = by_hand().map(|p| p.participant()).collect::<BTreeSet<[u8; 12]>>().len();
         if count > 1 {
-            let owners: BTreeSet<String> = by_hand().map(|e| graph.owner(e)).collect();
+            let owners = graph.owners(by_hand().copied());
             found.push(Finding::error(
                 "duplicate_publisher",
-                format!("{count} {what} publish {name}: {}",
-                    owners.into_iter().collect::<Vec<_>>().join(", ")),
+                format!("{count} {what} publish {name}: {owners}"),
                 "end one of them, give each lab a namespace (-r __ns:=) or a domain (ROS_DOMAIN_ID) of its own, or name their \
                  runs (GRAINLAB_RUN)",
             ));

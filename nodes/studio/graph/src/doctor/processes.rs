@@ -1,13 +1,17 @@
 //! Processes of a domain that are stopped. Discovery does not show them to a process that starts later.
 
 use super::finding::Finding;
+use super::host::first_port;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
 /// Findings about stopped processes of this host that hold a UDP port of the domain.
 pub(super) fn stopped(domain: u16) -> Vec<Finding> {
-    let inodes = inodes_of(domain);
+    let (first, sockets) = (first_port(domain), udp_sockets());
+    let ports = first..=first.saturating_add(249);
+    let inodes: BTreeSet<_> =
+        sockets.into_iter().filter(|(port, _)| ports.contains(port)).map(|(_, inode)| inode).collect();
     let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
     let found = processes.filter_map(|entry| {
         let pid: u32 = entry.file_name().to_str()?.parse().ok()?;
@@ -24,19 +28,15 @@ pub(super) fn stopped(domain: u16) -> Vec<Finding> {
     found.collect()
 }
 
-/// Inodes of the UDP sockets in the range of ports of a domain. `/proc/net/udp` has the port in the second column, and the
-/// inode in the tenth.
-fn inodes_of(domain: u16) -> BTreeSet<String> {
-    let first = 7400 + 250 * domain;
-    let ports = first..=first.saturating_add(249);
+/// Ports of the UDP sockets of this host with their inodes: the second and the tenth column of `/proc/net/udp`.
+pub(super) fn udp_sockets() -> Vec<(u16, String)> {
     let text = fs::read_to_string("/proc/net/udp").unwrap_or_default();
-    let inode = |line: &str| {
+    let socket = |line: &str| {
         let columns: Vec<&str> = line.split_whitespace().collect();
         let (_, port) = columns.get(1)?.split_once(':')?;
-        let port = u16::from_str_radix(port, 16).ok()?;
-        ports.contains(&port).then(|| columns.get(9).map(|inode| (*inode).to_owned()))?
+        Some((u16::from_str_radix(port, 16).ok()?, (*columns.get(9)?).to_owned()))
     };
-    text.lines().skip(1).filter_map(inode).collect()
+    text.lines().skip(1).filter_map(socket).collect()
 }
 
 fn holds_any(process: &Path, inodes: &BTreeSet<String>) -> bool {

@@ -42,11 +42,10 @@ pub(super) fn run(topic: &str, common: &Common) -> Result<Exit, Failure> {
     let Some(topic) = topics.get(name.as_str()) else {
         return Err(unknown("topic", &name, topics.keys().copied()));
     };
-    let endpoints = topic.publishers.iter().chain(&topic.subscriptions);
     let shown = View {
         name,
         types: topic.types().into_iter().map(str::to_owned).collect(),
-        endpoints: endpoints.map(|e| view(&graph, e)).collect(),
+        endpoints: topic.endpoints().map(|e| view(&graph, e)).collect(),
     };
     common.show(&shown, || {
         let mut table = Table::new(["node", "kind", "reliability", "durability", "guid"]);

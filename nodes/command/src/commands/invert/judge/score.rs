@@ -2,8 +2,8 @@
 
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Estimate, Status};
-use serde::Serialize;
-use serde::ser::{SerializeMap, Serializer};
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
 /// One estimate against the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,23 +119,17 @@ fn binomial_tail(successes: u64, n: u64, probability: f64) -> f64 {
 
 impl Serialize for Score {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        for (key, count) in
-            [("rows", self.rows), ("solved", self.solved), ("extrapolated", self.extrapolated)]
-        {
-            map.serialize_entry(key, &count)?;
-        }
-        for (key, value) in [
-            ("bias", self.bias()),
-            ("scatter", self.scatter()),
-            ("rms", self.rms()),
-            ("mean_absolute", self.mean_absolute()),
-        ] {
-            map.serialize_entry(key, &value)?;
-        }
-        map.serialize_entry("intervals", &self.intervals)?;
-        map.serialize_entry("covered", &self.coverage())?;
-        map.end()
+        serializer.collect_map([
+            ("rows", json!(self.rows)),
+            ("solved", json!(self.solved)),
+            ("extrapolated", json!(self.extrapolated)),
+            ("bias", json!(self.bias())),
+            ("scatter", json!(self.scatter())),
+            ("rms", json!(self.rms())),
+            ("mean_absolute", json!(self.mean_absolute())),
+            ("intervals", json!(self.intervals)),
+            ("covered", json!(self.coverage())),
+        ])
     }
 }
 
