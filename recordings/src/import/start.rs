@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use grainlab_core::{Contact, Packing};
-use grainlab_scene::{Draft, StartFile, StartPath};
+use grainlab_scene::Draft;
 
 use super::{ImportError, ImportOptions, Imported, Setting, each, text};
 use crate::one_run::{OneRun, RunSign, SeveralRuns, state};
@@ -68,10 +68,10 @@ pub enum StartError {
 ///
 /// # Errors
 /// See [`StartError`].
-pub fn start(draft: &Draft, file: &StartFile) -> Result<Start, StartError> {
-    let path = whole("packing", &file.packing)?;
-    let contact_forces =
-        file.contact_forces.as_ref().map(|forces| whole("contact_forces", forces)).transpose()?;
+pub fn start(draft: &Draft, file: &grainlab_scene::Start) -> Result<Start, StartError> {
+    let path = whole(draft, "packing", &file.packing)?;
+    let contact_forces = file.contact_forces.as_ref().map(|forces| whole(draft, "contact_forces", forces));
+    let contact_forces = contact_forces.transpose()?;
     let failed = |key| move |source: ImportError| StartError::File { key, source: Box::new(source) };
     let given = ImportOptions {
         contact_forces: contact_forces.as_deref().map(text).transpose().map_err(failed("contact_forces"))?,
@@ -107,9 +107,9 @@ pub fn start(draft: &Draft, file: &StartFile) -> Result<Start, StartError> {
 }
 
 /// The whole path of a file named under a key of `[start]`.
-fn whole(key: &'static str, file: &StartPath) -> Result<PathBuf, StartError> {
-    let folder = file.from.as_deref().map(Path::new).and_then(Path::parent).unwrap_or(Path::new(""));
-    let path = folder.join(&file.path);
+fn whole(draft: &Draft, key: &'static str, file: &str) -> Result<PathBuf, StartError> {
+    let folder = draft.source_of(key).map(Path::new).and_then(Path::parent).unwrap_or(Path::new(""));
+    let path = folder.join(file);
     path.canonicalize()
         .map_err(|source| StartError::File { key, source: Box::new(ImportError::Io { path, source }) })
 }

@@ -24,6 +24,13 @@ pub struct SceneError {
     pub faults: Vec<Fault>,
 }
 
+impl SceneError {
+    /// A single fault.
+    pub(crate) fn one(place: &str, message: impl Into<String>) -> Self {
+        Self { faults: vec![Fault { place: place.into(), message: message.into() }] }
+    }
+}
+
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let n = self.faults.len();

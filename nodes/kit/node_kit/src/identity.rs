@@ -23,7 +23,7 @@ pub const ROOT_VARIABLE: &str = "GRAINLAB_RUN_ROOT";
 const VENDOR: [u8; 2] = [0x01, 0x12];
 
 /// Identity of one run: 48 bits, of which the first eight are not all zero.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RunId([u8; 6]);
 
 impl RunId {
@@ -54,12 +54,6 @@ impl RunId {
 impl fmt::Display for RunId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
-    }
-}
-
-impl fmt::Debug for RunId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "RunId({self})")
     }
 }
 

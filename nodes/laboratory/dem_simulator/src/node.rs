@@ -9,8 +9,7 @@ use crate::samples::Samples;
 use crate::send_queue::SendQueue;
 use crate::settings::Settings;
 use crate::speculative_step::{self, SpeculativeStep};
-use grainlab_dem::ComputeError;
-use grainlab_experiment::{ExperimentError, Simulation};
+use grainlab_experiment::Simulation;
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
@@ -43,20 +42,6 @@ const EARLIER: Duration = Duration::from_secs(2);
 pub const SAVED_WITHIN: Duration = Duration::from_secs(20);
 /// Time limit for the acknowledgement of the last messages.
 const FLUSH_LIMIT: Duration = Duration::from_secs(2);
-
-/// Errors at the start of a simulator.
-#[derive(Debug, thiserror::Error)]
-pub enum SimulatorError {
-    /// The scene is invalid, or the packing is not a state of it.
-    #[error(transparent)]
-    Run(#[from] ExperimentError),
-    /// The processor does not support the compute settings.
-    #[error(transparent)]
-    Compute(#[from] ComputeError),
-    /// A topic cannot be opened.
-    #[error(transparent)]
-    Bus(#[from] BusError),
-}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stage {
@@ -119,19 +104,20 @@ impl DemSimulator {
         scene: Scene,
         resume: Option<(grainlab_core::Packing, Vec<u8>)>,
         settings: Settings,
-    ) -> Result<Self, SimulatorError> {
+    ) -> Result<Self, NodeError> {
         let (mut run, packings) = match &resume {
-            Some((packing, state)) if state.is_empty() && scene.start.is_some() => {
-                (Simulation::from_packing(scene, packing)?, Packings { last_step: 0, count: 1 })
-            }
+            Some((packing, state)) if state.is_empty() && scene.start.is_some() => (
+                Simulation::from_packing(scene, packing).map_err(NodeError::failed)?,
+                Packings { last_step: 0, count: 1 },
+            ),
             Some((packing, state)) => {
-                let run = Simulation::resume(scene, packing, state)?;
+                let run = Simulation::resume(scene, packing, state).map_err(NodeError::failed)?;
                 let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
                 (run, Packings { last_step: packing.step, count })
             }
-            None => (Simulation::new(scene)?, Packings::default()),
+            None => (Simulation::new(scene).map_err(NodeError::failed)?, Packings::default()),
         };
-        let compute = settings.compute(run.scene().grains as usize)?;
+        let compute = settings.compute(run.scene().grains as usize).map_err(NodeError::failed)?;
         run.set_compute(match bus.stop_flag() {
             Some(flag) => compute.stopping_on(flag),
             None => compute,

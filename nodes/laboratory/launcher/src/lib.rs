@@ -30,7 +30,7 @@ mod supervisor;
 mod time_limit;
 mod watch;
 
-pub use nodes::{NodeKind, UnknownNode, Viewer};
+pub use nodes::{NodeKind, Viewer};
 pub use plan::{BUILT_IN, LaunchFile, NodePlan};
 pub use recorded_speeds::RecordedSpeeds;
 pub use run::Run;

@@ -48,11 +48,7 @@ impl MemoryBus {
     }
 
     /// True if a sample can be taken now.
-    pub fn has_arrivals(&self) -> bool {
-        self.has_data()
-    }
-
-    pub(super) fn has_data(&self) -> bool {
+    pub fn has_data(&self) -> bool {
         let state = self.state.borrow();
         self.readers.iter().any(|r| state.readers[*r].has_data(state.now))
     }

@@ -9,6 +9,7 @@ mod yaml;
 
 pub use error::ParameterError;
 pub use set::Parameters;
+pub(crate) use set::coerce;
 pub use spec::{ParameterSpec, Range};
 pub use value::{FromParameter, IntoParameter, ParameterValue, parameter_text};
 pub use yaml::parse_value;
