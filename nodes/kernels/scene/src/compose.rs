@@ -97,19 +97,14 @@ impl Draft {
         for (_, layer) in layers.into_iter().rev() {
             faults.extend(overlay(&mut table, layer));
         }
-        if faults.is_empty() {
-            Ok(Draft { table, start_from, overrides: Vec::new() })
-        } else {
-            Err(SceneError { faults })
-        }
+        SceneError::of(faults).map(|()| Draft { table, start_from, overrides: Vec::new() })
     }
 
     /// Merges keys into the scene, as [`crate::assignment`] parses them. They are added to its description.
     pub fn set(&mut self, keys: Table) -> Result<(), SceneError> {
         named(&keys, "", &mut self.overrides);
         self.start_from.retain(|key, _| !has_key(&keys, key));
-        let faults = overlay(&mut self.table, keys);
-        if faults.is_empty() { Ok(()) } else { Err(SceneError { faults }) }
+        SceneError::of(overlay(&mut self.table, keys))
     }
 
     /// The packing that the scene starts from, if any: to be read and given to [`Draft::resolve_from`]. Paths are relative to the

@@ -14,7 +14,7 @@
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
 //!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
-//! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants
+//! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants; `lock`: locks that survive a panic
 //! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`, between steps; `wall_clock`: their stamps
 
 mod admission;

@@ -13,10 +13,9 @@ use grainlab_experiment::Simulation;
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
-use grainlab_msgs::{to_cdr, topics};
+use grainlab_msgs::{stamp, to_cdr, topics};
 use grainlab_node_kit::{
-    BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Participant, Publisher,
-    Subscription,
+    BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
 };
 use grainlab_scene::Scene;
 use std::time::Duration;
@@ -70,7 +69,6 @@ pub struct DemSimulator {
     pub(crate) done: Option<Duration>,
     pub(crate) stage: Stage,
     pub(crate) duplicates: DuplicateSimulators,
-    pub(crate) participant: Participant,
     pub(crate) lockstep: Lockstep,
     pub(crate) partner: Partner,
     /// The run after the next steps if the answer is the one that the law gives.
@@ -151,7 +149,6 @@ impl DemSimulator {
             done: None,
             stage: Stage::Starting,
             duplicates: DuplicateSimulators::new(own_stress.participant()),
-            participant: own_stress.participant(),
             lockstep: Lockstep::new(&settings),
             partner: Partner::new(own_stress),
             speculative: None,
@@ -192,7 +189,7 @@ impl DemSimulator {
         // Published only after the run has begun: before that, no reader is there to receive it.
         if now >= self.next_clock && self.stage != Stage::Starting {
             self.next_clock = now + CLOCK_PERIOD;
-            self.clock.publish(bus, &messages::clock(&self.run))?;
+            self.clock.publish(bus, &Clock { clock: stamp(self.run.engine().time()) })?;
         }
         if now >= self.next_beat {
             self.next_beat = now + BEAT;
@@ -232,7 +229,7 @@ impl DemSimulator {
         if delivered.map_err(|e| e.to_string())? {
             return Ok(());
         }
-        let (lacking, time) = (self.send_queue.packings().waited_for(), SAVED_WITHIN.as_secs());
+        let (lacking, time) = (self.send_queue.packings.waited_for(), SAVED_WITHIN.as_secs());
         Err(format!("{lacking} readers do not have the whole packing after {time} s"))
     }
 
@@ -315,10 +312,10 @@ impl Node for DemSimulator {
             .with("refused", counts.refused)
             .with("stale", counts.stale)
             .with("contradictions", counts.contradictions)
-            .with("other_servos", self.partner.ignored())
-            .with("held_up", self.send_queue.held_up())
+            .with("other_servos", self.partner.ignored)
+            .with("held_up", self.send_queue.held_up)
             .with("packings", self.packings.count)
-            .with("readers_left_behind", self.send_queue.packings().left_behind())
+            .with("readers_left_behind", self.send_queue.packings.left_behind())
             .with("waiting_s", counts.waiting.as_secs_f64())
             .with("computing_s", computing)
             .with("wall_s", self.wall.as_secs_f64())

@@ -11,10 +11,11 @@ const NAMED: usize = 64;
 #[derive(Debug)]
 pub(crate) struct Partner {
     /// The writer of requests of this process.
-    stress: Guid,
+    pub(crate) stress: Guid,
     current: Option<Participant>,
     named: BTreeSet<Participant>,
-    ignored: u64,
+    /// Number of ignored answers of other servos.
+    pub(crate) ignored: u64,
 }
 
 /// Source of an answer.
@@ -77,11 +78,6 @@ impl Partner {
         let sender = writer.participant();
         self.current.replace(sender).is_some_and(|before| before != sender)
     }
-
-    /// Number of ignored answers of other servos.
-    pub(crate) fn ignored(&self) -> u64 {
-        self.ignored
-    }
 }
 
 #[cfg(test)]
@@ -118,7 +114,7 @@ mod tests {
         assert_eq!(partner.judge(&answer(first), || vec![first, second]), AnswerSource::Ours);
         assert_eq!(partner.judge(&answer(second), || vec![second]), AnswerSource::Ours);
         assert!(partner.stay_with(second));
-        assert_eq!(partner.ignored(), 2);
+        assert_eq!(partner.ignored, 2);
     }
 
     #[test]

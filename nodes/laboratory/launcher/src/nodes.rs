@@ -10,9 +10,7 @@ use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::{
-    Bus, Exit, Names, Node, NodeError, NodeSpec, ParameterSpec, Parameters, RosArgs, Scope,
-};
+use grainlab_node_kit::{Bus, Names, Node, NodeError, NodeSpec, ParameterSpec, Parameters, RosArgs, Scope};
 use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
 use grainlab_recordings::{input, scenes};
 use grainlab_servo_controller::ServoController;

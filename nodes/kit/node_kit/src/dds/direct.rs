@@ -430,9 +430,7 @@ impl Discovery {
                 Change::Lost(Guid(guid.to_bytes()))
             }
             Event::ParticipantLost { id, .. } => {
-                let mut prefix = [0; 12];
-                prefix.copy_from_slice(id.as_ref());
-                Change::ParticipantLost(prefix)
+                <[u8; 12]>::try_from(id.as_ref()).map_or(Change::Other, Change::ParticipantLost)
             }
             Event::RemoteReaderQosIncompatible { remote_reader, requested_qos, offered_qos, .. } => misfit(
                 remote_reader,
