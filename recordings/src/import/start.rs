@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use grainlab_console::Failure;
 use grainlab_core::{Contact, Packing};
-use grainlab_scene::{Draft, StartFile, StartPath};
+use grainlab_scene::Draft;
 
 use super::{ImportError, ImportOptions, Imported, Setting, each, text};
 use crate::one_run::{OneRun, RunSign, SeveralRuns, state};
@@ -30,10 +30,10 @@ pub struct Start {
 ///
 /// # Errors
 /// If a file cannot be read, lacks data that the scene has to give, or has no packing, or several, of the step.
-pub fn start(draft: &Draft, file: &StartFile) -> Result<Start, Failure> {
-    let path = whole("packing", &file.packing)?;
-    let contact_forces =
-        file.contact_forces.as_ref().map(|forces| whole("contact_forces", forces)).transpose()?;
+pub fn start(draft: &Draft, file: &grainlab_scene::Start) -> Result<Start, Failure> {
+    let path = whole(draft, "packing", &file.packing)?;
+    let contact_forces = file.contact_forces.as_ref().map(|forces| whole(draft, "contact_forces", forces));
+    let contact_forces = contact_forces.transpose()?;
     let failed = |key| move |error: ImportError| Failure::failed(format!("start.{key}: {error}"));
     let given = ImportOptions {
         contact_forces: contact_forces.as_deref().map(text).transpose().map_err(failed("contact_forces"))?,
@@ -82,9 +82,9 @@ pub fn start(draft: &Draft, file: &StartFile) -> Result<Start, Failure> {
 }
 
 /// The whole path of a file named under a key of `[start]`.
-fn whole(key: &'static str, file: &StartPath) -> Result<PathBuf, Failure> {
-    let folder = file.from.as_deref().map(Path::new).and_then(Path::parent).unwrap_or(Path::new(""));
-    let path = folder.join(&file.path);
+fn whole(draft: &Draft, key: &'static str, file: &str) -> Result<PathBuf, Failure> {
+    let folder = draft.source_of(key).map(Path::new).and_then(Path::parent).unwrap_or(Path::new(""));
+    let path = folder.join(file);
     let failed = |e| Failure::failed(format!("start.{key}: {}: {e}", path.display()));
     path.canonicalize().map_err(failed)
 }

@@ -8,7 +8,7 @@ use crate::phase_settings::phase_settings;
 use crate::run_state::{RunState, StrainOrigin};
 use grainlab_core::{Mat3, Packing, ServoLaw, SymTensor};
 use grainlab_dem::{Compute, EnergyBalance};
-use grainlab_scene::{Observation, PathEvent, PathState, PhaseKind, Scene, Travelled};
+use grainlab_scene::{Observation, PathState, PhaseEnded, PhaseKind, Scene, Travelled};
 use grainlab_servo::{ServoInput, ServoRequest};
 use std::sync::Arc;
 
@@ -301,7 +301,7 @@ impl Simulation {
         time: f64,
         deformation: &Mat3,
         observables: Observables,
-    ) -> Result<(Progress, PathEvent), ExperimentError> {
+    ) -> Result<(Progress, Option<PhaseEnded>), ExperimentError> {
         let old = &self.progress;
         let interval = engine.time() - time;
         let mut next = Progress {
@@ -324,7 +324,7 @@ impl Simulation {
     fn proceed(
         &mut self,
         progress: Progress,
-        event: PathEvent,
+        event: Option<PhaseEnded>,
         before: &Travelled,
     ) -> Result<StepOutcome, ExperimentError> {
         let PathState { phase: index, began, .. } = self.progress.path;
@@ -334,7 +334,7 @@ impl Simulation {
         let record = self.scene.phases[index].record;
         let packing_due = record.is_some_and(|r| r.is_due(before, &travelled));
         match event {
-            PathEvent::Stay => {
+            None => {
                 self.progress.within_phase = true;
                 if packing_due {
                     self.progress.packings += 1;
@@ -343,7 +343,7 @@ impl Simulation {
                 }
                 Ok(StepOutcome { ended: None, packing_due, finished: false, energy })
             }
-            PathEvent::PhaseEnded { reference, publish, finished } => {
+            Some(PhaseEnded { reference, publish, finished }) => {
                 self.begin_phase(index, reference)?;
                 let publish = publish || packing_due;
                 // A state that is not published here is saved by an interruption alone, as the first of the next phase.

@@ -1,6 +1,6 @@
 //! `KEY=VALUE`, as on a command line.
 
-use crate::fault::{Fault, SceneError};
+use crate::fault::SceneError;
 use crate::key::Domain;
 use crate::keys::KEYS;
 use toml::{Table, Value};
@@ -13,11 +13,10 @@ use toml::{Table, Value};
 /// assert_eq!(table["grains"]["count"].as_integer(), Some(500));
 /// ```
 pub fn assignment(text: &str) -> Result<Table, SceneError> {
-    let fault =
-        |message: &str| SceneError { faults: vec![Fault { place: text.into(), message: message.into() }] };
+    let fault = |message: &'static str| move || SceneError::one(text, message);
     let (key, value) =
-        text.split_once('=').ok_or_else(|| fault("is not KEY=VALUE, such as grains.count=500"))?;
-    let parts = split(key.trim()).ok_or_else(|| fault("has no key before the =, or an empty part in it"))?;
+        text.split_once('=').ok_or_else(fault("is not KEY=VALUE, such as grains.count=500"))?;
+    let parts = split(key.trim()).ok_or_else(fault("has no key before the =, or an empty part in it"))?;
     let mut value = read(&parts, value.trim());
     let mut parts = parts.into_iter().rev();
     let last = parts.next().unwrap_or_default();

@@ -7,8 +7,8 @@
 
 use crate::built_in::built_in;
 use crate::contact;
-use crate::fault::{Fault, SceneError};
-use crate::model::Scene;
+use crate::fault::SceneError;
+use crate::model::{Scene, Start};
 use crate::overlay::overlay;
 use crate::parse::{Resolved, read};
 use crate::reader::{Reader, as_number};
@@ -46,28 +46,6 @@ const NEVER_DESCRIBED: [&str; 3] = ["name", "description", "seed"];
 /// The keys of `[start]` that name files.
 const FILES: [&str; 2] = ["packing", "contact_forces"];
 
-/// The packing that a scene starts from, as written in its text.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StartFile {
-    /// File of the packing.
-    pub packing: StartPath,
-    /// The file with its contact forces, if they are in one of their own.
-    pub contact_forces: Option<StartPath>,
-    /// Columns of that file, if they are named.
-    pub contact_columns: Vec<String>,
-    /// Solver step of the packing in a recording; `None`: the last one.
-    pub step: Option<u64>,
-}
-
-/// The path of a file to start from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StartPath {
-    /// A path relative to the source that contains it.
-    pub path: String,
-    /// That source; `None` if the path was set outside the scene.
-    pub from: Option<String>,
-}
-
 impl Scene {
     /// Parses a scene. The error has every fault of the text. A base must be built in.
     ///
@@ -101,11 +79,11 @@ impl Draft {
         while let Some(source) = next.take() {
             let mut table = parse(&source, names.len() > 1)?;
             if let Some(base) = table.remove("base") {
-                let found = find(&base, &source.name, library).map_err(|m| fault("base", m))?;
+                let found = find(&base, &source.name, library).map_err(|m| SceneError::one("base", m))?;
                 let circle = names.contains(&found.name);
                 names.push(found.name.clone());
                 if circle {
-                    return Err(fault("base", format!("is a circle: {}", names.join(" -> "))));
+                    return Err(SceneError::one("base", format!("is a circle: {}", names.join(" -> "))));
                 }
                 next = Some(found);
             }
@@ -119,35 +97,33 @@ impl Draft {
         for (_, layer) in layers.into_iter().rev() {
             faults.extend(overlay(&mut table, layer));
         }
-        if faults.is_empty() {
-            Ok(Draft { table, start_from, overrides: Vec::new() })
-        } else {
-            Err(SceneError { faults })
-        }
+        SceneError::of(faults).map(|()| Draft { table, start_from, overrides: Vec::new() })
     }
 
     /// Merges keys into the scene, as [`crate::assignment`] parses them. They are added to its description.
     pub fn set(&mut self, keys: Table) -> Result<(), SceneError> {
         named(&keys, "", &mut self.overrides);
         self.start_from.retain(|key, _| !has_key(&keys, key));
-        let faults = overlay(&mut self.table, keys);
-        if faults.is_empty() { Ok(()) } else { Err(SceneError { faults }) }
+        SceneError::of(overlay(&mut self.table, keys))
     }
 
-    /// The packing that the scene starts from, if any: to be read and given to [`Draft::resolve_from`].
-    pub fn start(&self) -> Option<StartFile> {
+    /// The packing that the scene starts from, if any: to be read and given to [`Draft::resolve_from`]. Paths are relative to the
+    /// source that contains them; without a step it is the last packing.
+    pub fn start(&self) -> Option<Start> {
         let start = self.table.get("start")?.as_table()?;
-        let path = |key: &str| {
-            let path = start.get(key)?.as_str()?.to_owned();
-            Some(StartPath { path, from: self.start_from.get(key).cloned() })
-        };
+        let path = |key: &str| start.get(key)?.as_str().map(str::to_owned);
         let columns = start.get("contact_columns").and_then(Value::as_array).into_iter().flatten();
-        Some(StartFile {
+        Some(Start {
             packing: path("packing")?,
             contact_forces: path("contact_forces"),
             contact_columns: columns.filter_map(|name| name.as_str().map(str::to_owned)).collect(),
             step: start.get("step").and_then(Value::as_integer).and_then(|s| u64::try_from(s).ok()),
         })
+    }
+
+    /// The source that contains the path under this key of `[start]`; `None` if the path was set outside the scene.
+    pub fn source_of(&self, key: &str) -> Option<&str> {
+        self.start_from.get(key).map(String::as_str)
     }
 
     /// Sets the packing to start from by the whole paths of its files and its solver step. Other keys of `[start]` stay.
@@ -216,14 +192,10 @@ fn has_key(table: &Table, key: &str) -> bool {
     table.get("start").and_then(Value::as_table).is_some_and(|start| start.contains_key(key))
 }
 
-fn fault(place: &str, message: impl Into<String>) -> SceneError {
-    SceneError { faults: vec![Fault { place: place.into(), message: message.into() }] }
-}
-
 fn parse(source: &Source, is_base: bool) -> Result<Table, SceneError> {
     source.text.parse().map_err(|e: toml::de::Error| {
         let place = if is_base { source.name.as_str() } else { "scene" };
-        fault(place, e.to_string().trim_end())
+        SceneError::one(place, e.to_string().trim_end())
     })
 }
 

@@ -2,8 +2,9 @@
 
 use crate::model::{Condition, Conditions, GasMethod, Measure, Phase, PhaseKind, Record};
 use crate::path::name;
+use crate::phase_share::time_until;
 use crate::sizes::Sizes;
-use grainlab_core::ComponentControl;
+use grainlab_core::{ComponentControl, SymTensor};
 
 /// Solid fraction of random close packing: no disordered packing of equal hard spheres is denser.
 const CLOSEST_EQUAL: f64 = 0.64;
@@ -106,18 +107,13 @@ fn too_late(phase: &Phase) -> Option<String> {
 
 /// Least simulated time until a condition holds, s, at the imposed rates; `None` where these do not determine it.
 fn least_time(condition: &Condition, phase: &Phase) -> Option<f64> {
-    let time = match (*condition, &phase.kind) {
-        (Condition::AtLeast(Measure::Elapsed, time), _) => time,
-        (Condition::AtLeast(m @ Measure::Strain(_), v) | Condition::AtMost(m @ Measure::Strain(_), v), _) => {
-            v / imposed_rate(m, phase)?
-        }
-        (
-            Condition::AtLeast(m @ Measure::SolidFraction, wanted),
-            PhaseKind::Gas { initial_solid_fraction, .. },
-        ) => (wanted / initial_solid_fraction).ln() / imposed_rate(m, phase)?,
-        _ => return None,
+    // The solid fraction at the start of another phase is not known.
+    let solid_fraction = if let PhaseKind::Gas { initial_solid_fraction: placed, .. } = phase.kind {
+        placed
+    } else {
+        f64::NAN
     };
-    time.is_finite().then_some(time.max(0.0))
+    time_until(condition, phase, &SymTensor::default(), solid_fraction, 0.0).filter(|time| time.is_finite())
 }
 
 /// Rate of a strain component, or of the logarithm of the solid fraction, 1/s; `None` where a stress is controlled instead.

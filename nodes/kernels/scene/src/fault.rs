@@ -24,6 +24,18 @@ pub struct SceneError {
     pub faults: Vec<Fault>,
 }
 
+impl SceneError {
+    /// An error unless there are no faults.
+    pub(crate) fn of(faults: Vec<Fault>) -> Result<(), Self> {
+        if faults.is_empty() { Ok(()) } else { Err(Self { faults }) }
+    }
+
+    /// A single fault.
+    pub(crate) fn one(place: &str, message: impl Into<String>) -> Self {
+        Self { faults: vec![Fault { place: place.into(), message: message.into() }] }
+    }
+}
+
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let n = self.faults.len();

@@ -12,7 +12,7 @@ const LARGEST_RATIO: f64 = 20.0;
 
 /// Reads `[grains]`: number and sizes.
 pub(crate) fn read(r: &mut Reader<'_>) -> (u32, Sizes) {
-    let listed = r.peek(&keys::DIAMETER).and_then(counts);
+    let listed = r.get(&keys::DIAMETER).and_then(counts);
     let count = match listed {
         Some(sum) => r.whole_or(&keys::GRAIN_COUNT, Some(sum)),
         None => r.whole(&keys::GRAIN_COUNT),

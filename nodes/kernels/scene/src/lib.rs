@@ -39,7 +39,7 @@ mod until;
 
 pub use assignment::assignment;
 pub use built_in::{BUILT_IN, built_in};
-pub use compose::{Draft, Library, Source, StartFile, StartPath};
+pub use compose::{Draft, Library, Source};
 pub use fault::{Fault, SceneError};
 pub use key::{DefaultValue, Domain, Interval, Key};
 pub use keys::KEYS;
@@ -47,7 +47,7 @@ pub use model::{
     Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Record, Scene, Start,
 };
 pub use parse::Resolved;
-pub use path::{Observation, PathError, PathEvent, PathState};
+pub use path::{Observation, PathError, PathState, PhaseEnded};
 pub use record::Travelled;
 pub use reference::reference;
 pub use sizes::{Sizes, Species};

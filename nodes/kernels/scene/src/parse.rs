@@ -29,12 +29,9 @@ pub(crate) fn read(table: &Table, packing: Option<&Packing>) -> Result<Resolved,
     let mut r = Reader::new("", table);
     let scene = read_scene(&mut r, packing);
     let (entries, faults) = r.finish();
-    if faults.is_empty() {
-        let toml = canonical::write(&entries);
-        Ok(Resolved { scene: Scene { fingerprint: fingerprint(&toml), ..scene }, toml })
-    } else {
-        Err(SceneError { faults })
-    }
+    SceneError::of(faults)?;
+    let toml = canonical::write(&entries);
+    Ok(Resolved { scene: Scene { fingerprint: fingerprint(&toml), ..scene }, toml })
 }
 
 fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {

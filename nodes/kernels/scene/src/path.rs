@@ -31,42 +31,21 @@ pub struct PathState {
     pub holding_since: Option<f64>,
 }
 
-/// The result of an observation.
+/// A phase is over; `PathState::phase` is already the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PathEvent {
-    /// The phase continues.
-    Stay,
-    /// The phase is over; `PathState::phase` is already the next.
-    PhaseEnded {
-        /// The state is the reference of strains from now on.
-        reference: bool,
-        /// The packing is to be published.
-        publish: bool,
-        /// That was the last phase.
-        finished: bool,
-    },
+pub struct PhaseEnded {
+    /// The state is the reference of strains from now on.
+    pub reference: bool,
+    /// The packing is to be published.
+    pub publish: bool,
+    /// That was the last phase.
+    pub finished: bool,
 }
 
-/// The path cannot continue.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PathError {
-    /// A phase exceeded its timeout.
-    #[error(
-        "phase {number} ({name}) did not meet its end conditions within {timeout} s of simulated time: {unmet}; \
-         raise its timeout, loosen the condition, or change the loading",
-        number = .index + 1
-    )]
-    Timeout {
-        /// Index of the phase, from 0; the message counts from 1, as progress does.
-        index: usize,
-        /// Name of the phase.
-        name: String,
-        /// Timeout of the phase, s.
-        timeout: f64,
-        /// The conditions not met, with the values seen.
-        unmet: String,
-    },
-}
+/// A phase exceeded its timeout: the conditions not met, with the values seen.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct PathError(String);
 
 impl PathState {
     /// The beginning of a path.
@@ -82,30 +61,31 @@ impl PathState {
         self.phase as f64 / scene.phases.len() as f64
     }
 
-    /// Evaluates one observation, and advances if the phase is over.
-    pub fn observe(&mut self, scene: &Scene, seen: &Observation) -> Result<PathEvent, PathError> {
-        let Some(phase) = scene.phases.get(self.phase) else { return Ok(PathEvent::Stay) };
+    /// Evaluates one observation, and advances if the phase is over; `None` while it continues.
+    pub fn observe(&mut self, scene: &Scene, seen: &Observation) -> Result<Option<PhaseEnded>, PathError> {
+        let Some(phase) = scene.phases.get(self.phase) else { return Ok(None) };
         let elapsed = seen.time - self.began;
         if phase.until.all.iter().all(|c| holds(c, phase, seen, elapsed)) {
             let since = *self.holding_since.get_or_insert(seen.time);
             if seen.time - since >= phase.until.hold {
                 *self = PathState { phase: self.phase + 1, began: seen.time, holding_since: None };
+                let Phase { reference, publish, .. } = *phase;
                 let finished = self.phase == scene.phases.len();
-                return Ok(PathEvent::PhaseEnded {
-                    reference: phase.reference,
-                    publish: phase.publish,
-                    finished,
-                });
+                return Ok(Some(PhaseEnded { reference, publish, finished }));
             }
         } else {
             self.holding_since = None;
         }
         if elapsed > phase.until.timeout {
-            let unmet = self.unmet(scene, seen);
-            let (index, name, timeout) = (self.phase, phase.name.clone(), phase.until.timeout);
-            return Err(PathError::Timeout { index, name, timeout, unmet });
+            let (number, timeout) = (self.phase + 1, phase.until.timeout);
+            return Err(PathError(format!(
+                "phase {number} ({}) did not meet its end conditions within {timeout} s of simulated time: {}; raise its \
+                 timeout, loosen the condition, or change the loading",
+                phase.name,
+                self.unmet(scene, seen)
+            )));
         }
-        Ok(PathEvent::Stay)
+        Ok(None)
     }
 
     /// The conditions of the present phase that do not hold, each with its value and its bound; or for how long all of them
@@ -182,11 +162,9 @@ fn beside(value: f64, bound: f64) -> String {
 
 fn describe(condition: &Condition, phase: &Phase, seen: &Observation, elapsed: f64) -> String {
     match *condition {
-        Condition::AtLeast(m, v) => {
-            format!("{} is {}, below {v:e}", name(m), beside(measured(m, seen, elapsed), v))
-        }
-        Condition::AtMost(m, v) => {
-            format!("{} is {}, above {v:e}", name(m), beside(measured(m, seen, elapsed), v))
+        Condition::AtLeast(m, v) | Condition::AtMost(m, v) => {
+            let side = if matches!(condition, Condition::AtLeast(..)) { "below" } else { "above" };
+            format!("{} is {}, {side} {v:e}", name(m), beside(measured(m, seen, elapsed), v))
         }
         Condition::OnTarget { fraction } => {
             let error = beside(target_error(phase, seen), fraction);

@@ -60,10 +60,9 @@ pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited<'_>, begins_wit
     }
     for (i, phase) in phases.iter().enumerate() {
         if matches!(phase.kind, PhaseKind::Gas { .. }) != (begins_with_gas && i == 0) {
-            let rule = if begins_with_gas {
-                "a path begins with one gas phase and has no other"
-            } else {
-                "a path that starts from a packing has no gas phase"
+            let rule = match begins_with_gas {
+                true => "a path begins with one gas phase and has no other",
+                false => "a path that starts from a packing has no gas phase",
             };
             r.fault("phase", format!("phase {i} ({}): {rule}", phase.name));
         }

@@ -61,11 +61,6 @@ impl<'a> Reader<'a> {
         self.table.get(key.name())
     }
 
-    /// A value that is inspected before it is read.
-    pub(crate) fn peek(&self, key: &Key) -> Option<&'a Value> {
-        self.table.get(key.name())
-    }
-
     /// The value of a key that is not in the table of keys: a component.
     pub(crate) fn get_named(&mut self, name: &'static str) -> Option<&'a Value> {
         self.asked.push(name);
@@ -117,10 +112,7 @@ impl<'a> Reader<'a> {
 
     /// A number, if present; an invalid one is a fault and returned as 1.
     pub(crate) fn optional(&mut self, key: &'static Key) -> Option<f64> {
-        if !self.has(key) {
-            self.asked.push(key.name());
-            return None;
-        }
+        self.get(key)?;
         Some(self.read(key, None, |value| number_of(key, value), |v| number(*v)).unwrap_or(1.0))
     }
 
@@ -169,10 +161,15 @@ impl<'a> Reader<'a> {
         found.or(named(default)).unwrap_or(&choices[0]).1
     }
 
-    /// A sub-table, read by `read`; `None` where it is absent.
+    /// A sub-table, read by `read`; `None` where it is absent, a fault if it is required.
     pub(crate) fn sub<T>(&mut self, key: &'static Key, read: impl FnOnce(&mut Reader<'_>) -> T) -> Option<T> {
         match self.get(key) {
-            None => None,
+            None => {
+                if matches!(key.default, DefaultValue::Required) {
+                    self.refuse(key, None);
+                }
+                None
+            }
             Some(Value::Table(table)) => Some(self.read_table(key.name(), table, read)),
             Some(other) => {
                 self.fault(key.name(), format!("is {}; it must be a table", kind(other)));

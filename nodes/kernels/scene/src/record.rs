@@ -32,12 +32,11 @@ impl Record {
 /// The interval in the text; `None` if the phase publishes no packing within.
 pub(crate) fn read(r: &mut Reader<'_>) -> Option<Record> {
     r.sub(&keys::RECORD, |r| {
-        let steps = r.has(&keys::EVERY_STEPS).then(|| Record::EverySteps(r.whole(&keys::EVERY_STEPS)));
+        let steps = r.get(&keys::EVERY_STEPS).map(|_| Record::EverySteps(r.whole(&keys::EVERY_STEPS)));
         let strain = r.optional(&keys::EVERY_STRAIN).map(Record::EveryStrain);
         let time = r.optional(&keys::EVERY_TIME).map(Record::EveryTime);
         let found: Vec<Record> = [steps, strain, time].into_iter().flatten().collect();
         if found.len() != 1 {
-            r.get(&keys::EVERY_STEPS);
             let count = if found.is_empty() { "none" } else { "more than one" };
             r.fault("", format!("has {count} of every_steps, every_strain and every_time; it takes one"));
         }

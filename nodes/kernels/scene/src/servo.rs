@@ -9,13 +9,8 @@ use toml::{Table, Value};
 
 /// The keys of a servoed phase besides those of every phase.
 pub(crate) fn read(r: &mut Reader<'_>) -> PhaseKind {
-    let controls: [ComponentControl; 6] =
-        r.sub(&keys::CONTROL, |r| SymTensor::COMPONENTS.map(|c| component(r, c))).unwrap_or_else(|| {
-            if !r.has(&keys::CONTROL) {
-                r.refuse(&keys::CONTROL, None);
-            }
-            [ComponentControl::Held; 6]
-        });
+    let controls = r.sub(&keys::CONTROL, |r| SymTensor::COMPONENTS.map(|c| component(r, c)));
+    let controls = controls.unwrap_or([ComponentControl::Held; 6]);
     let rate_limit = r.number(&keys::RATE_LIMIT);
     let law = law(r);
     let targets = controls[..3]

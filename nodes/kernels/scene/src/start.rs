@@ -17,16 +17,12 @@ pub(crate) fn read(r: &mut Reader<'_>) -> Option<Start> {
     r.sub(&keys::START, |r| {
         let packing = r.text(&keys::START_PACKING);
         let forces = &keys::START_CONTACT_FORCES;
-        let contact_forces = if r.has(forces) { Some(r.text_or(forces, None)) } else { None };
-        r.get(forces);
+        let contact_forces = r.get(forces).map(|_| r.text(forces));
         let contact_columns = columns(r);
         if !contact_columns.is_empty() && contact_forces.is_none() {
             r.fault("contact_columns", "names columns of contact_forces, which is missing");
         }
-        let step = r.has(&keys::START_STEP).then(|| r.whole(&keys::START_STEP));
-        if step.is_none() {
-            r.get(&keys::START_STEP);
-        }
+        let step = r.get(&keys::START_STEP).map(|_| r.whole(&keys::START_STEP));
         Start { packing, contact_forces, contact_columns, step }
     })
 }

@@ -24,11 +24,8 @@ pub(crate) fn read(r: &mut Reader<'_>, servoed: bool) -> Conditions {
         one(r, &keys::UNTIL_DEVIATOR_BELOW, &|v| Condition::AtMost(Measure::Deviator, v));
         by_component(r, &keys::UNTIL_STRAIN, &mut all, |c, v| {
             // A strain is reached starting from zero.
-            if v < 0.0 {
-                Condition::AtMost(Measure::Strain(c), v)
-            } else {
-                Condition::AtLeast(Measure::Strain(c), v)
-            }
+            let of = if v < 0.0 { Condition::AtMost } else { Condition::AtLeast };
+            of(Measure::Strain(c), v)
         });
         by_component(r, &keys::UNTIL_STRESS_ABOVE, &mut all, |c, v| {
             Condition::AtLeast(Measure::Stress(c), v)
@@ -49,12 +46,7 @@ pub(crate) fn read(r: &mut Reader<'_>, servoed: bool) -> Conditions {
         }
         Conditions { all, hold, timeout }
     });
-    until.unwrap_or_else(|| {
-        if !r.has(&keys::UNTIL) {
-            r.refuse(&keys::UNTIL, None);
-        }
-        Conditions { all: Vec::new(), hold: 0.0, timeout: 1.0 }
-    })
+    until.unwrap_or(Conditions { all: Vec::new(), hold: 0.0, timeout: 1.0 })
 }
 
 /// A table of component = value.

@@ -3,8 +3,8 @@
 use grainlab_core::contact::{ContactLaw, RollingResistance};
 use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_scene::{
-    Condition, Draft, GasMethod, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Record,
-    Scene, Sizes, Species,
+    Condition, Draft, GasMethod, Measure, Observation, PathState, PhaseEnded, PhaseKind, Record, Scene,
+    Sizes, Species,
 };
 
 const GOOD: &str = r#"
@@ -169,13 +169,13 @@ fn a_phase_ends_only_after_its_conditions_held_for_the_hold_time() {
     let scene = Scene::parse(GOOD).unwrap();
     let mut state = PathState { phase: 1, began: 1.0, holding_since: None };
     let at = |time: f64, speed: f64| Observation { speed, ..seen(time) };
-    assert_eq!(state.observe(&scene, &at(1.0, 1e-4)), Ok(PathEvent::Stay));
+    assert_eq!(state.observe(&scene, &at(1.0, 1e-4)), Ok(None));
     // The condition fails once: the hold time restarts.
-    assert_eq!(state.observe(&scene, &at(1.00005, 1.0)), Ok(PathEvent::Stay));
-    assert_eq!(state.observe(&scene, &at(1.00009, 1e-4)), Ok(PathEvent::Stay));
-    assert_eq!(state.observe(&scene, &at(1.00015, 1e-4)), Ok(PathEvent::Stay));
-    let ended = PathEvent::PhaseEnded { reference: true, publish: false, finished: false };
-    assert_eq!(state.observe(&scene, &at(1.00020, 1e-4)), Ok(ended));
+    assert_eq!(state.observe(&scene, &at(1.00005, 1.0)), Ok(None));
+    assert_eq!(state.observe(&scene, &at(1.00009, 1e-4)), Ok(None));
+    assert_eq!(state.observe(&scene, &at(1.00015, 1e-4)), Ok(None));
+    let ended = PhaseEnded { reference: true, publish: false, finished: false };
+    assert_eq!(state.observe(&scene, &at(1.00020, 1e-4)), Ok(Some(ended)));
     assert_eq!(state, PathState { phase: 2, began: 1.00020, holding_since: None });
 }
 
@@ -184,17 +184,16 @@ fn the_last_phase_finishes_the_path_and_a_timeout_names_what_was_not_met() {
     let scene = Scene::parse(GOOD).unwrap();
     let mut state = PathState { phase: 5, began: 2.0, holding_since: None };
     let off = Observation { unbalanced: 1e-3, ..seen(2.6) };
-    let Err(PathError::Timeout { index: 5, unmet, .. }) = state.observe(&scene, &off) else {
-        panic!("a timeout")
-    };
-    assert!(unmet.contains("unbalanced is ") && !unmet.contains("target"), "{unmet}");
+    let timeout = state.observe(&scene, &off).unwrap_err().to_string();
+    assert!(timeout.starts_with("phase 6 (") && timeout.contains("unbalanced is "), "{timeout}");
+    assert!(!timeout.contains("target"), "{timeout}");
     // As it is printed, the value is beyond its bound.
     let limit = Observation { unbalanced: 1.000_000_1e-6, ..seen(2.4) };
     let printed = state.unmet(&scene, &limit);
     assert!(printed.starts_with("unbalanced is 1.0000001e-6, above 1e-6"), "{printed}");
     let on = Observation { unbalanced: 1e-7, ..seen(2.4) };
-    let ended = PathEvent::PhaseEnded { reference: false, publish: true, finished: true };
-    assert_eq!(state.observe(&scene, &on), Ok(ended));
+    let ended = PhaseEnded { reference: false, publish: true, finished: true };
+    assert_eq!(state.observe(&scene, &on), Ok(Some(ended)));
     assert!(state.phase(&scene).is_none());
 }
 
@@ -315,8 +314,8 @@ fn a_run_that_starts_from_a_packing_takes_its_grains_and_its_material() {
         .set(grainlab_scene::assignment("start.contact_columns=[\"a\",\"b\",\"x\",\"y\",\"z\"]").unwrap())
         .unwrap();
     let file = draft.start().unwrap();
-    let forces = file.contact_forces.unwrap();
-    assert_eq!((forces.path.as_str(), forces.from.as_deref()), ("f.dump", Some("scene")));
+    let forces = (file.contact_forces.as_deref(), draft.source_of("contact_forces"));
+    assert_eq!(forces, (Some("f.dump"), Some("scene")));
     assert_eq!(file.contact_columns, ["a", "b", "x", "y", "z"]);
     draft.start_at("/whole/p.csv", Some("/whole/f.dump"), 5);
     let first = draft.resolve_from(&packing).unwrap();

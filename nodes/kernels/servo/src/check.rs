@@ -1,9 +1,13 @@
 //! Checks of an input.
 
-use crate::error::ServoError;
 use crate::input::ServoInput;
 use crate::stability::critical_gain;
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
+
+/// Why a request is invalid, with the value and the valid ones.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct ServoError(String);
 
 /// The first fault of an input.
 pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {
@@ -14,7 +18,9 @@ pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {
         finite("tangent", tangent)?;
         for (component, &value) in SymTensor::COMPONENTS.iter().zip(tangent) {
             if value < 0.0 {
-                return Err(ServoError::NegativeTangent { component, value });
+                return Err(ServoError(format!(
+                    "tangent[{component}] = {value:e} Pa is negative: send the affine stiffness of the contacts, or 0 for none"
+                )));
             }
         }
     }
@@ -34,18 +40,25 @@ pub fn check_stability(input: &ServoInput) -> Result<(), ServoError> {
         return Ok(());
     }
     if tangent.is_none() && !matches!(law, ServoLaw::Integral { .. }) {
-        return Err(ServoError::NoTangent);
+        let reason =
+            "the engine does not measure the tangent stiffness: use law = \"integral\", which needs none";
+        return Err(ServoError(reason.into()));
     }
     match law {
         ServoLaw::Scaled { response_time } => {
             positive("response_time", response_time, "s")?;
             if control_interval >= 2.0 * response_time {
-                return Err(ServoError::Unstable { control_interval, response_time });
+                return Err(ServoError(format!(
+                    "control_interval = {control_interval:e} s is not below twice response_time = {response_time:e} s, so the \
+                     stiffness-scaled law would diverge: lengthen response_time or shorten control_period"
+                )));
             }
         }
         ServoLaw::Normalised { share, leak } => {
             if !(share > 0.0 && share < 1.0) {
-                return Err(ServoError::Share { value: share });
+                return Err(ServoError(format!(
+                    "share = {share} of the critical gain is outside (0, 1): from 1 on the stress error grows every control period"
+                )));
             }
             check_leak(leak)?;
         }
@@ -54,7 +67,11 @@ pub fn check_stability(input: &ServoInput) -> Result<(), ServoError> {
             check_leak(leak)?;
             let critical = tangent.map(|t| critical_gain(&t, &controls, control_interval, leak));
             if let Some(critical) = critical.filter(|critical| gain >= *critical) {
-                return Err(ServoError::Gain { gain, critical, control_interval });
+                return Err(ServoError(format!(
+                    "gain = {gain:e} 1/(Pa s) is not below {critical:e} 1/(Pa s), where Eq. 1 becomes unstable with the present \
+                     contacts and a control interval of {control_interval:e} s: reduce the gain, shorten control_period, or use \
+                     law = \"normalised\""
+                )));
             }
         }
     }
@@ -62,7 +79,10 @@ pub fn check_stability(input: &ServoInput) -> Result<(), ServoError> {
 }
 
 fn check_leak(value: f64) -> Result<(), ServoError> {
-    if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(ServoError::Leak { value }) }
+    let reason = || {
+        format!("leak = {value} is outside [0, 1]; 0 is exactly Eq. 1, 1 resets the rate each control period")
+    };
+    (0.0..=1.0).contains(&value).then_some(()).ok_or_else(|| ServoError(reason()))
 }
 
 fn setpoint(control: ComponentControl) -> f64 {
@@ -74,15 +94,14 @@ fn setpoint(control: ComponentControl) -> f64 {
 
 fn finite(field: &'static str, values: &[f64; 6]) -> Result<(), ServoError> {
     match SymTensor::COMPONENTS.iter().zip(values).find(|(_, v)| !v.is_finite()) {
-        Some((component, &value)) => Err(ServoError::ComponentNotFinite { field, component, value }),
+        Some((component, value)) => Err(ServoError(format!(
+            "{field}[{component}] = {value} is not finite; the simulation that sent it is unstable"
+        ))),
         None => Ok(()),
     }
 }
 
 fn positive(field: &'static str, value: f64, unit: &'static str) -> Result<(), ServoError> {
-    if value > 0.0 && value.is_finite() {
-        Ok(())
-    } else {
-        Err(ServoError::NotPositive { field, value, unit })
-    }
+    let reason = || format!("{field} = {value:e} {unit} must be positive and finite");
+    (value > 0.0 && value.is_finite()).then_some(()).ok_or_else(|| ServoError(reason()))
 }

@@ -1,7 +1,7 @@
 //! One request, one response.
 
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
-use grainlab_servo::{ServoError, ServoInput, control, critical_gain};
+use grainlab_servo::{ServoInput, control, critical_gain};
 use proptest::prelude::*;
 
 const TANGENT: [f64; 6] = [200.0e6, 200.0e6, 200.0e6, 70.0e6, 70.0e6, 70.0e6];
@@ -74,7 +74,7 @@ fn the_normalised_law_is_eq_1_with_its_share_of_the_critical_gain_of_each_compon
 fn without_a_tangent_only_the_integral_law_answers() {
     for law in [SCALED, NORMALISED] {
         let request = ServoInput { tangent: None, ..at_target(law) };
-        assert!(matches!(control(&request), Err(ServoError::NoTangent)));
+        assert!(control(&request).unwrap_err().to_string().contains("tangent stiffness"));
         let held = ServoInput { controls: [ComponentControl::Held; 6], ..request };
         assert_eq!(control(&held).unwrap().rate, [0.0; 6]);
     }
@@ -98,11 +98,8 @@ fn a_gain_of_eq_1_from_the_critical_one_on_is_refused_with_both_named() {
     request.law = ServoLaw::Integral { gain: 0.999 * critical, leak: 0.0 };
     assert!(control(&request).is_ok());
     request.law = ServoLaw::Integral { gain: critical, leak: 0.0 };
-    let error = control(&request).unwrap_err();
-    assert!(
-        matches!(error, ServoError::Gain { .. }) && error.to_string().contains("control_period"),
-        "{error}"
-    );
+    let error = control(&request).unwrap_err().to_string();
+    assert!(error.contains("gain = ") && error.contains("control_period"), "{error}");
 }
 
 #[test]
@@ -149,34 +146,29 @@ fn errors_and_stiffnesses_beyond_the_largest_number_do_not_make_nan() {
 
 #[test]
 fn each_fault_has_its_own_error_and_names_the_value() {
-    let fault = |change: &dyn Fn(&mut ServoInput)| {
+    let shown = |change: &dyn Fn(&mut ServoInput)| {
         let mut request = at_target(SCALED);
         change(&mut request);
-        control(&request).unwrap_err()
+        control(&request).unwrap_err().to_string()
     };
-    let shown = |change: &dyn Fn(&mut ServoInput)| fault(change).to_string();
     assert!(shown(&|r| r.stress.yz = f64::NAN).contains("stress[yz]"));
     assert!(shown(&|r| r.rate[5] = f64::INFINITY).contains("rate[xy]"));
     assert!(shown(&|r| r.tangent = Some([f64::NAN; 6])).contains("tangent[xx]"));
     assert!(shown(&|r| r.controls[2] = ComponentControl::StrainRate(f64::NAN)).contains("setpoint[zz]"));
-    assert!(matches!(
-        fault(&|r| r.tangent = Some([0.0, -1.0, 0.0, 0.0, 0.0, 0.0])),
-        ServoError::NegativeTangent { component: "yy", .. }
-    ));
-    assert!(matches!(fault(&|r| r.rate_limit = 0.0), ServoError::NotPositive { field: "rate_limit", .. }));
-    assert!(matches!(fault(&|r| r.rate_limit = f64::NAN), ServoError::NotPositive { .. }));
-    assert!(matches!(fault(&|r| r.control_interval = -1.0), ServoError::NotPositive { .. }));
-    assert!(matches!(
-        fault(&|r| r.law = ServoLaw::Scaled { response_time: 0.0 }),
-        ServoError::NotPositive { .. }
-    ));
-    let integral = |gain, leak| fault(&|r| r.law = ServoLaw::Integral { gain, leak });
-    assert!(matches!(integral(0.0, 0.0), ServoError::NotPositive { field: "gain", .. }));
-    assert!(matches!(integral(1.0, 1.5), ServoError::Leak { .. }));
-    assert!(matches!(integral(1.0, f64::NAN), ServoError::Leak { .. }));
-    assert!(matches!(fault(&|r| r.control_interval = 2.0e-4), ServoError::Unstable { .. }));
-    let share = |share| fault(&|r| r.law = ServoLaw::Normalised { share, leak: 0.0 });
-    assert!([0.0, 1.0, f64::NAN].into_iter().all(|s| matches!(share(s), ServoError::Share { .. })));
+    assert!(shown(&|r| r.tangent = Some([0.0, -1.0, 0.0, 0.0, 0.0, 0.0])).contains("tangent[yy] = -1e0"));
+    assert!(shown(&|r| r.rate_limit = 0.0).contains("rate_limit = 0e0 1/s must be positive"));
+    assert!(shown(&|r| r.rate_limit = f64::NAN).contains("rate_limit = NaN"));
+    assert!(shown(&|r| r.control_interval = -1.0).contains("control_interval = -1e0 s must be positive"));
+    assert!(
+        shown(&|r| r.law = ServoLaw::Scaled { response_time: 0.0 }).contains("response_time = 0e0 s must")
+    );
+    let integral = |gain, leak| shown(&|r| r.law = ServoLaw::Integral { gain, leak });
+    assert!(integral(0.0, 0.0).contains("gain = 0e0 1/(Pa s) must be positive"));
+    assert!(integral(1.0, 1.5).contains("leak = 1.5"));
+    assert!(integral(1.0, f64::NAN).contains("leak = NaN"));
+    assert!(shown(&|r| r.control_interval = 2.0e-4).contains("is not below twice response_time"));
+    let share = |share| shown(&|r| r.law = ServoLaw::Normalised { share, leak: 0.0 });
+    assert!([0.0, 1.0, f64::NAN].into_iter().all(|s| share(s).contains("is outside (0, 1)")));
 }
 
 #[test]

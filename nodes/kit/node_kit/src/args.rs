@@ -7,33 +7,22 @@ use std::path::PathBuf;
 #[error("{0}")]
 pub struct ArgsError(String);
 
-/// One remap rule, `[node:]from:=to`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Remap {
-    /// The node it applies to; `None` for every node.
-    pub node: Option<String>,
-    /// The old name: a topic, `__node` or `__ns`.
-    pub from: String,
-    /// The new name.
-    pub to: String,
-}
-
-/// One parameter from the command line, `[node:]name:=value`.
+/// One remap or parameter of the command line, `[node:]name:=value`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
     /// The node it applies to; `None` for every node.
     pub node: Option<String>,
-    /// The parameter's name.
+    /// Name of the parameter, or the old name of a remap: a topic, `__node` or `__ns`.
     pub name: String,
-    /// Value as YAML text.
-    pub yaml: String,
+    /// Value of the parameter as YAML text, or the new name.
+    pub value: String,
 }
 
 /// The ROS arguments of one process.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RosArgs {
     /// Remap rules in the order given.
-    pub remaps: Vec<Remap>,
+    pub remaps: Vec<Assignment>,
     /// Parameters in the order given; a later one overrides an earlier one, and all override files.
     pub parameters: Vec<Assignment>,
     /// Parameter files in the order given; a later one overrides an earlier one.
@@ -95,13 +84,12 @@ impl RosArgs {
         };
         match option {
             "-r" | "--remap" => {
-                let (node, from, to) = split_rule(option, &value(REMAP_FORM)?, REMAP_FORM)?;
-                let from = from.strip_prefix("rostopic://").unwrap_or(&from).to_owned();
-                self.remaps.push(Remap { node, from, to });
+                let rule = split_rule(option, &value(REMAP_FORM)?, REMAP_FORM)?;
+                let name = rule.name.strip_prefix("rostopic://").unwrap_or(&rule.name).to_owned();
+                self.remaps.push(Assignment { name, ..rule });
             }
             "-p" | "--param" => {
-                let (node, name, yaml) = split_rule(option, &value(PARAM_FORM)?, PARAM_FORM)?;
-                self.parameters.push(Assignment { node, name, yaml });
+                self.parameters.push(split_rule(option, &value(PARAM_FORM)?, PARAM_FORM)?);
             }
             "--params-file" => self.params_files.push(value("--params-file run.yaml")?.into()),
             "--log-level" => {
@@ -138,11 +126,7 @@ impl RosArgs {
 }
 
 /// Splits `[node:]left:=right`. A scheme such as `rostopic://` is not a node.
-fn split_rule(
-    option: &str,
-    text: &str,
-    example: &'static str,
-) -> Result<(Option<String>, String, String), ArgsError> {
+fn split_rule(option: &str, text: &str, example: &str) -> Result<Assignment, ArgsError> {
     let malformed = || ArgsError(format!("{option} {text:?} is not of the form {example}"));
     let (left, right) = text.split_once(":=").ok_or_else(malformed)?;
     let (node, name) = match left.split_once(':') {
@@ -152,7 +136,7 @@ fn split_rule(
     if name.is_empty() || right.is_empty() || node == Some("") {
         return Err(malformed());
     }
-    Ok((node.map(Into::into), name.into(), right.into()))
+    Ok(Assignment { node: node.map(Into::into), name: name.into(), value: right.into() })
 }
 
 /// Reads a ROS 2 severity; `fatal` is the facade's error level.
@@ -183,15 +167,18 @@ mod tests {
         let (ros, plain) = parse("run --ros-args -r a:=b -p x:=1 -- scene.toml --ros-args -p y:=2").unwrap();
         assert_eq!(plain, ["run", "scene.toml"]);
         assert_eq!(ros.parameters.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), ["x", "y"]);
-        assert_eq!(ros.remaps, [Remap { node: None, from: "a".into(), to: "b".into() }]);
+        assert_eq!(ros.remaps, [Assignment { node: None, name: "a".into(), value: "b".into() }]);
     }
 
     #[test]
     fn node_prefixes_are_split_off_but_schemes_are_not() {
         let (ros, _) =
             parse("--ros-args -r dem:__ns:=/x -r rostopic://stress:=p -p servo:gain.xx:=3").unwrap();
-        assert_eq!(ros.remaps[0], Remap { node: Some("dem".into()), from: "__ns".into(), to: "/x".into() });
-        assert_eq!(ros.remaps[1], Remap { node: None, from: "stress".into(), to: "p".into() });
+        assert_eq!(
+            ros.remaps[0],
+            Assignment { node: Some("dem".into()), name: "__ns".into(), value: "/x".into() }
+        );
+        assert_eq!(ros.remaps[1], Assignment { node: None, name: "stress".into(), value: "p".into() });
         assert_eq!(ros.parameters[0].node.as_deref(), Some("servo"));
         assert_eq!(ros.parameters[0].name, "gain.xx");
     }
@@ -199,7 +186,7 @@ mod tests {
     #[test]
     fn a_value_may_hold_colons_and_equal_signs() {
         let (ros, _) = parse("--ros-args -p path:=a:=b:c").unwrap();
-        assert_eq!((ros.parameters[0].name.as_str(), ros.parameters[0].yaml.as_str()), ("path", "a:=b:c"));
+        assert_eq!((ros.parameters[0].name.as_str(), ros.parameters[0].value.as_str()), ("path", "a:=b:c"));
     }
 
     #[test]

@@ -38,3 +38,16 @@ pub enum BusError {
         reason: String,
     },
 }
+
+/// Accepts that a sample was dropped: a crashed reader must not end the node, and the bus counts what it could not send.
+pub fn tolerate_full(published: Result<i64, BusError>) -> Result<(), BusError> {
+    match published {
+        Ok(_) | Err(BusError::Full { .. }) => Ok(()),
+        Err(error) => Err(error),
+    }
+}
+
+/// RustDDS could not create something.
+pub(crate) fn create_error(what: &str, error: &dyn std::error::Error) -> BusError {
+    BusError::Network { what: format!("create {what}"), reason: error.to_string() }
+}

@@ -1,5 +1,6 @@
 //! Domains without participants.
 
+use crate::dds::Network;
 use grainlab_console::Failure;
 use std::net::{Ipv4Addr, UdpSocket};
 
@@ -28,6 +29,11 @@ impl FreeDomain {
                 "every DDS domain from 0 to 101 is in use on this host: set ROS_DOMAIN_ID to share one",
             )
         })
+    }
+
+    /// The domain, on this host only.
+    pub fn network(&self) -> Network {
+        Network::localhost(self.id)
     }
 
     fn try_take(id: u16) -> Option<Self> {

@@ -23,7 +23,7 @@ pub const ROOT_VARIABLE: &str = "GRAINLAB_RUN_ROOT";
 const VENDOR: [u8; 2] = [0x01, 0x12];
 
 /// Identity of one run: 48 bits, of which the first eight are not all zero.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RunId([u8; 6]);
 
 impl RunId {
@@ -43,10 +43,8 @@ impl RunId {
     }
 
     fn of_bits(bits: u64) -> Self {
-        let mut bytes = [0; 6];
-        bytes.copy_from_slice(&bits.to_le_bytes()[..6]);
-        bytes[0] = bytes[0].max(1);
-        Self(bytes)
+        let [first, rest @ ..] = bits.to_le_bytes();
+        Self([first.max(1), rest[0], rest[1], rest[2], rest[3], rest[4]])
     }
 }
 
@@ -54,12 +52,6 @@ impl RunId {
 impl fmt::Display for RunId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
-    }
-}
-
-impl fmt::Debug for RunId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "RunId({self})")
     }
 }
 
@@ -115,9 +107,7 @@ impl Identity {
     /// start, and a check byte. Without a run: vendor, zero, and nine random bytes.
     pub fn guid_prefix(&self) -> [u8; 12] {
         let chance = [random(), random()].map(u64::to_le_bytes).concat();
-        let mut bytes = [0; 9];
-        bytes.copy_from_slice(&chance[..9]);
-        self.guid_prefix_with(bytes)
+        self.guid_prefix_with(std::array::from_fn(|i| chance[i]))
     }
 
     /// A GUID prefix with given bytes in place of random ones; a member of a run uses two of them.
@@ -140,11 +130,8 @@ impl Identity {
 /// The run in a participant's GUID prefix; `None` without a run and for other software.
 pub fn run_of(prefix: &[u8; 12]) -> Option<RunId> {
     // Other programs with RustDDS have random bytes there.
-    (prefix[..2] == VENDOR && prefix[2] != 0 && prefix[11] == check(prefix)).then(|| {
-        let mut bytes = [0; 6];
-        bytes.copy_from_slice(&prefix[2..8]);
-        RunId(bytes)
-    })
+    let has_run = prefix[..2] == VENDOR && prefix[2] != 0 && prefix[11] == check(prefix);
+    has_run.then(|| RunId(std::array::from_fn(|i| prefix[2 + i])))
 }
 
 /// True if a participant may be one of this program, in a run or by hand; another program has such a prefix by chance, one of 256

@@ -14,7 +14,7 @@
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
 //!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
-//! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants
+//! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants; `lock`: locks that survive a panic
 //! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`, between steps; `wall_clock`: their stamps
 
 mod admission;
@@ -26,6 +26,7 @@ mod dds;
 mod demand;
 mod free_domain;
 mod identity;
+mod lock;
 mod logging;
 mod memory;
 mod names;
@@ -47,11 +48,11 @@ pub mod watchdog;
 mod worker;
 
 pub use admission::{Participant, Process, Stranger};
-pub use args::{ArgsError, Assignment, Remap, RosArgs};
+pub use args::{ArgsError, Assignment, RosArgs};
 pub use bulk::{BULK_LIMIT, BulkPublisher, BulkSubscription};
 pub use bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
-pub use bus_error::BusError;
-pub use dds::{ClaimedDomain, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers};
+pub use bus_error::{BusError, tolerate_full};
+pub use dds::{DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers};
 pub use demand::Demand;
 pub use free_domain::{FreeDomain, is_in_use, is_launched};
 pub use grainlab_msgs::{Exit, Health, Level, Published, Received, Report};

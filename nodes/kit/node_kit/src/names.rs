@@ -1,7 +1,6 @@
 //! Names of nodes and topics: validation, expansion and remapping, as ROS 2 defines them.
 
 use crate::args::RosArgs;
-use std::fmt;
 
 /// Why a name is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -57,15 +56,15 @@ impl Names {
     pub fn from_args(default_node: &str, args: &RosArgs) -> Result<Self, NameError> {
         let mut names = Self::new(default_node)?;
         let rules = || args.remaps.iter().filter(|r| r.node.as_deref().is_none_or(|n| n == default_node));
-        if let Some(rule) = rules().find(|r| r.from == "__node" || r.from == "__name") {
-            check_token(&rule.to, &rule.to)?;
-            names.node = rule.to.clone();
+        if let Some(rule) = rules().find(|r| r.name == "__node" || r.name == "__name") {
+            check_token(&rule.value, &rule.value)?;
+            names.node = rule.value.clone();
         }
-        if let Some(rule) = rules().find(|r| r.from == "__ns") {
-            names.namespace = checked_namespace(&rule.to)?;
+        if let Some(rule) = rules().find(|r| r.name == "__ns") {
+            names.namespace = checked_namespace(&rule.value)?;
         }
-        for rule in rules().filter(|r| !r.from.starts_with("__")) {
-            let pair = (names.expand(&rule.from)?, names.expand(&rule.to)?);
+        for rule in rules().filter(|r| !r.name.starts_with("__")) {
+            let pair = (names.expand(&rule.name)?, names.expand(&rule.value)?);
             names.remaps.push(pair);
         }
         Ok(names)
@@ -121,12 +120,6 @@ impl Names {
             check_token(token, name)?;
         }
         Ok(absolute)
-    }
-}
-
-impl fmt::Display for Names {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.fully_qualified())
     }
 }
 

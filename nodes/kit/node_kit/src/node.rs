@@ -2,7 +2,6 @@
 
 use crate::bus::Bus;
 use crate::bus_error::BusError;
-use crate::peers::Peers;
 use grainlab_msgs::{Exit, Health};
 use std::time::Duration;
 
@@ -35,9 +34,6 @@ pub trait Node {
 
     /// The state of the node; called once a second.
     fn health(&self) -> Health;
-
-    /// The known peers; called whenever a heartbeat arrives. A node that waits for another one finds its state here.
-    fn on_peers(&mut self, _peers: &Peers) {}
 
     /// Called when the user or the launcher stops the node: publishes final results and returns the exit.
     /// [`Exit::Interrupted`] if the result is incomplete.

@@ -1,7 +1,7 @@
 //! Log lines on `/rosout`, published between the steps of a node.
 
 use crate::bus::Bus;
-use crate::bus_error::BusError;
+use crate::bus_error::{BusError, tolerate_full};
 use crate::logging::Logger;
 use crate::typed::Publisher;
 use grainlab_msgs::rcl_interfaces::Log;
@@ -31,13 +31,5 @@ impl Rosout {
             logger.close();
         }
         self.tend(bus)
-    }
-}
-
-/// A crashed reader must not end the node: the bus counts what it could not send.
-pub(crate) fn tolerate_full(published: Result<i64, BusError>) -> Result<(), BusError> {
-    match published {
-        Ok(_) | Err(BusError::Full { .. }) => Ok(()),
-        Err(error) => Err(error),
     }
 }

@@ -2,21 +2,20 @@
 
 use crate::args::RosArgs;
 use crate::bus::{Bus, Wake};
-use crate::bus_error::BusError;
+use crate::bus_error::{BusError, tolerate_full};
 use crate::dds::{DdsBus, Network};
 use crate::identity::{Identity, Scope};
 use crate::logging::Logger;
 use crate::names::Names;
 use crate::node::{Next, Node, NodeError};
 use crate::parameters::{ParameterSpec, Parameters};
-use crate::peers::PeerWatch;
-use crate::rosout::{Rosout, tolerate_full};
-use crate::services::{Declared, USE_SIM_TIME};
+use crate::rosout::Rosout;
+use crate::services::USE_SIM_TIME;
 use crate::typed::Publisher;
 use crate::watchdog;
 use grainlab_console::Signals;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::{Exit, Guid, Health, Received, Report, topics};
+use grainlab_msgs::{Exit, Guid, Published, Received, Report, topics};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
 
@@ -85,14 +84,14 @@ where
         let names = refused(Exit::Usage, Names::from_args(spec.name, args))?;
         let specs: Vec<ParameterSpec> = spec.parameters.iter().cloned().chain([use_sim_time()]).collect();
         let parameters = refused(Exit::Usage, Parameters::resolve(&specs, spec.name, &names, args))?;
-        let declared = Declared::new(&specs, parameters.clone());
         let network = refused(Exit::Usage, Network::from_env())?;
         let node_name = names.fully_qualified();
         let logger = Logger::install(&node_name, args);
         let identity = Identity::from_env(spec.scope);
         let signals = refused(Exit::Failure, Signals::of_node(identity.root))?;
         let stop = signals.flag();
-        let mut bus = refused(Exit::Failure, DdsBus::declaring(network, names, identity, declared))?;
+        let mut bus =
+            refused(Exit::Failure, DdsBus::declaring(network, names, identity, parameters.clone()))?;
         refused(Exit::Failure, bus.watch(signals))?;
         let mut node = build(&mut bus, &parameters).map_err(|error| {
             log::error!("{error}");
@@ -167,14 +166,12 @@ pub enum DriveError {
     Bus(#[from] BusError),
 }
 
-/// Heartbeats, log lines, peers and watchdog of one process.
+/// Heartbeats, log lines and watchdog of one process.
 struct Housekeeping {
     node_name: String,
-    pid: u32,
     diagnostics: Publisher<DiagnosticArray>,
     diagnostics_writer: Option<Guid>,
     rosout: Rosout,
-    watch: PeerWatch,
     next_beat: Duration,
     next_look: Duration,
 }
@@ -185,11 +182,9 @@ impl Housekeeping {
         let diagnostics_writer = bus.published().last().map(|p| p.writer);
         Ok(Self {
             node_name: node_name.into(),
-            pid: std::process::id(),
             diagnostics,
             diagnostics_writer,
             rosout: Rosout::advertise(bus, logger)?,
-            watch: PeerWatch::subscribe(bus)?,
             next_beat: bus.now() + HEARTBEAT,
             next_look: bus.now() + LOOK,
         })
@@ -197,11 +192,6 @@ impl Housekeeping {
 
     /// Does the tasks that are due and returns the time until the next heartbeat.
     fn tend(&mut self, node: &mut dyn Node, bus: &mut dyn Bus) -> Result<Duration, DriveError> {
-        let mut heard = false;
-        self.watch.update(bus, |_, _| heard = true)?;
-        if heard {
-            node.on_peers(self.watch.peers());
-        }
         self.rosout.tend(bus)?;
         let now = bus.now();
         if now >= self.next_beat {
@@ -222,10 +212,20 @@ impl Housekeeping {
     }
 
     fn report(&self, node: &dyn Node, bus: &mut dyn Bus, exit: Option<Exit>) -> Result<(), BusError> {
-        let report =
-            current_report(bus, &self.node_name, self.pid, node.health(), exit, self.diagnostics_writer);
+        let (node, health) = (self.node_name.clone(), node.health());
+        let (published, received) = (self.published(bus), received(bus));
+        let report = Report { node, pid: std::process::id(), health, exit, published, received };
         let message = report.to_message(bus.node_nanos());
         tolerate_full(self.diagnostics.publish(bus, &message))
+    }
+
+    /// The statistics of writers. That of the reports includes the one that is about to be published.
+    fn published(&self, bus: &dyn Bus) -> Vec<Published> {
+        let mut published = bus.published();
+        for writer in published.iter_mut().filter(|w| Some(w.writer) == self.diagnostics_writer) {
+            writer.count += 1;
+        }
+        published
     }
 
     /// Publishes the last log lines, then the last report: nothing is published after it, so its counts are final.
@@ -238,19 +238,8 @@ impl Housekeeping {
     }
 }
 
-/// The current report of this process. `next` is the writer that will publish it: its count includes the report.
-fn current_report(
-    bus: &dyn Bus,
-    node: &str,
-    pid: u32,
-    health: Health,
-    exit: Option<Exit>,
-    next: Option<Guid>,
-) -> Report {
-    let mut published = bus.published();
-    for writer in published.iter_mut().filter(|w| Some(w.writer) == next) {
-        writer.count += 1;
-    }
+/// The statistics of subscriptions, summed by topic.
+fn received(bus: &dyn Bus) -> Vec<Received> {
     let mut received: Vec<Received> = Vec::new();
     for entry in bus.received() {
         match received.iter_mut().find(|r| r.topic == entry.topic) {
@@ -261,5 +250,5 @@ fn current_report(
             None => received.push(entry),
         }
     }
-    Report { node: node.into(), pid, health, exit, published, received }
+    received
 }

@@ -4,15 +4,15 @@ use grainlab_msgs::msg::{RunState, StrainRate};
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::{
-    Bus, BusError, ClaimedDomain, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake,
+    Bus, BusError, DdsBus, Demand, FreeDomain, Names, Network, Publisher, Subscription, Wake,
 };
 use std::time::{Duration, Instant};
 
 /// Far above the time for discovery on an idle machine (0.2 s), so that the test passes on a loaded one.
 const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-fn claim() -> ClaimedDomain {
-    ClaimedDomain::claim().expect("a free DDS domain")
+fn claim() -> FreeDomain {
+    FreeDomain::take().expect("a free DDS domain")
 }
 
 fn open(network: Network, node: &str) -> DdsBus {

@@ -2,7 +2,7 @@
 
 use grainlab_msgs::{Topic, TypeInfo, topics};
 use grainlab_node_kit::{
-    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, ClaimedDomain, DdsBus, Demand, Names,
+    BULK_LIMIT, BulkPublisher, BulkSubscription, Bus, DdsBus, Demand, FreeDomain, Names,
 };
 use std::time::{Duration, Instant};
 
@@ -17,7 +17,7 @@ fn changed(topic: &Topic) -> Topic {
     Topic { info: TypeInfo { hash: OTHER, ..topic.info }, ..*topic }
 }
 
-fn open(claimed: &ClaimedDomain, node: &str) -> DdsBus {
+fn open(claimed: &FreeDomain, node: &str) -> DdsBus {
     DdsBus::open(claimed.network(), Names::new(node).unwrap()).unwrap()
 }
 
@@ -29,7 +29,7 @@ fn body(number: u8, length: usize) -> Vec<u8> {
 
 #[test]
 fn a_writer_of_another_definition_or_type_is_refused_and_counted_and_one_of_the_same_is_read() {
-    let claimed = ClaimedDomain::claim().expect("a free DDS domain");
+    let claimed = FreeDomain::take().expect("a free DDS domain");
     let (mut reader, mut writer) = (open(&claimed, "reader"), open(&claimed, "writer"));
     // Every type of the laboratory.
     let all: Vec<&Topic> = topics::TOPICS.iter().filter(|t| t.info.package == "grainlab_msgs").collect();
@@ -73,7 +73,7 @@ fn a_writer_of_another_definition_or_type_is_refused_and_counted_and_one_of_the_
 
 #[test]
 fn the_parts_of_a_large_packing_of_another_definition_are_refused_too() {
-    let claimed = ClaimedDomain::claim().expect("a free DDS domain");
+    let claimed = FreeDomain::take().expect("a free DDS domain");
     let (mut reader, mut writer) = (open(&claimed, "reader"), open(&claimed, "writer"));
     let mut packings =
         BulkSubscription::subscribe(&mut reader, &topics::PACKING, Demand::reliable(4)).unwrap();

@@ -1,7 +1,7 @@
 //! Many nodes on one host: more than the 12 ports to which announcements are sent by unicast.
 
 use grainlab_msgs::topics;
-use grainlab_node_kit::{Bus, ClaimedDomain, DdsBus, Demand, Names};
+use grainlab_node_kit::{Bus, DdsBus, Demand, FreeDomain, Names};
 use std::time::{Duration, Instant};
 
 const NODES: usize = 24;
@@ -11,7 +11,7 @@ const TIME_LIMIT: Duration = Duration::from_secs(30);
 
 #[test]
 fn two_dozen_nodes_of_one_host_find_each_other() {
-    let claimed = ClaimedDomain::claim().expect("a free DDS domain");
+    let claimed = FreeDomain::take().expect("a free DDS domain");
     let opened = Instant::now();
     let mut nodes: Vec<_> = (0..NODES)
         .map(|i| {

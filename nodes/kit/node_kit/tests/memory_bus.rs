@@ -188,10 +188,9 @@ fn a_lockstep_that_repeats_survives_any_loss_and_the_scheduler_is_deterministic(
             subscription: Subscription::subscribe(&mut b, &topics::STRESS, Demand::best_effort(64)).unwrap(),
         };
         let mut actors = [Actor::new(&mut asker, a), Actor::new(&mut answerer, b)];
-        let done =
-            run_until(&hub, &mut actors, Duration::from_secs(60), |actors| actors[0].ended().is_some());
-        let asked = actors[0].bus().published()[0].count;
-        assert!(done && matches!(actors[0].ended(), Some(Ok(Exit::Done))));
+        let done = run_until(&hub, &mut actors, Duration::from_secs(60), |actors| actors[0].ended.is_some());
+        let asked = actors[0].bus.published()[0].count;
+        assert!(done && matches!(actors[0].ended.as_ref(), Some(Ok(Exit::Done))));
         drop(actors);
         (asker.answers, asked, hub.now())
     };

@@ -3,7 +3,7 @@
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    Bus, ClaimedDomain, DdsBus, Demand, Exit, Health, Logger, Names, Network, Next, Node, NodeError, RosArgs,
+    Bus, DdsBus, Demand, Exit, FreeDomain, Health, Logger, Names, Network, Next, Node, NodeError, RosArgs,
     Subscription, drive,
 };
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -61,7 +61,7 @@ fn observe(network: Network, received: &Sender<()>) -> Vec<Log> {
 
 #[test]
 fn lines_of_all_threads_arrive_and_their_stamps_never_step_back() {
-    let claimed = ClaimedDomain::claim().expect("a free DDS domain");
+    let claimed = FreeDomain::take().expect("a free DDS domain");
     let network = claimed.network();
     let logger = Logger::install("/busy", &RosArgs { stderr: false, ..RosArgs::default() });
     let (sender, received) = channel();

@@ -1,8 +1,8 @@
 //! The services of a node, asked by a bare ros2-client node.
 
 use grainlab_node_kit::{
-    Bus, ClaimedDomain, Exit, Health, Network, Next, Node, NodeError, NodeSpec, ParameterSpec, Range,
-    RosArgs, Scope, run_node,
+    Bus, Exit, FreeDomain, Health, Network, Next, Node, NodeError, NodeSpec, ParameterSpec, Range, RosArgs,
+    Scope, run_node,
 };
 use ros2_client::parameters::raw::{ParameterEvent, SetParametersResult};
 use ros2_client::qos::{Durability, History, WhenFull};
@@ -116,7 +116,7 @@ impl Asker {
 
 #[test]
 fn parameters_are_read_described_and_set_while_the_node_computes() {
-    let claimed = ClaimedDomain::claim().expect("a free domain");
+    let claimed = FreeDomain::take().expect("a free domain");
     let domain = claimed.network().domain.to_string();
     // SAFETY: this is the only test of this process, and no other thread runs yet.
     unsafe { std::env::set_var("ROS_DOMAIN_ID", domain) };

@@ -5,7 +5,7 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    Bus, ClaimedDomain, DdsBus, Demand, Exit, Health, Hub, Names, Next, Node, NodeError, Publisher, Report,
+    Bus, DdsBus, Demand, Exit, FreeDomain, Health, Hub, Names, Next, Node, NodeError, Publisher, Report,
     Subscription, Worker, drive,
 };
 use std::sync::mpsc::{Receiver, channel};
@@ -43,7 +43,7 @@ impl Node for OneJob {
 }
 
 /// Runs [`OneJob`] over DDS with a job that ends when `gate` opens or closes.
-fn run(claimed: &ClaimedDomain, gate: Receiver<()>) -> std::thread::JoinHandle<Exit> {
+fn run(claimed: &FreeDomain, gate: Receiver<()>) -> std::thread::JoinHandle<Exit> {
     let network = claimed.network();
     std::thread::spawn(move || {
         let mut bus = DdsBus::open(network, Names::new("worker").unwrap()).unwrap();
@@ -57,7 +57,7 @@ fn run(claimed: &ClaimedDomain, gate: Receiver<()>) -> std::thread::JoinHandle<E
 
 #[test]
 fn a_node_keeps_its_heartbeat_while_its_worker_works_and_is_woken_when_it_is_done() {
-    let claimed = ClaimedDomain::claim().expect("a free DDS domain");
+    let claimed = FreeDomain::take().expect("a free DDS domain");
     let mut bus = DdsBus::open(claimed.network(), Names::new("observer").unwrap()).unwrap();
     let beats: Subscription<DiagnosticArray> =
         Subscription::subscribe(&mut bus, &topics::DIAGNOSTICS, Demand::reliable(100)).unwrap();

@@ -10,7 +10,7 @@ use crate::speculative_step::SpeculativeStep;
 use grainlab_experiment::{ExperimentError, StepOutcome};
 use grainlab_msgs::msg::{RunState, Stress};
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::{Bus, BusError, Exit, Next, NodeError};
+use grainlab_node_kit::{Bus, BusError, Exit, Next, NodeError, tolerate_full};
 use grainlab_servo::ServoRequest;
 use std::time::Duration;
 
@@ -29,7 +29,7 @@ impl DemSimulator {
             }
             let whose = self.partner.judge(&info, || bus.foreign_writers(&topics::STRAIN_RATE));
             match whose {
-                AnswerSource::Ours | AnswerSource::Successor => {}
+                AnswerSource::Ours => {}
                 AnswerSource::AnotherRun => continue,
                 AnswerSource::Another { new } => {
                     if new {
@@ -40,7 +40,7 @@ impl DemSimulator {
                 }
             }
             let answer = message.checked().map_err(|e| e.to_string());
-            let answer = answer.and_then(|answer| self.lockstep.receive(answer).map_err(|e| e.to_string()));
+            let answer = answer.and_then(|answer| self.lockstep.receive(answer));
             match answer {
                 Ok(AnswerKind::New) => {
                     if self.partner.stay_with(info.writer) {
@@ -152,11 +152,8 @@ impl DemSimulator {
             };
         }
         for body in self.lockstep.resend(now).into_iter().flatten().filter(|body| !body.is_empty()) {
-            match bus.publish(self.stress.id(), body) {
-                // It will be repeated.
-                Ok(_) | Err(BusError::Full { .. }) => {}
-                Err(error) => return Err(error.into()),
-            }
+            // A request that was dropped is repeated.
+            tolerate_full(bus.publish(self.stress.id(), body))?;
         }
         if self.lockstep.waited(now) > NOTICE_PERIOD && self.notice_due(now) {
             let waited = self.lockstep.waited(now).as_secs();

@@ -1,7 +1,7 @@
 //! The lockstep: one request, its repetitions and its answer.
 
 use crate::Settings;
-use crate::question::{Question, Violation};
+use crate::question::Question;
 use grainlab_msgs::msg::StrainRate;
 use std::time::Duration;
 
@@ -87,7 +87,7 @@ impl Lockstep {
 
     /// Receives an answer. It is accepted if sequence number and stamp are those of the current request and the rates are
     /// allowed by it.
-    pub(crate) fn receive(&mut self, answer: &StrainRate) -> Result<AnswerKind, Violation> {
+    pub(crate) fn receive(&mut self, answer: &StrainRate) -> Result<AnswerKind, String> {
         let asked = |q: &&Question| (q.sequence, q.stamp) == (answer.sequence, answer.header.stamp);
         let Some(question) = self.question.as_ref().filter(asked) else {
             self.counts.stale += 1;

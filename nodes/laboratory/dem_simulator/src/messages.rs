@@ -5,7 +5,6 @@ use grainlab_dem::EnergyBalance;
 use grainlab_experiment::Simulation;
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::geometry_msgs::{Quaternion, Transform, TransformStamped};
-use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::tf2_msgs::TFMessage;
 use grainlab_msgs::{msg, stamp};
@@ -68,10 +67,6 @@ pub(crate) fn energy(run: &Simulation, phase_name: &str, found: &EnergyBalance) 
         drag: found.drag,
         thermostat: found.thermostat,
     }
-}
-
-pub(crate) fn clock(run: &Simulation) -> Clock {
-    Clock { clock: stamp(run.engine().time()) }
 }
 
 /// The cell's frame is at rest in the world frame; viewers need this transform.

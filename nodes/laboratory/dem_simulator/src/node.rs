@@ -9,15 +9,13 @@ use crate::samples::Samples;
 use crate::send_queue::SendQueue;
 use crate::settings::Settings;
 use crate::speculative_step::{self, SpeculativeStep};
-use grainlab_dem::ComputeError;
-use grainlab_experiment::{ExperimentError, Simulation};
+use grainlab_experiment::Simulation;
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
-use grainlab_msgs::{to_cdr, topics};
+use grainlab_msgs::{stamp, to_cdr, topics};
 use grainlab_node_kit::{
-    BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Participant, Publisher,
-    Subscription,
+    BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
 };
 use grainlab_scene::Scene;
 use std::time::Duration;
@@ -43,20 +41,6 @@ const EARLIER: Duration = Duration::from_secs(2);
 pub const SAVED_WITHIN: Duration = Duration::from_secs(20);
 /// Time limit for the acknowledgement of the last messages.
 const FLUSH_LIMIT: Duration = Duration::from_secs(2);
-
-/// Errors at the start of a simulator.
-#[derive(Debug, thiserror::Error)]
-pub enum SimulatorError {
-    /// The scene is invalid, or the packing is not a state of it.
-    #[error(transparent)]
-    Run(#[from] ExperimentError),
-    /// The processor does not support the compute settings.
-    #[error(transparent)]
-    Compute(#[from] ComputeError),
-    /// A topic cannot be opened.
-    #[error(transparent)]
-    Bus(#[from] BusError),
-}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stage {
@@ -85,7 +69,6 @@ pub struct DemSimulator {
     pub(crate) done: Option<Duration>,
     pub(crate) stage: Stage,
     pub(crate) duplicates: DuplicateSimulators,
-    pub(crate) participant: Participant,
     pub(crate) lockstep: Lockstep,
     pub(crate) partner: Partner,
     /// The run after the next steps if the answer is the one that the law gives.
@@ -119,19 +102,20 @@ impl DemSimulator {
         scene: Scene,
         resume: Option<(grainlab_core::Packing, Vec<u8>)>,
         settings: Settings,
-    ) -> Result<Self, SimulatorError> {
+    ) -> Result<Self, NodeError> {
         let (mut run, packings) = match &resume {
-            Some((packing, state)) if state.is_empty() && scene.start.is_some() => {
-                (Simulation::from_packing(scene, packing)?, Packings { last_step: 0, count: 1 })
-            }
+            Some((packing, state)) if state.is_empty() && scene.start.is_some() => (
+                Simulation::from_packing(scene, packing).map_err(NodeError::failed)?,
+                Packings { last_step: 0, count: 1 },
+            ),
             Some((packing, state)) => {
-                let run = Simulation::resume(scene, packing, state)?;
+                let run = Simulation::resume(scene, packing, state).map_err(NodeError::failed)?;
                 let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
                 (run, Packings { last_step: packing.step, count })
             }
-            None => (Simulation::new(scene)?, Packings::default()),
+            None => (Simulation::new(scene).map_err(NodeError::failed)?, Packings::default()),
         };
-        let compute = settings.compute(run.scene().grains as usize)?;
+        let compute = settings.compute(run.scene().grains as usize).map_err(NodeError::failed)?;
         run.set_compute(match bus.stop_flag() {
             Some(flag) => compute.stopping_on(flag),
             None => compute,
@@ -165,7 +149,6 @@ impl DemSimulator {
             done: None,
             stage: Stage::Starting,
             duplicates: DuplicateSimulators::new(own_stress.participant()),
-            participant: own_stress.participant(),
             lockstep: Lockstep::new(&settings),
             partner: Partner::new(own_stress),
             speculative: None,
@@ -206,7 +189,7 @@ impl DemSimulator {
         // Published only after the run has begun: before that, no reader is there to receive it.
         if now >= self.next_clock && self.stage != Stage::Starting {
             self.next_clock = now + CLOCK_PERIOD;
-            self.clock.publish(bus, &messages::clock(&self.run))?;
+            self.clock.publish(bus, &Clock { clock: stamp(self.run.engine().time()) })?;
         }
         if now >= self.next_beat {
             self.next_beat = now + BEAT;
@@ -246,7 +229,7 @@ impl DemSimulator {
         if delivered.map_err(|e| e.to_string())? {
             return Ok(());
         }
-        let (lacking, time) = (self.send_queue.packings().waited_for(), SAVED_WITHIN.as_secs());
+        let (lacking, time) = (self.send_queue.packings.waited_for(), SAVED_WITHIN.as_secs());
         Err(format!("{lacking} readers do not have the whole packing after {time} s"))
     }
 
@@ -329,10 +312,10 @@ impl Node for DemSimulator {
             .with("refused", counts.refused)
             .with("stale", counts.stale)
             .with("contradictions", counts.contradictions)
-            .with("other_servos", self.partner.ignored())
-            .with("held_up", self.send_queue.held_up())
+            .with("other_servos", self.partner.ignored)
+            .with("held_up", self.send_queue.held_up)
             .with("packings", self.packings.count)
-            .with("readers_left_behind", self.send_queue.packings().left_behind())
+            .with("readers_left_behind", self.send_queue.packings.left_behind())
             .with("waiting_s", counts.waiting.as_secs_f64())
             .with("computing_s", computing)
             .with("wall_s", self.wall.as_secs_f64())

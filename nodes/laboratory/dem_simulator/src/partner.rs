@@ -11,19 +11,18 @@ const NAMED: usize = 64;
 #[derive(Debug)]
 pub(crate) struct Partner {
     /// The writer of requests of this process.
-    stress: Guid,
+    pub(crate) stress: Guid,
     current: Option<Participant>,
     named: BTreeSet<Participant>,
-    ignored: u64,
+    /// Number of ignored answers of other servos.
+    pub(crate) ignored: u64,
 }
 
 /// Source of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AnswerSource {
-    /// The servo of the run.
+    /// The servo of the run, or one that replaces it.
     Ours,
-    /// A servo that replaces it.
-    Successor,
     /// An answer to another simulator.
     AnotherRun,
     /// Another servo, while that of the run is present; `new` at its first answer.
@@ -66,13 +65,9 @@ impl Partner {
             return AnswerSource::AnotherRun;
         }
         let sender = info.writer.participant();
-        let Some(current) = self.current else { return AnswerSource::Successor };
-        if current == sender {
+        let gone = |current| !present().iter().any(|w| w.participant() == current);
+        if self.current.is_none_or(|c| c == sender || same_member(&c, &sender) || gone(c)) {
             return AnswerSource::Ours;
-        }
-        let gone = || !present().iter().any(|w| w.participant() == current);
-        if same_member(&current, &sender) || gone() {
-            return AnswerSource::Successor;
         }
         self.ignored += 1;
         AnswerSource::Another { new: self.named.len() < NAMED && self.named.insert(sender) }
@@ -82,11 +77,6 @@ impl Partner {
     pub(crate) fn stay_with(&mut self, writer: Guid) -> bool {
         let sender = writer.participant();
         self.current.replace(sender).is_some_and(|before| before != sender)
-    }
-
-    /// Number of ignored answers of other servos.
-    pub(crate) fn ignored(&self) -> u64 {
-        self.ignored
     }
 }
 
@@ -111,7 +101,7 @@ mod tests {
     fn the_run_stays_with_the_first_servo_until_that_one_is_gone() {
         let (first, second) = (writer([1; 12]), writer([2; 12]));
         let mut partner = Partner::new(STRESS);
-        assert_eq!(partner.judge(&answer(first), || vec![first, second]), AnswerSource::Successor);
+        assert_eq!(partner.judge(&answer(first), || vec![first, second]), AnswerSource::Ours);
         assert!(!partner.stay_with(first));
         assert_eq!(
             partner.judge(&answer(second), || vec![first, second]),
@@ -122,9 +112,9 @@ mod tests {
             AnswerSource::Another { new: false }
         );
         assert_eq!(partner.judge(&answer(first), || vec![first, second]), AnswerSource::Ours);
-        assert_eq!(partner.judge(&answer(second), || vec![second]), AnswerSource::Successor);
+        assert_eq!(partner.judge(&answer(second), || vec![second]), AnswerSource::Ours);
         assert!(partner.stay_with(second));
-        assert_eq!(partner.ignored(), 2);
+        assert_eq!(partner.ignored, 2);
     }
 
     #[test]
@@ -133,7 +123,7 @@ mod tests {
         let (before, after) = (writer(servo.guid_prefix()), writer(servo.guid_prefix()));
         let mut partner = Partner::new(STRESS);
         partner.stay_with(before);
-        assert_eq!(partner.judge(&answer(after), || vec![before, after]), AnswerSource::Successor);
+        assert_eq!(partner.judge(&answer(after), || vec![before, after]), AnswerSource::Ours);
         assert_eq!(different(&[before, after]).len(), 1);
         assert_eq!(different(&[writer([1; 12]), writer([2; 12])]).len(), 2);
     }
@@ -146,6 +136,6 @@ mod tests {
         let elsewhere = SampleInfo { about: about(Guid([8; 16])), ..answer(servo) };
         assert_eq!(partner.judge(&elsewhere, || vec![servo]), AnswerSource::AnotherRun);
         let here = SampleInfo { about: about(STRESS), ..answer(servo) };
-        assert_eq!(partner.judge(&here, || vec![servo]), AnswerSource::Successor);
+        assert_eq!(partner.judge(&here, || vec![servo]), AnswerSource::Ours);
     }
 }

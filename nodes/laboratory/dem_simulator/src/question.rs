@@ -19,15 +19,6 @@ pub(crate) struct Question {
     pub(crate) rate_limit: f64,
 }
 
-/// An answer that its request does not allow.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub(crate) enum Violation {
-    #[error("rate {component} = {found} 1/s is beyond the rate limit of the request, {limit} 1/s")]
-    Limit { component: &'static str, found: f64, limit: f64 },
-    #[error("rate {component} = {found} 1/s, where the request imposes {imposed} 1/s")]
-    Imposed { component: &'static str, found: f64, imposed: f64 },
-}
-
 impl Question {
     /// The constraints of a request.
     pub(crate) fn of(request: &ServoRequest) -> Self {
@@ -41,12 +32,14 @@ impl Question {
 
     /// Checks that these rates, 1/s, are allowed: within the limit, zero where a component is held, and equal to an imposed
     /// rate. The servo chooses only the rates of components with a stress target.
-    pub(crate) fn check(&self, rate: &[f64; 6]) -> Result<(), Violation> {
+    pub(crate) fn check(&self, rate: &[f64; 6]) -> Result<(), String> {
         let limit = self.rate_limit;
         for ((component, control), found) in SymTensor::COMPONENTS.into_iter().zip(&self.controls).zip(*rate)
         {
             if found.abs() > limit * (1.0 + ROUNDING) {
-                return Err(Violation::Limit { component, found, limit });
+                return Err(format!(
+                    "rate {component} = {found} 1/s is beyond the rate limit of the request, {limit} 1/s"
+                ));
             }
             let imposed = match control {
                 ComponentControl::Held => 0.0,
@@ -54,7 +47,9 @@ impl Question {
                 ComponentControl::Stress(_) => continue,
             };
             if (found - imposed).abs() > ROUNDING * imposed.abs() {
-                return Err(Violation::Imposed { component, found, imposed });
+                return Err(format!(
+                    "rate {component} = {found} 1/s, where the request imposes {imposed} 1/s"
+                ));
             }
         }
         Ok(())
@@ -72,11 +67,15 @@ mod tests {
         controls[2] = ComponentControl::StrainRate(-0.5);
         let question = Question { sequence: 3, stamp: Time::default(), controls, rate_limit: 2.0 };
         assert_eq!(question.check(&[2.0, 0.0, -0.5, -1.0, 0.0, 0.1]), Ok(()));
-        let limit = Violation::Limit { component: "yz", found: -2.1, limit: 2.0 };
-        assert_eq!(question.check(&[0.0, 0.0, -0.5, -2.1, 0.0, 0.0]), Err(limit));
-        let held = Violation::Imposed { component: "yy", found: 1e-6, imposed: 0.0 };
-        assert_eq!(question.check(&[0.0, 1e-6, -0.5, 0.0, 0.0, 0.0]), Err(held));
-        let imposed = Violation::Imposed { component: "zz", found: 0.5, imposed: -0.5 };
-        assert_eq!(question.check(&[0.0, 0.0, 0.5, 0.0, 0.0, 0.0]), Err(imposed));
+        for (rate, reason) in [
+            (
+                [0.0, 0.0, -0.5, -2.1, 0.0, 0.0],
+                "rate yz = -2.1 1/s is beyond the rate limit of the request, 2 1/s",
+            ),
+            ([0.0, 1e-6, -0.5, 0.0, 0.0, 0.0], "rate yy = 0.000001 1/s, where the request imposes 0 1/s"),
+            ([0.0, 0.0, 0.5, 0.0, 0.0, 0.0], "rate zz = 0.5 1/s, where the request imposes -0.5 1/s"),
+        ] {
+            assert_eq!(question.check(&rate), Err(reason.to_owned()));
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Some of the requests for viewers.
 
 use grainlab_msgs::{msg, topics};
-use grainlab_node_kit::{Bus, BusError, Publisher};
+use grainlab_node_kit::{Bus, BusError, Publisher, tolerate_full};
 use grainlab_servo::ServoRequest;
 
 /// Most exchanges between two samples.
@@ -33,10 +33,7 @@ impl Samples {
         if !self.due.at(request.sequence, request.step, grains) {
             return Ok(());
         }
-        match bus.publish(self.publisher.id(), body) {
-            Ok(_) | Err(BusError::Full { .. }) => Ok(()),
-            Err(error) => Err(error),
-        }
+        tolerate_full(bus.publish(self.publisher.id(), body))
     }
 }
 

@@ -20,23 +20,19 @@ enum Item {
 /// Messages to publish, in order. Requests overtake a large packing in transit; all other messages wait for it.
 #[derive(Debug)]
 pub(crate) struct SendQueue {
-    packings: BulkPublisher,
+    pub(crate) packings: BulkPublisher,
     waiting: VecDeque<Item>,
     /// States and packings behind the packing in transit.
     behind: VecDeque<Item>,
     under_way: bool,
-    held_up: u64,
+    /// Number of times that a slow reader delayed the run.
+    pub(crate) held_up: u64,
 }
 
 impl SendQueue {
     pub(crate) fn new(packings: BulkPublisher) -> Self {
         let (waiting, behind) = (VecDeque::new(), VecDeque::new());
         Self { packings, waiting, behind, under_way: false, held_up: 0 }
-    }
-
-    /// The publisher of packings.
-    pub(crate) fn packings(&self) -> &BulkPublisher {
-        &self.packings
     }
 
     pub(crate) fn push_request(&mut self, publisher: PublisherId, body: Vec<u8>) {
@@ -127,11 +123,6 @@ impl SendQueue {
             }
         }
         Ok(())
-    }
-
-    /// Number of times that a slow reader delayed the run.
-    pub(crate) fn held_up(&self) -> u64 {
-        self.held_up
     }
 }
 
@@ -266,7 +257,7 @@ mod tests {
             bench.hub.advance(Duration::from_millis(5));
             assert!(bench.hub.now() - began < Duration::from_secs(20));
         }
-        assert_eq!(bench.queue.packings().left_behind(), 1);
+        assert_eq!(bench.queue.packings.left_behind(), 1);
         // Without time left, queued messages are sent all the same.
         bench.queue.push_packing(body(3, 3 * BULK_LIMIT));
         bench.queue.push_state(run_state, body(4, 8));

@@ -19,7 +19,7 @@ const TWO_SERVOS: Duration = Duration::from_secs(75);
 impl DemSimulator {
     pub(crate) fn receive_run_states(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
         while let Some((_, info)) = self.run_states.take_valid(bus)? {
-            if predecessor(&info.writer.participant(), &self.participant) {
+            if predecessor(&info.writer.participant(), &self.partner.stress.participant()) {
                 continue;
             }
             if self.duplicates.note_state(info.writer, now) && self.stage != Stage::Starting {
@@ -39,7 +39,7 @@ impl DemSimulator {
         }
         let mut simulators = bus.foreign_writers(&topics::STRESS);
         // The process that this one replaces stays in the graph for a while.
-        simulators.retain(|writer| !predecessor(&writer.participant(), &self.participant));
+        simulators.retain(|writer| !predecessor(&writer.participant(), &self.partner.stress.participant()));
         match self.duplicates.verdict(&simulators, now) {
             Verdict::Clear => {}
             Verdict::Wait(writer) => {
@@ -98,7 +98,7 @@ impl DemSimulator {
             let (publisher, needed) = match topic.name {
                 name if name == topics::STRESS.name => (self.stress.id(), of_all),
                 name if name == topics::PACKING.name => {
-                    (self.send_queue.packings().id(), self.settings.min_packing_readers.unwrap_or(of_all))
+                    (self.send_queue.packings.id(), self.settings.min_packing_readers.unwrap_or(of_all))
                 }
                 name if name == topics::CLOCK.name => (self.clock.id(), 1),
                 _ => (self.run_state.id(), of_all),

@@ -8,8 +8,8 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Packing, PackingReport};
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    BulkPublisher, Bus, BusError, ClaimedDomain, DdsBus, Demand, Exit, Names, NodeError, Report,
-    Subscription, drive,
+    BulkPublisher, Bus, BusError, DdsBus, Demand, Exit, FreeDomain, Names, NodeError, Report, Subscription,
+    drive,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -49,7 +49,7 @@ struct Scene {
     stop: Arc<AtomicBool>,
     node: std::thread::JoinHandle<Exit>,
     begun: Instant,
-    _domain: ClaimedDomain,
+    _domain: FreeDomain,
 }
 
 fn node(
@@ -68,7 +68,7 @@ fn node(
 
 impl Scene {
     fn new() -> Self {
-        let domain = ClaimedDomain::claim().expect("a free DDS domain");
+        let domain = FreeDomain::take().expect("a free DDS domain");
         let network = domain.network();
         let mut bus = DdsBus::open(network, Names::new("source").unwrap()).unwrap();
         let packings = BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap();

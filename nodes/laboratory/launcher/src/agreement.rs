@@ -3,7 +3,7 @@
 
 use crate::nodes::NodeKind;
 use crate::plan::{NodePlan, PlanError};
-use grainlab_node_kit::{NameError, Names};
+use grainlab_node_kit::Names;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -18,23 +18,25 @@ pub fn names_of_run(plans: &[NodePlan]) -> Result<Names, PlanError> {
         .filter_map(|plan| Some(plan.parsed().transpose()?.map(|(node, names, _)| (plan, node, names))))
         .collect::<Result<_, _>>()?;
     let recorder = parsed.iter().find(|(_, node, _)| *node == NodeKind::Recorder);
-    let (_, _, recorded) =
-        recorder.ok_or(PlanError::Count { node: NodeKind::Recorder, count: 0, allowed: "one" })?;
+    let (_, _, recorded) = recorder.ok_or_else(|| PlanError::count(NodeKind::Recorder, 0))?;
     for (plan, node, names) in &parsed {
-        let resolve = |names: &Names, topic: &str| {
-            let refused =
-                |e: NameError| PlanError::Arguments { name: plan.name.clone(), reason: e.to_string() };
-            names.resolve(topic).map_err(refused)
-        };
+        let resolve =
+            |names: &Names, topic: &str| names.resolve(topic).map_err(|e| PlanError::of(&plan.name, e));
         let mut known: BTreeMap<String, &'static str> = BTreeMap::new();
         for topic in node.topics() {
             let (found, wanted) = (resolve(names, topic.name)?, resolve(recorded, topic.name)?);
-            let (name, topic) = (plan.name.clone(), topic.name);
+            let topic = topic.name;
             if found != wanted {
-                return Err(PlanError::Apart { name, topic, found, recorded: wanted });
+                let reason = format!(
+                    "the topic {topic} is {found} there and {wanted} for the recorder: the processes of a run meet, and are \
+                     recorded, under one name. Give all of them the same namespace (-r __ns:=/NAME) and the same remaps (-r)"
+                );
+                return Err(PlanError::of(&plan.name, reason));
             }
             if let Some(first) = known.insert(found.clone(), topic) {
-                return Err(PlanError::OneName { name, first, second: topic, found });
+                let reason =
+                    format!("the topics {first} and {topic} are both {found}: give each a name of its own");
+                return Err(PlanError::of(&plan.name, reason));
             }
         }
     }
@@ -65,8 +67,11 @@ impl NodePlan {
                 _ => continue,
             };
             if found != wanted {
-                let name = self.name.clone();
-                return Err(PlanError::NotHandedOn { name, parameter, found, wanted, arg });
+                let reason = format!(
+                    "its parameter {parameter} is {found:?}, not {wanted:?}, which grainlab launch sets: hand it on with \
+                     `-p {parameter}:=$(var {arg})`"
+                );
+                return Err(PlanError::of(&self.name, reason));
             }
         }
         Ok(())

@@ -2,9 +2,8 @@
 
 use super::plan::NodePlan;
 use crate::pipe::VARIABLE;
-use crate::run::Run;
 use grainlab_console::Failure;
-use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
+use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId};
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,6 +11,15 @@ use std::process::{ExitStatus, Stdio};
 use std::time::Instant;
 use tokio::process::Command;
 use tokio::sync::mpsc::UnboundedSender;
+
+/// The run that a launcher starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Run {
+    /// Id of the run.
+    pub id: RunId,
+    /// DDS domain of the run.
+    pub domain: u16,
+}
 
 /// A process that ended.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! Ends the processes of a run in order.
 
 use super::child::{Child, Ended};
-use super::supervisor::Supervisor;
+use super::supervisor::{POLL_PERIOD, STOPPED_AT_MOST, Supervisor};
 use super::watch::{Event, Watch};
 use crate::last_packing;
 use crate::nodes::NodeKind;
@@ -24,12 +24,6 @@ const NONE: i32 = 0;
 /// Time after which the launcher says what is not done.
 const SLOW: Duration = Duration::from_secs(3);
 
-/// Period of the check for stopped processes.
-const POLL_PERIOD: Duration = Duration::from_millis(200);
-
-/// Additional time that a complete run waits for a stopped process.
-const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
-
 /// The steps of an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ending {
@@ -47,24 +41,14 @@ impl Ending {
     /// The signals, each with the time until the next one. The recorder syncs its file to the device, which takes many
     /// seconds on a busy disk; a second interrupt of the user ends it earlier.
     fn signals(self) -> [(i32, Duration); 3] {
-        let seconds = |interrupt, terminate| {
-            [
-                (libc::SIGINT, Duration::from_secs(interrupt)),
-                (libc::SIGTERM, Duration::from_secs(terminate)),
-                (libc::SIGKILL, KILLED_WITHIN),
-            ]
-        };
-        match self {
-            Ending::Farewell => seconds(5, 1),
+        let first = match self {
+            Ending::Farewell => (libc::SIGINT, Duration::from_secs(5)),
             // It has its SIGINT already: a second one would end it at once.
-            Ending::Save => [
-                (NONE, SAVED_WITHIN + LEAVES_WITHIN),
-                (libc::SIGTERM, Duration::from_secs(1)),
-                (libc::SIGKILL, KILLED_WITHIN),
-            ],
-            Ending::Record => seconds(60, 1),
-            Ending::Exit => seconds(1, 1),
-        }
+            Ending::Save => (NONE, SAVED_WITHIN + LEAVES_WITHIN),
+            Ending::Record => (libc::SIGINT, Duration::from_secs(60)),
+            Ending::Exit => (libc::SIGINT, Duration::from_secs(1)),
+        };
+        [first, (libc::SIGTERM, Duration::from_secs(1)), (libc::SIGKILL, KILLED_WITHIN)]
     }
 }
 

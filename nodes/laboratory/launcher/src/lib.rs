@@ -23,15 +23,14 @@ pub mod pipe;
 mod plan;
 mod progress;
 mod recorded_speeds;
-mod run;
 mod said;
 mod stopped;
 mod supervisor;
 mod time_limit;
 mod watch;
 
-pub use nodes::{NodeKind, UnknownNode, Viewer};
+pub use child::Run;
+pub use nodes::{NodeKind, Viewer};
 pub use plan::{BUILT_IN, LaunchFile, NodePlan};
 pub use recorded_speeds::RecordedSpeeds;
-pub use run::Run;
 pub use supervisor::{Outline, Received, Supervised, Supervisor};

@@ -6,14 +6,11 @@
 use crate::last_packing;
 use clap::ValueEnum;
 use grainlab_acoustic_probe::AcousticProbe;
-use grainlab_console::Failure;
 use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::{
-    Bus, Exit, Names, Node, NodeError, NodeSpec, ParameterSpec, Parameters, RosArgs, Scope,
-};
+use grainlab_node_kit::{Bus, Names, Node, NodeError, NodeSpec, ParameterSpec, Parameters, RosArgs, Scope};
 use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
 use grainlab_recordings::{input, scenes};
 use grainlab_servo_controller::ServoController;
@@ -67,14 +64,6 @@ impl PartialEq for Viewer {
 
 impl Eq for Viewer {}
 
-/// An unknown name of a node.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no node {name:?}; there are: {known}")]
-pub struct UnknownNode {
-    name: String,
-    known: String,
-}
-
 impl NodeKind {
     /// Every node, in the order of the help.
     pub fn all(viewers: &'static [Viewer]) -> impl Iterator<Item = Self> {
@@ -85,8 +74,8 @@ impl NodeKind {
     ///
     /// # Errors
     /// If there is none; the text lists all.
-    pub fn named(name: &str, viewers: &'static [Viewer]) -> Result<Self, UnknownNode> {
-        let unknown = || UnknownNode { name: name.to_owned(), known: Self::names(viewers) };
+    pub fn named(name: &str, viewers: &'static [Viewer]) -> Result<Self, String> {
+        let unknown = || format!("no node {name:?}; there are: {}", Self::names(viewers));
         Self::all(viewers).find(|kind| kind.name() == name).ok_or_else(unknown)
     }
 
@@ -139,9 +128,7 @@ impl NodeKind {
     fn scope(self) -> Scope {
         match self {
             Self::DemSimulator | Self::ServoController | Self::Recorder => Scope::OwnRun,
-            Self::FabricAnalyzer | Self::AcousticProbe | Self::EmtInversion | Self::Viewer(_) => {
-                Scope::Everyone
-            }
+            _ => Scope::Everyone,
         }
     }
 
@@ -157,15 +144,14 @@ impl NodeKind {
 
     /// The names of its topics and the values of its parameters with these ROS arguments; the error is text.
     pub(crate) fn parse(self, arguments: &[String]) -> Result<(Names, Parameters), String> {
-        let text = |e: &dyn fmt::Display| e.to_string();
-        let (ros, plain) = RosArgs::parse(arguments).map_err(|e| text(&e))?;
+        let (ros, plain) = RosArgs::parse(arguments).map_err(|e| e.to_string())?;
         if let Some(word) = plain.first() {
             return Err(format!("unexpected argument {word:?}; ROS arguments come after --ros-args"));
         }
-        let names = Names::from_args(self.name(), &ros).map_err(|e| text(&e))?;
+        let names = Names::from_args(self.name(), &ros).map_err(|e| e.to_string())?;
         self.check_remaps(&names)?;
         let parameters = Parameters::resolve(&self.parameters(), self.name(), &names, &ros);
-        Ok((names, parameters.map_err(|e| text(&e))?))
+        Ok((names, parameters.map_err(|e| e.to_string())?))
     }
 
     /// Refuses a remap of a topic that does not exist, which would have no effect.
@@ -211,10 +197,8 @@ impl NodeKind {
     pub fn per_run(self) -> (RangeInclusive<usize>, &'static str) {
         match self {
             Self::Recorder | Self::DemSimulator => (1..=1, "one"),
-            Self::ServoController | Self::FabricAnalyzer | Self::AcousticProbe | Self::Viewer(_) => {
-                (0..=1, "at most one")
-            }
             Self::EmtInversion => (0..=usize::MAX, "any number"),
+            _ => (0..=1, "at most one"),
         }
     }
 
@@ -223,11 +207,7 @@ impl NodeKind {
         match self {
             Self::FabricAnalyzer => Some(topics::PACKING_REPORT),
             Self::AcousticProbe => Some(topics::WAVE_SPEEDS),
-            Self::DemSimulator
-            | Self::ServoController
-            | Self::EmtInversion
-            | Self::Recorder
-            | Self::Viewer(_) => None,
+            _ => None,
         }
     }
 
@@ -238,26 +218,28 @@ impl NodeKind {
         parameters: &Parameters,
         recorded: &ResultSlot,
     ) -> Result<Box<dyn Node>, NodeError> {
-        let usage = |e: &dyn fmt::Display| NodeError::new(Exit::Usage, e.to_string());
         Ok(match self {
             Self::DemSimulator => Box::new(simulator(bus, parameters)?),
-            Self::ServoController => Box::new(ServoController::new(bus, parameters.into())?),
+            Self::ServoController => {
+                let min_readers = parameters.get::<i64>("min_readers").unsigned_abs();
+                Box::new(ServoController::new(bus, min_readers as usize)?)
+            }
             Self::FabricAnalyzer => {
                 let settings = grainlab_fabric_analyzer::Settings::try_from(parameters);
-                Box::new(FabricAnalyzer::new(bus, settings.map_err(|e| usage(&e))?)?)
+                Box::new(FabricAnalyzer::new(bus, settings.map_err(NodeError::usage)?)?)
             }
             Self::AcousticProbe => {
                 let settings = grainlab_acoustic_probe::Settings::try_from(parameters);
-                Box::new(AcousticProbe::new(bus, settings.map_err(|e| usage(&e))?)?)
+                Box::new(AcousticProbe::new(bus, settings.map_err(NodeError::usage)?)?)
             }
             Self::EmtInversion => {
                 let read =
                     |path: &str| input::text(Path::new(path), input::SETTINGS).map_err(|e| e.to_string());
                 let settings = grainlab_emt_inversion::Settings::new(parameters, read);
-                Box::new(EmtInversion::new(bus, settings.map_err(|e| usage(&e))?)?)
+                Box::new(EmtInversion::new(bus, settings.map_err(NodeError::usage)?)?)
             }
             Self::Recorder => {
-                let settings = recorder::Settings::of(parameters).map_err(|e| node_error(&e))?;
+                let settings = recorder::Settings::of(parameters)?;
                 Box::new(Recorder::new(bus, &settings, recorded.clone())?)
             }
             Self::Viewer(viewer) => (viewer.build)(bus, parameters)?,
@@ -290,17 +272,11 @@ fn simulator(bus: &mut dyn Bus, parameters: &Parameters) -> Result<DemSimulator,
     let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
     let name: String = parameters.get("scene");
     let sets: Vec<String> = parameters.get("set");
-    let scene = scenes::load(&name, &sets, seed).map_err(|e| node_error(&e))?;
+    let scene = scenes::load(&name, &sets, seed)?;
     let recording: String = parameters.get("resume");
     let from = (!recording.is_empty()).then(|| last_packing::read(Path::new(&recording)));
-    let from = from.transpose().map_err(|e| node_error(&e))?;
-    let from = from.or(scene.start.map(|packing| (packing, Vec::new())));
+    let from = from.transpose()?.or(scene.start.map(|packing| (packing, Vec::new())));
     DemSimulator::new(bus, scene.scene, from, parameters.into())
-        .map_err(|e| NodeError::new(Exit::Failure, e.to_string()))
-}
-
-fn node_error(failure: &Failure) -> NodeError {
-    NodeError::new(failure.exit, failure.to_string())
 }
 
 #[cfg(test)]
@@ -313,7 +289,7 @@ mod tests {
         for kind in NodeKind::all(&[]) {
             assert_eq!(NodeKind::named(kind.name(), &[]), Ok(kind));
         }
-        let error = NodeKind::named("dem_simulater", &[]).unwrap_err().to_string();
+        let error = NodeKind::named("dem_simulater", &[]).unwrap_err();
         assert!(error.starts_with("no node \"dem_simulater\"; there are: dem_simulator, servo"), "{error}");
     }
 

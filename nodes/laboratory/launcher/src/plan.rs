@@ -1,7 +1,7 @@
 //! Launch files: the part of the YAML form of ROS 2 launch that starts processes: grainlab nodes and other
 //! programs.
 
-use crate::nodes::{NodeKind, UnknownNode, Viewer};
+use crate::nodes::{NodeKind, Viewer};
 use grainlab_node_kit::{Names, Parameters};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,71 +12,21 @@ pub const BUILT_IN: [(&str, &str); 2] = [
     ("acoustic", include_str!("../../../launch/acoustic.launch.yaml")),
 ];
 
-/// Errors of a launch file.
-#[derive(Debug, PartialEq, thiserror::Error)]
-pub enum PlanError {
-    /// Not YAML, or not this subset of ROS 2 launch.
-    #[error("not a launch file that can be run here: {0}")]
-    Format(String),
-    /// A `grainlab` command that does not run a node, or no command.
-    #[error("executable `{cmd}`: write `grainlab run NODE ...`, or a program with its arguments")]
-    Command { cmd: String },
-    /// An unknown node.
-    #[error("executable {name}: there is {unknown}")]
-    Node { name: String, unknown: UnknownNode },
-    /// A substitution other than `$(var NAME)`.
-    #[error("`{text}`: only $(var NAME) is supported of the substitutions of ROS 2 launch")]
-    Substitution { text: String },
-    /// A variable that no `arg` declares.
-    #[error("`{text}`: no arg declares the variable {name:?}; declared are: {known}")]
-    Undeclared { text: String, name: String, known: String },
-    /// A value for an undeclared argument.
-    #[error("the launch file declares no arg {name:?}; declared are: {known}")]
-    NoSuchArgument { name: String, known: String },
-    /// An argument that the launcher itself sets is not declared.
-    #[error(
-        "the launch file does not declare the arg {name:?}, which grainlab launch sets in each run, as scene, seed and out. \
-         Add to it:\n- arg: {{name: {name}, default: \"{default}\"}}\nand hand it on, as in `-p {parameter}:=$(var {name})`"
-    )]
-    OfLauncher { name: &'static str, default: &'static str, parameter: &'static str },
-    /// A node does not use what the launcher sets.
-    #[error(
-        "executable {name}: its parameter {parameter} is {found:?}, not {wanted:?}, which grainlab launch sets: hand it on with \
-         `-p {parameter}:=$(var {arg})`"
-    )]
-    NotHandedOn { name: String, parameter: &'static str, found: String, wanted: String, arg: &'static str },
-    /// Two processes use different names for one topic.
-    #[error(
-        "executable {name}: the topic {topic} is {found} there and {recorded} for the recorder: the processes of a run meet, and \
-         are recorded, under one name. Give all of them the same namespace (-r __ns:=/NAME) and the same remaps (-r)"
-    )]
-    Apart { name: String, topic: &'static str, found: String, recorded: String },
-    /// Two topics have one name.
-    #[error(
-        "executable {name}: the topics {first} and {second} are both {found}: give each a name of its own"
-    )]
-    OneName { name: String, first: &'static str, second: &'static str, found: String },
-    /// An argument without a default and a value.
-    #[error("arg {0:?} has no default and no value was given")]
-    NoValue(String),
-    /// A value of `output`, `respawn` or `on_exit` that is not supported.
-    #[error("executable {name}: {key}: {value:?} is not supported; use {allowed}")]
-    Value { name: String, key: &'static str, value: String, allowed: &'static str },
-    /// A name that cannot be a file name of a log.
-    #[error("executable name {0:?}: use lower case letters, digits, _ and - (it names a file)")]
-    Name(String),
-    /// Two processes with the same name would write one log.
-    #[error("two executables are called {0:?}: give one of them another name")]
-    Twice(String),
-    /// A required node is missing, or a node occurs too often.
-    #[error("the launch file starts {count} of {node}; there must be {allowed}")]
-    Count { node: NodeKind, count: usize, allowed: &'static str },
-    /// A node does not take these arguments.
-    #[error("executable {name}: {reason}")]
-    Arguments { name: String, reason: String },
-    /// More processes than a run may have.
-    #[error("the launch file starts {count} processes; a run has at most {most}")]
-    Many { count: usize, most: usize },
+/// Why a launch file is refused: the place, and what to write instead.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct PlanError(pub(crate) String);
+
+impl PlanError {
+    /// The fault of one executable.
+    pub(crate) fn of(name: &str, reason: impl std::fmt::Display) -> Self {
+        Self(format!("executable {name}: {reason}"))
+    }
+
+    /// The number of these nodes is not the allowed one.
+    pub(crate) fn count(node: NodeKind, count: usize) -> Self {
+        Self(format!("the launch file starts {count} of {node}; there must be {}", node.per_run().1))
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -152,8 +102,7 @@ impl NodePlan {
         let Some(node) = self.node else { return Ok(None) };
         // After `run NODE`.
         let parsed = node.parse(&self.arguments[2..]);
-        let (names, parameters) =
-            parsed.map_err(|reason| PlanError::Arguments { name: self.name.clone(), reason })?;
+        let (names, parameters) = parsed.map_err(|reason| PlanError::of(&self.name, reason))?;
         Ok(Some((node, names, parameters)))
     }
 
@@ -181,7 +130,8 @@ pub struct LaunchFile {
 impl LaunchFile {
     /// Reads a launch file.
     pub fn parse(text: &str) -> Result<Self, PlanError> {
-        let file: File = serde_saphyr::from_str(text).map_err(|e| PlanError::Format(e.to_string()))?;
+        let format = |e| PlanError(format!("not a launch file that can be run here: {e}"));
+        let file: File = serde_saphyr::from_str(text).map_err(format)?;
         let (mut arguments, mut executables) = (Vec::new(), Vec::new());
         for entry in file.launch {
             match entry {
@@ -215,29 +165,40 @@ impl LaunchFile {
         let known = || self.arguments.iter().map(|(n, _)| n.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = values.keys().find(|k| self.arguments.iter().all(|(n, _)| n != *k)) {
             if let Some((name, default, parameter)) = OF_LAUNCHER.into_iter().find(|(n, ..)| n == name) {
-                return Err(PlanError::OfLauncher { name, default, parameter });
+                return Err(PlanError(format!(
+                    "the launch file does not declare the arg {name:?}, which grainlab launch sets in each run, as scene, seed and \
+                     out. Add to it:\n- arg: {{name: {name}, default: \"{default}\"}}\nand hand it on, as in \
+                     `-p {parameter}:=$(var {name})`"
+                )));
             }
-            return Err(PlanError::NoSuchArgument { name: (*name).to_owned(), known: known() });
+            let declared = format!("the launch file declares no arg {name:?}; declared are: {}", known());
+            return Err(PlanError(declared));
         }
         let mut variables = BTreeMap::new();
         for (name, default) in &self.arguments {
             let value = values.get(name.as_str()).cloned().or_else(|| default.clone());
-            variables.insert(name.as_str(), value.ok_or_else(|| PlanError::NoValue(name.clone()))?);
+            let none = || PlanError(format!("arg {name:?} has no default and no value was given"));
+            variables.insert(name.as_str(), value.ok_or_else(none)?);
         }
         let nodes: Vec<NodePlan> =
             self.executables.iter().map(|e| e.plan(&variables, viewers)).collect::<Result<_, _>>()?;
         let mut names = BTreeSet::new();
         if let Some(plan) = nodes.iter().find(|n| !names.insert(n.name.as_str())) {
-            return Err(PlanError::Twice(plan.name.clone()));
+            let name = &plan.name;
+            return Err(PlanError(format!(
+                "two executables are called {name:?}: give one of them another name"
+            )));
         }
         if nodes.len() > PLACES {
-            return Err(PlanError::Many { count: nodes.len(), most: PLACES });
+            let count = nodes.len();
+            return Err(PlanError(format!(
+                "the launch file starts {count} processes; a run has at most {PLACES}"
+            )));
         }
         for node in NodeKind::all(viewers) {
-            let (counts, allowed) = node.per_run();
             let count = nodes.iter().filter(|n| n.is(node)).count();
-            if !counts.contains(&count) {
-                return Err(PlanError::Count { node, count, allowed });
+            if !node.per_run().0.contains(&count) {
+                return Err(PlanError::count(node, count));
             }
         }
         Ok(nodes)
@@ -250,7 +211,12 @@ impl Executable {
         variables: &BTreeMap<&str, String>,
         viewers: &'static [Viewer],
     ) -> Result<NodePlan, PlanError> {
-        let command = || PlanError::Command { cmd: self.cmd.clone() };
+        let command = || {
+            PlanError(format!(
+                "executable `{}`: write `grainlab run NODE ...`, or a program with its arguments",
+                self.cmd
+            ))
+        };
         let words = words(&self.cmd).ok_or_else(command)?;
         let named = match words.as_slice() {
             [program, run, node, ..] if program == "grainlab" && run == "run" => Some(node.as_str()),
@@ -276,13 +242,12 @@ impl Executable {
         };
         let name = self.name.clone().or_else(|| named.map(str::to_owned)).unwrap_or_else(by_itself);
         if name.is_empty() || !name.chars().all(plain) {
-            return Err(PlanError::Name(name));
+            return Err(PlanError(format!(
+                "executable name {name:?}: use lower case letters, digits, _ and - (it names a file)"
+            )));
         }
-        let refuse = |key, value: &str, allowed| PlanError::Value {
-            name: name.clone(),
-            key,
-            value: value.into(),
-            allowed,
+        let refuse = |key: &str, value: &str, allowed: &str| {
+            PlanError::of(&name, format!("{key}: {value:?} is not supported; use {allowed}"))
         };
         if let Some(output) = self.output.as_deref().filter(|o| !["screen", "log", "both"].contains(o)) {
             return Err(refuse("output", output, "screen, log or both"));
@@ -294,7 +259,7 @@ impl Executable {
             Some(other) => return Err(refuse("respawn", other, "true or false")),
         };
         let node = named.map(|name| NodeKind::named(name, viewers)).transpose();
-        let node = node.map_err(|unknown| PlanError::Node { name: name.clone(), unknown })?;
+        let node = node.map_err(|unknown| PlanError::of(&name, format!("there is {unknown}")))?;
         // The end of one of these nodes ends the run in any case: the key is for the launch of ROS 2.
         let ends_run = matches!(node, Some(NodeKind::DemSimulator | NodeKind::Recorder));
         if let Some(on_exit) = self.on_exit.as_deref().filter(|o| *o != "shutdown" || !ends_run) {
@@ -347,16 +312,15 @@ fn substitute(
     let mut out = String::new();
     let mut rest = word;
     while let Some((before, after)) = rest.split_once("$(") {
-        let text = || word.to_owned();
-        let (inside, behind) =
-            after.split_once(')').ok_or_else(|| PlanError::Substitution { text: text() })?;
-        let name =
-            inside.strip_prefix("var ").ok_or_else(|| PlanError::Substitution { text: text() })?.trim();
-        let value = value(name).ok_or_else(|| PlanError::Undeclared {
-            text: text(),
-            name: name.to_owned(),
-            known: known(),
+        let variable =
+            after.split_once(')').and_then(|(inside, rest)| Some((inside.strip_prefix("var ")?, rest)));
+        let (name, behind) = variable.ok_or_else(|| {
+            PlanError(format!("`{word}`: only $(var NAME) is supported of the substitutions of ROS 2 launch"))
         })?;
+        let name = name.trim();
+        let undeclared =
+            || format!("`{word}`: no arg declares the variable {name:?}; declared are: {}", known());
+        let value = value(name).ok_or_else(|| PlanError(undeclared()))?;
         out += before;
         out += &value;
         rest = behind;

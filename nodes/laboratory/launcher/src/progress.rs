@@ -27,7 +27,6 @@ pub(crate) struct Progress {
 /// The phase under way.
 #[derive(Debug)]
 struct Phase {
-    index: u32,
     name: PhaseName,
     /// When it was first seen, and the step.
     began: Instant,
@@ -92,9 +91,9 @@ impl Progress {
             }
             RunState::RUNNING => {
                 let phase = self.phase.as_ref();
-                if phase.is_none_or(|p| p.index != state.phase) {
+                if phase.is_none_or(|p| p.name.number != state.phase) {
                     // A restarted simulator may return to an earlier phase.
-                    if phase.is_some_and(|p| p.index < state.phase) {
+                    if phase.is_some_and(|p| p.name.number < state.phase) {
                         self.end_phase(state.step);
                     }
                     self.begin_phase(state);
@@ -111,7 +110,6 @@ impl Progress {
         self.printed_at = Instant::now();
         let name = PhaseName { number: state.phase, of: self.phases, name: state.phase_name.clone() };
         self.phase = Some(Phase {
-            index: state.phase,
             name: name.clone(),
             began: Instant::now(),
             first_step: state.step,

@@ -1,6 +1,6 @@
 //! Runs the processes of a launch: restarts them, and ends the run.
 
-use super::child::{Child, Ended};
+use super::child::{Child, Ended, Run};
 use super::deadline::{Deadline, nothing};
 use super::pending_results::{PendingResults, ResultState, Source};
 use super::plan::NodePlan;
@@ -13,7 +13,6 @@ use super::watch::{Event, Watch};
 use crate::agreement::names_of_run;
 use crate::last_packing;
 use crate::nodes::NodeKind;
-use crate::run::Run;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
@@ -32,11 +31,11 @@ const RESTART_WINDOW: Duration = Duration::from_secs(30);
 const RESTART_PAUSE: Duration = Duration::from_millis(100);
 
 /// Period of the checks of the processes.
-const POLL_PERIOD: Duration = Duration::from_millis(200);
+pub(super) const POLL_PERIOD: Duration = Duration::from_millis(200);
 
 /// Time for a process that was stopped to catch up before the run ends, and the time limit of the end for it.
 const CATCHES_UP_WITHIN: Duration = Duration::from_secs(6);
-const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
+pub(super) const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 
 /// Time before a message about a run that has not begun.
 const BEGINS_WITHIN: Duration = Duration::from_secs(10);
@@ -418,9 +417,14 @@ impl Supervisor {
         };
         let reason = self.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
         let text = format!("{name} {how}: {reason}");
-        self.complain(text);
-        self.children[ended.index].quote_log(&self.logs);
-        Some(exit)
+        Some(self.give_up(ended.index, text, exit))
+    }
+
+    /// Complains about a process, with the errors of its log.
+    fn give_up(&mut self, index: usize, reason: String, exit: Exit) -> Exit {
+        self.complain(reason);
+        self.children[index].quote_log(&self.logs);
+        exit
     }
 
     /// A third-party program may end when it is done; one that fails does not end the run, but counts as a failure.
@@ -447,11 +451,9 @@ impl Supervisor {
         self.crashes.push(packings);
         // Three attempts ended at the same packing: a fourth one would, too.
         if self.crashes.iter().filter(|known| **known == packings).count() > 3 {
-            self.complain(format!(
-                "{SIMULATOR} {how}, for the fourth time after packing {packings}: not restarted"
-            ));
-            self.children[index].quote_log(&self.logs);
-            return Some(Exit::Failure);
+            let again =
+                format!("{SIMULATOR} {how}, for the fourth time after packing {packings}: not restarted");
+            return Some(self.give_up(index, again, Exit::Failure));
         }
         self.children[index].quote_log(&self.logs);
         let from = if packings == 0 { "from the beginning" } else { "from the last packing recorded" };
@@ -468,9 +470,8 @@ impl Supervisor {
         let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count() + 1;
         if recent > RESTARTS {
             let window = RESTART_WINDOW.as_secs();
-            self.complain(format!("{name} {how}, {recent} times within {window} s: not restarted"));
-            self.children[index].quote_log(&self.logs);
-            return Some(Exit::Failure);
+            let again = format!("{name} {how}, {recent} times within {window} s: not restarted");
+            return Some(self.give_up(index, again, Exit::Failure));
         }
         self.progress.say(&format!("{name} {how}: restarted"));
         self.start_again(index).await

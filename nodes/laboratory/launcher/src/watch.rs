@@ -1,6 +1,6 @@
 //! Passes the run's messages over DDS to the supervisor.
 
-use crate::run::Run;
+use crate::child::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::{Failure, say};
 use grainlab_dem_simulator::{PHASE, PHASE_SHARE, UNMET};

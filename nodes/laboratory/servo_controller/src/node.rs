@@ -1,10 +1,11 @@
 //! The servo as a node.
 
-use crate::{Refusal, Settings, answer};
+use crate::{Refusal, answer};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, SampleId, Subscription,
+    Bus, BusError, Demand, Health, Next, Node, NodeError, ParameterSpec, Publisher, Range, SampleId,
+    Subscription,
 };
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -15,10 +16,23 @@ const IDLE: Duration = Duration::from_secs(3600);
 /// Capacity of the queue of stresses; the simulator sends one at a time, and a few ahead in free run.
 const BACKLOG: u32 = 16;
 
+/// The parameters of the node.
+pub fn parameters() -> Vec<ParameterSpec> {
+    let most = i64::from(u8::MAX);
+    vec![
+        ParameterSpec::new(
+            "min_readers",
+            1_i64,
+            "number of readers of strain_rate to wait for before the first answer, 1",
+        )
+        .within(Range::Integer { min: 0, max: most }),
+    ]
+}
+
 /// The servo: answers every stress and has no state that matters.
 #[derive(Debug)]
 pub struct ServoController {
-    settings: Settings,
+    min_readers: usize,
     /// True once the readers to wait for have been present.
     ready: bool,
     /// Stresses received before that.
@@ -36,10 +50,11 @@ pub struct ServoController {
 
 impl ServoController {
     /// Creates the publisher and the subscription. The latter is best effort: the simulator repeats lost stresses, and
-    /// a servo that stopped must not fill the simulator's window.
-    pub fn new(bus: &mut dyn Bus, settings: Settings) -> Result<Self, BusError> {
+    /// a servo that stopped must not fill the simulator's window. No answer precedes `min_readers` readers of `strain_rate`, so
+    /// that a recorder does not miss one.
+    pub fn new(bus: &mut dyn Bus, min_readers: usize) -> Result<Self, BusError> {
         Ok(Self {
-            settings,
+            min_readers,
             ready: false,
             early: VecDeque::new(),
             stress: Subscription::subscribe(bus, &topics::STRESS, Demand::best_effort(BACKLOG))?,
@@ -97,7 +112,7 @@ impl ServoController {
 
 impl Node for ServoController {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
-        self.ready = self.ready || bus.readers(self.strain_rate.id()) >= self.settings.min_readers;
+        self.ready = self.ready || bus.readers(self.strain_rate.id()) >= self.min_readers;
         if self.ready {
             while let Some((stress, request)) = self.early.pop_front() {
                 self.reply(bus, &stress, request)?;

@@ -7,7 +7,7 @@ use grainlab_node_kit::{
     Actor, Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription, run_until,
 };
 use grainlab_servo::{ServoInput, ServoRequest};
-use grainlab_servo_controller::{Refusal, ServoController, Settings, answer};
+use grainlab_servo_controller::{Refusal, ServoController, answer};
 use std::time::Duration;
 
 /// 10 kPa too little compression on zz, 200 MPa of tangent stiffness and 0.1 ms of response time: −0.5 per second.
@@ -74,7 +74,7 @@ fn the_same_question_has_the_same_answer_from_any_servo_in_any_order() {
     let mut asker = Asker::new(&hub);
     for sequence in [3, 1, 3] {
         let mut bus = hub.bus(Names::new("servo_controller").unwrap());
-        let mut servo = ServoController::new(&mut bus, Settings::default()).unwrap();
+        let mut servo = ServoController::new(&mut bus, 1).unwrap();
         let mut actors = [Actor::new(&mut servo, bus)];
         for sequence in [sequence, 2, sequence] {
             asker.stress.publish(&mut asker.bus, &question(sequence)).unwrap();
@@ -93,7 +93,7 @@ fn requests_that_cannot_be_answered_are_counted_and_the_node_continues() {
     let hub = Hub::new(1);
     let mut asker = Asker::new(&hub);
     let mut bus = hub.bus(Names::new("servo_controller").unwrap());
-    let mut servo = ServoController::new(&mut bus, Settings::default()).unwrap();
+    let mut servo = ServoController::new(&mut bus, 1).unwrap();
     let not_finite = Stress {
         stress: grainlab_msgs::msg::SymmetricTensor { zz: f64::NAN, ..Default::default() },
         ..question(1)
@@ -131,7 +131,7 @@ fn the_first_answer_waits_for_its_readers_and_no_later_one_does() {
     let hub = Hub::new(1);
     let mut asker = Asker::new(&hub);
     let mut bus = hub.bus(Names::new("servo_controller").unwrap());
-    let mut servo = ServoController::new(&mut bus, Settings { min_readers: 2 }).unwrap();
+    let mut servo = ServoController::new(&mut bus, 2).unwrap();
     for sequence in [1, 2] {
         asker.stress.publish(&mut asker.bus, &question(sequence)).unwrap();
         servo.step(&mut bus).unwrap();

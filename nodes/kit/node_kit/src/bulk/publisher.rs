@@ -141,9 +141,4 @@ impl BulkPublisher {
     pub fn waited_for(&self) -> usize {
         self.sender.waited_for()
     }
-
-    /// Number of repeated parts: for late readers, and where parts were lost.
-    pub fn repeated_parts(&self) -> u64 {
-        self.sender.repeated()
-    }
 }

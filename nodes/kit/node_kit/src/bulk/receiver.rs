@@ -136,10 +136,10 @@ impl Receiver {
         self.sources.values().map(|source| source.credit.due).min().unwrap_or(self.broadcast.due)
     }
 
-    /// Number of parts received and in total of the body in transit.
-    pub(super) fn under_way(&self) -> Option<(u64, u32)> {
-        let assemblies = self.sources.values().filter_map(|source| source.assembly.as_ref());
-        assemblies.map(|assembly| (assembly.parts(), assembly.shape.count)).next()
+    /// True while the parts of a body are kept.
+    #[cfg(test)]
+    pub(super) fn keeps_parts(&self) -> bool {
+        self.sources.values().any(|source| source.assembly.is_some())
     }
 
     /// Removes writers that left.

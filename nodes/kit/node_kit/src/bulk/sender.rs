@@ -43,8 +43,6 @@ pub(super) struct Sender {
     /// Parts to send again.
     again: BTreeSet<u32>,
     readers: BTreeMap<Guid, Reader>,
-    /// Number of repeated parts.
-    repeated: u64,
     /// The process is about to end.
     hurries: bool,
 }
@@ -61,14 +59,8 @@ impl Sender {
             when: Vec::new(),
             again: BTreeSet::new(),
             readers: BTreeMap::new(),
-            repeated: 0,
             hurries: false,
         }
-    }
-
-    /// Number of repeated parts.
-    pub(super) fn repeated(&self) -> u64 {
-        self.repeated
     }
 
     /// Waits only for a short time for readers that are silent or not ready, and does not hold back parts for them.
@@ -136,10 +128,7 @@ impl Sender {
     pub(super) fn next_part(&mut self, now: Duration) -> Option<PackingChunk> {
         let shape = self.shape?;
         let index = match self.again.pop_first() {
-            Some(index) => {
-                self.repeated += 1;
-                index
-            }
+            Some(index) => index,
             None if self.sent < self.frontier() => {
                 self.sent += 1;
                 self.sent - 1

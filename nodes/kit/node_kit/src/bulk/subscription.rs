@@ -4,7 +4,7 @@ use super::limits::IDLE_CREDIT_PERIOD;
 use super::part_topics::beside;
 use super::receiver::Receiver;
 use crate::bus::{Bus, SubscriptionId};
-use crate::bus_error::BusError;
+use crate::bus_error::{BusError, tolerate_full};
 use crate::demand::Demand;
 use crate::sample::{Sample, SampleInfo};
 use crate::typed::{Publisher, Subscription};
@@ -124,11 +124,8 @@ impl BulkSubscription {
             self.receiver.forget_absent(now, &bus.foreign_writers(&self.part_topic));
         }
         for credit in self.receiver.credits(now) {
-            match self.credits.publish(bus, &credit) {
-                // A refused credit is repeated later.
-                Ok(_) | Err(BusError::Full { .. }) => {}
-                Err(error) => return Err(error),
-            }
+            // A refused credit is repeated later.
+            tolerate_full(self.credits.publish(bus, &credit))?;
         }
         Ok(())
     }
@@ -146,11 +143,6 @@ impl BulkSubscription {
     /// Number of queued messages.
     pub fn waiting(&self) -> usize {
         self.queue.len()
-    }
-
-    /// Number of parts received and in total of a large message in transit.
-    pub fn under_way(&self) -> Option<(u64, u32)> {
-        self.receiver.under_way()
     }
 
     /// The plain topic's handle, for [`Bus::writers`] and [`Bus::count_refused`].

@@ -7,7 +7,7 @@
 //! steps.
 
 use super::inbox::Inbox;
-use super::lock::lock;
+use crate::lock::lock;
 use mio::Waker;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};

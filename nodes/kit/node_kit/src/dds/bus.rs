@@ -2,24 +2,23 @@
 
 use super::background_reader::{BackgroundReader, Inboxes};
 use super::direct::{self, Change, DdsTopic, Discovery, RawPublisher, RawSubscription};
-use super::error::create_error;
 use super::gate::Gate;
 use super::graph::Graph;
 use super::handles::Handles;
 use super::inbox::Inbox;
-use super::lock::lock;
 use super::network::Network;
 use super::writer::Writer;
 use crate::admission::{Participant, Stranger};
 use crate::bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
-use crate::bus_error::BusError;
+use crate::bus_error::{BusError, create_error};
 use crate::demand::Demand;
 use crate::identity::{Identity, Scope};
+use crate::lock::lock;
 use crate::names::Names;
 use crate::offer::Offer;
 use crate::parameters::Parameters;
 use crate::sample::{Sample, SampleId};
-use crate::services::{Declared, ServiceThread, SimTime};
+use crate::services::{ServiceThread, SimTime};
 use crate::wall_clock;
 use crate::watchdog::OpenParticipant;
 use grainlab_console::Signals;
@@ -65,7 +64,7 @@ struct Subscriber {
 pub struct DdsBus {
     // Fields are dropped in this order, and endpoints have to be dropped before their participant.
     services: Option<ServiceThread>,
-    declared: Declared,
+    declared: Parameters,
     sim_time: SimTime,
     background_reader: BackgroundReader,
     writers: Handles<Writer>,
@@ -105,7 +104,7 @@ impl DdsBus {
 
     /// Joins the domain with this identity.
     pub fn join(network: Network, names: Names, identity: Identity) -> Result<Self, BusError> {
-        Self::declaring(network, names, identity, Declared::new(&[], Parameters::defaults(&[])))
+        Self::declaring(network, names, identity, Parameters::defaults(&[]))
     }
 
     /// Joins as a node with these parameters. [`Self::serve`] starts its services.
@@ -113,13 +112,16 @@ impl DdsBus {
         network: Network,
         names: Names,
         identity: Identity,
-        declared: Declared,
+        declared: Parameters,
     ) -> Result<Self, BusError> {
         let prefix = identity.guid_prefix();
         let gate = Arc::new(Gate::new(identity, prefix));
         let context = direct::context(network, prefix, &gate)?;
         let open = OpenParticipant::new();
-        let node_error = |reason: String| BusError::Network { what: format!("create node {names}"), reason };
+        let node_error = |reason: String| BusError::Network {
+            what: format!("create node {}", names.fully_qualified()),
+            reason,
+        };
         let name = NodeName::new(names.namespace(), names.node()).map_err(|e| node_error(e.to_string()))?;
         let mut node =
             context.new_node(name, declared.node_options()).map_err(|e| node_error(e.to_string()))?;
@@ -196,9 +198,8 @@ impl DdsBus {
 
     /// The reader for `demand` on a topic. It is created at the first call.
     fn reader_for(&mut self, resolved: String, topic: &Topic, demand: Demand) -> Result<usize, BusError> {
-        let serves = |r: &Reader| {
-            r.topic == resolved && r.info == topic.info && lock(&r.inbox).demand().covers(demand)
-        };
+        let serves =
+            |r: &Reader| r.topic == resolved && r.info == topic.info && lock(&r.inbox).demand.covers(demand);
         if let Some((index, _)) = self.readers.iter().find(|(_, r)| serves(r)) {
             return Ok(index);
         }
@@ -209,9 +210,9 @@ impl DdsBus {
         let index = self.readers.next();
         self.poll
             .registry()
-            .register(inbox.source(), Token(FIRST_READER + index), Interest::READABLE)
+            .register(inbox.reader.source(), Token(FIRST_READER + index), Interest::READABLE)
             .map_err(|e| create_error(&resolved, &e))?;
-        let guid = inbox.guid();
+        let guid = inbox.reader.guid();
         self.gate.add_reader(guid, &resolved);
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
@@ -314,7 +315,7 @@ impl Bus for DdsBus {
             return;
         }
         let Some(reader) = self.readers.remove(ended.reader) else { return };
-        if let Err(error) = self.poll.registry().deregister(lock(&reader.inbox).source()) {
+        if let Err(error) = self.poll.registry().deregister(lock(&reader.inbox).reader.source()) {
             log::error!("{}: cannot end the subscription in order: {error}", reader.topic);
         }
         lock(&self.inboxes).retain(|inbox| !Arc::ptr_eq(inbox, &reader.inbox));
@@ -419,7 +420,7 @@ impl Bus for DdsBus {
     fn received(&self) -> Vec<Received> {
         let of = |s: &Subscriber| {
             let reader = self.readers.get(s.reader)?;
-            let refused = s.refused + lock(&reader.inbox).refused();
+            let refused = s.refused + lock(&reader.inbox).refused;
             Some(Received { topic: reader.topic.clone(), taken: s.taken, refused })
         };
         self.subscribers.values().filter_map(of).collect()
@@ -450,7 +451,7 @@ impl Bus for DdsBus {
     fn flush(&mut self, timeout: Duration) -> bool {
         let deadline = Instant::now() + timeout;
         // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
-        let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand().reliable;
+        let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand.reliable;
         let external = |w: &&Writer| !self.readers.values().any(|r| own(r, &w.topic));
         self.writers.values().filter(external).all(|writer| {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -463,7 +464,7 @@ impl Bus for DdsBus {
     }
 
     fn node_nanos(&self) -> u64 {
-        if self.declared.use_sim_time() { self.sim_time.nanos() } else { self.wall_nanos() }
+        if self.declared.use_sim_time() { self.sim_time.load(Ordering::Relaxed) } else { self.wall_nanos() }
     }
 
     fn wall_nanos(&self) -> u64 {

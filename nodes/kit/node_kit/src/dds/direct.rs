@@ -13,10 +13,9 @@
 //! - [`Discovery`]: changes of the graph. ros2-client's spinner reports no lost participants, and subscribes to `/clock` with
 //!   a type that is not `rosgraph_msgs/Clock`.
 
-use super::error::create_error;
 use super::gate::Gate;
 use super::network::{Network, Reach};
-use crate::bus_error::BusError;
+use crate::bus_error::{BusError, create_error};
 use crate::demand::Demand;
 use crate::offer::{Offer, user_data, wire_type};
 use crate::sample::{Sample, SampleId, SampleInfo};
@@ -431,9 +430,7 @@ impl Discovery {
                 Change::Lost(Guid(guid.to_bytes()))
             }
             Event::ParticipantLost { id, .. } => {
-                let mut prefix = [0; 12];
-                prefix.copy_from_slice(id.as_ref());
-                Change::ParticipantLost(prefix)
+                <[u8; 12]>::try_from(id.as_ref()).map_or(Change::Other, Change::ParticipantLost)
             }
             Event::RemoteReaderQosIncompatible { remote_reader, requested_qos, offered_qos, .. } => misfit(
                 remote_reader,

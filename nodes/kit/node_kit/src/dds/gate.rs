@@ -1,9 +1,9 @@
 //! Applies the rules of admission in RustDDS's threads.
 
-use super::lock::lock;
 use super::processes;
 use crate::admission::{Admission, Participant, Stranger};
 use crate::identity::{Identity, Scope};
+use crate::lock::lock;
 use grainlab_msgs::Guid;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;

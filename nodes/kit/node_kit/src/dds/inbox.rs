@@ -5,20 +5,19 @@ use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::sample::{Sample, SampleId, SampleInfo};
 use crate::wall_clock::wall_nanos;
-use grainlab_msgs::Guid;
 use std::collections::VecDeque;
 
 /// A reader shared by all subscriptions to its topic, with one queue per subscription.
 pub(super) struct Inbox {
-    reader: RawSubscription,
+    pub(super) reader: RawSubscription,
     topic: String,
-    demand: Demand,
+    pub(super) demand: Demand,
     /// One for each subscriber; that of one that left is `None`.
     queues: Vec<Option<VecDeque<Sample>>>,
     /// Our own participant: the bus delivers its samples, and the copies from DDS are dropped.
     own: [u8; 12],
     /// Number of samples that RustDDS could not return: their representation is not CDR.
-    refused: u64,
+    pub(super) refused: u64,
 }
 
 impl Inbox {
@@ -40,18 +39,6 @@ impl Inbox {
         }
     }
 
-    pub(super) fn guid(&self) -> Guid {
-        self.reader.guid()
-    }
-
-    pub(super) fn demand(&self) -> Demand {
-        self.demand
-    }
-
-    pub(super) fn source(&mut self) -> &mut impl mio::event::Source {
-        self.reader.source()
-    }
-
     /// Adds a subscriber and returns its index.
     pub(super) fn add_queue(&mut self) -> usize {
         self.queues.push(Some(VecDeque::new()));
@@ -65,15 +52,6 @@ impl Inbox {
 
     pub(super) fn has_data(&self) -> bool {
         self.queues.iter().flatten().any(|queue| !queue.is_empty())
-    }
-
-    pub(super) fn refused(&self) -> u64 {
-        self.refused
-    }
-
-    /// Clears the reader's notification, so that the next sample raises a new one. Before reading, never after.
-    pub(super) fn acknowledge(&self) {
-        self.reader.acknowledge();
     }
 
     /// The next sample for one subscriber.
@@ -93,7 +71,7 @@ impl Inbox {
 
     /// Moves all samples that arrived into the queues; true if there were any.
     pub(super) fn collect(&mut self) -> Result<bool, BusError> {
-        self.acknowledge();
+        self.reader.acknowledge();
         let mut moved = false;
         while let Some(sample) = self.read()? {
             moved = true;

@@ -3,28 +3,23 @@
 //! - `bus`: the [`crate::Bus`] itself, with its single wait
 //! - `inbox`: a reader with the samples that were read but not taken; `background_reader`: reads while a node computes
 //! - `gate`: which samples are accepted; `processes`: the process of a participant
-//! - `graph`: endpoints of other processes; `test_domain`: domains for tests
+//! - `graph`: endpoints of other processes
 //! - `network`: domain and reach; `static_peers`: hosts that are found without multicast
-//! - `handles`: values by handles; `lock`: locks that survive a panic; `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
+//! - `handles`: values by handles; `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
 
 mod background_reader;
 mod bus;
 mod direct;
-mod error;
 mod gate;
 mod graph;
 mod handles;
 mod inbox;
-mod lock;
 mod network;
 mod processes;
 mod static_peers;
-mod test_domain;
 mod writer;
 
 pub use bus::DdsBus;
 pub(crate) use direct::LOG_TARGET;
-pub(crate) use error::create_error;
 pub use network::{MAX_DOMAIN, Network, NetworkError, Reach};
 pub use static_peers::StaticPeers;
-pub use test_domain::ClaimedDomain;

@@ -25,17 +25,10 @@ pub struct Network {
 /// Greatest domain whose ports fit 16 bits with room for participants (RTPS 9.6.2.3).
 pub const MAX_DOMAIN: u16 = 232;
 
-/// A variable with an unsupported value. The process then ends with [`crate::Exit::Usage`].
+/// A variable with an unsupported value, why it is not supported, and what to do. The process then ends with [`crate::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{variable}={value:?}: {reason}")]
-pub struct NetworkError {
-    /// Name of the variable.
-    pub variable: &'static str,
-    /// Value of the variable.
-    pub value: String,
-    /// Why it is not supported, and what to do.
-    pub reason: &'static str,
-}
+#[error("{0}")]
+pub struct NetworkError(String);
 
 impl Network {
     /// This host only, in the given domain.
@@ -52,7 +45,9 @@ impl Network {
     pub fn from_variables(lookup: impl Fn(&str) -> Option<String>) -> Result<Self, NetworkError> {
         let get =
             |variable: &'static str| lookup(variable).map(|v| v.trim().to_owned()).filter(|v| !v.is_empty());
-        let refuse = |variable, value: &str, reason| NetworkError { variable, value: value.into(), reason };
+        let refuse = |variable: &str, value: &str, reason: &str| {
+            NetworkError(format!("{variable}={value:?}: {reason}"))
+        };
 
         let domain = match get("ROS_DOMAIN_ID") {
             None => 0,

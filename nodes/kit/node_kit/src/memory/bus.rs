@@ -48,17 +48,14 @@ impl MemoryBus {
     }
 
     /// True if a sample can be taken now.
-    pub fn has_arrivals(&self) -> bool {
-        self.has_data()
-    }
-
-    pub(super) fn has_data(&self) -> bool {
+    pub fn has_data(&self) -> bool {
         let state = self.state.borrow();
         self.readers.iter().any(|r| state.readers[*r].has_data(state.now))
     }
 
-    /// Present writers of a topic, by its resolved name, sorted, of those that count.
-    fn writers_of(&self, topic: &str, counts: impl Fn(Guid) -> bool) -> Vec<Guid> {
+    /// Present writers of a topic, sorted, of those that count.
+    fn writers_of(&self, topic: &Topic, counts: impl Fn(Guid) -> bool) -> Vec<Guid> {
+        let topic = self.names.resolve(topic.name).unwrap_or_default();
         let state = self.state.borrow();
         let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == topic);
         let mut ids: Vec<Guid> = on_topic.map(|w| w.id).filter(|id| counts(*id)).collect();
@@ -167,19 +164,18 @@ impl Bus for MemoryBus {
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
-        let Some(reader) = self.readers.get(subscription.0) else { return 0 };
-        let topic = self.state.borrow().readers[*reader].topic.clone();
-        self.writers_of(&topic, |id| self.counts(id)).len()
+        let state = self.state.borrow();
+        let Some(reader) = self.readers.get(subscription.0).map(|r| &state.readers[*r]) else { return 0 };
+        let writers = state.writers.iter().filter(|w| w.alive && w.topic == reader.topic);
+        writers.filter(|w| self.counts(w.id)).count()
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<Guid> {
-        let name = self.names.resolve(topic.name).unwrap_or_default();
-        self.writers_of(&name, |id| self.counts(id))
+        self.writers_of(topic, |id| self.counts(id))
     }
 
     fn strange_writers(&self, topic: &Topic) -> Vec<Guid> {
-        let name = self.names.resolve(topic.name).unwrap_or_default();
-        self.writers_of(&name, |id| !self.admission.admits(&id.participant()))
+        self.writers_of(topic, |id| !self.admission.admits(&id.participant()))
     }
 
     fn offers(&self) -> Vec<Offer> {

@@ -9,26 +9,18 @@ use std::time::Duration;
 /// One node on its bus.
 pub struct Actor<'a> {
     node: &'a mut dyn Node,
-    bus: MemoryBus,
+    /// Bus of the node.
+    pub bus: MemoryBus,
     /// Latest time of its next step.
     due: Duration,
-    ended: Option<Result<Exit, NodeError>>,
+    /// Exit of the node, if it has ended.
+    pub ended: Option<Result<Exit, NodeError>>,
 }
 
 impl<'a> Actor<'a> {
     /// A node that was made on `bus`.
     pub fn new(node: &'a mut dyn Node, bus: MemoryBus) -> Self {
         Self { node, bus, due: Duration::ZERO, ended: None }
-    }
-
-    /// Exit of the node, if it has ended.
-    pub fn ended(&self) -> Option<&Result<Exit, NodeError>> {
-        self.ended.as_ref()
-    }
-
-    /// Bus of the node.
-    pub fn bus(&mut self) -> &mut MemoryBus {
-        &mut self.bus
     }
 }
 

@@ -1,16 +1,21 @@
 //! The parameter values of a node.
 
-use super::error::ParameterError;
 use super::spec::ParameterSpec;
 use super::value::{FromParameter, ParameterValue, parameter_text, type_name};
 use super::{file, yaml::parse_value};
-use crate::{args::RosArgs, names::Names};
+use crate::{args::RosArgs, lock::lock, names::Names};
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
+
+/// Why a parameter or a parameter file is refused. The process then ends with [`crate::Exit::Usage`].
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct ParameterError(pub(super) String);
 
 /// Every declared parameter with its value, sorted by name. Clones share the values.
 #[derive(Clone, Debug)]
 pub struct Parameters {
+    specs: Arc<[ParameterSpec]>,
     values: Arc<Mutex<BTreeMap<&'static str, ParameterValue>>>,
 }
 
@@ -29,11 +34,11 @@ impl Parameters {
         for path in &args.params_files {
             let origin = path.display().to_string();
             for given in file::read(path, &names.fully_qualified())? {
-                if given.for_several && !specs.iter().any(|spec| spec.name == given.name) {
+                if given.for_several && set.spec(&given.name).is_none() {
                     log::debug!("{origin}: {} is for another node", given.name);
                     continue;
                 }
-                set.assign(specs, names, &origin, &given.name, given.value)?;
+                set.assign(names, &origin, &given.name, given.value)?;
             }
         }
         for assignment in &args.parameters {
@@ -47,9 +52,9 @@ impl Parameters {
                     names.fully_qualified()
                 )));
             }
-            let value = parse_value(&assignment.yaml)
+            let value = parse_value(&assignment.value)
                 .map_err(|reason| ParameterError(format!("-p: parameter {name:?}: {reason}")))?;
-            set.assign(specs, names, "-p", name, value)?;
+            set.assign(names, "-p", name, value)?;
         }
         Ok(set)
     }
@@ -57,23 +62,23 @@ impl Parameters {
     /// The defaults alone.
     pub fn defaults(specs: &[ParameterSpec]) -> Self {
         let values = specs.iter().map(|s| (s.name, s.default.clone())).collect();
-        Self { values: Arc::new(Mutex::new(values)) }
+        Self { specs: specs.into(), values: Arc::new(Mutex::new(values)) }
     }
 
-    fn lock(&self) -> MutexGuard<'_, BTreeMap<&'static str, ParameterValue>> {
-        self.values.lock().unwrap_or_else(PoisonError::into_inner)
+    /// The declaration of a parameter.
+    pub(crate) fn spec(&self, name: &str) -> Option<&ParameterSpec> {
+        self.specs.iter().find(|spec| spec.name == name)
     }
 
     fn assign(
         &self,
-        specs: &[ParameterSpec],
         names: &Names,
         origin: &str,
         name: &str,
         value: ParameterValue,
     ) -> Result<(), ParameterError> {
-        let Some(spec) = specs.iter().find(|s| s.name == name) else {
-            let known: Vec<&str> = self.lock().keys().copied().collect();
+        let Some(spec) = self.spec(name) else {
+            let known: Vec<&str> = lock(&self.values).keys().copied().collect();
             let known = if known.is_empty() { "none".into() } else { known.join(", ") };
             let node = names.fully_qualified();
             return Err(ParameterError(format!(
@@ -107,24 +112,26 @@ impl Parameters {
     /// If the node does not declare `name` or declares it with another type: a mistake in the node's code, found by its
     /// first test.
     pub fn get<T: FromParameter>(&self, name: &str) -> T {
-        let values = self.lock();
+        let values = lock(&self.values);
         let value = values.get(name).unwrap_or_else(|| panic!("parameter {name:?} is not declared"));
         T::from_parameter(value).unwrap_or_else(|| panic!("parameter {name:?} is a {}", type_name(value)))
     }
 
     /// The values now.
     pub(crate) fn snapshot(&self) -> BTreeMap<&'static str, ParameterValue> {
-        self.lock().clone()
+        lock(&self.values).clone()
     }
 
     /// Replaces a value that was checked.
-    pub(crate) fn change(&self, name: &'static str, value: ParameterValue) {
-        self.lock().insert(name, value);
+    pub(crate) fn change(&self, name: &str, value: ParameterValue) {
+        if let Some(held) = lock(&self.values).get_mut(name) {
+            *held = value;
+        }
     }
 }
 
 /// Converts `value` to the type of `like` where this is exact; else returns it unchanged.
-fn coerce(value: ParameterValue, like: &ParameterValue) -> Result<ParameterValue, ParameterValue> {
+pub(crate) fn coerce(value: ParameterValue, like: &ParameterValue) -> Result<ParameterValue, ParameterValue> {
     use ParameterValue as V;
     match (value, like) {
         (V::Integer(v), V::Double(_)) => Ok(V::Double(v as f64)),

@@ -92,12 +92,6 @@ impl<'de> Deserialize<'de> for Yaml {
             fn visit_unit<E>(self) -> Result<Yaml, E> {
                 Ok(Yaml::Null)
             }
-            fn visit_none<E>(self) -> Result<Yaml, E> {
-                Ok(Yaml::Null)
-            }
-            fn visit_some<D: Deserializer<'de>>(self, inner: D) -> Result<Yaml, D::Error> {
-                Yaml::deserialize(inner)
-            }
             fn visit_bool<E>(self, v: bool) -> Result<Yaml, E> {
                 Ok(Yaml::Bool(v))
             }

@@ -1,49 +1,28 @@
 //! The parameters of a node as ros2-client declares, checks and changes them.
 
 use super::descriptor::{FIXED, descriptor, unknown};
-use crate::parameters::{ParameterSpec, ParameterValue, Parameters, parameter_text};
+use crate::parameters::{ParameterValue, Parameters, parameter_text};
 use ros2_client::NodeOptions;
 use ros2_client::parameters::raw::ParameterDescriptor;
-use std::sync::Arc;
 
 /// The parameter that every ROS 2 node has.
 pub(crate) const USE_SIM_TIME: &str = "use_sim_time";
 
-/// The declared parameters of one node and their values. Clones share the values.
-#[derive(Clone, Debug)]
-pub(crate) struct Declared {
-    specs: Arc<[ParameterSpec]>,
-    values: Parameters,
-}
-
-impl Declared {
-    /// These parameters with these values, one for each.
-    pub(crate) fn new(specs: &[ParameterSpec], values: Parameters) -> Self {
-        Self { specs: specs.into(), values }
-    }
-
+impl Parameters {
     /// The options of a ros2-client node that declares them.
     pub(crate) fn node_options(&self) -> NodeOptions {
         let [checks, sets] = [self.clone(), self.clone()];
         // `/rosout` is a topic of the bus, like all others; our own servers know descriptions and both service mappings.
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
-        let declared = self
-            .values
-            .snapshot()
-            .iter()
-            .fold(options, |options, (name, value)| options.declare_parameter(name, value.clone()));
+        let declare =
+            |options: NodeOptions, (name, value): (&'static str, _)| options.declare_parameter(name, value);
+        let declared = self.snapshot().into_iter().fold(options, declare);
         declared
             .parameter_validator(Box::new(move |name, value| checks.check(name, value)))
-            .parameter_set_action(Box::new(move |name, value| sets.set(name, value)))
-    }
-
-    fn spec(&self, name: &str) -> Option<&ParameterSpec> {
-        self.specs.iter().find(|spec| spec.name == name)
-    }
-
-    /// The default of a declared parameter.
-    pub(super) fn default_of(&self, name: &str) -> Option<ParameterValue> {
-        self.spec(name).map(|spec| spec.default.clone())
+            .parameter_set_action(Box::new(move |name, value| {
+                sets.change(name, value.clone());
+                Ok(())
+            }))
     }
 
     /// Checks that a parameter may take this value now; the error is the reason why not. The node checks its own initial values with it,
@@ -55,7 +34,7 @@ impl Declared {
                 "{name} is declared and cannot be deleted, or the type is not one of its own"
             ));
         }
-        if self.values.snapshot().get(name) == Some(value) {
+        if self.snapshot().get(name) == Some(value) {
             return Ok(());
         }
         if spec.read_only {
@@ -67,17 +46,9 @@ impl Declared {
         Ok(())
     }
 
-    /// Hands an accepted value to the node.
-    fn set(&self, name: &str, value: &ParameterValue) -> Result<(), String> {
-        if let Some(spec) = self.spec(name) {
-            self.values.change(spec.name, value.clone());
-        }
-        Ok(())
-    }
-
     /// The value of `use_sim_time`.
     pub(crate) fn use_sim_time(&self) -> bool {
-        self.values.snapshot().contains_key(USE_SIM_TIME) && self.values.get(USE_SIM_TIME)
+        self.snapshot().get(USE_SIM_TIME) == Some(&ParameterValue::Boolean(true))
     }
 
     /// Checks that all of these may be set together.
@@ -96,7 +67,7 @@ impl Declared {
 
     /// The names, sorted.
     pub(super) fn names(&self) -> Vec<String> {
-        self.values.snapshot().keys().map(|name| (*name).to_owned()).collect()
+        self.snapshot().keys().map(|name| (*name).to_owned()).collect()
     }
 
     /// The description of each name.
@@ -108,23 +79,23 @@ impl Declared {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::Range;
+    use crate::parameters::{ParameterSpec, Range};
     use ros2_client::ParameterValue as Ros;
 
-    fn declared() -> Declared {
+    fn declared() -> Parameters {
         let specs = [
             ParameterSpec::new("scene", "demo", "scene"),
             ParameterSpec::new("wait", 0.1, "time, s").within(Range::Positive).changeable(),
         ];
-        Declared::new(&specs, Parameters::defaults(&specs))
+        Parameters::defaults(&specs)
     }
 
     #[test]
     fn a_changeable_parameter_takes_values_of_its_range_and_the_node_sees_them() {
         let declared = declared();
-        let its = declared.values.clone();
+        let its = declared.clone();
         assert_eq!(declared.check("wait", &Ros::Double(0.5)), Ok(()));
-        declared.set("wait", &Ros::Double(0.5)).unwrap();
+        declared.change("wait", Ros::Double(0.5));
         assert_eq!(its.get::<f64>("wait"), 0.5);
         let error = declared.check("wait", &Ros::Double(-1.0)).unwrap_err();
         assert!(error.contains("greater than 0"), "{error}");

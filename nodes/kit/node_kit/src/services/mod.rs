@@ -14,6 +14,6 @@ mod sim_time;
 mod thread;
 mod type_description;
 
-pub(crate) use declared::{Declared, USE_SIM_TIME};
+pub(crate) use declared::USE_SIM_TIME;
 pub(crate) use sim_time::SimTime;
 pub(crate) use thread::ServiceThread;

@@ -1,9 +1,9 @@
 //! The standard services of one node, served through ros2-client: six of its parameters, and that of type descriptions.
 
-use super::declared::Declared;
 use super::type_description::{GetTypeDescriptionRequest, GetTypeDescriptionResponse, described};
-use crate::bus_error::BusError;
-use crate::dds::create_error;
+use crate::bus_error::{BusError, create_error};
+use crate::lock::lock;
+use crate::parameters::{Parameters, coerce};
 use mio::{Interest, Registry, Token};
 use ros2_client::parameters::raw::{self, SetParametersResult};
 use ros2_client::qos::{History, WhenFull};
@@ -17,7 +17,7 @@ use ros2_client::{
     Message, Name, Node, Parameter, ParameterValue, QosProfile, Server, ServiceMapping, ServiceTypeName,
 };
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// Requests that wait for an answer, and answers that are kept for a client. ROS 2 has 1000, which a client outside the run
 /// could make as many megabytes.
@@ -39,7 +39,7 @@ pub(super) struct NodeServers {
     set: Server<SetParametersRequest, SetParametersResponse>,
     set_atomically: Server<SetParametersRequest, SetParametersAtomicallyResponse>,
     type_description: Server<GetTypeDescriptionRequest, GetTypeDescriptionResponse>,
-    declared: Declared,
+    declared: Parameters,
     node: Arc<Mutex<Node>>,
     log: SparseLog,
 }
@@ -61,8 +61,8 @@ fn server<Req: Message + Clone + 'static, Resp: Message + 'static>(
 }
 
 impl NodeServers {
-    pub(super) fn new(node: &Arc<Mutex<Node>>, declared: Declared) -> Result<Self, BusError> {
-        let mut held = node.lock().unwrap_or_else(PoisonError::into_inner);
+    pub(super) fn new(node: &Arc<Mutex<Node>>, declared: Parameters) -> Result<Self, BusError> {
+        let mut held = lock(node);
         Ok(Self {
             list: server(&mut held, "list_parameters", ("rcl_interfaces", "ListParameters"))?,
             get: server(&mut held, "get_parameters", ("rcl_interfaces", "GetParameters"))?,
@@ -94,8 +94,7 @@ impl NodeServers {
 
     /// Answers all requests that arrived.
     pub(super) fn answer(&self) {
-        let held = || self.node.lock().unwrap_or_else(PoisonError::into_inner);
-        let value = |name: &String| held().get_parameter(name).unwrap_or(ParameterValue::NotSet);
+        let value = |name: &String| lock(&self.node).get_parameter(name).unwrap_or(ParameterValue::NotSet);
         let log = &self.log;
         answer_all(&self.list, log, |request| ListParametersResponse {
             result: listed(self.declared.names(), &request),
@@ -124,8 +123,7 @@ impl NodeServers {
     /// Sets one parameter; ros2-client publishes the change on `/parameter_events`.
     fn set(&self, parameter: raw::Parameter) -> SetParametersResult {
         let Parameter { name, value } = self.adapted(parameter);
-        let set =
-            self.node.lock().unwrap_or_else(PoisonError::into_inner).set_parameter(&name, value.clone());
+        let set = lock(&self.node).set_parameter(&name, value.clone());
         if set.is_ok()
             && let Some(number) = due(&self.log.set)
         {
@@ -147,11 +145,9 @@ impl NodeServers {
     /// An integer for a parameter that is a double, as `ros2 param set` sends one, becomes that double.
     fn adapted(&self, parameter: raw::Parameter) -> Parameter {
         let Parameter { name, value } = Parameter::from(parameter);
-        let value = match (&value, self.declared.default_of(&name)) {
-            (ParameterValue::Integer(v), Some(ParameterValue::Double(_))) => {
-                ParameterValue::Double(*v as f64)
-            }
-            _ => value,
+        let value = match self.declared.spec(&name) {
+            Some(spec) => coerce(value, &spec.default).unwrap_or_else(|unfit| unfit),
+            None => value,
         };
         Parameter { name, value }
     }

@@ -1,39 +1,29 @@
 //! The time of `/clock`, followed while the parameter `use_sim_time` is true.
 
-use super::declared::Declared;
-use crate::bus_error::BusError;
-use crate::dds::create_error;
+use crate::bus_error::{BusError, create_error};
+use crate::lock::lock;
+use crate::parameters::Parameters;
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::topics;
 use mio::{Interest, Registry, Token};
 use ros2_client::builtin_interfaces::Time;
 use ros2_client::{MessageTypeName, Name, Node, QosProfile, Subscription};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
-/// The node's time by `/clock`, ns since 1970. Clones share it.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SimTime {
-    nanos: Arc<AtomicU64>,
-}
-
-impl SimTime {
-    /// The time of the last message; 0 before the first, as in ROS 2.
-    pub(crate) fn nanos(&self) -> u64 {
-        self.nanos.load(Ordering::Relaxed)
-    }
-}
+/// The node's time by the last message on `/clock`, ns since 1970; 0 before the first, as in ROS 2.
+pub(crate) type SimTime = Arc<AtomicU64>;
 
 /// The subscription to `/clock`, which exists while `use_sim_time` is true.
 pub(super) struct ClockReader {
     time: SimTime,
-    declared: Declared,
+    declared: Parameters,
     node: Arc<Mutex<Node>>,
     clock: Option<Subscription<Clock>>,
 }
 
 impl ClockReader {
-    pub(super) fn new(node: &Arc<Mutex<Node>>, declared: Declared, time: SimTime) -> Self {
+    pub(super) fn new(node: &Arc<Mutex<Node>>, declared: Parameters, time: SimTime) -> Self {
         Self { time, declared, node: Arc::clone(node), clock: None }
     }
 
@@ -53,14 +43,10 @@ impl ClockReader {
         while let Some(Ok(Some((message, _)))) = self.clock.as_ref().map(Subscription::take) {
             let stamp = message.clock;
             let nanos = i64::from(stamp.sec) * 1_000_000_000 + i64::from(stamp.nanosec);
-            self.time.nanos.store(nanos.max(0) as u64, Ordering::Relaxed);
-            self.node().set_sim_time(Time::from_nanos(nanos).into());
+            self.time.store(nanos.max(0) as u64, Ordering::Relaxed);
+            lock(&self.node).set_sim_time(Time::from_nanos(nanos).into());
         }
         Ok(())
-    }
-
-    fn node(&self) -> std::sync::MutexGuard<'_, Node> {
-        self.node.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn subscribe(&self) -> Result<Subscription<Clock>, BusError> {
@@ -68,7 +54,7 @@ impl ClockReader {
         let name = Name::parse(topics::CLOCK.name).map_err(|e| failed(format!("{e:?}")))?;
         let message_type = MessageTypeName::new(topics::CLOCK.info.package, topics::CLOCK.info.name);
         let qos = QosProfile::subscription_default();
-        let mut node = self.node();
+        let mut node = lock(&self.node);
         let topic = node.create_topic(&name, message_type, &qos).map_err(|e| failed(e.to_string()))?;
         node.create_subscription(&topic, Some(qos)).map_err(|e| failed(e.to_string()))
     }

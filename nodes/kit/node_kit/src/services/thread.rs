@@ -1,10 +1,9 @@
 //! The thread that answers services while the node computes.
 
-use super::declared::Declared;
 use super::servers::NodeServers;
 use super::sim_time::{ClockReader, SimTime};
-use crate::bus_error::BusError;
-use crate::dds::create_error;
+use crate::bus_error::{BusError, create_error};
+use crate::parameters::Parameters;
 use mio::{Events, Poll, Token, Waker};
 use ros2_client::Node;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,7 +24,7 @@ impl ServiceThread {
     /// Creates the servers and starts to answer.
     pub(crate) fn start(
         node: &Arc<Mutex<Node>>,
-        declared: Declared,
+        declared: Parameters,
         time: SimTime,
     ) -> Result<Self, BusError> {
         let io = |e: std::io::Error| create_error("service thread", &e);

@@ -9,7 +9,7 @@ mod leaving;
 mod rtps;
 mod stopping;
 
-use grainlab_node_kit::{ClaimedDomain, Network};
+use grainlab_node_kit::{FreeDomain, Network};
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::thread::JoinHandle;
@@ -18,8 +18,8 @@ use std::time::{Duration, Instant};
 /// Far above the time for discovery on an idle machine (0.2 s), so that the test passes on a loaded one.
 const TIME_LIMIT: Duration = Duration::from_secs(30);
 
-fn claim() -> ClaimedDomain {
-    ClaimedDomain::claim().expect("a free DDS domain")
+fn claim() -> FreeDomain {
+    FreeDomain::take().expect("a free DDS domain")
 }
 
 /// A child process that is killed when the test fails.

@@ -132,7 +132,7 @@ impl Bench {
 
     pub(crate) fn servo(&self) -> (ServoController, MemoryBus) {
         let mut bus = self.bus("servo_controller");
-        (ServoController::new(&mut bus, Default::default()).expect("a servo"), bus)
+        (ServoController::new(&mut bus, 1).expect("a servo"), bus)
     }
 
     pub(crate) fn analyzer(&self) -> (FabricAnalyzer, MemoryBus) {
@@ -173,7 +173,7 @@ impl Bench {
             Actor::new(&mut simulator, simulator_bus),
         ];
         let complete = run_until(&self.hub, &mut actors, FOREVER, |_| self.record.borrow().complete());
-        let ends: Vec<_> = actors.iter().filter_map(Actor::ended).collect();
+        let ends: Vec<_> = actors.iter().filter_map(|actor| actor.ended.as_ref()).collect();
         assert!(complete, "the run did not end; nodes ended: {ends:?}");
         // Messages in transit belong to the record.
         let end = self.hub.now() + Duration::from_secs(1);
@@ -184,5 +184,5 @@ impl Bench {
 
 /// The end of an actor.
 pub(crate) fn exit_of(actor: &Actor) -> Option<Exit> {
-    actor.ended().map(|end| end.as_ref().map_or_else(|failure| failure.exit, |exit| *exit))
+    actor.ended.as_ref().map(|end| end.as_ref().map_or_else(|failure| failure.exit, |exit| *exit))
 }

@@ -70,7 +70,7 @@ fn run_ahead_with(honest: u64, lies: u32, lie: f64, ahead: bool) -> (Option<Exit
     ];
     run_until(&bench.hub, &mut actors, FOREVER, |actors| {
         let end = bench.record.borrow().last::<RunState>(&topics::RUN_STATE);
-        actors[1].ended().is_some() || end.is_some_and(|s| s.state == RunState::FINISHED)
+        actors[1].ended.is_some() || end.is_some_and(|s| s.state == RunState::FINISHED)
     });
     // The last messages of the simulator are still in transit.
     run_until(&bench.hub, &mut actors[..1], bench.hub.now(), |_| false);
@@ -165,7 +165,7 @@ fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_continues() 
     source.publish(packings.id(), &to_cdr(&good)[..1000]).unwrap();
     run_until(&bench.hub, &mut actors, Duration::from_secs(1), |_| false);
     assert!(bench.record.borrow().bodies(&topics::PACKING_REPORT).is_empty());
-    assert_eq!(actors[1].bus().received().iter().map(|r| r.refused).sum::<u64>(), 2);
+    assert_eq!(actors[1].bus.received().iter().map(|r| r.refused).sum::<u64>(), 2);
     packings.publish(&mut source, &good).unwrap();
     run_until(&bench.hub, &mut actors, Duration::from_secs(2), |_| false);
     let report: PackingReport = bench.record.borrow().last(&topics::PACKING_REPORT).unwrap();

@@ -92,7 +92,7 @@ fn an_interrupted_run_saves_its_state_and_goes_on_from_there() {
         Actor::new(&mut servo, servo_bus),
         Actor::new(&mut stopped, simulator_bus),
     ];
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[2].ended().is_some()));
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[2].ended.is_some()));
     assert_eq!(exit_of(&actors[2]), Some(Exit::Interrupted));
     run_until(&bench.hub, &mut actors[..1], bench.hub.now(), |_| false);
     drop(actors);
@@ -150,7 +150,7 @@ fn a_run_waits_for_the_readers_it_was_told_to_wait_for() {
         Actor::new(&mut analyzer, analyzer_bus),
     ];
     run_until(&bench.hub, &mut actors, Duration::from_secs(60), |_| false);
-    assert_eq!(actors[0].bus().published()[0].count, 0, "there is one reader of each only");
+    assert_eq!(actors[0].bus.published()[0].count, 0, "there is one reader of each only");
     let (mut recorder, recorder_bus) = bench.recorder();
     actors.push(Actor::new(&mut recorder, recorder_bus));
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 10));
@@ -182,11 +182,11 @@ fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 100));
     let mut intruder = DemSimulator::new(&mut intruder_bus, scene(), None, Settings::default()).unwrap();
     actors.push(Actor::new(&mut intruder, intruder_bus));
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[5].ended().is_some()));
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[5].ended.is_some()));
     assert!(!bench.record.borrow().complete(), "the run was still under way");
     assert_eq!(exit_of(&actors[5]), Some(Exit::Failure));
-    let message = actors[5].ended().map(|e| format!("{}", e.as_ref().unwrap_err())).unwrap();
-    let ours = actors[4].bus().published()[0].writer.to_string();
+    let message = actors[5].ended.as_ref().map(|e| format!("{}", e.as_ref().unwrap_err())).unwrap();
+    let ours = actors[4].bus.published()[0].writer.to_string();
     assert!(message.contains(&ours) && message.contains("ROS_DOMAIN_ID"), "{message}");
     actors.pop();
     // The last request may still be in transit when its result is there.
@@ -210,7 +210,7 @@ fn of_two_simulators_that_start_at_once_one_runs() {
         Actor::new(&mut smaller, smaller_bus),
         Actor::new(&mut larger, larger_bus),
     ];
-    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors.iter().any(|a| a.ended().is_some())));
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors.iter().any(|a| a.ended.is_some())));
     assert_eq!(exit_of(&actors[3]), Some(Exit::Failure), "the larger GUID gives way");
     // The process ends, and its endpoints leave the graph.
     actors.pop();

@@ -113,9 +113,9 @@ fn end_of_simulator(until_inverted: &[Topic], with_inversion: bool) -> (Option<E
         let state = bench.record.borrow().last::<RunState>(&topics::RUN_STATE);
         state.is_some_and(|s| s.state == RunState::FINISHED)
     };
-    run_until(&bench.hub, &mut actors, FOREVER, |actors| finished() || actors[0].ended().is_some());
+    run_until(&bench.hub, &mut actors, FOREVER, |actors| finished() || actors[0].ended.is_some());
     let done = bench.hub.now();
-    run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[0].ended().is_some());
+    run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[0].ended.is_some());
     let (exit, took) = (exit_of(&actors[0]), bench.hub.now() - done);
     drop(actors);
     (exit, took, bench.record.take())

@@ -160,7 +160,7 @@ impl Laboratory<'_> {
             _ if p.ended.is_some() => None,
             None => p.restart_at,
             Some((_, bus)) => {
-                let wants = if bus.has_arrivals() { now } else { p.due };
+                let wants = if bus.has_data() { now } else { p.due };
                 Some(wants.max(p.stopped_until))
             }
         };
@@ -175,7 +175,7 @@ impl Laboratory<'_> {
             return Ok(false);
         }
         let Some((node, bus)) = &mut process.running else { return Ok(false) };
-        if process.due > now && !bus.has_arrivals() {
+        if process.due > now && !bus.has_data() {
             return Ok(false);
         }
         match node.step(bus) {

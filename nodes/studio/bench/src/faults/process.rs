@@ -90,9 +90,7 @@ impl Process {
             Kind::Analyzer => {
                 Box::new(FabricAnalyzer::new(&mut bus, grainlab_fabric_analyzer::Settings::default())?)
             }
-            Kind::Servo => {
-                Box::new(ServoController::new(&mut bus, grainlab_servo_controller::Settings::default())?)
-            }
+            Kind::Servo => Box::new(ServoController::new(&mut bus, 1)?),
             Kind::Simulator => {
                 let settings = grainlab_dem_simulator::Settings {
                     look_around: Duration::ZERO,

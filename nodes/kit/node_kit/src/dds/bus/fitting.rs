@@ -3,7 +3,7 @@
 use super::{DdsBus, wire_name};
 use crate::bus::SubscriptionId;
 use crate::bus_error::BusError;
-use crate::dds::lock::lock;
+use crate::lock::lock;
 use crate::sample::Sample;
 use grainlab_msgs::{Guid, Topic, TypeInfo};
 
@@ -22,7 +22,7 @@ impl DdsBus {
         let reader = self.readers.get_mut(subscriber.reader).ok_or(BusError::Handle("take"))?;
         let mut inbox = lock(&reader.inbox);
         if std::mem::take(&mut reader.notified) {
-            inbox.acknowledge();
+            inbox.reader.acknowledge();
         }
         let mut sample = inbox.take(subscriber.place)?;
         while let Some((writer, why)) = sample
