@@ -2,7 +2,7 @@
 
 use crate::modules::modules;
 use crate::workspace::roots;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use syn::{Item, UseTree, Visibility};
 
@@ -174,6 +174,32 @@ fn vague(source: &str) -> Vec<&str> {
     VAGUE.into_iter().filter_map(named).collect()
 }
 
+/// Types that may share a name: more say nothing of what they are. Arguments of commands all have one name.
+const NAMESAKES: usize = 9;
+
+/// Names of the types that `source` defines.
+fn defined(source: &str) -> impl Iterator<Item = &str> {
+    let name = |line: &'_ str| -> Option<(usize, usize)> {
+        let visible = line.trim_start().strip_prefix("pub").map_or(line.trim_start(), |rest| {
+            rest.split_once(") ")
+                .filter(|_| rest.starts_with('('))
+                .map_or(rest, |(_, rest)| rest)
+                .trim_start()
+        });
+        let rest = visible.strip_prefix("struct ").or(visible.strip_prefix("enum "))?;
+        let end = rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len());
+        Some((line.len() - rest.len(), end))
+    };
+    source.lines().filter_map(move |line| name(line).map(|(from, end)| &line[from..from + end]))
+}
+
+/// Names that more types have than may share one.
+fn namesakes<'a>(sources: impl Iterator<Item = &'a str>) -> Vec<(&'a str, usize)> {
+    let mut counts = BTreeMap::new();
+    sources.flat_map(defined).for_each(|name| *counts.entry(name).or_insert(0) += 1);
+    counts.into_iter().filter(|(name, count)| *name != "Args" && *count > NAMESAKES).collect()
+}
+
 /// Inferred quantities that a file may name. More are a list by hand, which a new quantity would miss.
 const NAMED: usize = 3;
 
@@ -224,6 +250,10 @@ fn what_has_one_place_is_in_no_other() {
     for (file, text) in files.iter().filter(|(file, _)| file.extension().is_some_and(|e| e == "rs")) {
         assert_eq!(vague(text), Vec::<&str>::new(), "{}", file.display());
     }
+    let planted = "pub(crate) struct Row<'a> {\n".repeat(NAMESAKES + 1);
+    assert_eq!(namesakes([planted.as_str()].into_iter()), [("Row", NAMESAKES + 1)]);
+    let sources = files.iter().filter(|(f, _)| f.extension().is_some_and(|e| e == "rs"));
+    assert_eq!(namesakes(sources.map(|(_, text)| text.as_str())), []);
     for (text, place) in ONCE {
         assert_eq!(repeated(text, place, &files), Vec::<String>::new());
         files.push(("nodes/studio/planted/assets/page.html".into(), text.to_owned()));
