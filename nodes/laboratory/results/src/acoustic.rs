@@ -94,7 +94,7 @@ impl AcousticReport {
     }
 
     pub(crate) fn departure(&self) -> Option<f64> {
-        Some(self.medium.fitted.as_ref().ok()?.anisotropy_scatter?.scatter)
+        self.medium.fitted.as_ref().ok()?.anisotropy_scatter
     }
 
     /// Θ, Pa, if all other moduli are known: in a table Θ follows from the other moduli, which must therefore

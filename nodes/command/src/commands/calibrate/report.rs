@@ -1,7 +1,6 @@
 //! A calibration as text.
 
 use grainlab_console::Table;
-use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration, Reach, RelaxationCalibration};
 use std::collections::BTreeSet;
 
@@ -17,8 +16,7 @@ pub(super) fn text(
         }
     }
     text += "\nEqs. 21 and 22, G = alpha (k + beta) p^(1/3), Theta = rho (k + zeta) p^(1/3), in MPa\n";
-    let lines = [InferredQuantity::K, InferredQuantity::Z].map(|q| calibration.with_coordination_kind(q));
-    text += &line_table(lines.iter().flatten().map(Calibration::isotropic));
+    text += &line_table(calibration.isotropic());
     if let Some(network) = calibration.network() {
         text += &network_text(network);
     }
@@ -41,23 +39,21 @@ fn summary(kind: &str, samples: &[CalibrationSample]) -> String {
     )
 }
 
-fn line_table<'a>(lines: impl Iterator<Item = &'a IsotropicCalibration>) -> String {
-    let columns = ["k is", "alpha", "+-", "beta", "+-", "rho", "+-", "zeta", "+-", "from", "to"];
+fn line_table(line: &IsotropicCalibration) -> String {
+    let columns = ["alpha", "+-", "beta", "+-", "rho", "+-", "zeta", "+-", "from", "to"];
     let mut t = Table::new(columns.into_iter().chain(["scatter of G", "of Theta"]));
-    for line in lines {
-        let errors = line.covariance.map(|c| std::array::from_fn::<f64, 4, _>(|i| c[i][i].max(0.0).sqrt()));
-        let errors = errors.map_or_else(|| [(); 4].map(|()| "-".to_owned()), |e| e.map(significant));
-        let mut cells = vec![line.coordination_kind.name().to_owned()];
-        for (value, error) in line.constants().into_iter().zip(errors) {
-            cells.extend([format!("{value:.4}"), error]);
-        }
-        cells.extend(line.fitted.map(|v| format!("{v:.3}")));
-        match line.scatter {
-            Some(scatter) => cells.extend(scatter.map(|s| format!("{:.1} %", 100.0 * s))),
-            None => cells.extend([(); 2].map(|()| "-".to_owned())),
-        }
-        t.row(cells);
+    let errors = line.covariance.map(|c| std::array::from_fn::<f64, 4, _>(|i| c[i][i].max(0.0).sqrt()));
+    let errors = errors.map_or_else(|| [(); 4].map(|()| "-".to_owned()), |e| e.map(significant));
+    let mut cells = Vec::new();
+    for (value, error) in line.constants().into_iter().zip(errors) {
+        cells.extend([format!("{value:.4}"), error]);
     }
+    cells.extend(line.fitted.map(|v| format!("{v:.3}")));
+    match line.scatter {
+        Some(scatter) => cells.extend(scatter.map(|s| format!("{:.1} %", 100.0 * s))),
+        None => cells.extend([(); 2].map(|()| "-".to_owned())),
+    }
+    t.row(cells);
     t.text()
 }
 
