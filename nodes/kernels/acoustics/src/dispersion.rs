@@ -4,7 +4,6 @@
 //! acoustic modes are computed; ω²/q² is proportional to 1 − b q² and extrapolated to long waves
 //! ([`crate::DispersionCurve::fit`]). Amplitudes are infinitesimal: contacts neither open nor slide.
 
-mod acoustic_tensor;
 mod alignment;
 mod bloch;
 mod christoffel_modes;
@@ -12,7 +11,6 @@ mod error;
 mod extrapolation;
 #[cfg(test)]
 mod lattice_sample;
-mod mean_diameter;
 mod modes;
 mod settings;
 mod solve;
@@ -20,18 +18,16 @@ mod subspace;
 mod waves;
 
 pub(crate) use alignment::Alignment;
-pub(crate) use mean_diameter::mean_diameter;
 pub use settings::Settings;
 
 use crate::backbone::Backbone;
 use crate::curve::{DispersionCurve, DispersionPoint};
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, no_signal};
 use crate::ray::Ray;
 use crate::warning::{Warning, keep};
-use acoustic_tensor::AcousticTensor;
 use alignment::{aligned, completed, nearest_of};
 use bloch::Bloch;
-use christoffel_modes::long_wave_polarizations;
+use christoffel_modes::{AcousticTensor, long_wave_polarizations};
 use error::SolveError;
 use extrapolation::Extrapolation;
 use grainlab_core::results::NotJammed;
@@ -86,6 +82,11 @@ pub fn curves(
     }
 }
 
+/// Mean grain diameter, the unit of wavelengths, m.
+pub(crate) fn mean_diameter(packing: &Packing) -> f64 {
+    2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64
+}
+
 /// Curves of rays, along given polarizations and of the modes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct RayCurves {
@@ -122,11 +123,10 @@ impl Dispersion<'_> {
         let settings = self.settings;
         let mut wavelengths = settings.wavelengths.clone();
         wavelengths.sort_by(|a, b| b.total_cmp(a));
-        let no_limit = || AcousticsError::NoSignal {
-            what: "long wave",
-            direction: ray.direction.into(),
-            polarization: ray.polarizations.first().copied().unwrap_or_default().into(),
-            reason: "its speeds have no positive limit at long waves; use longer waves".to_owned(),
+        let no_limit = || {
+            let polarization = ray.polarizations.first().copied().unwrap_or_default();
+            let reason = "its speeds have no positive limit at long waves; use longer waves";
+            no_signal("long wave", &ray.direction, &polarization, reason)
         };
         for doubling in (0..).step_by(AT_ONCE as usize) {
             let last = doubling + AT_ONCE > settings.doublings;

@@ -1,5 +1,6 @@
 //! Why a measurement failed.
 
+use grainlab_core::Vec3;
 use grainlab_core::results::NotJammed;
 
 /// Why a packing's wave speeds could not be measured.
@@ -91,6 +92,27 @@ pub enum AcousticsError {
     /// The engine failed.
     #[error(transparent)]
     Engine(#[from] grainlab_dem::DemError),
+}
+
+/// Refuses a setting whose value is not `valid`.
+pub(crate) fn setting(
+    name: &'static str,
+    value: f64,
+    valid: bool,
+    requirement: &'static str,
+) -> Result<(), AcousticsError> {
+    if valid { Ok(()) } else { Err(AcousticsError::Setting { name, value, requirement }) }
+}
+
+/// The error that there is no `what` of this wave.
+pub(crate) fn no_signal(
+    what: &'static str,
+    direction: &Vec3,
+    polarization: &Vec3,
+    reason: impl Into<String>,
+) -> AcousticsError {
+    let (direction, polarization) = ((*direction).into(), (*polarization).into());
+    AcousticsError::NoSignal { what, direction, polarization, reason: reason.into() }
 }
 
 /// A direction as text.

@@ -1,6 +1,6 @@
 //! Source, receivers and electronics.
 
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, setting};
 use crate::noise::Noise;
 
 /// Default number of samples per period of the centre frequency.
@@ -69,22 +69,13 @@ pub struct SamplingWindow {
 impl Instrument {
     /// The instrument, if its numbers are in range.
     pub fn validated(&self) -> Result<&Self, AcousticsError> {
-        let fault = |name, value, requirement| Err(AcousticsError::Setting { name, value, requirement });
-        if let Some(rate) = self.sample_rate.filter(|r| !(r.is_finite() && *r > 0.0)) {
-            return fault("sample_rate", rate, "more than 0 and finite");
-        }
-        if self.signal_to_noise.is_nan() || self.signal_to_noise < -200.0 {
-            return fault("signal_to_noise", self.signal_to_noise, "-200 dB or more");
-        }
-        if !(self.jitter.is_finite() && self.jitter >= 0.0) {
-            return fault("jitter", self.jitter, "0 or more and finite");
-        }
-        if !(1..=MAX_SHOTS).contains(&self.shots) {
-            return fault("shots", self.shots.into(), "1 to 1,000,000");
-        }
-        if !(0.0..1.0).contains(&self.speed_noise) {
-            return fault("speed_noise", self.speed_noise, "0 or more and below 1");
-        }
+        let Self { signal_to_noise, jitter, shots, speed_noise, .. } = *self;
+        let rate = self.sample_rate.unwrap_or(SAMPLES_PER_PERIOD);
+        setting("sample_rate", rate, rate.is_finite() && rate > 0.0, "more than 0 and finite")?;
+        setting("signal_to_noise", signal_to_noise, signal_to_noise >= -200.0, "-200 dB or more")?;
+        setting("jitter", jitter, jitter.is_finite() && jitter >= 0.0, "0 or more and finite")?;
+        setting("shots", shots.into(), (1..=MAX_SHOTS).contains(&shots), "1 to 1,000,000")?;
+        setting("speed_noise", speed_noise, (0.0..1.0).contains(&speed_noise), "0 or more and below 1")?;
         Ok(self)
     }
 
@@ -92,10 +83,8 @@ impl Instrument {
     /// that fewer than six samples per period would alias; more than 10,000 only need memory.
     pub fn rate(&self, frequency: f64) -> Result<f64, AcousticsError> {
         let rate = self.sample_rate.unwrap_or(SAMPLES_PER_PERIOD * frequency);
-        if !(MIN_PER_PERIOD..=MAX_PER_PERIOD).contains(&(rate / frequency)) {
-            let requirement = "6 to 10,000 samples per period of the centre frequency";
-            return Err(AcousticsError::Setting { name: "sample_rate", value: rate, requirement });
-        }
+        let resolved = (MIN_PER_PERIOD..=MAX_PER_PERIOD).contains(&(rate / frequency));
+        setting("sample_rate", rate, resolved, "6 to 10,000 samples per period of the centre frequency")?;
         Ok(rate)
     }
 

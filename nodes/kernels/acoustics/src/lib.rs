@@ -13,7 +13,6 @@
 //! [`measure`](fn@measure) applies a method to a set of rays (`survey`), through an `instrument` with noise.
 
 mod backbone;
-mod contact_changes;
 mod curve;
 pub mod dispersion;
 mod effective_density;

@@ -4,7 +4,7 @@ use crate::backbone::Backbone;
 use crate::curve::DispersionCurve;
 use crate::dispersion::{Alignment, Dispersion};
 use crate::effective_density::EffectiveDensity;
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, no_signal};
 use crate::instrument::Instrument;
 use crate::noise::{Noise, seed_at};
 use crate::settings::{MethodSettings, Settings};
@@ -115,10 +115,9 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     let modes: Vec<MeasuredWave> = modes.iter().map(wave).collect();
     let mut modes = with_speed_noise(&modes, instrument.speed_noise, seed_at(instrument.seed, &[MODES]));
     modes.retain(is_speed);
-    warnings.extend(waves.iter().filter(|w| !is_speed(w)).map(|w| {
-        let (direction, polarization) = (w.wave.direction.into(), w.wave.polarization.into());
-        let reason = "the noise of speeds is as large as the speed".to_owned();
-        Warning::LeftOut(AcousticsError::NoSignal { what: "speed", direction, polarization, reason })
+    warnings.extend(waves.iter().filter(|w| !is_speed(w)).map(|MeasuredWave { wave, .. }| {
+        let reason = "the noise of speeds is as large as the speed";
+        Warning::LeftOut(no_signal("speed", &wave.direction, &wave.polarization, reason))
     }));
     waves.retain(is_speed);
     warnings.extend(noisy(&waves));

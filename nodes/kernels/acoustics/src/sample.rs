@@ -1,7 +1,8 @@
 //! A packing prepared for a measurement: at rest, with a time step and an estimate of the wave speed.
 
 use crate::backbone::carrying;
-use crate::error::AcousticsError;
+use crate::dispersion::mean_diameter;
+use crate::error::{AcousticsError, setting};
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Mat3, Packing, Vec3};
 use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
@@ -42,15 +43,12 @@ impl Sample {
     pub(crate) fn new(packing: &Packing, friction: Option<f64>) -> Result<Self, AcousticsError> {
         packing.check().map_err(DemError::from)?;
         let friction = friction.unwrap_or(packing.friction);
-        if friction.is_nan() || friction < 0.0 {
-            let requirement = "0 or more, infinite for no sliding";
-            return Err(AcousticsError::Setting { name: "friction", value: friction, requirement });
-        }
+        setting("friction", friction, friction >= 0.0, "0 or more, infinite for no sliding")?;
         let mut packing = Packing { friction, ..packing.clone() };
         let present = carrying(&packing)?;
         packing.velocities.fill(Vec3::zeros());
         packing.spins.fill(Vec3::zeros());
-        let diameter = 2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64;
+        let diameter = mean_diameter(&packing);
         let setting = EngineSettings {
             friction,
             damping: 0.0,

@@ -1,6 +1,6 @@
 //! Settings of a measurement.
 
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, setting};
 use crate::instrument::Instrument;
 use crate::survey::{Modes, Survey};
 use crate::{dispersion, time_of_flight};
@@ -47,10 +47,7 @@ impl Settings {
     pub(crate) fn check(&self) -> Result<(), AcousticsError> {
         if let Some(axis) = self.axis {
             let value = axis.norm();
-            if !(value.is_finite() && value > 0.0) {
-                let requirement = "a direction: finite and not zero";
-                return Err(AcousticsError::Setting { name: "|axis|", value, requirement });
-            }
+            setting("|axis|", value, value.is_finite() && value > 0.0, "a direction: finite and not zero")?;
         }
         self.instrument.validated().map(|_| ())
     }

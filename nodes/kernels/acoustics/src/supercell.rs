@@ -3,9 +3,9 @@
 //! A periodic packing is periodic along any of its lattice vectors, so that a cell whose first two edges lie in the
 //! planes (h k l) and whose third crosses `copies` of them contains the packing `copies` times, for any planes.
 
-mod lattice;
+pub(crate) mod lattice;
 
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, setting};
 use grainlab_core::{Contact, Packing, Vec3};
 use grainlab_dem::DemError;
 use lattice::Layers;
@@ -40,18 +40,14 @@ pub fn supercell(packing: &Packing, indices: [i32; 3], copies: u32) -> Result<Su
     packing.check().map_err(DemError::from)?;
     let n = packing.grains();
     let grains = (copies as usize).saturating_mul(n);
-    if copies == 0 || grains > MAX_GRAINS {
-        let requirement = "1 or more, and at most 20,000,000 grains in all";
-        return Err(AcousticsError::Setting { name: "copies", value: f64::from(copies), requirement });
-    }
-    if let Some(index) = indices.iter().find(|k| k.unsigned_abs() > MAX_INDEX) {
-        let requirement = "between -1000 and 1000";
-        return Err(AcousticsError::Setting { name: "indices", value: f64::from(*index), requirement });
+    let fits = copies > 0 && grains <= MAX_GRAINS;
+    setting("copies", f64::from(copies), fits, "1 or more, and at most 20,000,000 grains in all")?;
+    for k in indices {
+        setting("indices", f64::from(k), k.unsigned_abs() <= MAX_INDEX, "between -1000 and 1000")?;
     }
     let no_plane = AcousticsError::NoLatticePlane { direction: indices.map(f64::from) };
     let layers = lattice::layers(&packing.cell, indices, copies).ok_or(no_plane)?;
-    let spacing = 1.0 / (packing.cell.inverse().transpose() * layers.plane.cast::<f64>()).norm();
-    let path = f64::from(copies) * spacing;
+    let path = f64::from(copies) * lattice::spacing(&packing.cell, &layers.plane);
 
     // Every grain of every copy, wrapped into the cell, and the lattice vector by which it was moved.
     let step = packing.cell.matrix() * layers.step.cast::<f64>();

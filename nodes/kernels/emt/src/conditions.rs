@@ -4,10 +4,12 @@ use crate::error::EmtError;
 use grainlab_core::Material;
 use grainlab_core::contact::{ContactLaw, SpringLaw};
 use grainlab_core::results::StrainRatios;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The source of a γ/Δ.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum StrainRatioSource {
     /// The total strain since the reference state, which is mostly plastic. That of the paper's Table II.
     Total,
@@ -16,6 +18,7 @@ pub enum StrainRatioSource {
     /// A fit to the overlaps of the contacts.
     Contact,
     /// Given by the user.
+    #[serde(skip)]
     Given,
     /// Not known, and set to zero.
     Zero,
@@ -213,10 +216,11 @@ impl Conditions {
         if self.smooth {
             return Err(EmtError::SmoothGrains);
         }
-        finite("pressure", self.pressure.value)?;
-        if self.pressure.value <= 0.0 {
-            return Err(EmtError::NotPositive { quantity: "pressure", value: self.pressure.value });
-        }
+        let positive = |quantity: &'static str, value: f64| {
+            finite(quantity, value)?;
+            if value > 0.0 { Ok(()) } else { Err(EmtError::NotPositive { quantity, value }) }
+        };
+        positive("pressure", self.pressure.value)?;
         let (phi, ratio) = (self.solid_fraction, self.stress_ratio);
         for (quantity, value) in [
             ("stddev of pressure", Some(self.pressure.stddev)),
@@ -234,25 +238,17 @@ impl Conditions {
             }
         }
         finite("gamma/Delta", self.gamma.value)?;
-        if let Some(phi) = phi
-            && !(phi.value > 0.0 && phi.value < 1.0)
-        {
-            return Err(EmtError::SolidFraction { phi: phi.value });
-        }
-        if let Some(ratio) = ratio.map(|r| r.value)
-            && !(-1.5..=3.0).contains(&ratio)
-        {
-            return Err(EmtError::StressRatio { ratio });
-        }
+        let within = |quantity, value: Option<Measured>, fits: fn(f64) -> bool, range| match value {
+            Some(Measured { value, .. }) if !fits(value) => Err(EmtError::NoState { quantity, value, range }),
+            _ => Ok(()),
+        };
+        within("the solid fraction", phi, |phi| phi > 0.0 && phi < 1.0, "(0, 1)")?;
+        let tensile = "[-3/2, 3], where no stress is tensile";
+        within("the stress ratio (s33 - (s11 + s22)/2)/p", ratio, |q| (-1.5..=3.0).contains(&q), tensile)?;
         if let Some(m) = &self.material {
-            finite("shear modulus of the grains", m.shear_modulus)?;
-            if m.shear_modulus <= 0.0 {
-                let quantity = "shear modulus of the grains";
-                return Err(EmtError::NotPositive { quantity, value: m.shear_modulus });
-            }
-            if !(0.0..=0.5).contains(&m.poisson_ratio) {
-                return Err(EmtError::PoissonRatio { nu: m.poisson_ratio });
-            }
+            positive("shear modulus of the grains", m.shear_modulus)?;
+            let nu = Some(Measured::exact(m.poisson_ratio));
+            within("the Poisson ratio of the grains", nu, |nu| (0.0..=0.5).contains(&nu), "[0, 1/2]")?;
         }
         Ok(())
     }

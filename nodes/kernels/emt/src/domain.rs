@@ -47,10 +47,10 @@ pub struct Domain {
 
 impl Domain {
     /// These structures, in every state that an elastic packing can have, whether or not its solid fraction is known.
-    pub(crate) fn new(model: &'static str, structure: [Option<Range>; InferredQuantity::COUNT]) -> Self {
+    pub(crate) fn new(model: &'static str, ranges: &[(InferredQuantity, Range)]) -> Self {
         Self {
             model,
-            structure,
+            structure: by_quantity(ranges),
             fitted: [None; InferredQuantity::COUNT],
             gamma: [-1.0, 1.0],
             reduced_pressure: [0.0, f64::INFINITY],
@@ -118,6 +118,13 @@ impl Domain {
     }
 }
 
+/// Some entries, in the order of [`InferredQuantity::ALL`].
+pub(crate) fn by_quantity<T: Copy>(known: &[(InferredQuantity, T)]) -> [Option<T>; InferredQuantity::COUNT] {
+    let mut all = [None; InferredQuantity::COUNT];
+    known.iter().for_each(|(quantity, entry)| all[*quantity as usize] = Some(*entry));
+    all
+}
+
 /// The warnings of the quantities of a structure that are beyond the packings of the calibration.
 pub(crate) fn outside_fitted(
     fitted: &[Option<Fitted>; InferredQuantity::COUNT],
@@ -126,12 +133,8 @@ pub(crate) fn outside_fitted(
     let of = |quantity: InferredQuantity| {
         let (value, Fitted { range, inside: [low, high] }) =
             structure.get(quantity).zip(fitted[quantity as usize])?;
-        let warning = match quantity {
-            InferredQuantity::Eps => Warning::EpsOutsideFit { eps: value, range },
-            _ => Warning::CoordinationOutsideFit { quantity, value, range },
-        };
         // Also where it is not a number.
-        (!(low..=high).contains(&value)).then_some(warning)
+        (!(low..=high).contains(&value)).then_some(Warning::OutsideFit { quantity, value, range })
     };
     InferredQuantity::ALL.into_iter().filter_map(of).collect()
 }
@@ -143,8 +146,7 @@ mod tests {
 
     #[test]
     fn a_solid_fraction_that_no_jammed_packing_has_is_refused_by_models_that_use_it() {
-        let none = [None; InferredQuantity::COUNT];
-        let uses = Domain { needs_solid_fraction: true, ..Domain::new("emt", none) };
+        let uses = Domain { needs_solid_fraction: true, ..Domain::new("emt", &[]) };
         let at = |phi| Conditions { solid_fraction: Some(Measured::exact(phi)), ..Conditions::at(5e4) };
         for phi in [0.5, 0.55, 0.64, 0.74, 0.8] {
             assert_eq!(uses.validate_solid_fraction(&at(phi)), Ok(()), "{phi}");
@@ -152,7 +154,7 @@ mod tests {
         for phi in [0.2, 0.499, 0.81, 0.99] {
             let refused = uses.validate_solid_fraction(&at(phi)).unwrap_err().to_string();
             assert!(refused.contains("the solid fraction") && refused.contains("[0.5, 0.8]"), "{refused}");
-            assert_eq!(Domain::new("relaxed", none).validate_solid_fraction(&at(phi)), Ok(()));
+            assert_eq!(Domain::new("relaxed", &[]).validate_solid_fraction(&at(phi)), Ok(()));
         }
     }
 }

@@ -42,19 +42,15 @@ pub enum EmtError {
         /// The offending value, Pa².
         value: f64,
     },
-    /// An invalid solid fraction.
-    #[error("the solid fraction {phi} is outside (0, 1)")]
-    SolidFraction {
+    /// A state or grains that no packing has.
+    #[error("{quantity} = {value} is outside {range}")]
+    NoState {
+        /// Name of the quantity.
+        quantity: &'static str,
         /// The value found.
-        phi: f64,
-    },
-    /// A stress ratio with a tensile stress.
-    #[error(
-        "the stress ratio (s33 - (s11 + s22)/2)/p = {ratio} is outside [-3/2, 3], where no stress is tensile"
-    )]
-    StressRatio {
-        /// The value found.
-        ratio: f64,
+        value: f64,
+        /// The possible values.
+        range: &'static str,
     },
     /// A structure that no packing has.
     #[error("{quantity} = {value} is outside [{low}, {high}], which contains that of every packing")]
@@ -83,12 +79,6 @@ pub enum EmtError {
          contacts that have them"
     )]
     SmoothGrains,
-    /// An invalid Poisson ratio of the grains.
-    #[error("the Poisson ratio of the grains, {nu}, is outside [0, 1/2]")]
-    PoissonRatio {
-        /// The value found.
-        nu: f64,
-    },
     /// A modulus that follows from the others is not that of a stable medium.
     #[error(
         "from the other moduli follows {modulus} = {value:e} Pa: they are not of one medium, or not of one state"
@@ -267,9 +257,7 @@ impl EmtError {
                 | NotPositive { .. }
                 | NegativeStddev { .. }
                 | Covariance { .. }
-                | SolidFraction { .. }
-                | StressRatio { .. }
-                | PoissonRatio { .. }
+                | NoState { .. }
                 | NoStructure { .. }
                 | Missing { .. }
                 | NotCalibrated { .. }

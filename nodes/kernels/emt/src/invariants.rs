@@ -53,13 +53,8 @@ impl Invariants {
         [self.ln_theta, self.ln_shear, self.dilatation, self.voigt, self.harmonic]
     }
 
-    /// All six moduli.
-    pub fn as_moduli(&self) -> Moduli {
-        Moduli::of_values(self.moduli().map(Some))
-    }
-
     /// The moduli, in the order of [`Modulus::ALL`].
-    pub(crate) fn moduli(&self) -> [f64; 6] {
+    pub fn moduli(&self) -> [f64; 6] {
         let (theta, voigt) = self.scales();
         let parts = [theta, voigt, self.dilatation * theta, self.voigt * voigt, self.harmonic * voigt];
         let mut moduli = [0.0; 6];

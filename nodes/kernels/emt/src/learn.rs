@@ -11,7 +11,6 @@ pub use sample::{CalibrationSample, check_structure};
 use crate::calibration::{Calibration, CalibrationError};
 use discrepancy::discrepancies;
 use grainlab_core::Material;
-use grainlab_core::results::InferredQuantity;
 use isotropic::of_isotropic;
 use relaxation::network;
 use sample::bounds;
@@ -29,9 +28,8 @@ pub fn learn(
     others.iter().try_for_each(CalibrationSample::check)?;
     let (low, high) = bounds(own.iter().map(|s| s.pressure));
     let mut calibration = Calibration {
-        other: Some(of_isotropic(isotropic, InferredQuantity::Z)?),
         pressures: Some([low, high]),
-        ..Calibration::of_isotropic(name.to_owned(), of_isotropic(isotropic, InferredQuantity::K)?, material)
+        ..Calibration::of_isotropic(name.to_owned(), of_isotropic(isotropic)?, material)
     };
     if !anisotropic.is_empty() {
         let all: Vec<&CalibrationSample> = own.into_iter().chain(others).collect();

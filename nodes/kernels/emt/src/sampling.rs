@@ -55,11 +55,6 @@ pub struct MonteCarlo {
 }
 
 impl MonteCarlo {
-    /// Fraction of the draws without a solution, 0 to 1.
-    pub fn failed_fraction(&self) -> f64 {
-        self.unsolved as f64 / self.draws.max(1) as f64
-    }
-
     /// Standard deviation of a quantity.
     pub fn stddev(&self, quantity: InferredQuantity) -> Option<f64> {
         self.mean.get(quantity)?;

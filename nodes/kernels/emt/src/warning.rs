@@ -8,9 +8,9 @@ use grainlab_core::results::InferredQuantity;
 /// A limitation of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Warning {
-    /// A coordination number lies outside the packings of the calibration.
+    /// A coordination number or ε lies outside the packings of the calibration.
     #[error("{}", beyond(*quantity, *value, *range))]
-    CoordinationOutsideFit {
+    OutsideFit {
         /// Name of the quantity.
         quantity: InferredQuantity,
         /// Value of the quantity.
@@ -48,16 +48,6 @@ pub enum Warning {
     EpsOutOfRange {
         /// Value of ε inferred.
         eps: f64,
-    },
-    /// ε is outside the packings of the calibration.
-    #[error(
-        "eps = {}, the range of the calibration's packings", outside(*eps, *range, 4, [" is outside [", ", ", "]"])
-    )]
-    EpsOutsideFit {
-        /// Value of ε inferred.
-        eps: f64,
-        /// Lowest and highest of the calibration.
-        range: [f64; 2],
     },
     /// γ/Δ is outside [−0.3, 0.1], where the linear overlap law of Eq. 10 costs more than 0.005 in ε.
     #[error("gamma/Delta = {g:.4} is outside [-0.3, 0.1], where Eq. 10 is accurate to 0.005 in eps")]
@@ -303,11 +293,10 @@ impl Warning {
     pub(crate) fn is_of_structure(&self) -> bool {
         matches!(
             self,
-            Warning::CoordinationOutsideFit { .. }
+            Warning::OutsideFit { .. }
                 | Warning::CoordinationImpossible { .. }
                 | Warning::CoordinationAbsurd { .. }
                 | Warning::EpsOutOfRange { .. }
-                | Warning::EpsOutsideFit { .. }
                 | Warning::OutsideDomain { .. }
                 | Warning::WidenedMost { .. }
         )
@@ -347,6 +336,10 @@ fn of_state(quantity: &str, value: f64, range: [f64; 2]) -> String {
 }
 
 fn beyond(quantity: InferredQuantity, value: f64, range: [f64; 2]) -> String {
+    if quantity == InferredQuantity::Eps {
+        let text = outside(value, range, 4, [" is outside [", ", ", "]"]);
+        return format!("{quantity} = {text}, the range of the calibration's packings");
+    }
     let [shown, low, high] = apart(value, range, 3);
     if value < range[0] {
         return format!("{quantity} = {shown} is below {low}, the lowest of the calibration's packings");
@@ -386,11 +379,7 @@ mod tests {
         assert!(text(0.64667).starts_with("q/p = 0.6467 is outside 0.6183 to 0.6466,"));
         assert!(text(0.646634).starts_with("q/p = 0.646634 is outside 0.618340 to 0.646630,"));
         assert!(text(0.618339).starts_with("q/p = 0.618339 is outside 0.618340 to 0.646630,"));
-        let text = Warning::CoordinationOutsideFit {
-            quantity: InferredQuantity::Z,
-            value: 4.000_01,
-            range: [3.0, 4.0],
-        };
+        let text = Warning::OutsideFit { quantity: InferredQuantity::Z, value: 4.000_01, range: [3.0, 4.0] };
         assert!(text.to_string().starts_with("z = 4.00001 is above 4.00000,"), "{text}");
     }
 }

@@ -9,24 +9,11 @@ use grainlab_node_kit::Parameters;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings(pub grainlab_acoustics::Settings);
 
-/// Parameters whose values are in range but invalid. The process then ends with
+/// A parameter whose value is in range but invalid, and why it is. The process then ends with
 /// [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SettingsError {
-    /// The text is not an axis.
-    #[error(
-        "parameter \"axis\" = {0:?} is not an axis: e3, unknown, or three numbers x,y,z that are finite and not all zero"
-    )]
-    Axis(String),
-    /// Too few wavelengths for the extrapolation.
-    #[error(
-        "parameter \"wavelengths\" has {0} entries: three or more are needed to extrapolate to long waves"
-    )]
-    Wavelengths(usize),
-    /// A friction between -1 and 0.
-    #[error("parameter \"wave_friction\" = {0}: it is 0 or more, or -1 for that of the packing")]
-    Friction(f64),
-}
+#[error("parameter \"{0}\"{1}")]
+pub struct SettingsError(&'static str, String);
 
 impl TryFrom<&Parameters> for Settings {
     type Error = SettingsError;
@@ -66,14 +53,17 @@ fn count(parameters: &Parameters, name: &str) -> u32 {
 fn method(parameters: &Parameters) -> Result<MethodSettings, SettingsError> {
     let friction: f64 = parameters.get("wave_friction");
     if friction < 0.0 && friction != -1.0 {
-        return Err(SettingsError::Friction(friction));
+        let reason = format!(" = {friction}: it is 0 or more, or -1 for that of the packing");
+        return Err(SettingsError("wave_friction", reason));
     }
     let friction = Some(friction).filter(|mu| *mu >= 0.0);
     let pick = match parameters.get::<String>("method").as_str() {
         "dispersion" => {
             let wavelengths: Vec<f64> = parameters.get("wavelengths");
             if wavelengths.len() < 3 {
-                return Err(SettingsError::Wavelengths(wavelengths.len()));
+                let (count, needed) =
+                    (wavelengths.len(), "three or more are needed to extrapolate to long waves");
+                return Err(SettingsError("wavelengths", format!(" has {count} entries: {needed}")));
             }
             return Ok(MethodSettings::Dispersion(dispersion::Settings {
                 wavelengths,
@@ -108,5 +98,6 @@ fn axis(text: &str) -> Result<Option<Vec3>, SettingsError> {
     let valid = direction.filter(|v| v.iter().all(|n| n.is_finite()) && v.amax() > 0.0);
     // Scaled first: the square of a large component overflows.
     let unit = valid.map(|v| (v / v.amax()).normalize());
-    unit.map(Some).ok_or_else(|| SettingsError::Axis(text.to_owned()))
+    let choices = "e3, unknown, or three numbers x,y,z that are finite and not all zero";
+    unit.map(Some).ok_or_else(|| SettingsError("axis", format!(" = {text:?} is not an axis: {choices}")))
 }

@@ -1,8 +1,8 @@
 //! From the result of a model to an `Estimate`.
 
-use crate::observed::{Observed, Unobservable};
+use crate::observed::Observed;
 use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Status, StrainRatio};
+use grainlab_emt::{CREDIBLE_LEVEL, Estimate, INPUTS, Misfit, Status, StrainRatio};
 use grainlab_msgs::boundary::ModelResult;
 use grainlab_msgs::msg;
 
@@ -83,25 +83,8 @@ fn gamma_fields(gamma: Option<StrainRatio>) -> (Vec<f64>, String) {
     (gamma.iter().map(|g| g.value).collect(), gamma.map_or("none", |g| g.source.name()).to_owned())
 }
 
-/// The message of a model without an estimate.
-pub(crate) fn failure(
-    model: &dyn Model,
-    calibration: &str,
-    observed: &Observed,
-    error: &EmtError,
-) -> msg::Estimate {
-    let gamma = observed.observation.conditions.gamma;
-    let reasons = std::iter::once(error.to_string()).chain(observed.notes.iter().cloned()).collect();
-    unknown(model.name(), calibration, model.uses_gamma().then_some(gamma), reasons)
-}
-
-/// The message of a model that was not applied, because there were no moduli.
-pub(crate) fn unobserved(model: &dyn Model, calibration: &str, nothing: &Unobservable) -> msg::Estimate {
-    let gamma = model.uses_gamma().then_some(StrainRatio::ZERO);
-    unknown(model.name(), calibration, gamma, vec![nothing.to_string()])
-}
-
-fn unknown(
+/// The message of a model without an estimate, or that was not applied because there were no moduli.
+pub(crate) fn unknown(
     model: &str,
     calibration: &str,
     gamma: Option<StrainRatio>,

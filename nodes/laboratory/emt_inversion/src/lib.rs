@@ -11,11 +11,9 @@ mod moduli;
 mod node;
 mod observed;
 mod settings;
-mod settings_error;
 mod speeds;
 
 pub use message::{Answer, microstructure_of_moduli, microstructure_of_report, microstructure_of_speeds};
 pub use node::EmtInversion;
-pub use settings::{Axis, Settings, parameters};
-pub use settings_error::SettingsError;
+pub use settings::{Axis, Settings, SettingsError, parameters};
 pub use speeds::notes_on_fit;

@@ -1,11 +1,12 @@
 //! From one message of data to one `Microstructure`.
 
-use crate::estimate::{estimate_message, failure, unobserved};
+use crate::estimate::{estimate_message, unknown};
 use crate::moduli::{of_moduli, of_report};
 use crate::observed::{Observed, Unobservable};
 use crate::settings::Settings;
 use crate::speeds::of_speeds;
 use grainlab_core::results::PackingReport;
+use grainlab_emt::StrainRatio;
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Topic, msg, topics};
@@ -22,38 +23,30 @@ pub struct Answer {
 /// The microstructure inferred from the report of a packing; `None` without a stiffness, from which nothing is inferred. The result
 /// depends only on the two arguments.
 pub fn microstructure_of_report(report: &msg::PackingReport, settings: &Settings) -> Option<Answer> {
-    let about = About { header: &report.header, name: "", source_step: report.source_step };
     let observed = match PackingReport::try_from(report) {
         Ok(report) => Ok(of_report(&report, settings)?),
         Err(_) if report.stiffness.is_empty() => return None,
         Err(refused) => Err(refused),
     };
-    Some(answer(about, &topics::PACKING_REPORT, observed, settings))
+    Some(answer(&report.header, "", report.source_step, &topics::PACKING_REPORT, observed, settings))
 }
 
 /// The microstructure inferred from one set of moduli.
 pub fn microstructure_of_moduli(moduli: &msg::Moduli, settings: &Settings) -> Answer {
-    let about = About { header: &moduli.header, name: &moduli.name, source_step: moduli.source_step };
-    let reading = ModuliReading::try_from(moduli);
-    answer(about, &topics::MODULI, reading.map(|reading| of_moduli(&reading, settings)), settings)
+    let observed = ModuliReading::try_from(moduli).map(|reading| of_moduli(&reading, settings));
+    answer(&moduli.header, &moduli.name, moduli.source_step, &topics::MODULI, observed, settings)
 }
 
 /// The microstructure inferred from one set of wave speeds.
 pub fn microstructure_of_speeds(speeds: &msg::WaveSpeeds, settings: &Settings) -> Answer {
-    let about = About { header: &speeds.header, name: &speeds.name, source_step: speeds.source_step };
-    let reading = WaveSpeedsReading::try_from(speeds);
-    answer(about, &topics::WAVE_SPEEDS, reading.map(|reading| of_speeds(&reading, settings)), settings)
-}
-
-/// Parts of an answer that are copied from the data.
-struct About<'a> {
-    header: &'a Header,
-    name: &'a str,
-    source_step: u64,
+    let observed = WaveSpeedsReading::try_from(speeds).map(|reading| of_speeds(&reading, settings));
+    answer(&speeds.header, &speeds.name, speeds.source_step, &topics::WAVE_SPEEDS, observed, settings)
 }
 
 fn answer(
-    about: About<'_>,
+    header: &Header,
+    name: &str,
+    source_step: u64,
     source: &Topic,
     observed: Result<Result<Observed, Unobservable>, BoundaryError>,
     settings: &Settings,
@@ -65,19 +58,25 @@ fn answer(
     let estimates = settings.models.iter().copied().map(|model| {
         let own = || model.default_calibration();
         let calibration = settings.calibration.as_ref().unwrap_or_else(own);
+        let without = |gamma: StrainRatio, reasons: Vec<String>| {
+            unknown(model.name(), calibration.name(), model.uses_gamma().then_some(gamma), reasons)
+        };
         let observed = match &observed {
             Ok(observed) => observed,
-            Err(nothing) => return unobserved(model, calibration.name(), nothing),
+            Err(nothing) => return without(StrainRatio::ZERO, vec![nothing.to_string()]),
         };
         match model.infer(&observed.observation, calibration) {
             Ok(estimate) => estimate_message(&estimate, observed),
-            Err(error) => failure(model, calibration.name(), observed, &error),
+            Err(error) => {
+                let reasons = std::iter::once(error.to_string()).chain(observed.notes.iter().cloned());
+                without(observed.observation.conditions.gamma, reasons.collect())
+            }
         }
     });
     let message = msg::Microstructure {
-        header: about.header.clone(),
-        name: about.name.to_owned(),
-        source_step: about.source_step,
+        header: header.clone(),
+        name: name.to_owned(),
+        source_step,
         // The name in the contract, not the resolved one: the bytes must not depend on a namespace or a
         // remap.
         source: source.name.to_owned(),

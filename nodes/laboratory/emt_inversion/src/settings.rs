@@ -1,6 +1,5 @@
 //! The parameters of the node.
 
-use crate::settings_error::SettingsError;
 use grainlab_core::Vec3;
 use grainlab_emt::{Calibration, Model, StrainRatioSource};
 use grainlab_node_kit::{ParameterSpec, Parameters, Range};
@@ -14,7 +13,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "calibration",
             "default",
-            "constants of the models: default (that of each model), or one for all models: paper, grainlab, grainlab-z, or \
+            "constants of the models: default (that of each model), or one for all models: paper, grainlab, or \
              a FILE.toml",
         ),
         ParameterSpec::new(
@@ -34,6 +33,12 @@ pub fn parameters() -> Vec<ParameterSpec> {
             .within(Range::Double { min: 0.0, max: 1.0 }),
     ]
 }
+
+/// A parameter of the right type with an invalid value, and why it is. The process then ends with
+/// [`grainlab_node_kit::Exit::Usage`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("parameter \"{0}\": {1}")]
+pub struct SettingsError(pub &'static str, pub String);
 
 /// The values of the parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,7 +96,7 @@ impl Settings {
         if calibration.ends_with(".toml") {
             let read = read(&calibration);
             calibration =
-                read.map_err(|reason| SettingsError::CalibrationFile { path: calibration, reason })?;
+                read.map_err(|reason| SettingsError("calibration", format!("{calibration:?}: {reason}")))?;
         }
         Ok(Self {
             models: models(&text("models"))?,
@@ -117,7 +122,7 @@ fn models(text: &str) -> Result<Vec<&'static dyn Model>, SettingsError> {
     let names: Vec<&str> = text.split(',').map(str::trim).collect();
     if let Some(stranger) = names.iter().find(|n| grainlab_emt::model(n).is_none()) {
         let known = all.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ");
-        return Err(SettingsError::Model { name: (*stranger).to_owned(), known });
+        return Err(SettingsError("models", format!("no model {stranger:?}; there are: {known}")));
     }
     all.retain(|m| names.contains(&m.name()));
     Ok(all)
@@ -134,9 +139,10 @@ fn constants(text: &str) -> Result<Option<Calibration>, SettingsError> {
     }
     if !name.contains('=') {
         let known = ["default"].into_iter().chain(Calibration::BUILTIN).collect::<Vec<_>>().join(", ");
-        return Err(SettingsError::Calibration { name: name.to_owned(), known });
+        let reason = format!("no calibration {name:?}; there are: {known}, or a FILE.toml");
+        return Err(SettingsError("calibration", reason));
     }
-    Calibration::parse(text).map(Some).map_err(SettingsError::CalibrationText)
+    Calibration::parse(text).map(Some).map_err(|e| SettingsError("calibration", e.to_string()))
 }
 
 fn axis(text: &str) -> Result<Axis, SettingsError> {
@@ -151,5 +157,6 @@ fn axis(text: &str) -> Result<Axis, SettingsError> {
     let valid = direction.filter(|v| v.iter().all(|n| n.is_finite()) && v.amax() > 0.0);
     // Scaled first: the square of a large component overflows.
     let unit = valid.map(|v| (v / v.amax()).normalize());
-    unit.map(Axis::Given).ok_or_else(|| SettingsError::Axis(text.to_owned()))
+    let choices = "stated, e3, found, or three numbers x,y,z that are finite and not all zero";
+    unit.map(Axis::Given).ok_or_else(|| SettingsError("axis", format!("{text:?} is not an axis: {choices}")))
 }

@@ -108,11 +108,11 @@ fn other_axis(fitted: &SpeedFit, speeds: &[WaveSpeed], density: Measured, taken:
 /// Notes on the moduli that were fitted to `speeds` speeds; `name` names each speed.
 pub fn notes_on_fit(fitted: &SpeedFit, speeds: usize, name: impl Fn(usize) -> String) -> Vec<String> {
     let mut notes = Vec::new();
-    if let Some(departure) = &fitted.anisotropy_scatter {
+    if let Some(departure) = fitted.anisotropy_scatter {
         notes.push(format!(
             "rho v^2 of the wave speeds scatters by {:.1} % about a medium isotropic about the axis, more than their errors \
              do: the sample is not quite one, and {:.2} % were added to the error of every speed",
-            100.0 * departure.scatter, 50.0 * departure.scatter
+            100.0 * departure, 50.0 * departure
         ));
     }
     if let Some(conflict) = &fitted.conflict {

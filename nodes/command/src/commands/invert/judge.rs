@@ -116,7 +116,7 @@ impl Verdict {
     fn of(state: &State, case: &Case) -> Self {
         let estimate = state.infer(case).ok();
         let errors = InferredQuantity::ALL.map(|quantity| {
-            let truth = state.truth.get(against(quantity, case))?;
+            let truth = state.truth.get(against(quantity))?;
             Some(score::Error::of(estimate.as_ref(), quantity, truth))
         });
         let found = estimate.as_ref().and_then(|e| e.structure.eps);
@@ -125,13 +125,9 @@ impl Verdict {
     }
 }
 
-/// The quantity for comparison: k̂ is not a property of a packing, so that the coordination number of its
-/// calibration is used.
-fn against(quantity: InferredQuantity, case: &Case) -> InferredQuantity {
-    match quantity {
-        InferredQuantity::KHat => case.calibration.isotropic().coordination_kind,
-        other => other,
-    }
+/// The quantity for comparison: k̂ is not a property of a packing, so that k is used.
+fn against(quantity: InferredQuantity) -> InferredQuantity {
+    if quantity == InferredQuantity::KHat { InferredQuantity::K } else { quantity }
 }
 
 /// Scores of each quantity by group, case and γ/Δ.
@@ -169,7 +165,7 @@ impl Board {
                         calibration: case.calibration.name().to_owned(),
                         gamma_over_delta_source: gamma,
                         quantity: quantity.name(),
-                        truth: against(quantity, case).name(),
+                        truth: against(quantity).name(),
                         score: *score,
                     });
                 }

@@ -126,8 +126,8 @@ impl<'a> Bloch<'a> {
                 for (at, g) in cluster.grains.iter().enumerate() {
                     let (g, (sin, cos)) = (*g as usize, turns[at]);
                     for k in 0..6 {
-                        x[g].re[k] -= z[6 * at + k] * (cos * re + sin * im);
-                        x[g].im[k] -= z[6 * at + k] * (cos * im - sin * re);
+                        x[g].re[k] = x[g].re[k] - z[6 * at + k] * (cos * re + sin * im);
+                        x[g].im[k] = x[g].im[k] - z[6 * at + k] * (cos * im - sin * re);
                     }
                 }
             }

@@ -4,9 +4,17 @@
 //! this symmetry both are the same. A packing is never exactly transversely isotropic: its polarizations are turned a
 //! little, and the speeds of its modes are further apart than their projections.
 
-use crate::dispersion::acoustic_tensor::AcousticTensor;
 use grainlab_core::{Mat3, Vec3};
 use nalgebra::{DMatrix, SymmetricEigen};
+
+/// The acoustic tensor A at one wave number.
+pub(super) struct AcousticTensor {
+    pub(super) wavenumber: f64,
+    /// Tensor A over q², m²/s².
+    pub(super) over_square: Mat3,
+    /// Relative error of ω².
+    pub(super) error: f64,
+}
 
 /// Unit polarizations of the modes of long waves, in the span of the perpendicular unit vectors `within`: eigenvectors of
 /// A/q², extrapolated linearly in q² to q = 0. Christoffel's tensor over the density has the same.

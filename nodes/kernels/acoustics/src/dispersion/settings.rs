@@ -1,6 +1,6 @@
 //! Settings of the measurement by dispersion.
 
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, setting};
 
 /// Shortest wavelength, mean diameters: below, neighbours move against each other.
 const MIN_WAVELENGTH: f64 = 2.0;
@@ -35,24 +35,20 @@ impl Default for Settings {
 impl Settings {
     /// The settings, if they are in range.
     pub fn validated(&self) -> Result<&Self, AcousticsError> {
-        let range = |name, value: f64, valid: bool, requirement| {
-            if valid { Ok(()) } else { Err(AcousticsError::Setting { name, value, requirement }) }
-        };
         let mut different = self.wavelengths.clone();
         different.sort_by(f64::total_cmp);
         different.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
         let count = different.len();
         let requirement = "3 or more different ones, to extrapolate and to estimate the error";
-        range("number of wavelengths", count as f64, count >= 3, requirement)?;
+        setting("number of wavelengths", count as f64, count >= 3, requirement)?;
         for wavelength in &self.wavelengths {
             let valid = wavelength.is_finite() && *wavelength > MIN_WAVELENGTH;
-            range("wavelength", *wavelength, valid, "more than 2 mean grain diameters, finite")?;
+            setting("wavelength", *wavelength, valid, "more than 2 mean grain diameters, finite")?;
         }
         let (t, n) = (self.tolerance, self.max_iterations);
-        range("tolerance", t, (1e-12..=1e-2).contains(&t), "between 1e-12 and 1e-2")?;
-        range("max_iterations", f64::from(n), n > 0, "1 or more")?;
-        let d = self.doublings;
-        range("doublings", f64::from(d), d <= 9, "at most 9")?;
+        setting("tolerance", t, (1e-12..=1e-2).contains(&t), "between 1e-12 and 1e-2")?;
+        setting("max_iterations", f64::from(n), n > 0, "1 or more")?;
+        setting("doublings", f64::from(self.doublings), self.doublings <= 9, "at most 9")?;
         Ok(self)
     }
 }

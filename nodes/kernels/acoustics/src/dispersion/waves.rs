@@ -1,6 +1,6 @@
 //! Amplitudes of three waves that are computed together.
 
-use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Mul, Sub};
 
 /// Number of waves computed together.
 pub(crate) const WAVES: usize = 3;
@@ -55,13 +55,6 @@ impl AddAssign for Row {
     #[inline(always)]
     fn add_assign(&mut self, other: Row) {
         *self = *self + other;
-    }
-}
-
-impl SubAssign for Row {
-    #[inline(always)]
-    fn sub_assign(&mut self, other: Row) {
-        *self = *self - other;
     }
 }
 

@@ -49,8 +49,13 @@ pub(crate) fn layers(cell: &Cell, indices: [i32; 3], copies: u32) -> Option<Laye
     Some(Layers { plane, step, cell: Cell::new(edges)?, coordinates: inverse(&basis), skew })
 }
 
+/// The distance of neighbouring planes (h k l), m.
+pub(crate) fn spacing(cell: &Cell, plane: &Whole) -> f64 {
+    1.0 / (cell.inverse().transpose() * plane.cast::<f64>()).norm()
+}
+
 /// The indices divided by their greatest common divisor.
-fn primitive(indices: [i32; 3]) -> Option<Whole> {
+pub(crate) fn primitive(indices: [i32; 3]) -> Option<Whole> {
     let v = Whole::from(indices.map(i64::from));
     let divisor = v.iter().fold(0, |d, x| gcd(d, *x).0);
     (divisor != 0).then(|| v / divisor)

@@ -9,7 +9,7 @@ use super::burst::Burst;
 use super::line::Line;
 use super::pick::Picker;
 use super::settings::ArrivalPick;
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, no_signal, setting};
 use crate::noise::Noise;
 use crate::trace::Trace;
 
@@ -46,12 +46,7 @@ impl Arrivals {
     /// starts at the trigger. `seed` is that of the noisy copies.
     pub fn pick(trace: &Trace, cycles: f64, pick: ArrivalPick, seed: u64) -> Result<Self, AcousticsError> {
         let (burst, picker) = prepared(trace, cycles, pick)?;
-        let missing = |reason| AcousticsError::NoSignal {
-            what: "arrival",
-            direction: trace.direction.into(),
-            polarization: trace.polarization.into(),
-            reason,
-        };
+        let missing = |reason: String| no_signal("arrival", &trace.direction, &trace.polarization, reason);
         let quiet = ((-trace.start * trace.sample_rate).floor().max(0.0) as usize)
             .min(trace.channels[0].samples.len());
         let noise = noise(trace, quiet);
@@ -96,34 +91,21 @@ impl Arrivals {
 
 /// Burst and picker of a trace that can be picked.
 fn prepared(trace: &Trace, cycles: f64, pick: ArrivalPick) -> Result<(Burst, Picker), AcousticsError> {
-    let fault = |name, value, requirement| Err(AcousticsError::Setting { name, value, requirement });
+    let Trace { frequency, sample_rate: rate, channels, .. } = trace;
     let positive = |x: f64| x.is_finite() && x > 0.0;
-    if !positive(cycles) {
-        return fault("cycles", cycles, "more than 0");
+    setting("cycles", cycles, positive(cycles), "more than 0")?;
+    setting("frequency", *frequency, positive(*frequency), "more than 0")?;
+    let resolved = positive(*rate) && *rate >= 4.0 * frequency;
+    setting("sample_rate", *rate, resolved, "at least four samples per period of the centre frequency")?;
+    setting("receivers", channels.len() as f64, channels.len() >= 2, "2 or more")?;
+    let samples = channels[0].samples.len();
+    let same = samples > 0 && channels.iter().all(|c| c.samples.len() == samples);
+    setting("samples", samples as f64, same, "the same number at every receiver, 1 or more")?;
+    for value in channels.iter().flat_map(|c| c.samples.iter().chain([&c.distance])).chain([&trace.start]) {
+        setting("samples", *value, value.is_finite(), "finite")?;
     }
-    if !positive(trace.frequency) {
-        return fault("frequency", trace.frequency, "more than 0");
-    }
-    if !(positive(trace.sample_rate) && trace.sample_rate >= 4.0 * trace.frequency) {
-        return fault(
-            "sample_rate",
-            trace.sample_rate,
-            "at least four samples per period of the centre frequency",
-        );
-    }
-    if trace.channels.len() < 2 {
-        return fault("receivers", trace.channels.len() as f64, "2 or more");
-    }
-    let samples = trace.channels[0].samples.len();
-    if samples == 0 || trace.channels.iter().any(|c| c.samples.len() != samples) {
-        return fault("samples", samples as f64, "the same number at every receiver, 1 or more");
-    }
-    let numbers = trace.channels.iter().flat_map(|c| c.samples.iter().chain([&c.distance]));
-    if let Some(value) = numbers.chain([&trace.start]).find(|x| !x.is_finite()) {
-        return fault("samples", *value, "finite");
-    }
-    let burst = Burst { frequency: trace.frequency, cycles };
-    Ok((burst, Picker::new(pick, burst, trace.sample_rate, samples)))
+    let burst = Burst { frequency: *frequency, cycles };
+    Ok((burst, Picker::new(pick, burst, *rate, samples)))
 }
 
 /// Root mean square of the samples before the trigger.

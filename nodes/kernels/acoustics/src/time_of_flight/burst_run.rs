@@ -4,12 +4,13 @@ use super::burst::Burst;
 use super::path_plan::PathPlan;
 use super::slab::Slab;
 use super::wave_path::WavePath;
-use crate::contact_changes::ContactChanges;
 use crate::error::AcousticsError;
 use crate::instrument::ReceiverSignals;
 use crate::sample::Sample;
 use crate::supercell::supercell;
+use grainlab_core::{Contact, Mat3};
 use grainlab_dem::Engine;
+use std::collections::BTreeSet;
 
 /// Number of comparisons of the contacts.
 const LOOKS: usize = 8;
@@ -57,7 +58,8 @@ pub(crate) fn send(
     engine.update_time_step();
     engine.initialise()?;
     let step = engine.time_step();
-    let mut changes = ContactChanges::since(&engine);
+    let start = contacts(&engine);
+    let (mut opened, mut closed) = (BTreeSet::new(), BTreeSet::new());
 
     // A plane source of force per area f sends waves of velocity f/(2ρv) in both directions.
     let acceleration = 2.0 * amplitude * speed * speed / thickness;
@@ -82,12 +84,20 @@ pub(crate) fn send(
             channel.push(slab.velocity(&velocities, &path.polarization));
         }
         if (sample + 1) % look == 0 {
-            changes.look(&engine);
+            let now = contacts(&engine);
+            opened.extend(start.difference(&now).copied());
+            closed.extend(now.difference(&start).copied());
         }
     }
     let interval = f64::from(stride) * step;
     let distances =
         plan.receivers.iter().zip(&receivers).map(|(d, r)| d + r.offset - source.offset).collect();
     let signals = ReceiverSignals { start: interval, interval, channels };
-    Ok(BurstResponse { signals, distances, opened: changes.opened(), closed: changes.closed() })
+    Ok(BurstResponse { signals, distances, opened: opened.len() as u32, closed: closed.len() as u32 })
+}
+
+/// Grains and image of every contact.
+fn contacts(engine: &Engine) -> BTreeSet<(u32, u32, [i8; 3])> {
+    let key = |c: &Contact| (c.i, c.j, c.image);
+    engine.packing(Mat3::identity()).contacts.iter().map(key).collect()
 }

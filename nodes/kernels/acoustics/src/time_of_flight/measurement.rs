@@ -8,7 +8,7 @@ use super::phase_velocity;
 use super::settings::{ArrivalPick, Settings};
 use super::wave_path::{PathResult, WavePath};
 use crate::curve::DispersionCurve;
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, no_signal};
 use crate::instrument::{Instrument, ReceiverSignals, SamplingWindow, burst_level};
 use crate::noise::seed_at;
 use crate::sample::Sample;
@@ -88,7 +88,7 @@ impl TimeOfFlight<'_> {
         let affine = self.sample.affine_speed(&self.path.direction, &self.path.polarization);
         if curve.speed > FASTEST * affine {
             let reason = "the picked feature is faster than any long wave; the burst is lost to scattering, use longer waves";
-            return Err(self.path.no_signal("arrival", reason));
+            return Err(no_signal("arrival", &path.direction, &path.polarization, reason));
         }
         // Contact forces change rho v^2 of moving grains by the order of the pressure.
         let modulus = self.sample.density() * curve.speed.powi(2);
@@ -101,7 +101,8 @@ impl TimeOfFlight<'_> {
     fn first_speed(&self, settings: &Settings) -> Result<f64, AcousticsError> {
         let guess = TYPICAL_SPEED * self.sample.affine_speed(&self.path.direction, &self.path.polarization);
         if guess.is_nan() || guess <= 0.0 {
-            return Err(self.path.no_signal("wave", "the contacts have no stiffness for this polarization"));
+            let reason = "the contacts have no stiffness for this polarization";
+            return Err(no_signal("wave", &self.path.direction, &self.path.polarization, reason));
         }
         let frequency = guess / (FIRST_WAVELENGTH * self.sample.diameter);
         let burst = Burst { frequency, cycles: settings.cycles };

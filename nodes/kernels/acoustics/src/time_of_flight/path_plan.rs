@@ -4,7 +4,7 @@ use super::burst::Burst;
 use super::wave_path::WavePath;
 use crate::error::AcousticsError;
 use crate::sample::Sample;
-use grainlab_core::Vec3;
+use crate::supercell::lattice::{primitive, spacing};
 use std::f64::consts::TAU;
 
 /// Receivers of a measurement: their number, and the distances of the first and the last one, wavelengths.
@@ -42,10 +42,8 @@ impl PathPlan {
         burst: &Burst,
         speed: f64,
     ) -> Result<Self, AcousticsError> {
-        let planes = sample.packing.cell.inverse().transpose() * Vec3::from(path.indices.map(f64::from));
         // Planes (2 0 0) are every second plane of (1 0 0).
-        let divisor = path.indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
-        let period = f64::from(divisor) / planes.norm();
+        let period = spacing(&sample.packing.cell, &primitive(path.indices).unwrap_or_default());
         let wavelength = speed / burst.frequency;
         let receivers = places(receivers, wavelength, period);
         let furthest = receivers.last().copied().unwrap_or(0.0);
@@ -72,8 +70,4 @@ fn places((receivers, nearest, furthest): (u32, f64, f64), wavelength: f64, peri
     let even = (0..receivers).map(|k| f64::from(k) * step);
     let whole = |x: f64| if step >= period { (x / period).round() * period } else { x };
     even.map(|x| nearest * wavelength + whole(x)).collect()
-}
-
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -12,7 +12,7 @@ use super::pick::Picker;
 use super::settings::ArrivalPick;
 use super::spectrum::Spectrum;
 use crate::curve::{DispersionCurve, DispersionPoint};
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, no_signal};
 use crate::trace::{Channel, Trace};
 use std::f64::consts::TAU;
 
@@ -127,12 +127,8 @@ pub(crate) fn curve(
     let longest = traces.iter().zip(arrivals).min_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
     let slowed = longest.map_or(0.0, |(trace, arrivals)| slowed(pick) * loss(trace, arrivals));
     let curve = curve.map(|c| DispersionCurve { stddev: c.stddev.hypot(slowed * c.speed), ..c });
-    curve.ok_or_else(|| AcousticsError::NoSignal {
-        what: "speed of long waves",
-        direction: first.direction.into(),
-        polarization: first.polarization.into(),
-        reason: format!("the speeds at single frequencies have no limit at long waves: {points:?}"),
-    })
+    let reason = || format!("the speeds at single frequencies have no limit at long waves: {points:?}");
+    curve.ok_or_else(|| no_signal("speed of long waves", &first.direction, &first.polarization, reason()))
 }
 
 /// Part of its amplitude that a burst loses per wavelength between the first and the last receiver, 0 or more, from its

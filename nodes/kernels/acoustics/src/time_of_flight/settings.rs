@@ -1,6 +1,6 @@
 //! Settings of the measurement by time of flight.
 
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, setting};
 use grainlab_core::WaveMethod;
 
 /// The feature of a trace that is taken as the arrival.
@@ -62,30 +62,20 @@ impl Default for Settings {
 impl Settings {
     /// The settings, if they are in range.
     pub fn validated(&self) -> Result<&Self, AcousticsError> {
-        let fault = |name, value, requirement| Err(AcousticsError::Setting { name, value, requirement });
-        let positive = |x: f64| x.is_finite() && x > 0.0;
-        if !positive(self.amplitude) {
-            return fault("amplitude", self.amplitude, "more than 0 and finite");
-        }
-        if !(self.cycles.is_finite() && self.cycles >= 1.0) {
-            return fault("cycles", self.cycles, "1 or more and finite");
-        }
-        if self.amplitude > 1e-2 {
-            return fault("amplitude", self.amplitude, "0.01 or less");
-        }
-        if self.copies == Some(0) {
-            return fault("copies", 0.0, "1 or more");
-        }
-        for (k, frequency) in self.frequencies.iter().flatten().enumerate() {
-            if !positive(*frequency) {
-                return fault("frequencies", *frequency, "more than 0 and finite");
-            }
-            if self.frequencies.iter().flatten().take(k).any(|f| f == frequency) {
-                return fault("frequencies", *frequency, "each once");
-            }
-        }
-        if self.frequencies.as_ref().is_some_and(Vec::is_empty) {
-            return fault("frequencies", 0.0, "one or more");
+        let (a, c) = (self.amplitude, self.cycles);
+        setting("amplitude", a, a > 0.0 && a <= 1e-2, "more than 0, 0.01 or less")?;
+        setting("cycles", c, c.is_finite() && c >= 1.0, "1 or more and finite")?;
+        setting("copies", 0.0, self.copies != Some(0), "1 or more")?;
+        let frequencies = self.frequencies.as_deref();
+        setting("frequencies", 0.0, frequencies != Some(&[]), "one or more")?;
+        for (k, f) in frequencies.unwrap_or_default().iter().enumerate() {
+            let is_new = frequencies.is_some_and(|all| !all[..k].contains(f));
+            setting(
+                "frequencies",
+                *f,
+                f.is_finite() && *f > 0.0 && is_new,
+                "more than 0, finite, each once",
+            )?;
         }
         Ok(self)
     }

@@ -1,7 +1,7 @@
 //! The paths of a burst: every polarization of every ray.
 
 use crate::curve::DispersionCurve;
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, setting};
 use crate::ray::Ray;
 use crate::trace::Trace;
 use crate::warning::Warning;
@@ -28,18 +28,6 @@ pub(crate) struct PathResult {
     pub(crate) warnings: Vec<Warning>,
 }
 
-impl WavePath {
-    /// The error that there is no `what` on this path.
-    pub(crate) fn no_signal(&self, what: &'static str, reason: &str) -> AcousticsError {
-        AcousticsError::NoSignal {
-            what,
-            direction: self.direction.into(),
-            polarization: self.polarization.into(),
-            reason: reason.to_owned(),
-        }
-    }
-}
-
 /// The path of each polarization of each ray. A ray must name lattice planes of the packing.
 pub(crate) fn paths(packing: &Packing, rays: &[Ray]) -> Result<Vec<WavePath>, AcousticsError> {
     let mut paths = Vec::new();
@@ -47,10 +35,7 @@ pub(crate) fn paths(packing: &Packing, rays: &[Ray]) -> Result<Vec<WavePath>, Ac
         let indices = planes(packing, ray)?;
         for (p, polarization) in ray.polarizations.iter().enumerate() {
             let length = polarization.norm();
-            if length.is_nan() || (length - 1.0).abs() > 1e-6 {
-                let requirement = "a unit vector";
-                return Err(AcousticsError::Setting { name: "polarization", value: length, requirement });
-            }
+            setting("polarization", length, (length - 1.0).abs() <= 1e-6, "a unit vector")?;
             let place = [r as u64, p as u64];
             paths.push(WavePath { direction: ray.direction, polarization: *polarization, indices, place });
         }

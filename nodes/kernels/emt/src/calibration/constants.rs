@@ -1,23 +1,28 @@
 //! The constants of all models.
 
 use super::discrepancy::ModelDiscrepancy;
+use super::file::Grains;
 use super::isotropic::IsotropicCalibration;
 use super::relaxation::RelaxationCalibration;
 use crate::conditions::StrainRatioSource;
 use grainlab_core::Material;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Constants of the models, measured on packings of one material.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Calibration {
     pub(crate) name: Cow<'static, str>,
-    pub(crate) isotropic: IsotropicCalibration,
-    /// The fit to the same packings with the other coordination number.
-    pub(crate) other: Option<IsotropicCalibration>,
-    pub(crate) material: Material,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) pressures: Option<[f64; 2]>,
+    #[serde(with = "Grains")]
+    pub(crate) material: Material,
+    pub(crate) isotropic: IsotropicCalibration,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) network: Option<Box<RelaxationCalibration>>,
+    #[serde(default, rename = "discrepancy", skip_serializing_if = "Vec::is_empty")]
     pub(crate) discrepancies: Vec<ModelDiscrepancy>,
 }
 
@@ -26,7 +31,6 @@ impl Calibration {
     pub const PAPER: Calibration = Calibration {
         name: Cow::Borrowed("paper"),
         isotropic: IsotropicCalibration::PAPER,
-        other: None,
         material: Material::GLASS,
         pressures: None,
         network: None,
@@ -39,15 +43,7 @@ impl Calibration {
         isotropic: IsotropicCalibration,
         material: Material,
     ) -> Self {
-        Self {
-            name: name.into(),
-            isotropic,
-            other: None,
-            material,
-            pressures: None,
-            network: None,
-            discrepancies: Vec::new(),
-        }
+        Self { name: name.into(), isotropic, material, ..Self::PAPER }
     }
 
     /// Name of the calibration, reported with every estimate.
@@ -88,16 +84,6 @@ impl Calibration {
         material.map_or(1.0, |m| (m.effective_young() / own).cbrt().powi(2))
     }
 
-    /// Calibration with this coordination number for the isotropic packings; `None` if the calibration lacks
-    /// such a fit.
-    pub fn with_coordination_kind(&self, kind: InferredQuantity) -> Option<Self> {
-        if self.isotropic.coordination_kind == kind {
-            return Some(self.clone());
-        }
-        let isotropic = self.other.clone().filter(|i| i.coordination_kind == kind)?;
-        Some(Self { isotropic, other: Some(self.isotropic.clone()), ..self.clone() })
-    }
-
     /// Covariance of the error of a model that takes this γ/Δ and infers this structure; `None` if it was not learned. A γ/Δ of
     /// unknown origin counts as that of the total strain, with which errors are largest. A calibration without errors of its
     /// own has those that the models have with the constants of the paper.
@@ -113,16 +99,13 @@ impl Calibration {
             other => other,
         });
         let all = if self.discrepancies.is_empty() { Self::errors_with_paper() } else { &self.discrepancies };
-        let of_model = || all.iter().filter(|d| d.model == model && d.gamma == learned_from);
-        let of_kind = of_model().find(|d| d.coordination_kind == self.isotropic.coordination_kind);
-        let learned = of_kind.or_else(|| of_model().next())?;
-        let coordination = if structure.z.is_some() { InferredQuantity::Z } else { InferredQuantity::K };
+        let learned = all.iter().find(|d| d.model == model && d.gamma == learned_from)?;
         // Smaller samples than those of the packings scatter more.
         let packings = self.network().or_else(|| Self::builtin("grainlab")?.network());
         let ratio = grains.zip(packings).map(|(n, p)| f64::from(p.grains) / f64::from(n.max(1)));
         let scatter = ratio.map_or(1.0, |ratio| ratio.max(1.0));
         let mut covariance = MicrostructureCovariance::zeros();
-        let order = [coordination, InferredQuantity::KHat, InferredQuantity::Eps];
+        let order = [InferredQuantity::K, InferredQuantity::KHat, InferredQuantity::Eps];
         for (a, row) in order.into_iter().zip(learned.at(structure.eps, scatter)) {
             for (b, value) in order.into_iter().zip(row) {
                 covariance[(a as usize, b as usize)] = value;

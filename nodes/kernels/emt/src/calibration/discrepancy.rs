@@ -1,9 +1,7 @@
 //! The error of a model.
 
 use super::error::{CalibrationError, constant};
-use super::names::{coordination_kind, strain_ratio};
 use crate::conditions::StrainRatioSource;
-use grainlab_core::results::InferredQuantity;
 use serde::{Deserialize, Serialize};
 
 /// The difference of a model from the packings of the calibration.
@@ -12,11 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct ModelDiscrepancy {
     /// Name of the model.
     pub model: String,
-    /// The coordination number of the isotropic packings: [`InferredQuantity::K`] or [`InferredQuantity::Z`].
-    #[serde(rename = "abscissa", with = "coordination_kind")]
-    pub coordination_kind: InferredQuantity,
     /// The γ/Δ that the model takes; `None` if it uses none.
-    #[serde(with = "strain_ratio")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gamma: Option<StrainRatioSource>,
     /// Means of the products of the errors (bias included) of the coordination number, k̂ and ε; zero for k̂
     /// where the model does not use it.

@@ -1,9 +1,7 @@
 //! Moduli of isotropic packings, Eqs. 21 and 22.
 
-use super::error::CalibrationError;
-use super::names::coordination_kind;
-use grainlab_core::results::InferredQuantity;
-use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use super::error::{CalibrationError, constant};
+use serde::{Deserialize, Serialize};
 
 const MEGA: f64 = 1.0e6;
 
@@ -12,11 +10,8 @@ const MEGA: f64 = 1.0e6;
 ///
 /// Built by [`IsotropicCalibration::new`], which checks what makes the inversion unique: α, ρ > 0, β < ζ and β < 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(remote = "Self", deny_unknown_fields)]
+#[serde(deny_unknown_fields)]
 pub struct IsotropicCalibration {
-    /// Kind of the coordination number k̂: [`InferredQuantity::K`] or [`InferredQuantity::Z`].
-    #[serde(rename = "abscissa", with = "coordination_kind")]
-    pub coordination_kind: InferredQuantity,
     alpha: f64,
     beta: f64,
     rho: f64,
@@ -31,22 +26,9 @@ pub struct IsotropicCalibration {
     pub covariance: Option<[[f64; 4]; 4]>,
 }
 
-impl Serialize for IsotropicCalibration {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        Self::serialize(self, to)
-    }
-}
-
-impl<'de> Deserialize<'de> for IsotropicCalibration {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        Self::deserialize(from)?.checked().map_err(D::Error::custom)
-    }
-}
-
 impl IsotropicCalibration {
     /// The paper's: α = 170, β = −3.66, ρ = 75, ζ = −0.5, fitted for k̂ > 4.8.
     pub const PAPER: IsotropicCalibration = IsotropicCalibration {
-        coordination_kind: InferredQuantity::K,
         alpha: 170.0,
         beta: -3.66,
         rho: 75.0,
@@ -57,43 +39,18 @@ impl IsotropicCalibration {
     };
 
     /// `alpha` and `rho` in MPa^⅔, `beta` and `zeta` dimensionless, `fitted` the lowest and highest k̂ of the packings.
-    pub fn new(
-        [alpha, beta, rho, zeta]: [f64; 4],
-        coordination_kind: InferredQuantity,
-        fitted: [f64; 2],
-    ) -> Result<Self, CalibrationError> {
-        Self { coordination_kind, alpha, beta, rho, zeta, fitted, scatter: None, covariance: None }.checked()
+    pub fn new([alpha, beta, rho, zeta]: [f64; 4], fitted: [f64; 2]) -> Result<Self, CalibrationError> {
+        Self { alpha, beta, rho, zeta, fitted, scatter: None, covariance: None }.checked()
     }
 
-    fn checked(self) -> Result<Self, CalibrationError> {
+    /// Refuses constants that make the inversion ambiguous.
+    pub(super) fn checked(self) -> Result<Self, CalibrationError> {
         let Self { alpha, beta, rho, zeta, fitted, .. } = self;
-        let positive = |v: f64| v > 0.0 && v.is_finite();
-        for (field, value, valid, requirement) in [
-            ("alpha", alpha, positive(alpha), "it must be positive and finite"),
-            ("rho", rho, positive(rho), "it must be positive and finite"),
-            (
-                "beta",
-                beta,
-                beta < 0.0 && beta.is_finite(),
-                "shear must vanish at a positive coordination: beta < 0",
-            ),
-            (
-                "zeta",
-                zeta,
-                zeta > beta && zeta.is_finite(),
-                "shear must vanish before bulk does: zeta > beta",
-            ),
-            (
-                "fitted",
-                fitted[0],
-                fitted[0].is_finite() && fitted[0] < fitted[1],
-                "it must be a range, low and high",
-            ),
-        ] {
-            if !valid {
-                return Err(CalibrationError::Constant { field, value, requirement });
-            }
-        }
+        constant("alpha", alpha, alpha > 0.0, "it must be positive and finite")?;
+        constant("rho", rho, rho > 0.0, "it must be positive and finite")?;
+        constant("beta", beta, beta < 0.0, "shear must vanish at a positive coordination: beta < 0")?;
+        constant("zeta", zeta, zeta > beta, "shear must vanish before bulk does: zeta > beta")?;
+        constant("fitted", fitted[0], fitted[0] < fitted[1], "it must be a range, low and high")?;
         Ok(self)
     }
 

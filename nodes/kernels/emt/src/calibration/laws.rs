@@ -40,68 +40,29 @@ fn critical_slope(z: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScalingLaw {
-    /// Coefficient a, the level.
-    pub level: f64,
-    /// Coefficient b, of ln z.
-    pub by_z: f64,
-    /// Coefficient c, of ln(z − z0).
-    pub by_excess: f64,
+    /// Coefficients a to h.
+    pub coefficients: [f64; 8],
     /// z0, below every z of the packings.
     pub onset: f64,
-    /// Coefficient d, of ln p.
-    pub by_pressure: f64,
-    /// Coefficient e, of κ.
-    pub by_stiffness_ratio: f64,
-    /// Coefficient f, of s².
-    pub by_size_variance: f64,
-    /// g and h.
-    pub mixed: [f64; 2],
 }
 
 impl ScalingLaw {
-    /// Number of coefficients, z0 not counted.
-    pub(crate) const TERMS: usize = 8;
-
-    /// The terms that the coefficients multiply, in the order of the fields.
-    pub(crate) fn terms(z: f64, onset: f64, state: &NetworkState) -> [f64; Self::TERMS] {
+    /// The terms that the coefficients multiply.
+    pub(crate) fn terms(z: f64, onset: f64, state: &NetworkState) -> [f64; 8] {
         let (ln_z, ln_p, kappa) = (z.ln(), state.ln_pressure, state.stiffness_ratio);
         [1.0, ln_z, (z - onset).ln(), ln_p, kappa, state.size_variance, kappa * ln_z, ln_p * ln_z]
     }
 
-    pub(crate) fn new([a, b, c, d, e, f, g, h]: [f64; Self::TERMS], onset: f64) -> Self {
-        Self {
-            level: a,
-            by_z: b,
-            by_excess: c,
-            onset,
-            by_pressure: d,
-            by_stiffness_ratio: e,
-            by_size_variance: f,
-            mixed: [g, h],
-        }
-    }
-
     /// Logarithm of X.
     pub(crate) fn value(&self, z: f64, state: &NetworkState) -> f64 {
-        let coefficients = [
-            self.level,
-            self.by_z,
-            self.by_excess,
-            self.by_pressure,
-            self.by_stiffness_ratio,
-            self.by_size_variance,
-            self.mixed[0],
-            self.mixed[1],
-        ];
-        dot(&coefficients, &Self::terms(z, self.onset, state))
+        dot(&self.coefficients, &Self::terms(z, self.onset, state))
     }
 
     /// d ln X/dz.
     pub(crate) fn slope(&self, z: f64, state: &NetworkState) -> f64 {
-        let [by_stiffness_ratio, by_pressure] = self.mixed;
-        let by_ln_z =
-            self.by_z + by_stiffness_ratio * state.stiffness_ratio + by_pressure * state.ln_pressure;
-        by_ln_z / z + self.by_excess / (z - self.onset)
+        let [_, by_z, by_excess, _, _, _, by_stiffness_ratio, by_pressure] = self.coefficients;
+        let by_ln_z = by_z + by_stiffness_ratio * state.stiffness_ratio + by_pressure * state.ln_pressure;
+        by_ln_z / z + by_excess / (z - self.onset)
     }
 }
 

@@ -7,7 +7,6 @@ mod error;
 mod file;
 mod isotropic;
 mod laws;
-mod names;
 mod reach;
 mod relaxation;
 

@@ -19,17 +19,6 @@ pub struct SpeedConflict {
     pub sigma: f64,
 }
 
-/// The scatter of speeds that differ from those of a transversely isotropic medium by more than their errors, as in a
-/// sample of finitely many grains.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnisotropyScatter {
-    /// Root mean square of the relative differences of ρ v² that are due to the sample. Half of it is added
-    /// in quadrature to the relative error of every speed, which makes χ² equal to the degrees of freedom (R.
-    /// C. Paule & J. Mandel, J. Res. Natl. Bur. Stand. 87, 377 (1982)). It bounds the weight of very accurate
-    /// speeds.
-    pub scatter: f64,
-}
-
 /// Agreement of the speeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Agreement {

@@ -17,37 +17,15 @@ pub enum ChristoffelError {
         /// The length found.
         length: f64,
     },
-    /// A speed is not positive and finite.
-    #[error(
-        "speeds[{index}].speed = {value} m/s must be positive and finite: leave out what was not measured"
-    )]
-    Speed {
-        /// Index in the list of speeds.
-        index: usize,
-        /// The value found, m/s.
+    /// A speed, the density or one of their standard deviations is not positive and finite.
+    #[error("{what} = {value} {requirement}")]
+    Number {
+        /// Name of the number, with its index in the list of speeds.
+        what: String,
+        /// The value found.
         value: f64,
-    },
-    /// A standard deviation of a speed is not positive and finite.
-    #[error("speeds[{index}].stddev = {value} m/s must be positive and finite, or not known")]
-    SpeedStddev {
-        /// Index in the list of speeds.
-        index: usize,
-        /// The value found, m/s.
-        value: f64,
-    },
-    /// The density is not positive and finite.
-    #[error(
-        "the density {value} kg/m3 must be positive and finite: that of the mass that moves with the wave"
-    )]
-    Density {
-        /// The value found, kg/m³.
-        value: f64,
-    },
-    /// The standard deviation of the density is negative or not finite.
-    #[error("the standard deviation of the density, {value} kg/m3, must be finite and 0 or more")]
-    DensityStddev {
-        /// The value found, kg/m³.
-        value: f64,
+        /// Unit of the value, and requirement.
+        requirement: &'static str,
     },
     /// A polarization between the modes of its direction.
     #[error(

@@ -36,7 +36,7 @@ mod search;
 mod speed_fit;
 mod weights;
 
-pub use agreement::{AnisotropyScatter, SpeedConflict};
+pub use agreement::SpeedConflict;
 pub use axis::{AxisEstimate, find_axis};
 pub use axis_error::AxisError;
 pub use error::ChristoffelError;

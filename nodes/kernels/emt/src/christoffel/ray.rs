@@ -78,13 +78,11 @@ impl Ray {
         axis: &Vec3,
     ) -> Result<(Self, f64), ChristoffelError> {
         let WaveSpeed { direction, polarization, speed, stddev } = *measured;
-        if !(speed > 0.0 && speed.is_finite()) {
-            return Err(ChristoffelError::Speed { index, value: speed });
-        }
-        if let Some(value) = stddev
-            && !(value > 0.0 && value.is_finite())
-        {
-            return Err(ChristoffelError::SpeedStddev { index, value });
+        let of_speed = "m/s must be positive and finite: leave out what was not measured";
+        number(speed > 0.0, || format!("speeds[{index}].speed"), speed, of_speed)?;
+        if let Some(value) = stddev {
+            let of_stddev = "m/s must be positive and finite, or not known";
+            number(value > 0.0, || format!("speeds[{index}].stddev"), value, of_stddev)?;
         }
         let mut n = unit(&direction, || format!("speeds[{index}].direction"))?;
         let p = unit(&polarization, || format!("speeds[{index}].polarization"))?;
@@ -97,7 +95,7 @@ impl Ray {
         // Along the axis the plane is arbitrary: take that of the polarization.
         let radial = (across.try_normalize(1e-9))
             .or_else(|| (p - p.dot(axis) * axis).try_normalize(1e-9))
-            .unwrap_or_else(|| axis.cross(&least(axis)).normalize());
+            .unwrap_or_else(|| axis.cross(&Vec3::ith(axis.iamin(), 1.0)).normalize());
         let motion = [p.dot(&radial), p.dot(&axis.cross(&radial)), p.dot(axis)];
         let [radially, across, axially] = motion.map(|m| m * m);
         let along = p.dot(&n).powi(2);
@@ -247,6 +245,17 @@ pub(super) fn ambiguous(index: usize, share: f64) -> ChristoffelError {
     ChristoffelError::Ambiguous { index, degrees: share.max(0.0).sqrt().acos().to_degrees() }
 }
 
+/// Refuses a number that is not finite or not `valid`.
+pub(super) fn number(
+    valid: bool,
+    what: impl FnOnce() -> String,
+    value: f64,
+    requirement: &'static str,
+) -> Result<(), ChristoffelError> {
+    let is_number = valid && value.is_finite();
+    if is_number { Ok(()) } else { Err(ChristoffelError::Number { what: what(), value, requirement }) }
+}
+
 /// The normalised vector, if its length is 1 to the rounding of a file or a message.
 pub(super) fn unit(vector: &Vec3, name: impl FnOnce() -> String) -> Result<Vec3, ChristoffelError> {
     let length = vector.norm();
@@ -254,11 +263,4 @@ pub(super) fn unit(vector: &Vec3, name: impl FnOnce() -> String) -> Result<Vec3,
         return Ok(vector / length);
     }
     Err(ChristoffelError::NotUnit { vector: name(), length })
-}
-
-/// The axis of the frame with the smallest component of `vector`.
-fn least(vector: &Vec3) -> Vec3 {
-    let mut unit = Vec3::zeros();
-    unit[vector.iamin()] = 1.0;
-    unit
 }

@@ -1,8 +1,8 @@
 //! The moduli of the medium that fits wave speeds best.
 
-use super::agreement::{self, Agreement, AnisotropyScatter, SpeedConflict};
+use super::agreement::{self, Agreement, SpeedConflict};
 use super::error::ChristoffelError;
-use super::prior_scatter::{self, tightest};
+use super::prior_scatter::{self, ScatteredFit, tightest};
 use super::ray::{self, Ray};
 use super::weights::{errors, weights};
 use super::{departure, determined, fit};
@@ -33,9 +33,11 @@ pub struct SpeedFit {
     /// Set if the speeds contradict each other beyond their uncertainty and beyond the deviation of a sample
     /// of some thousand grains from a transversely isotropic medium. Contains the speed that deviates most.
     pub conflict: Option<SpeedConflict>,
-    /// Set if they differ beyond their uncertainty, but not more than those of such a sample. The covariance is then
-    /// that of their scatter.
-    pub anisotropy_scatter: Option<AnisotropyScatter>,
+    /// Set if they differ beyond their uncertainty, but not more than those of such a sample: the root mean square of the
+    /// relative differences of ρ v² from those of a transversely isotropic medium that are due to the sample. Half of it
+    /// is added in quadrature to the relative error of every speed, which makes χ² equal to the degrees of freedom (R.
+    /// C. Paule & J. Mandel, J. Res. Natl. Bur. Stand. 87, 377 (1982)). It bounds the weight of very accurate speeds.
+    pub anisotropy_scatter: Option<f64>,
 }
 
 impl SpeedFit {
@@ -93,7 +95,10 @@ pub fn moduli_of_sample(
     grains: Option<f64>,
 ) -> Result<SpeedFit, ChristoffelError> {
     let rays = rays(speeds, axis)?;
-    check_density(density)?;
+    let of_density = "kg/m3 must be positive and finite: that of the mass that moves with the wave";
+    ray::number(density.value > 0.0, || "the density".to_owned(), density.value, of_density)?;
+    let (stddev, of_stddev) = (density.stddev, "kg/m3 must be finite and 0 or more");
+    ray::number(stddev >= 0.0, || "the standard deviation of the density".to_owned(), stddev, of_stddev)?;
     let errors = errors(rays.iter().map(|r| r.error));
     let (weights, unit) = weights(errors.as_deref(), rays.len());
     let fit = fit::fit(&rays, &weights, unit)?;
@@ -108,39 +113,27 @@ pub fn moduli_of_sample(
     let agreement = errors.as_ref().map_or(Agreement::Within, |errors| {
         agreement::agreement(&fit.residuals, errors, &fit.leverages, degrees_of_freedom)
     });
-    let (mut fit, mut error, mut anisotropy_scatter, mut conflict) = (fit, unit, None, None);
-    match (agreement, &errors) {
-        (Agreement::Beyond(_) | Agreement::Within, Some(errors)) if grains.is_some() => {
-            let grains = grains.unwrap_or(1.0).max(1.0);
-            let with_it = prior_scatter::with_prior(&rays, errors, &fit, grains)?;
-            let scatter = 2.0 * with_it.added;
-            let allowed = agreement::OWN_SCATTER.max(UNUSUAL * 2.0 * with_it.usual);
-            (fit, error) = (with_it.fit, with_it.unit);
-            if let (Some(unit), Some(axis)) = (error, axis) {
-                let axis = axis.normalize();
-                fit.covariance =
-                    departure::covariance(speeds, &axis, &fit, errors, with_it.added) / unit.powi(2);
-            }
-            match agreement {
-                Agreement::Beyond(_) if scatter <= allowed => {
-                    anisotropy_scatter = Some(AnisotropyScatter { scatter });
-                }
-                Agreement::Beyond(found) => conflict = Some(found),
-                _ => {}
-            }
+    let (mut fit, mut error, mut anisotropy_scatter) = (fit, unit, None);
+    let (is_beyond, mut conflict) = match agreement {
+        Agreement::Within => (false, None),
+        Agreement::Beyond(found) => (true, Some(found)),
+        Agreement::Conflict(found) => (false, Some(found)),
+    };
+    if let Some(errors) = errors.as_ref().filter(|_| is_beyond || (grains.is_some() && conflict.is_none())) {
+        let scattered = match grains {
+            Some(grains) => prior_scatter::with_prior(&rays, errors, &fit, grains.max(1.0))?,
+            None => with_own_error(&rays, errors, &fit)?,
+        };
+        let scatter = 2.0 * scattered.added;
+        let allowed = agreement::OWN_SCATTER.max(UNUSUAL * 2.0 * scattered.usual);
+        (fit, error) = (scattered.fit, scattered.unit);
+        if let (Some(_), Some(unit), Some(axis)) = (grains, error, axis) {
+            fit.covariance = departure::covariance(speeds, &axis.normalize(), &fit, errors, scattered.added)
+                / unit.powi(2);
         }
-        (Agreement::Beyond(found), Some(errors)) => {
-            let (added, with_it, unit) = with_own_error(&rays, errors, &fit)?;
-            let scatter = 2.0 * added;
-            (fit, error) = (with_it, unit);
-            if scatter <= agreement::OWN_SCATTER {
-                anisotropy_scatter = Some(AnisotropyScatter { scatter });
-            } else {
-                conflict = Some(found);
-            }
+        if is_beyond && scatter <= allowed {
+            (anisotropy_scatter, conflict) = (Some(scatter), None);
         }
-        (Agreement::Conflict(found), _) => conflict = Some(found),
-        _ => {}
     }
     let (moduli, covariance) = determined::moduli(&fit, density, error);
     if !moduli.known().all(|(_, value)| value.is_finite()) {
@@ -166,13 +159,9 @@ fn chi_square(fit: &fit::Fit, errors: &[f64], added: f64) -> f64 {
     fit.residuals.iter().zip(errors).map(|(r, e)| r * r / (e * e + added * added)).sum()
 }
 
-/// The relative error added in quadrature to `errors` at which χ² equals the degrees of freedom, the fit with it, and the error
-/// of a speed of weight 1. `sharp` is the fit without it.
-fn with_own_error(
-    rays: &[Ray],
-    errors: &[f64],
-    sharp: &fit::Fit,
-) -> Result<(f64, fit::Fit, Option<f64>), ChristoffelError> {
+/// The fit with the relative error added in quadrature to `errors` at which χ² equals the degrees of freedom. `sharp` is the fit
+/// without it.
+fn with_own_error(rays: &[Ray], errors: &[f64], sharp: &fit::Fit) -> Result<ScatteredFit, ChristoffelError> {
     let fitted = |added: f64| {
         let all: Vec<f64> = errors.iter().map(|e| e.hypot(added)).collect();
         let (weights, unit) = weights(Some(&all), rays.len());
@@ -183,7 +172,9 @@ fn with_own_error(
     };
     // With an error as large as the largest residual χ² is below one per speed, and refitting only lowers it.
     let largest = sharp.residuals.iter().fold(0.0, |most: f64, r| most.max(r.abs()));
-    tightest([0.0, largest * rays.len() as f64], |low, high| 0.5 * (low + high), fitted)
+    let range = [0.0, largest * rays.len() as f64];
+    let (added, fit, unit) = tightest(range, |low, high| 0.5 * (low + high), fitted)?;
+    Ok(ScatteredFit { added, usual: 0.0, fit, unit })
 }
 
 fn rays(speeds: &[WaveSpeed], axis: Option<Vec3>) -> Result<Vec<Ray>, ChristoffelError> {
@@ -195,16 +186,6 @@ fn rays(speeds: &[WaveSpeed], axis: Option<Vec3>) -> Result<Vec<Ray>, Christoffe
     let paired = ray::paired(speeds);
     let ray = |(index, (speed, paired))| Ray::new(index, speed, &axis, paired);
     speeds.iter().zip(paired).enumerate().map(ray).collect()
-}
-
-fn check_density(density: Measured) -> Result<(), ChristoffelError> {
-    if !(density.value > 0.0 && density.value.is_finite()) {
-        return Err(ChristoffelError::Density { value: density.value });
-    }
-    if !(density.stddev >= 0.0 && density.stddev.is_finite()) {
-        return Err(ChristoffelError::DensityStddev { value: density.stddev });
-    }
-    Ok(())
 }
 
 fn is_unstable(moduli: &Moduli) -> bool {

@@ -7,7 +7,6 @@ use crate::error::EmtError;
 use crate::model::Model;
 use crate::normal::student;
 use crate::registry::models;
-use grainlab_core::results::InferredQuantity;
 use std::collections::BTreeMap;
 
 /// Share of the packings of recipes left out that may be more than [`FAR`] standard deviations off.
@@ -16,7 +15,7 @@ const BEYOND: f64 = 3e-3;
 /// Number of standard deviations that nearly no error may exceed: errors of a model are not normal.
 const FAR: f64 = 3.0;
 
-/// The errors of every model without its own error estimate, for each γ/Δ and coordination number. Every recipe counts alike.
+/// The errors of every model without its own error estimate, for each γ/Δ. Every recipe counts alike.
 /// The errors of each recipe are judged by those of the others, and all are enlarged until nearly none is [`FAR`] off.
 pub(super) fn discrepancies(
     samples: &[&CalibrationSample],
@@ -29,28 +28,24 @@ pub(super) fn discrepancies(
         StrainRatioSource::Contact,
     ];
     let mut learned = Vec::new();
-    for kind in [InferredQuantity::K, InferredQuantity::Z] {
-        let Some(calibration) = calibration.with_coordination_kind(kind) else { continue };
-        for model in models() {
-            let sources = if model.uses_gamma() { &SOURCES[..] } else { &SOURCES[..1] };
-            for source in sources {
-                let Some(errors) = errors(*model, samples, *source, kind, &calibration) else { continue };
-                let by_eps = by_eps(&errors);
-                let all = mean_square(&errors, None);
-                // The recipes are a sample of all recipes.
-                let of_recipes = student(errors.len() - 1);
-                let enlarged = enlarged(&errors, by_eps).map(|factor| factor * of_recipes);
-                learned.push(ModelDiscrepancy {
-                    model: model.name().to_owned(),
-                    coordination_kind: kind,
-                    gamma: model.uses_gamma().then_some(*source),
-                    mean_square: std::array::from_fn(|i| {
-                        std::array::from_fn(|j| all[i][j] * (enlarged[i] * enlarged[j]))
-                    }),
-                    bias: std::array::from_fn(|i| mean(&errors, None, |e| e[i]) * enlarged[i]),
-                    by_eps,
-                });
-            }
+    for model in models() {
+        let sources = if model.uses_gamma() { &SOURCES[..] } else { &SOURCES[..1] };
+        for source in sources {
+            let Some(errors) = errors(*model, samples, *source, calibration) else { continue };
+            let by_eps = by_eps(&errors);
+            let all = mean_square(&errors, None);
+            // The recipes are a sample of all recipes.
+            let of_recipes = student(errors.len() - 1);
+            let enlarged = enlarged(&errors, by_eps).map(|factor| factor * of_recipes);
+            learned.push(ModelDiscrepancy {
+                model: model.name().to_owned(),
+                gamma: model.uses_gamma().then_some(*source),
+                mean_square: std::array::from_fn(|i| {
+                    std::array::from_fn(|j| all[i][j] * (enlarged[i] * enlarged[j]))
+                }),
+                bias: std::array::from_fn(|i| mean(&errors, None, |e| e[i]) * enlarged[i]),
+                by_eps,
+            });
         }
     }
     learned
@@ -64,7 +59,6 @@ fn errors<'a>(
     model: &dyn Model,
     samples: &[&'a CalibrationSample],
     gamma: StrainRatioSource,
-    kind: InferredQuantity,
     calibration: &Calibration,
 ) -> Option<Errors<'a>> {
     let error = |s: &CalibrationSample| -> Result<Option<(f64, [f64; 3])>, EmtError> {
@@ -73,10 +67,8 @@ fn errors<'a>(
             return Ok(None);
         }
         let found = point.structure;
-        let truth = if kind == InferredQuantity::Z { s.z } else { s.k };
-        let k_hat = found.k_hat.map_or(0.0, |k_hat| k_hat - truth);
-        let both = found.get(kind).zip(found.eps);
-        Ok(both.map(|(n, eps)| (eps, [n - truth, k_hat, eps - s.eps])))
+        let k_hat = found.k_hat.map_or(0.0, |k_hat| k_hat - s.k);
+        Ok(found.k.zip(found.eps).map(|(k, eps)| (eps, [k - s.k, k_hat, eps - s.eps])))
     };
     let known =
         |s: &CalibrationSample| gamma == StrainRatioSource::Zero || StrainRatio::is_known(&s.gamma, gamma);

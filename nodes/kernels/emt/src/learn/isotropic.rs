@@ -4,23 +4,18 @@ use super::regression::linear;
 use super::sample::{CalibrationSample, bounds};
 use crate::calibration::{CalibrationError, IsotropicCalibration};
 use crate::invariants::Invariants;
-use grainlab_core::results::InferredQuantity;
 use std::collections::BTreeSet;
 
 /// Fits Eqs. 21 and 22 by relative residuals. States of one packing at several pressures are not independent: the
 /// covariance counts packings, not states.
-pub(super) fn of_isotropic(
-    samples: &[CalibrationSample],
-    kind: InferredQuantity,
-) -> Result<IsotropicCalibration, CalibrationError> {
-    let coordination = |s: &CalibrationSample| if kind == InferredQuantity::Z { s.z } else { s.k };
+pub(super) fn of_isotropic(samples: &[CalibrationSample]) -> Result<IsotropicCalibration, CalibrationError> {
     let packings = samples.iter().map(|s| &s.packing).collect::<BTreeSet<_>>().len();
     let fit = |modulus: fn(&Invariants) -> f64| {
         let rows: Vec<_> = samples
             .iter()
             .filter_map(|s| {
                 let reduced = modulus(&Invariants::of(&s.moduli)?).exp() / 1e6 / (s.pressure / 1e6).cbrt();
-                Some(([coordination(s), 1.0], reduced, 1.0 / reduced))
+                Some(([s.k, 1.0], reduced, 1.0 / reduced))
             })
             .collect();
         let line = linear(&rows, "isotropic packings")?;
@@ -36,8 +31,8 @@ pub(super) fn of_isotropic(
     };
     let (alpha, beta, of_shear, shear_scatter) = fit(|i| i.ln_shear)?;
     let (rho, zeta, of_theta, theta_scatter) = fit(|i| i.ln_theta)?;
-    let (low, high) = bounds(samples.iter().map(coordination));
-    let mut isotropic = IsotropicCalibration::new([alpha, beta, rho, zeta], kind, [low, high])?;
+    let (low, high) = bounds(samples.iter().map(|s| s.k));
+    let mut isotropic = IsotropicCalibration::new([alpha, beta, rho, zeta], [low, high])?;
     let mut covariance = [[0.0; 4]; 4];
     for i in 0..2 {
         for j in 0..2 {

@@ -98,7 +98,7 @@ fn fitted(rows: &[&Reduced<'_>]) -> Result<RelaxationCalibration, CalibrationErr
         };
         let highest = HIGHEST_ONSET.min(lowest - 0.05);
         let onset = minimum(2.0, highest, |onset| at(onset).map_or(f64::INFINITY, |fit| fit.squares));
-        Ok(ScalingLaw::new(at(onset)?.coefficients, onset))
+        Ok(ScalingLaw { coefficients: at(onset)?.coefficients, onset })
     };
     let deviator = |value: fn(&Reduced<'_>) -> f64| {
         let point =

@@ -41,14 +41,11 @@ impl Model for Directional {
     }
 
     fn domain(&self, calibration: &Calibration) -> Domain {
-        let isotropic = calibration.isotropic();
         let weakest = shares(MAX_EPS)[0].min(shares(-MAX_EPS)[1]);
-        let mut structure = [None; InferredQuantity::COUNT];
-        structure[isotropic.coordination_kind as usize] =
-            Some([-1.05 * isotropic.constants()[1] / weakest, 12.0]);
-        structure[InferredQuantity::Eps as usize] = Some([-MAX_EPS, MAX_EPS]);
-        let fitted = fitted(isotropic.coordination_kind, calibration);
-        Domain { fitted, ..Domain::new(NAME, structure) }
+        let lowest = -1.05 * calibration.isotropic().constants()[1] / weakest;
+        let ranges = [(InferredQuantity::K, [lowest, 12.0]), (InferredQuantity::Eps, [-MAX_EPS, MAX_EPS])];
+        let fitted = fitted(InferredQuantity::K, calibration);
+        Domain { fitted, ..Domain::new(NAME, &ranges) }
     }
 
     fn predict(
@@ -59,7 +56,7 @@ impl Model for Directional {
     ) -> Result<Moduli, EmtError> {
         let found = self.domain(calibration).validate(structure, conditions)?;
         let isotropic = calibration.isotropic_for(conditions.material);
-        let [k, eps] = [isotropic.coordination_kind, InferredQuantity::Eps].map(|q| found[q as usize]);
+        let [k, eps] = [InferredQuantity::K, InferredQuantity::Eps].map(|q| found[q as usize]);
         let (moduli, _) = forward(&isotropic, conditions.pressure.value, k, eps);
         Ok(Moduli::paper(moduli[0], moduli[1], moduli[2]))
     }
@@ -83,7 +80,7 @@ impl Model for Directional {
         let (k, eps) = (found[0], found[1]);
         let nu = observation.conditions.material.unwrap_or(*calibration.material()).poisson_ratio;
         let mut jacobian = Jacobian::zeros();
-        for (row, quantity) in [isotropic.coordination_kind, InferredQuantity::Eps].into_iter().enumerate() {
+        for (row, quantity) in [InferredQuantity::K, InferredQuantity::Eps].into_iter().enumerate() {
             for i in 0..3 {
                 jacobian[(quantity as usize, i)] = gain[(row, i)];
                 // All moduli are proportional to the cube root of the pressure.
@@ -95,8 +92,8 @@ impl Model for Directional {
             }
         }
         let structure =
-            Microstructure::default().with(isotropic.coordination_kind, k).with(InferredQuantity::Eps, eps);
-        let warnings = outside_fitted(&fitted(isotropic.coordination_kind, calibration), &structure);
+            Microstructure::default().with(InferredQuantity::K, k).with(InferredQuantity::Eps, eps);
+        let warnings = outside_fitted(&fitted(InferredQuantity::K, calibration), &structure);
         Ok(PointEstimate { jacobian: Some(jacobian), warnings, ..PointEstimate::exact(structure) })
     }
 }

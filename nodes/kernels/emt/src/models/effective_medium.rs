@@ -40,10 +40,8 @@ impl Model for EffectiveMedium {
     }
 
     fn domain(&self, _: &Calibration) -> Domain {
-        let mut structure = [None; InferredQuantity::COUNT];
-        structure[InferredQuantity::K as usize] = Some([0.1, MAX_COORDINATION]);
-        structure[InferredQuantity::Eps as usize] = Some([-0.5, 1.0]);
-        Domain { gamma: [-0.5, 0.25], needs_solid_fraction: true, ..Domain::new(NAME, structure) }
+        let ranges = [(InferredQuantity::K, [0.1, MAX_COORDINATION]), (InferredQuantity::Eps, [-0.5, 1.0])];
+        Domain { gamma: [-0.5, 0.25], needs_solid_fraction: true, ..Domain::new(NAME, &ranges) }
     }
 
     fn predict(

@@ -7,7 +7,7 @@
 use super::shear_ratio::ratio_warnings;
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
-use crate::domain::{Domain, Fitted, outside_fitted};
+use crate::domain::{Domain, Fitted, by_quantity, outside_fitted};
 use crate::error::EmtError;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
@@ -39,7 +39,7 @@ impl Factors {
         calibration: &Calibration,
     ) -> Moduli {
         let isotropic = calibration.isotropic_for(conditions.material);
-        let [k, k_hat] = [isotropic.coordination_kind, InferredQuantity::KHat].map(|q| found[q as usize]);
+        let [k, k_hat] = [InferredQuantity::K, InferredQuantity::KHat].map(|q| found[q as usize]);
         let pressure = conditions.pressure.value;
         let denser = k / k_hat;
         let shear = denser * isotropic.shear_modulus(k_hat, pressure);
@@ -75,7 +75,7 @@ impl Factors {
         let k_hat = isotropic.coordination(s);
         let denser = theta / (isotropic.bulk_modulus(k_hat, observation.pressure()) * self.bulk);
         let k = k_hat * denser;
-        let structure = structure.with(isotropic.coordination_kind, k).with(InferredQuantity::KHat, k_hat);
+        let structure = structure.with(InferredQuantity::K, k).with(InferredQuantity::KHat, k_hat);
         warnings.extend(outside_fitted(&fitted(InferredQuantity::KHat, calibration), &structure));
         Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) })
     }
@@ -93,21 +93,19 @@ pub(super) fn fitted(
         // The errors are known up to the densest packings that they were learned from.
         range[1] = learned.isotropic().fitted[1];
     }
-    let mut fitted = [None; InferredQuantity::COUNT];
-    fitted[quantity as usize] = Some(Fitted { range, inside: range });
-    fitted
+    by_quantity(&[(quantity, Fitted { range, inside: range })])
 }
 
-/// Domain of a model with the paper's three unknowns: k (or z, as the calibration has it), k̂ above the zero of the
+/// Domain of a model with the paper's three unknowns: k, k̂ above the zero of the
 /// shear modulus, and ε.
 pub(super) fn domain(model: &'static str, calibration: &Calibration) -> Domain {
-    let isotropic = calibration.isotropic();
-    let mut structure = [None; InferredQuantity::COUNT];
-    structure[isotropic.coordination_kind as usize] = Some([0.1, MAX_COORDINATION]);
     // At the zero of shear itself nothing can be inverted.
-    structure[InferredQuantity::KHat as usize] =
-        Some([-isotropic.constants()[1] * (1.0 + 1e-3), MAX_COORDINATION]);
-    structure[InferredQuantity::Eps as usize] = Some([-0.5, 1.0]);
+    let lowest = -calibration.isotropic().constants()[1] * (1.0 + 1e-3);
+    let ranges = [
+        (InferredQuantity::K, [0.1, MAX_COORDINATION]),
+        (InferredQuantity::KHat, [lowest, MAX_COORDINATION]),
+        (InferredQuantity::Eps, [-0.5, 1.0]),
+    ];
     let fitted = fitted(InferredQuantity::KHat, calibration);
-    Domain { gamma: [-0.5, 0.25], fitted, ..Domain::new(model, structure) }
+    Domain { gamma: [-0.5, 0.25], fitted, ..Domain::new(model, &ranges) }
 }

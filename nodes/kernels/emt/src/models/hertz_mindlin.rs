@@ -50,9 +50,8 @@ impl Model for HertzMindlin {
     }
 
     fn domain(&self, _: &Calibration) -> Domain {
-        let mut structure = [None; InferredQuantity::COUNT];
-        structure[InferredQuantity::K as usize] = Some([0.1, MAX_COORDINATION]);
-        Domain { needs_solid_fraction: true, ..Domain::new(NAME, structure) }
+        let ranges = [(InferredQuantity::K, [0.1, MAX_COORDINATION])];
+        Domain { needs_solid_fraction: true, ..Domain::new(NAME, &ranges) }
     }
 
     /// With f = 1: small waves do not make contacts slip.

@@ -17,7 +17,7 @@ mod state;
 use crate::calibration::{Calibration, Outside, Reach, RelaxationCalibration};
 use crate::checks::FALSE_ALARM;
 use crate::conditions::Conditions;
-use crate::domain::{Domain, Fitted, outside_fitted};
+use crate::domain::{Domain, Fitted, by_quantity, outside_fitted};
 use crate::error::EmtError;
 use crate::likelihood::Likelihood;
 use crate::model::Model;
@@ -50,19 +50,15 @@ impl Model for Relaxed {
     }
 
     fn domain(&self, calibration: &Calibration) -> Domain {
-        let mut structure = [None; InferredQuantity::COUNT];
-        let Some(network) = calibration.network() else { return Domain::new(NAME, structure) };
+        let Some(network) = calibration.network() else { return Domain::new(NAME, &[]) };
         let Reach { z, eps, pressure: reduced_pressure, stress_ratio, size_spread, .. } =
             network.reach.with_ends();
-        structure[InferredQuantity::Z as usize] = Some(z);
-        structure[InferredQuantity::Eps as usize] = Some(eps);
-        let mut fitted = [None; InferredQuantity::COUNT];
+        let structure = [(InferredQuantity::Z, z), (InferredQuantity::Eps, eps)];
         let [z, eps] = network.reach.without_warning();
-        for (quantity, range, inside) in
-            [(InferredQuantity::Z, network.reach.z, z), (InferredQuantity::Eps, network.reach.eps, eps)]
-        {
-            fitted[quantity as usize] = Some(Fitted { range, inside });
-        }
+        let fitted = by_quantity(&[
+            (InferredQuantity::Z, Fitted { range: network.reach.z, inside: z }),
+            (InferredQuantity::Eps, Fitted { range: network.reach.eps, inside: eps }),
+        ]);
         let size_spread = [size_spread[0].max(0.0), size_spread[1]];
         Domain {
             reduced_pressure,
@@ -70,7 +66,7 @@ impl Model for Relaxed {
             size_spread,
             fitted,
             compares_state: true,
-            ..Domain::new(NAME, structure)
+            ..Domain::new(NAME, &structure)
         }
     }
 

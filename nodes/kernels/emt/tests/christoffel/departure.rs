@@ -56,9 +56,9 @@ fn the_scatter_of_a_packing_is_a_departure_and_no_conflict_and_the_moduli_are_wi
         let fitted = fit(&sharp(&packing, &thirteen()));
         assert_eq!((fitted.conflict, fitted.undetermined.len()), (None, 0));
         let departure = fitted.anisotropy_scatter.expect("a packing is no medium");
-        assert!((departure.scatter / scatter - 1.0).abs() < 0.05, "{departure:?}");
+        assert!((departure / scatter - 1.0).abs() < 0.05, "{departure:?}");
         // All speeds have the same error, 0.05 %.
-        let whole = (0.5 * departure.scatter).hypot(0.0005);
+        let whole = (0.5 * departure).hypot(0.0005);
         assert!((whole / fitted.scatter().unwrap() - 1.0).abs() < 1e-3, "{departure:?}");
         for (modulus, sigma) in deviations(&fitted, &packing) {
             assert!(sigma.abs() < 3.0, "{modulus} is off by {sigma} sigma");

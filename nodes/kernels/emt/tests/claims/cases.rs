@@ -1,15 +1,14 @@
 //! Random structures and states, the same in every run.
 
 use grainlab_core::Material;
-use grainlab_core::results::{InferredQuantity, Microstructure};
+use grainlab_core::results::Microstructure;
 use grainlab_emt::{Calibration, Conditions, Domain, IsotropicCalibration, Measured, StrainRatio};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-/// The paper's calibration, one with other constants and a coordination number without rattlers, and the
-/// built-in one.
+/// The paper's calibration, one with other constants, and the built-in one.
 pub(crate) fn calibrations() -> Vec<Calibration> {
-    let own = IsotropicCalibration::new([150.0, -3.5, 80.0, -0.2], InferredQuantity::Z, [4.2, 6.5]).unwrap();
+    let own = IsotropicCalibration::new([150.0, -3.5, 80.0, -0.2], [4.2, 6.5]).unwrap();
     let grains = Material { shear_modulus: 25.0e9, poisson_ratio: 0.25, density: 2600.0 };
     let relaxed = Calibration::builtin("grainlab").unwrap().clone();
     vec![Calibration::PAPER, Calibration::of_isotropic("own", own, grains), relaxed]

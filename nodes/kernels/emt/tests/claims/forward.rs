@@ -60,7 +60,7 @@ fn ratios_are_those_of_the_integral_with_the_spin_that_keeps_stress_symmetric() 
                         over[2] += 0.4 * eps * (2.0 - over[1] / over[0]);
                     }
                     let fitted = calibration.isotropic_for(Some(grains));
-                    let structure = Microstructure::paper(k, k_hat, eps).with(fitted.coordination_kind, k);
+                    let structure = Microstructure::paper(k, k_hat, eps);
                     let conditions = Conditions {
                         gamma: StrainRatio::given(g),
                         material: Some(grains),

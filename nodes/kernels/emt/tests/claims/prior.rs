@@ -195,7 +195,10 @@ fn a_prior_far_from_the_data_contradicts_them_and_the_structure_that_it_gives_is
         let with = without.with_prior(&Prior::parse(text).unwrap()).unwrap();
         assert_eq!(with.status, Status::Contradictory, "{text}{:?}", with.warnings);
         let outside = with.structure.eps.is_some_and(|eps| eps > 0.15);
-        let said = with.warnings.iter().any(|w| matches!(w, Warning::EpsOutsideFit { .. }));
+        let said = with
+            .warnings
+            .iter()
+            .any(|w| matches!(w, Warning::OutsideFit { quantity: InferredQuantity::Eps, .. }));
         assert_eq!(outside, said, "{text}{:?}", with.structure);
     }
     let z = without.structure.z.unwrap();

@@ -66,7 +66,7 @@ fn outside_its_domain_a_model_predicts_nothing_and_names_the_quantity() {
             let named = match &e {
                 EmtError::OutsideDomain { quantity, .. } => *quantity == what,
                 EmtError::GammaOutOfRange { .. } => what == "gamma/Delta",
-                EmtError::PoissonRatio { .. } => what == "the Poisson ratio of the grains",
+                EmtError::NoState { quantity, .. } => *quantity == what,
                 _ => false,
             };
             assert!(named, "{}: {what}: {e}", model.name());

@@ -138,7 +138,7 @@ fn scattered(
     let [ln_theta, ln_shear, dilatation, voigt, harmonic]: [f64; 5] =
         std::array::from_fn(|i| at.values()[i] + off[i]);
     let moved = grainlab_emt::Invariants { ln_theta, ln_shear, dilatation, voigt, harmonic };
-    let mut values = moved.as_moduli().values();
+    let mut values = moved.moduli().map(Some);
     values[Modulus::Theta as usize] = None;
     values
 }
