@@ -9,78 +9,58 @@ use grainlab_page::{Cell, Page, Section, data, fixed, heading, html, paragraph, 
 use grainlab_results::brief::moduli;
 use std::collections::BTreeMap;
 
-/// A number of a run.
-type ValueOfRun = Box<dyn Fn(&Run) -> Option<f64>>;
+/// A number of a run: header, decimal places, and value.
+type Number = (String, usize, Option<f64>);
 
-/// A column: header, decimal places, and its value for a run.
-struct Column {
-    name: String,
-    digits: usize,
-    value: ValueOfRun,
-}
-
-/// Numbers that are compared between runs of one scene.
-fn columns() -> Vec<Column> {
-    let column = |name: &str, digits, value: fn(&Run) -> Option<f64>| Column {
-        name: name.to_owned(),
-        digits,
-        value: Box::new(value),
-    };
-    let counted = InferredQuantity::countable().map(|q| Column {
-        name: q.symbol().to_owned(),
-        digits: q.digits(),
-        value: Box::new(move |r| r.last()?.packing.report.counted(q)),
-    });
-    let measured = ["G12, MPa", "G13, MPa", "Θ, MPa"].into_iter().enumerate().map(|(n, name)| Column {
-        name: name.to_owned(),
-        digits: 2,
-        value: Box::new(move |r| moduli(&r.last()?.packing.report)[n]),
-    });
-    let errors = InferredQuantity::countable().map(|q| Column {
-        name: format!("error of {}", q.symbol()),
-        digits: q.digits(),
-        value: Box::new(move |r| {
-            let state = r.last()?;
-            Some(recommended(state)?.values[q]? - state.packing.report.counted(q)?)
-        }),
-    });
-    let mut columns = vec![
-        column("p, kPa", 2, |r| Some(r.last()?.packing.report.pressure() / 1e3)),
-        column("φ", 4, |r| Some(r.last()?.packing.report.solid_fraction)),
+/// Numbers of a run, of its last packing first.
+fn numbers(run: &Run) -> Vec<Number> {
+    let number = |name: &str, digits: usize, value: Option<f64>| (name.to_owned(), digits, value);
+    let report = run.last().map(|state| &state.packing.report);
+    let best = run.last().and_then(recommended);
+    let counted = |q: InferredQuantity| report.and_then(|r| r.counted(q));
+    let error = |q: InferredQuantity| Some(best?.values[q]? - counted(q)?);
+    let moduli = ["G12, MPa", "G13, MPa", "Θ, MPa"].into_iter().zip(report.map_or([None; 3], moduli));
+    let lost = (!run.summary.topics.is_empty()).then(|| run.summary.total(|t| t.lost) as f64);
+    let mut all = vec![
+        number("p, kPa", 2, report.map(|r| r.pressure() / 1e3)),
+        number("φ", 4, report.map(|r| r.solid_fraction)),
     ];
-    columns.extend(counted.chain(measured).chain(errors));
-    columns.extend([
-        column("unbalanced", 9, |r| r.last()?.packing.report.unbalanced_force_ratio),
-        column("wall, s", 1, |r| r.summary.wall_seconds),
-        column("lost", 0, |r| (!r.summary.topics.is_empty()).then(|| r.summary.total(|t| t.lost) as f64)),
+    all.extend(InferredQuantity::countable().map(|q| number(q.symbol(), q.digits(), counted(q))));
+    all.extend(moduli.map(|(name, value)| number(name, 2, value)));
+    let errors = InferredQuantity::countable();
+    all.extend(errors.map(|q| number(&format!("error of {}", q.symbol()), q.digits(), error(q))));
+    all.extend([
+        number("unbalanced", 9, report.and_then(|r| r.unbalanced_force_ratio)),
+        number("wall, s", 1, run.summary.wall_seconds),
+        number("lost", 0, lost),
     ]);
-    columns
+    all
 }
 
-/// Column of times and counts of a computer: far values say nothing about a packing.
-fn is_compared(column: &Column) -> bool {
-    !matches!(column.name.as_str(), "wall, s" | "lost" | "unbalanced")
+/// Number of times and counts of a computer: far values say nothing about a packing.
+fn is_compared(name: &str) -> bool {
+    !matches!(name, "wall, s" | "lost" | "unbalanced")
 }
 
 /// The page of many runs, each with the link to its own report.
 pub fn overview(runs: &[(Run, String)]) -> String {
-    let columns = columns();
-    let mut by_scene: BTreeMap<String, Vec<&Run>> = BTreeMap::new();
+    let columns = numbers(&Run::default());
+    let mut by_scene: BTreeMap<String, Vec<Vec<Number>>> = BTreeMap::new();
     for (run, _) in runs {
-        by_scene.entry(run.scene_name()).or_default().push(run);
+        by_scene.entry(run.scene_name()).or_default().push(numbers(run));
     }
     let distributions: BTreeMap<&str, Vec<Option<Outliers>>> = by_scene
         .iter()
         .map(|(scene, runs)| {
-            let of = |c: &Column| {
-                if is_compared(c) { Outliers::of(runs.iter().filter_map(|r| (c.value)(r))) } else { None }
+            let of = |(n, (name, ..)): (usize, &Number)| {
+                if is_compared(name) { Outliers::of(runs.iter().filter_map(|r| r[n].2)) } else { None }
             };
-            (scene.as_str(), columns.iter().map(of).collect())
+            (scene.as_str(), columns.iter().enumerate().map(of).collect())
         })
         .collect();
     let mut marked = 0;
     let mut csv = CsvText::default();
-    let names = columns.iter().map(|c| c.name.as_str());
+    let names = columns.iter().map(|(name, ..)| name.as_str());
     let header: Vec<&str> = ["run", "scene", "seed", "end"].into_iter().chain(names).collect();
     csv.row(&header);
     let mut rows = Vec::new();
@@ -99,15 +79,14 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         let mut row =
             vec![Cell::text(linked), Cell::text(&scene), Cell::number(&seed), Cell::classed(&end, class)];
         let mut line = vec![name, scene.clone(), seed, end];
-        for (column, outliers) in columns.iter().zip(&distributions[scene.as_str()]) {
-            let value = (column.value)(run);
+        for ((name, digits, value), outliers) in numbers(run).iter().zip(&distributions[scene.as_str()]) {
             line.push(value.map(six_digits).unwrap_or_default());
             row.push(value.map_or_else(
                 || Cell::number(""),
                 |v| {
-                    let cell = match column.name.as_str() {
+                    let cell = match name.as_str() {
                         "unbalanced" => Cell::number(format!("{v:.1e}")),
-                        _ => Cell::fixed(v, column.digits),
+                        _ => Cell::fixed(v, *digits),
                     };
                     let cell = cell.sorted_by(v);
                     let Some(score) = outliers.filter(|o| o.has(v)).map(|o| o.score(v)) else { return cell };
