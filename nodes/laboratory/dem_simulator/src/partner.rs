@@ -65,7 +65,7 @@ impl Partner {
             return AnswerSource::AnotherRun;
         }
         let sender = info.writer.participant();
-        let gone = |current| !present().iter().any(|w| w.participant() == current);
+        let gone = |current: Participant| !present().iter().any(|w| w.participant() == current);
         if self.current.is_none_or(|c| c == sender || same_member(&c, &sender) || gone(c)) {
             return AnswerSource::Ours;
         }
