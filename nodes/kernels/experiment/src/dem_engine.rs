@@ -2,9 +2,8 @@
 
 use crate::engine::{EngineFactory, Observables, ParticleEngine};
 use crate::error::ExperimentError;
-use crate::left_out::left_out;
 use grainlab_core::{Mat3, Packing};
-use grainlab_dem::{Checkpoint, Compute, DemError, EnergyBalance, Engine, EngineSettings};
+use grainlab_dem::{Checkpoint, Compute, DemError, EnergyBalance, Engine, EngineSettings, Features};
 use std::sync::Arc;
 
 /// Starts engines of `grainlab_dem`.
@@ -126,5 +125,22 @@ impl ParticleEngine for DemEngine {
 
     fn left_out(&self) -> String {
         left_out(self.engine.settings(), self.engine.equal_sized())
+    }
+}
+
+/// Description of the parts left out under these settings. `equal_sized`: all grains have one size.
+fn left_out(settings: &EngineSettings, equal_sized: bool) -> String {
+    let mut parts = match settings.features() {
+        Features::Frictionless => vec!["spins", "tangential springs"],
+        Features::Sliding => vec![],
+        Features::NoSlip => vec!["the Coulomb check"],
+    };
+    if equal_sized {
+        parts.push("unequal sizes");
+    }
+    if parts.is_empty() {
+        "with the whole contact law".into()
+    } else {
+        format!("without {}", parts.join(", "))
     }
 }

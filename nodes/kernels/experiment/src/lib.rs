@@ -2,17 +2,15 @@
 //!
 //! - [`Simulation`]: the run
 //! - [`StepOutcome`]: the result of one strain rate
-//! - [`ParticleEngine`], [`EngineFactory`]: what a run asks of its engine; [`Dem`]: ours; [`conformance`]: tests of an engine
+//! - [`ParticleEngine`], [`EngineFactory`]: what a run asks of its engine; [`Dem`]: ours
 //!
 //! A packing and the run state published with it are a checkpoint: a run resumed from them continues bit for
 //! bit.
 
-pub mod conformance;
 mod dem_engine;
 mod engine;
 mod error;
 mod gas;
-mod left_out;
 mod phase_settings;
 mod run_state;
 mod simulation;

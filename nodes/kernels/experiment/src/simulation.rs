@@ -70,44 +70,37 @@ impl Simulation {
     /// The start of a scene with another engine, which takes over where the event-driven gas ends.
     pub fn with_engine(scene: Scene, factory: Arc<dyn EngineFactory>) -> Result<Self, ExperimentError> {
         let packing = at_random(&scene)?;
-        let mut run = Self::begin(scene, factory, &packing)?;
+        let mut run = Self::at(scene, factory, &packing, 0, &[0.0; 6])?;
+        run.measure_energy();
         run.progress.within_phase = true;
         Ok(run)
     }
 
     /// The start of a scene whose path begins with this packing. Its clock and its strain are set to 0.
     pub fn from_packing(scene: Scene, packing: &Packing) -> Result<Self, ExperimentError> {
-        Self::from_packing_with_engine(scene, packing, Arc::new(Dem))
-    }
-
-    /// A start from a packing with another engine.
-    pub fn from_packing_with_engine(
-        scene: Scene,
-        packing: &Packing,
-        factory: Arc<dyn EngineFactory>,
-    ) -> Result<Self, ExperimentError> {
         // The time step of the packing was set under other settings.
         let start = Packing { step: 0, time: 0.0, time_step: 0.0, ..packing.clone() };
-        let mut run = Self::begin(scene, factory, &start)?;
+        let mut run = Self::at(scene, Arc::new(Dem), &start, 0, &[0.0; 6])?;
+        run.measure_energy();
         run.progress.friction = packing.friction;
         // It is published before the first request.
         run.progress.packings = 1;
         Ok(run)
     }
 
-    fn begin(
+    /// The start of the path, with the engine of a phase (of the last one, once the path is done) at `rate` (1/s).
+    fn at(
         scene: Scene,
         factory: Arc<dyn EngineFactory>,
         start: &Packing,
+        phase: usize,
+        rate: &[f64; 6],
     ) -> Result<Self, ExperimentError> {
-        let phase = scene.phases.first();
+        let phase = scene.phases.get(phase).or(scene.phases.last());
         let phase = phase.ok_or(ExperimentError::Resume("the scene has no phases".into()))?;
         let (settings, compute) = (phase_settings(&scene, phase), Compute::default());
-        let hard = is_event_driven(phase);
-        let maker: &dyn EngineFactory = if hard { &Dem } else { &*factory };
-        let mut engine = maker.start(start, &settings, &[0.0; 6], &compute)?;
-        // Hard spheres that only collide have no balance.
-        engine.measure_energy(scene.numerics.energy_balance && !hard);
+        let maker: &dyn EngineFactory = if is_event_driven(phase) { &Dem } else { &*factory };
+        let engine = maker.start(start, &settings, rate, &compute)?;
         let observables = engine.observables()?;
         let progress = Progress {
             path: PathState::START,
@@ -127,16 +120,6 @@ impl Simulation {
 
     /// Resumes from a packing and the run state that was published with it.
     pub fn resume(scene: Scene, packing: &Packing, run_state: &[u8]) -> Result<Self, ExperimentError> {
-        Self::resume_with_engine(scene, packing, run_state, Arc::new(Dem))
-    }
-
-    /// A resumed run with another engine.
-    pub fn resume_with_engine(
-        scene: Scene,
-        packing: &Packing,
-        run_state: &[u8],
-        factory: Arc<dyn EngineFactory>,
-    ) -> Result<Self, ExperimentError> {
         let saved = RunState::decode(run_state)?;
         if saved.scene != scene.fingerprint {
             return Err(ExperimentError::Resume("the packing belongs to another scene or seed".into()));
@@ -152,14 +135,9 @@ impl Simulation {
             let why = "the packing has no strain since the first step; begin the run anew";
             return Err(ExperimentError::Resume(why.into()));
         }
-        let phase = scene.phases.get(saved.phase).or(scene.phases.last());
-        let phase = phase.ok_or(ExperimentError::Resume("the scene has no phases".into()))?;
-        let (settings, compute) = (phase_settings(&scene, phase), Compute::default());
         let start = Packing { time: saved.time, ..packing.clone() };
-        let maker: &dyn EngineFactory = if is_event_driven(phase) { &Dem } else { &*factory };
-        let engine = maker.start(&start, &settings, &saved.rate, &compute)?;
-        let observables = engine.observables()?;
-        let progress = Progress {
+        let mut run = Self::at(scene, Arc::new(Dem), &start, saved.phase, &saved.rate)?;
+        run.progress = Progress {
             path: PathState { phase: saved.phase, began: saved.began, holding_since: saved.holding_since },
             sequence: saved.sequence,
             packings: saved.packings,
@@ -169,10 +147,15 @@ impl Simulation {
             phase_strain: saved.phase_strain,
             strain_origin: saved.strain_origin,
             within_phase: saved.within_phase,
-            observables,
-            solid_fraction: solid_fraction(&scene, &observables),
+            ..run.progress
         };
-        Ok(Self { scene, factory, compute, engine, progress, rollback: None })
+        Ok(run)
+    }
+
+    /// Switches the energy balance on, if the scene asks for it. Hard spheres that only collide have none.
+    fn measure_energy(&mut self) {
+        let hard = self.progress.path.phase(&self.scene).is_some_and(is_event_driven);
+        self.engine.measure_energy(self.scene.numerics.energy_balance && !hard);
     }
 
     /// A second run in the same state, for steps with a predicted strain rate; `None` if the engine cannot.
@@ -392,7 +375,7 @@ impl Simulation {
                 self.engine = self.factory.start(&packing, &settings, &self.engine.rate(), &self.compute)?;
             }
             self.engine.begin_phase(&settings)?;
-            self.engine.measure_energy(self.scene.numerics.energy_balance);
+            self.measure_energy();
         }
         self.progress.observables = self.engine.observables()?;
         self.progress.solid_fraction = solid_fraction(&self.scene, &self.progress.observables);

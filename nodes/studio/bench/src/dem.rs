@@ -9,6 +9,7 @@ use grainlab_console::{Failure, Format, Table, exact, say};
 use grainlab_dem::Simd;
 use grainlab_node_kit::Exit;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use stepping::{Case, Features, Loop, pressure};
 
@@ -57,11 +58,6 @@ pub struct Args {
     /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-}
-
-#[derive(Debug, Serialize)]
-struct Report {
-    rows: Vec<Row>,
 }
 
 /// One case: medians over its repetitions.
@@ -138,9 +134,9 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             done.push(stepping::run(&packing, pressure, case)?);
         }
     }
-    let report = Report { rows: cases.iter().zip(&loops).map(|(case, loops)| row(case, loops)).collect() };
-    let text = || table(&report.rows, rounded).text();
-    args.format.print(&report, || table(&report.rows, exact).csv(), text)?;
+    let rows: Vec<Row> = cases.iter().zip(&loops).map(|(case, loops)| row(case, loops)).collect();
+    let report = BTreeMap::from([("rows", &rows)]);
+    args.format.print(&report, || table(&rows, exact).csv(), || table(&rows, rounded).text())?;
     Ok(Exit::Done)
 }
 
@@ -184,7 +180,7 @@ fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
     ]);
     for r in rows {
         let mut cells = vec![
-            r.features.name().to_owned(),
+            r.features.name(),
             r.grains.to_string(),
             r.threads.to_string(),
             r.simd.clone(),

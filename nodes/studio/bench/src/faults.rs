@@ -19,7 +19,7 @@ mod stranger;
 use grainlab_console::{Failure, Format, Table};
 use grainlab_node_kit::Exit;
 use grainlab_scene::Scene;
-use laboratory::{Outcome, run_with};
+use laboratory::{Done, Outcome, run_with};
 use plan::Plan;
 use serde::Serialize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -62,19 +62,16 @@ struct Report {
     runs: u64,
     same: u64,
     errors: u64,
-    /// Numbers of faults: crashes, stops, clock jumps, forged messages.
-    crashes: u64,
-    stops: u64,
-    jumps: u64,
-    forged: u64,
+    #[serde(flatten)]
+    faults: Done,
     failures: Vec<Fault>,
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let scene = Scene::parse(include_str!("faults/scene.toml")).map_err(Failure::failed)?;
-    let quiet = run_with(&scene, &Plan::quiet(), args.explain);
-    let Outcome::Finished(expected) = quiet.outcome else {
-        return Err(Failure::failed(format!("the undisturbed run failed: {:?}", quiet.outcome)));
+    let expected = match run_with(&scene, &Plan::quiet(), &mut Done::default(), args.explain) {
+        Outcome::Finished(record) => record,
+        outcome => return Err(Failure::failed(format!("the undisturbed run failed: {outcome:?}"))),
     };
     let mut report = Report::default();
     for seed in (args.seed..).take(usize::try_from(args.seeds).unwrap_or(usize::MAX)) {
@@ -82,35 +79,26 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         if args.explain {
             grainlab_console::say!("seed {seed}: {plan:#?}");
         }
-        let run = catch_unwind(AssertUnwindSafe(|| run_with(&scene, &plan, args.explain)));
+        let faults = &mut report.faults;
+        let run = catch_unwind(AssertUnwindSafe(|| run_with(&scene, &plan, faults, args.explain)));
         report.runs += 1;
         let mut fail = |what: String| {
             grainlab_console::say!("grainlab: seed {seed}: {what}");
             report.failures.push(Fault { seed, what });
         };
-        let run = match run {
-            Ok(run) => run,
-            Err(_) => {
-                fail("a node panicked".to_owned());
-                continue;
-            }
-        };
-        report.crashes += run.done.crashes;
-        report.stops += run.done.stops;
-        report.jumps += run.done.jumps;
-        report.forged += run.done.forged;
-        match run.outcome {
-            Outcome::Finished(record) => match expected.difference(&record) {
+        match run {
+            Err(_) => fail("a node panicked".to_owned()),
+            Ok(Outcome::Finished(record)) => match expected.difference(&record) {
                 None => report.same += 1,
                 Some(topic) => fail(format!("other results on {topic}, and no error")),
             },
-            Outcome::Failed(error) => {
+            Ok(Outcome::Failed(error)) => {
                 report.errors += 1;
                 if args.explain {
                     grainlab_console::say!("seed {seed}: {error}");
                 }
             }
-            Outcome::Stuck(what) => fail(format!("the run does not end: {what}")),
+            Ok(Outcome::Stuck(what)) => fail(format!("the run does not end: {what}")),
         }
     }
     args.format.print(&report, || table(&report).csv(), || table(&report).text())?;
@@ -119,8 +107,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 
 fn table(report: &Report) -> Table {
     let mut t = Table::new(["runs", "same", "errors", "failures", "crashes", "stops", "jumps", "forged"]);
-    let r = report;
-    let counts = [r.runs, r.same, r.errors, r.failures.len() as u64, r.crashes, r.stops, r.jumps, r.forged];
+    let (r, f) = (report, &report.faults);
+    let counts = [r.runs, r.same, r.errors, r.failures.len() as u64, f.crashes, f.stops, f.jumps, f.forged];
     t.row(counts.map(|n| n.to_string()));
     t
 }

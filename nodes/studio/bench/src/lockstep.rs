@@ -6,6 +6,7 @@ use grainlab_console::{Failure, Format, Table, exact, fixed};
 use grainlab_node_kit::Exit;
 use round::Role;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 const EXAMPLES: &str = "\
 One process sends a `stress`, another answers with a `strain_rate`, and a recorder writes both to MCAP. Each round is
@@ -57,11 +58,6 @@ struct Row {
     lost: u64,
 }
 
-#[derive(Debug, Serialize)]
-struct Report {
-    rows: Vec<Row>,
-}
-
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(role) = args.role {
         return round::role(role, args.exchanges);
@@ -78,12 +74,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         lost += recorded.lost;
     }
     rows.push(row(None, [&ours, &alone], lost));
-    let report = Report { rows };
-    args.format.print(
-        &report,
-        || table(&report.rows, exact).csv(),
-        || table(&report.rows, |v| fixed(v, 1)).text(),
-    )?;
+    let report = BTreeMap::from([("rows", &rows)]);
+    args.format.print(&report, || table(&rows, exact).csv(), || table(&rows, |v| fixed(v, 1)).text())?;
     Ok(if lost > 0 { Exit::DataLoss } else { Exit::Done })
 }
 

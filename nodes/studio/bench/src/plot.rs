@@ -1,6 +1,6 @@
 //! Time against error: a colour for each family, or for each method of a single one, and a shape for each series of it.
 
-use crate::row::{Family, Row};
+use crate::row::{Family, Row, families};
 use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 
 /// Smaller errors are rounding, and drawn at this value.
@@ -8,8 +8,7 @@ const ROUNDING: f64 = 1e-16;
 
 /// The plot; each point has a tooltip.
 pub(crate) fn figure(rows: &[Row]) -> Figure {
-    let families: Vec<Family> =
-        Family::ALL.into_iter().filter(|f| rows.iter().any(|r| r.family == *f)).collect();
+    let families: Vec<Family> = families(rows).into_iter().collect();
     let mut methods: Vec<&str> = Vec::new();
     rows.iter().for_each(|r| {
         if !methods.contains(&r.method.as_str()) {
@@ -47,7 +46,7 @@ pub(crate) fn figure(rows: &[Row]) -> Figure {
     Figure {
         title: "CPU time against error".into(),
         subtitle: match families[..] {
-            [family] => family.error_of().into(),
+            [family] => family.words()[2].into(),
             _ => "each colour is an error of another quantity; hollow: only an upper bound".into(),
         },
         x: Axis::log("CPU time, s"),

@@ -1,10 +1,10 @@
 //! Rows of time against error: one method at one setting.
 
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Quantities whose errors are comparable: a front each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+/// Quantities whose errors are comparable: a front each. In the order of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Family {
     /// Contact anisotropy inferred from moduli.
@@ -22,52 +22,25 @@ pub(crate) enum Family {
 }
 
 impl Family {
-    /// In the order of the table.
-    pub(crate) const ALL: [Self; 6] = [
-        Self::InversionEps,
-        Self::InversionZ,
-        Self::Stiffness,
-        Self::EngineEnergy,
-        Self::EnginePacking,
-        Self::Waves,
-    ];
+    /// Name in tables and legends, the workload that is timed, and the quantity whose error is given.
+    pub(crate) fn words(self) -> [&'static str; 3] {
+        let (one, run) = ("one state, uncertainty included", "a run from a gas to 50 kPa");
+        let created =
+            "energy created by the time step, over the largest term of the balance, rms of the seeds";
+        let packing = "k, eps, phi, G12 and Theta of the packing, over their scatter from seed to seed, rms";
+        let speeds = "all speeds of a packing, its preparation included";
+        match self {
+            Self::InversionEps => ["inversion, eps", one, "contact anisotropy, rms"],
+            Self::InversionZ => ["inversion, z", one, "coordination without rattlers, rms"],
+            Self::Stiffness => ["stiffness", "all 21 constants, network included", "largest entry, over C11"],
+            Self::EngineEnergy => ["engine, energy", run, created],
+            Self::EnginePacking => ["engine, packing", run, packing],
+            Self::Waves => ["waves", speeds, "rho v^2, relative, rms"],
+        }
+    }
 
-    /// Name in tables and legends.
     pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::InversionEps => "inversion, eps",
-            Self::InversionZ => "inversion, z",
-            Self::Stiffness => "stiffness",
-            Self::EngineEnergy => "engine, energy",
-            Self::EnginePacking => "engine, packing",
-            Self::Waves => "waves",
-        }
-    }
-
-    /// The workload that is timed.
-    pub(crate) fn work(self) -> &'static str {
-        match self {
-            Self::InversionEps | Self::InversionZ => "one state, uncertainty included",
-            Self::Stiffness => "all 21 constants, network included",
-            Self::EngineEnergy | Self::EnginePacking => "a run from a gas to 50 kPa",
-            Self::Waves => "all speeds of a packing, its preparation included",
-        }
-    }
-
-    /// The quantity whose error is given.
-    pub(crate) fn error_of(self) -> &'static str {
-        match self {
-            Self::InversionEps => "contact anisotropy, rms",
-            Self::InversionZ => "coordination without rattlers, rms",
-            Self::Stiffness => "largest entry, over C11",
-            Self::EngineEnergy => {
-                "energy created by the time step, over the largest term of the balance, rms of the seeds"
-            }
-            Self::EnginePacking => {
-                "k, eps, phi, G12 and Theta of the packing, over their scatter from seed to seed, rms"
-            }
-            Self::Waves => "rho v^2, relative, rms",
-        }
+        self.words()[0]
     }
 }
 
@@ -106,6 +79,7 @@ impl Row {
         (seconds, repetitions): (f64, usize),
         (error, reference): (Option<f64>, &'static str),
     ) -> Self {
+        let [_, time_of, error_of] = family.words();
         Self {
             family,
             method: method.into(),
@@ -115,8 +89,8 @@ impl Row {
             repetitions,
             error,
             upper_bound: false,
-            error_of: family.error_of(),
-            time_of: family.work(),
+            error_of,
+            time_of,
             reference,
             on_front: false,
             failure: None,
@@ -128,6 +102,11 @@ impl Row {
     pub(crate) fn point(&self) -> Option<(f64, f64)> {
         self.error.map(|error| (self.seconds, error)).filter(|p| p.0.is_finite() && p.1.is_finite())
     }
+}
+
+/// The families that rows are of, each once.
+pub(crate) fn families(rows: &[Row]) -> BTreeSet<Family> {
+    rows.iter().map(|row| row.family).collect()
 }
 
 /// Marks the rows that no comparable row beats in both time and error; equal rows share a place.

@@ -10,9 +10,11 @@
 //! - [`grainlearning`]: what a force curve fixes, and what it does not
 //! - [`smooth_moduli`], [`lammps_packings`], [`uniaxial`]: packings, which the caller reads
 //! - [`agnolin_roux`]: packings prepared as published; takes minutes
+//! - [`conformance`]: tests of an engine, ours or that of another crate
 
 pub mod agnolin_roux;
 pub mod chung_ooi;
+pub mod conformance;
 mod error;
 mod forced_contact;
 pub mod grainlearning;

@@ -53,7 +53,7 @@ fn probe_view(amplitude: f64, probe: &StrainProbeResult) -> ProbeView {
         opened: probe.sum(|c| c.opened),
         closed: probe.sum(|c| c.closed),
         sliding: probe.sum(|c| c.sliding),
-        forward_backward: probe.forward_backward(),
+        forward_backward: Some(probe.forward_backward()),
         error: probe.relative_error(),
     }
 }
@@ -61,7 +61,7 @@ fn probe_view(amplitude: f64, probe: &StrainProbeResult) -> ProbeView {
 /// A warning of a probe if the response depends on the direction of the strain.
 fn one_sided(probe: &StrainProbeResult) -> Option<String> {
     let changed = probe.sum(|c| c.opened + c.closed);
-    let worst = probe.forward_backward().unwrap_or(0.0);
+    let worst = probe.forward_backward();
     (worst > ONE_SIDED).then(|| {
         format!(
             "the probe's forward and backward strain give stiffnesses that differ by {:.1} %, {changed} contacts opened \

@@ -238,15 +238,6 @@ impl Engine {
         self.state.time
     }
 
-    /// Sets the simulated time, s, finite: that of a run which is resumed.
-    pub fn set_time(&mut self, time: f64) -> Result<(), DemError> {
-        if !time.is_finite() {
-            return Err(DemError::Setting { name: "time", value: time, requirement: "finite" });
-        }
-        self.state.time = time;
-        Ok(())
-    }
-
     /// Time step in force, s.
     pub fn time_step(&self) -> f64 {
         self.state.time_step

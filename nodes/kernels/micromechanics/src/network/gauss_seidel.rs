@@ -242,7 +242,7 @@ impl<T: Real> Half<T> {
     #[inline(always)]
     fn pull<V: Lanes<T = T>, const G: bool>(&self, v: V, b: &Six<V>, rest: Six<V>) -> Six<V> {
         let [earlier, later] = self.levers;
-        self.taken_off::<V, G>(v, b, [later, earlier].map(|arm| T::of(-1.0).times(arm)), rest)
+        self.taken_off::<V, G>(v, b, [later, earlier].map(|arm| -arm), rest)
     }
 
     /// With the levers of the moving grain and of the other one.
@@ -276,7 +276,7 @@ impl<T: Real> Half<T> {
         rest[5] = v.mul_sub_from(tx, fy, v.mul_add(ty, fx, rest[5]));
         if G {
             // −g (1 − nn) u.
-            let (gain, loss) = (v.splat(self.geometric), v.splat(T::of(-1.0).times(self.geometric)));
+            let (gain, loss) = (v.splat(self.geometric), v.splat(-self.geometric));
             let along = v.mul(gain, v.mul_add(nz, a[2], v.mul_add(ny, a[1], v.mul(nx, a[0]))));
             rest[0] = v.mul_add(loss, a[0], v.mul_add(along, nx, rest[0]));
             rest[1] = v.mul_add(loss, a[1], v.mul_add(along, ny, rest[1]));

@@ -4,22 +4,19 @@
 //! columns, so that all implementations give the same bits.
 
 use std::marker::PhantomData;
+use std::ops::{Add, Mul, Neg};
 
 /// Columns solved at once: one vector register of `f32` on most processors.
 pub(crate) const WIDTH: usize = 8;
 
 /// `f32` or `f64`.
-pub(crate) trait Real: Copy {
+pub(crate) trait Real: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
     const ZERO: Self;
     /// Rounded to nearest.
     fn of(value: f64) -> Self;
     fn wide(self) -> f64;
-    fn plus(self, other: Self) -> Self;
-    fn times(self, other: Self) -> Self;
     /// self · factor + term, rounded once.
     fn times_plus(self, factor: Self, term: Self) -> Self;
-    /// term − self · factor, rounded once.
-    fn times_off(self, factor: Self, term: Self) -> Self;
 }
 
 macro_rules! real {
@@ -35,20 +32,8 @@ macro_rules! real {
                 f64::from(self)
             }
             #[inline(always)]
-            fn plus(self, other: Self) -> Self {
-                self + other
-            }
-            #[inline(always)]
-            fn times(self, other: Self) -> Self {
-                self * other
-            }
-            #[inline(always)]
             fn times_plus(self, factor: Self, term: Self) -> Self {
                 self.mul_add(factor, term)
-            }
-            #[inline(always)]
-            fn times_off(self, factor: Self, term: Self) -> Self {
-                (-self).mul_add(factor, term)
             }
         }
     };
@@ -97,7 +82,7 @@ impl<T: Real> Lanes for Plain<T> {
     #[inline(always)]
     fn add(self, mut a: [T; WIDTH], b: [T; WIDTH]) -> [T; WIDTH] {
         for l in 0..WIDTH {
-            a[l] = a[l].plus(b[l]);
+            a[l] = a[l] + b[l];
         }
         a
     }
@@ -105,7 +90,7 @@ impl<T: Real> Lanes for Plain<T> {
     #[inline(always)]
     fn mul(self, mut a: [T; WIDTH], b: [T; WIDTH]) -> [T; WIDTH] {
         for l in 0..WIDTH {
-            a[l] = a[l].times(b[l]);
+            a[l] = a[l] * b[l];
         }
         a
     }
@@ -121,7 +106,7 @@ impl<T: Real> Lanes for Plain<T> {
     #[inline(always)]
     fn mul_sub_from(self, mut a: [T; WIDTH], b: [T; WIDTH], c: [T; WIDTH]) -> [T; WIDTH] {
         for l in 0..WIDTH {
-            a[l] = a[l].times_off(b[l], c[l]);
+            a[l] = (-a[l]).times_plus(b[l], c[l]);
         }
         a
     }

@@ -1,7 +1,7 @@
 //! One column of the probed stiffness: strains forward and backward, relaxes both, takes the difference.
 
 use super::relaxation::Relaxation;
-use super::settings::{DifferenceScheme, StrainProbe};
+use super::settings::StrainProbe;
 use crate::error::ProbeError;
 use grainlab_core::{Contact, SymTensor};
 use grainlab_dem::{DemError, Engine, Observables};
@@ -32,23 +32,15 @@ pub struct ProbeColumn {
     pub residual: f64,
     /// Largest change of an entry over the last third of the steps, relative to the largest entry.
     pub drift: f64,
-    /// Largest difference between the forward and the backward column, relative to the largest entry; `None`
-    /// for [`DifferenceScheme::Forward`]. Hertz's law contributes about (2/3) amplitude × Θ/p.
-    pub forward_backward: Option<f64>,
+    /// Largest difference between the forward and the backward column, relative to the largest entry. Hertz's law
+    /// contributes about (2/3) amplitude × Θ/p.
+    pub forward_backward: f64,
     /// Contacts of the packing at rest that open under either strain.
     pub opened: u32,
     /// Contacts that form under either strain.
     pub closed: u32,
     /// Contacts at the Coulomb limit under either strain.
     pub sliding: u32,
-}
-
-impl ProbeColumn {
-    /// True if the network changes under strain: C is then not only that of the packing at rest. One weak
-    /// contact suffices; [`ProbeColumn::forward_backward`] shows the effect.
-    pub fn network_changed(&self) -> bool {
-        self.opened + self.closed > 0
-    }
 }
 
 /// The packing at rest, the start of every column.
@@ -75,17 +67,13 @@ pub(crate) fn strained(
     load: f64,
     component: usize,
 ) -> Result<([f64; 6], ProbeColumn), ProbeError> {
-    let sides: [f64; 2] = match settings.sides {
-        DifferenceScheme::Central => [1.0, -1.0],
-        DifferenceScheme::Forward => [1.0, 0.0],
-    };
     let strain_steps = (settings.amplitude / STRAIN_PER_STEP).ceil().max(STRAIN_STEPS) as u32;
     let mut rate = [0.0; 6];
     // Tensor components: half the engineering shear.
     let share = if component < 3 { 1.0 } else { 0.5 };
     rate[component] = share * settings.amplitude / (f64::from(strain_steps) * at_rest.engine.time_step());
     let mut relaxation = Relaxation::new(vec![at_rest.engine.clone(); 2]);
-    for (engine, side) in relaxation.engines.iter_mut().zip(sides) {
+    for (engine, side) in relaxation.engines.iter_mut().zip([1.0, -1.0]) {
         engine.set_rate(&rate.map(|r| side * r))?;
     }
     for _ in 0..strain_steps {
@@ -94,7 +82,7 @@ pub(crate) fn strained(
     for engine in &mut relaxation.engines {
         engine.set_rate(&[0.0; 6])?;
     }
-    let between = (sides[0] - sides[1]) * settings.amplitude;
+    let between = 2.0 * settings.amplitude;
     let mut seen: Vec<[f64; 6]> = Vec::new();
     let mut column = ProbeColumn { steps: strain_steps, ..ProbeColumn::default() };
     loop {
@@ -122,8 +110,7 @@ pub(crate) fn strained(
             let side = |s: &[f64; 6], sign: f64| -> [f64; 6] {
                 std::array::from_fn(|k| -sign * (s[k] - at_rest.stress[k]) / settings.amplitude)
             };
-            column.forward_backward = (settings.sides == DifferenceScheme::Central)
-                .then(|| difference(&side(&one, 1.0), &side(&other, -1.0)) / largest);
+            column.forward_backward = difference(&side(&one, 1.0), &side(&other, -1.0)) / largest;
             for engine in &relaxation.engines {
                 let strained = contacts(engine);
                 let (opened, closed) = changes(&at_rest.contacts, &strained);

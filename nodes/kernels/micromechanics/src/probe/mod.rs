@@ -10,5 +10,5 @@ mod strain_probe;
 
 pub use column::ProbeColumn;
 pub use relaxation::Relaxation;
-pub use settings::{DifferenceScheme, StrainProbe};
+pub use settings::StrainProbe;
 pub use strain_probe::{StrainProbeResult, strain_probe};

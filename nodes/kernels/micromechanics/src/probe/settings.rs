@@ -2,7 +2,6 @@
 
 use crate::error::ProbeError;
 use grainlab_core::Packing;
-use grainlab_core::contact::TangentialLaw;
 
 /// Settings of the probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,8 +10,6 @@ pub struct StrainProbe {
     /// overlap/diameter, or contacts open: 1e-6 to 1e-7 is a plateau at 100 kPa in glass. Far below 1e-9
     /// rounding errors appear.
     pub amplitude: f64,
-    /// The strains whose difference is taken.
-    pub sides: DifferenceScheme,
     /// Tolerance of the relaxation, about the error of C relative to the largest entry of a column, in [1e-8,
     /// 1e-2].
     pub tolerance: f64,
@@ -21,32 +18,12 @@ pub struct StrainProbe {
     /// Friction while probing: infinite ("set very high") prevents all sliding, 0 removes tangential springs;
     /// other values let contacts slide. `None`: infinite, but 0 for a packing without friction.
     pub friction: Option<f64>,
-    /// Response of the tangential force to a change of normal stiffness. [`TangentialLaw::Incremental`] has the
-    /// frozen network as its linear limit. The other law depends on the direction of the strain, however
-    /// small.
-    pub tangential: TangentialLaw,
 }
 
 impl Default for StrainProbe {
     fn default() -> Self {
-        Self {
-            amplitude: 1e-7,
-            sides: DifferenceScheme::Central,
-            tolerance: 1e-5,
-            max_steps: 50_000,
-            friction: None,
-            tangential: TangentialLaw::Incremental,
-        }
+        Self { amplitude: 1e-7, tolerance: 1e-5, max_steps: 50_000, friction: None }
     }
-}
-
-/// The strains whose difference is a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DifferenceScheme {
-    /// +amplitude and −amplitude: the error is of second order in the amplitude while no contact opens.
-    Central,
-    /// +amplitude (extension) and none.
-    Forward,
 }
 
 impl StrainProbe {

@@ -15,6 +15,7 @@ use super::column::{ProbeColumn, RestState, STEPS_PER_EVALUATION, strained};
 use super::relaxation::Relaxation;
 use super::settings::StrainProbe;
 use crate::error::ProbeError;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::results::NotJammed;
 use grainlab_core::{Packing, Stiffness, Vec3, backbone, min_contacts};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
@@ -48,7 +49,7 @@ impl StrainProbeResult {
         let c = &self.stiffness.0;
         let mut stddev = nalgebra::Matrix6::zeros();
         for (b, column) in self.columns.iter().enumerate() {
-            let left = column.residual.max(column.drift).max(0.5 * column.forward_backward.unwrap_or(0.0));
+            let left = column.residual.max(column.drift).max(0.5 * column.forward_backward);
             for a in 0..6 {
                 stddev[(a, b)] = (left * c.column(b).amax()).max(0.5 * (c[(a, b)] - c[(b, a)]).abs());
             }
@@ -76,10 +77,9 @@ impl StrainProbeResult {
         self.columns.iter().map(part).sum()
     }
 
-    /// Largest difference between the forward and the backward column, relative to the largest entry; `None` for
-    /// [`super::DifferenceScheme::Forward`].
-    pub fn forward_backward(&self) -> Option<f64> {
-        self.columns.iter().filter_map(|c| c.forward_backward).reduce(f64::max)
+    /// Largest difference between the forward and the backward column, relative to the largest entry.
+    pub fn forward_backward(&self) -> f64 {
+        self.columns.iter().map(|c| c.forward_backward).fold(0.0, f64::max)
     }
 }
 
@@ -130,13 +130,11 @@ fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engi
     let smallest = packing.radii.iter().copied().fold(f64::INFINITY, f64::min);
     let setting = EngineSettings {
         friction: settings.friction_of(packing),
-        damping: 0.0,
-        drag: 0.0,
-        spin_drag: 0.0,
-        tangential: settings.tangential,
+        // The frozen network is its linear limit; the other law depends on the direction of the strain, however small.
+        tangential: TangentialLaw::Incremental,
         time_step: TimeStep::FractionOfStable(1.0),
         skin: SKIN * 2.0 * smallest,
-        thermostat_speed: None,
+        ..EngineSettings::default()
     };
     let still = vec![Vec3::zeros(); packing.grains()];
     // Without its own time step, the engine takes the longest stable one.

@@ -4,7 +4,6 @@ use super::super::packing::replicated;
 use crate::cpu_time::process_seconds;
 use clap::ValueEnum;
 use grainlab_console::Failure;
-use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{ComponentControl, Packing, ServoLaw, SymTensor};
 use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep};
 use grainlab_node_kit::Exit;
@@ -35,12 +34,8 @@ pub(crate) enum Features {
 }
 
 impl Features {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Frictionless => "frictionless",
-            Self::Coulomb => "coulomb",
-            Self::Stuck => "stuck",
-        }
+    pub(crate) fn name(self) -> String {
+        self.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default()
     }
 
     /// Those that a packing of this friction has.
@@ -108,12 +103,9 @@ fn setting(features: Features, packing: &Packing) -> EngineSettings {
     EngineSettings {
         friction: features.friction(packing),
         damping: DAMPING,
-        drag: 0.0,
-        spin_drag: 0.0,
-        tangential: TangentialLaw::Rescaled,
         time_step: TimeStep::Fixed(if packing.time_step > 0.0 { packing.time_step } else { TIME_STEP }),
         skin: SKIN * diameter,
-        thermostat_speed: None,
+        ..EngineSettings::default()
     }
 }
 

@@ -6,6 +6,7 @@ use super::recorder::Record;
 use super::stranger::Stranger;
 use grainlab_node_kit::{Exit, Hub, Next, RunId};
 use grainlab_scene::Scene;
+use serde::Serialize;
 use std::cell::RefCell;
 use std::iter::Peekable;
 use std::rc::Rc;
@@ -36,19 +37,13 @@ pub(super) enum Outcome {
     Stuck(String),
 }
 
-/// Counts of the faults in a run.
-#[derive(Clone, Copy, Debug, Default)]
+/// Counts of the faults in runs.
+#[derive(Debug, Default, Serialize)]
 pub(super) struct Done {
     pub(super) crashes: u64,
     pub(super) stops: u64,
     pub(super) jumps: u64,
     pub(super) forged: u64,
-}
-
-/// A run with its faults.
-pub(super) struct Finished {
-    pub(super) outcome: Outcome,
-    pub(super) done: Done,
 }
 
 struct Laboratory<'a> {
@@ -60,12 +55,12 @@ struct Laboratory<'a> {
     strangers: Vec<Stranger>,
     events: Peekable<IntoIter<(u64, Event)>>,
     crashes: Vec<usize>,
-    done: Done,
+    done: &'a mut Done,
     explain: bool,
 }
 
-/// Runs the scene under a plan.
-pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
+/// Runs the scene under a plan, and counts its faults.
+pub(super) fn run_with(scene: &Scene, plan: &Plan, done: &mut Done, explain: bool) -> Outcome {
     let hub = Hub::new(plan.bus);
     for topic in grainlab_msgs::topics::TOPICS {
         hub.set_faults(&topic.absolute_name(), plan.faults);
@@ -79,7 +74,7 @@ pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
         strangers: Vec::new(),
         events: plan.events.clone().into_iter().peekable(),
         crashes: Vec::new(),
-        done: Done::default(),
+        done,
         explain,
     };
     let outcome = match laboratory.conduct(plan) {
@@ -93,8 +88,8 @@ pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
         }
         Err(outcome) => outcome,
     };
-    laboratory.done.forged = laboratory.strangers.iter().map(|s| s.forged).sum();
-    Finished { outcome, done: laboratory.done }
+    laboratory.done.forged += laboratory.strangers.iter().map(|s| s.forged).sum::<u64>();
+    outcome
 }
 
 impl Laboratory<'_> {
@@ -226,7 +221,7 @@ impl Laboratory<'_> {
         match event {
             Event::Crash(kind, pause) => {
                 self.done.crashes += 1;
-                self.crash(kind, now + pause)
+                self.crash(kind, now + pause)?;
             }
             Event::Stop(kind, time) => {
                 self.done.stops += 1;
@@ -234,19 +229,17 @@ impl Laboratory<'_> {
                     .iter_mut()
                     .filter(|p| p.kind == kind)
                     .for_each(|p| p.stopped_until = now + time);
-                Ok(())
             }
             Event::Suspend(time) => {
                 self.done.jumps += 1;
                 self.hub.advance(time);
-                Ok(())
             }
             Event::WallClock(seconds) => {
                 self.done.jumps += 1;
                 self.hub.set_wall_clock(seconds * 1_000_000_000);
-                Ok(())
             }
         }
+        Ok(())
     }
 
     fn crash(&mut self, kind: Kind, back_at: Duration) -> Result<(), Outcome> {

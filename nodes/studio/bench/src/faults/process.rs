@@ -31,13 +31,7 @@ impl Kind {
     }
 
     fn name(self) -> &'static str {
-        match self {
-            Kind::Recorder => "recorder",
-            Kind::Inversion => "emt_inversion",
-            Kind::Analyzer => "fabric_analyzer",
-            Kind::Servo => "servo_controller",
-            Kind::Simulator => "dem_simulator",
-        }
+        ["recorder", "emt_inversion", "fabric_analyzer", "servo_controller", "dem_simulator"][self as usize]
     }
 }
 

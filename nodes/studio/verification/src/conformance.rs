@@ -1,17 +1,18 @@
-//! Tests that every engine passes: the contract of [`ParticleEngine`], claim by claim.
+//! Tests that every engine passes: the contract of [`ParticleEngine`], claim by claim. A crate with an engine of its own has this
+//! one among its dev-dependencies:
 //!
 //! ```
-//! use grainlab_experiment::{Dem, conformance::CLAIMS};
+//! use grainlab_experiment::Dem;
+//! use grainlab_verification::conformance::CLAIMS;
 //! for claim in CLAIMS {
 //!     claim.check(&Dem).unwrap();
 //! }
 //! ```
 
-use crate::engine::{EngineFactory, Observables, ParticleEngine};
-use crate::error::ExperimentError;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
 use grainlab_dem::{Compute, EngineSettings};
+use grainlab_experiment::{EngineFactory, ExperimentError, Observables, ParticleEngine};
 
 /// A point of the contract.
 #[derive(Clone, Copy, Debug)]

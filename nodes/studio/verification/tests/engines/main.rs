@@ -2,9 +2,9 @@
 
 mod toy;
 
-use grainlab_experiment::conformance::CLAIMS;
 use grainlab_experiment::{Dem, EngineFactory, Simulation};
 use grainlab_scene::Scene;
+use grainlab_verification::conformance::CLAIMS;
 use std::sync::Arc;
 use toy::{Fault, Toys};
 
