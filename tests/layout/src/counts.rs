@@ -8,8 +8,8 @@ use syn::{Item, UseTree, Visibility};
 
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
-const LABORATORY: usize = 51_614;
-const STUDIO_AND_COMMAND: usize = 23_254;
+const LABORATORY: usize = 50_301;
+const STUDIO_AND_COMMAND: usize = 23_695;
 const TESTS: usize = 44_552;
 
 /// First words that leave open what is described.

@@ -14,7 +14,7 @@ const LINK_DDS: usize = 14;
 const LINK_FAER: usize = 10;
 
 /// Packages that the binary links, with those of the workspace and procedural macros.
-const IN_BINARY: usize = 279;
+const IN_BINARY: usize = 280;
 
 /// Crates that read files and must link neither the engine nor a node.
 const READERS: [&str; 2] = ["grainlab_recordings", "grainlab_pictures"];
