@@ -5,7 +5,7 @@ use mcap::McapError;
 use std::fmt::Display;
 use std::path::Path;
 
-/// What cannot be done with a file or directory, before the reason.
+/// A failure to do this with a file or directory, before its reason.
 pub(crate) fn cannot<E: Display>(path: &Path, action: &str) -> impl FnOnce(E) -> Failure + use<E> {
     let what = format!("{}: cannot {action}", path.display());
     move |reason| Failure::failed(format!("{what}: {reason}"))

@@ -48,7 +48,7 @@ pub struct RunSign {
 }
 
 impl RunSign {
-    /// What was found in the messages.
+    /// A sign that was found in the messages.
     pub fn new(what: String) -> Self {
         let way_out = "give the recording of one of them, or cut one out by its time (grainlab bag cut)";
         Self { what, way_out }

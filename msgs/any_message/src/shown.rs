@@ -94,6 +94,7 @@ impl Serialize for List<'_> {
         let shown = self.array.len().min(self.longest);
         let mut list = to.serialize_seq(None)?;
         match self.array {
+            Array::U8(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(v))?,
             Array::F64(v) => v[..shown].iter().try_for_each(|v| list.serialize_element(&Double(*v)))?,
             Array::Message(v) => v[..shown]
                 .iter()

@@ -1,13 +1,14 @@
 //! Grains in rows of named columns.
 
 use grainlab_core::Vec3;
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use super::assemble::GrainTable;
 use super::error::ImportError;
 use super::settings::ImportOptions;
 use super::stated;
-use super::text::Line;
+use super::text::{Line, cut};
 
 /// Names of the columns of a format; an empty one is that of no column.
 pub(super) struct Names {
@@ -44,8 +45,9 @@ impl Columns {
     /// The columns that a line names.
     pub(super) fn new(line: &Line<'_>, names: &[&str], format: &Names) -> Result<Self, ImportError> {
         // It is unknown which of the two is meant.
-        if let Some((k, name)) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name)) {
-            return Err(line.error(format!("the column {name} occurs twice, again as column {}", k + 1)));
+        let mut known = BTreeSet::new();
+        if let Some(name) = names.iter().find(|name| !known.insert(**name)) {
+            return Err(line.error(format!("the column {} occurs twice", cut(name))));
         }
         let place = |wanted: &str| names.iter().position(|name| *name == wanted);
         Ok(Self {

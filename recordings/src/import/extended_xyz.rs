@@ -57,6 +57,9 @@ pub fn each(
     if any { Ok(()) } else { Err(ImportError::empty()) }
 }
 
+/// Most fields of a row.
+const MOST_FIELDS: usize = 1000;
+
 const NAMES: Names = Names {
     first_id: 0,
     radius: "radius",
@@ -106,7 +109,9 @@ impl Frame {
             let [name, _, width] = *column else {
                 return Err(line.error("Properties must be a list of name:type:width"));
             };
-            let width = width.parse().ok().filter(|w| (1..=1000).contains(w));
+            // A few bytes could state any number of fields.
+            let left = MOST_FIELDS - names.len();
+            let width = width.parse().ok().filter(|w| (1..=left).contains(w));
             let width: usize = width.ok_or_else(|| line.error(format!("the width of {name} is invalid")))?;
             if bases.contains(&name) {
                 return Err(line.error(format!("the column {name} occurs twice in Properties")));

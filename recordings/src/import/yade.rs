@@ -53,7 +53,9 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
                     if cell.replace(edges(&line, numbers)?).is_some() {
                         return Err(line.error("the cell occurs twice"));
                     }
-                } else if let Some(attributes) = comment.strip_prefix("x y z r") {
+                } else if let Some(attributes) = comment.strip_prefix("x y z r")
+                    && name == "x_y_z_r_attrs"
+                {
                     names.truncate(4);
                     names.extend(attributes.split_whitespace());
                     columns = None;

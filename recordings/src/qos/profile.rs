@@ -23,7 +23,7 @@ type Values = &'static [(u64, &'static str, bool)];
 
 const RELIABILITY: Values = &[(1, "reliable", true), (2, "best_effort", false)];
 const DURABILITY: Values = &[(1, "transient_local", true), (2, "volatile", false)];
-/// True: `keep_all`.
+/// True is `keep_all`, of any number.
 const HISTORY: Values = &[(1, "keep_last", false), (2, "keep_all", true)];
 const LIVELINESS: Values = &[(1, "automatic", true)];
 
