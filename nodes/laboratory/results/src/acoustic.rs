@@ -56,7 +56,7 @@ pub static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { AcousticReport:
     "scatter" "" "1" "root mean square of the relative residuals of the speeds per degree of freedom"
         Scalar, |a| a.medium.fitted.as_ref().ok().and_then(|f| f.scatter());
     "departure" "" "1" "relative scatter of rho v^2 that is due to the packing; half of it is an error of every speed"
-        Aside, |a| a.medium.fitted.as_ref().ok().and_then(|f| Some(f.anisotropy_scatter?.scatter));
+        Aside, |a| a.medium.fitted.as_ref().ok().and_then(|f| f.anisotropy_scatter);
 };
 
 impl AcousticReport {

@@ -7,8 +7,11 @@ use grainlab_paper::inversion::Errors;
 use grainlab_paper::{Comparison, PAPER, PRESSURE};
 use serde_json::{Value, json as object};
 
+/// A column: its name, and its value in a row.
+type Column = (&'static str, fn(&Comparison) -> Cell);
+
 /// Columns of the comparisons.
-const COLUMNS: [(&str, fn(&Comparison) -> Cell); 11] = [
+const COLUMNS: [Column; 11] = [
     ("quantity", |c| Cell::Text(c.quantity.key().to_owned())),
     ("sample", |c| Cell::Text(PAPER[c.sample].name.to_owned())),
     ("pressure_pa", |c| Cell::Number(PRESSURE[c.pressure])),

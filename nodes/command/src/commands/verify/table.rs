@@ -82,8 +82,11 @@ fn summary(rows: &[Row]) -> String {
     text
 }
 
+/// A column: its name, and its value in a row.
+type Column = (&'static str, fn(&Row) -> String);
+
 /// Columns of CSV: of a curve the worst point.
-const COLUMNS: [(&str, fn(&Row) -> String); 17] = [
+const COLUMNS: [Column; 17] = [
     ("suite", |r| r.suite.to_owned()),
     ("comparison", |r| r.name.clone()),
     ("source", |r| r.source.clone()),
