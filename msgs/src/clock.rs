@@ -2,14 +2,14 @@
 
 use crate::builtin_interfaces::Time;
 
-/// Stamp of simulated time 0, s: far from 1970, so that no viewer takes it for an unset stamp, and the same
-/// in every run, so that recorded messages are, too.
+/// Stamp of simulated time 0, s. It is not 0, which viewers take for an unset stamp, and it is constant, so that runs that
+/// are repeated record the same messages.
 pub const EPOCH_SECONDS: i32 = 1_000_000_000;
 
 const NANOS: f64 = 1e9;
 
-/// The stamp of a simulated time in seconds: 10⁹ s later, rounded to 1 ns. Times outside the range of a stamp
-/// (more than 36 years, or before the epoch) give the nearest one in it; NaN gives the epoch.
+/// The stamp of a simulated time in seconds: 10⁹ s later, rounded to 1 ns. Times later
+/// than 36 years or earlier than −99 years give the last or the first possible stamp; NaN gives that of time 0.
 ///
 /// ```
 /// let t = grainlab_msgs::stamp(0.25);
@@ -27,12 +27,12 @@ pub fn stamp(simulated_seconds: f64) -> Time {
     }
 }
 
-/// The simulated time of a stamp, s: the inverse of [`stamp`] to 1 ns.
+/// The simulated time of a stamp, s: the inverse of [`stamp`] to half a nanosecond.
 pub fn simulated_seconds(stamp: &Time) -> f64 {
     (i64::from(stamp.sec) - i64::from(EPOCH_SECONDS)) as f64 + f64::from(stamp.nanosec) / NANOS
 }
 
-/// Wall-clock time, ns since 1970, as a ROS stamp.
+/// Wall-clock time, ns since 1970, as a ROS stamp; the last possible one after 2038.
 pub fn wall_stamp(wall_nanos: u64) -> Time {
     let sec = i32::try_from(wall_nanos / 1_000_000_000).unwrap_or(i32::MAX);
     Time { sec, nanosec: (wall_nanos % 1_000_000_000) as u32 }

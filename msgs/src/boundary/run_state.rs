@@ -10,7 +10,7 @@ impl RunState {
     /// The message, if it is valid.
     ///
     /// # Errors
-    /// A state that is none of the constants, a progress out of range, an invalid stamp.
+    /// If the state is unknown, the progress is not in 0 … 1, or the stamp is invalid.
     pub fn checked(&self) -> Result<&Self, BoundaryError> {
         CHECK.header(&self.header)?;
         if ![Self::RUNNING, Self::FINISHED, Self::FAILED].contains(&self.state) {

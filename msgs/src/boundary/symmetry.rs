@@ -1,4 +1,4 @@
-//! `Symmetry`: that of a stiffness.
+//! `Symmetry`: the symmetry of a stiffness, as a message and checked.
 
 use super::check::{Check, row_major, vector_message};
 use super::error::BoundaryError;

@@ -1,6 +1,6 @@
-//! Files of a recording, and files stored in it.
+//! The MCAP files of a recording, and their attachments.
 
-/// Information on one file.
+/// Name, time range and number of messages of one MCAP file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FileCount {
     pub(crate) name: String,
@@ -9,12 +9,12 @@ pub(crate) struct FileCount {
     pub(crate) messages: u64,
 }
 
-/// A file stored in a recording.
+/// An attachment: a file stored in a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StoredFile {
     /// Name within the recording.
     pub name: String,
-    /// Media type, `application/toml`.
+    /// Media type, as in `application/toml`.
     pub media_type: String,
     /// Time at which it was stored, ns since 1970.
     pub time: u64,

@@ -1,4 +1,4 @@
-//! Errors of the bus.
+//! Errors of publishing and subscribing.
 
 use crate::names::NameError;
 
@@ -8,8 +8,9 @@ pub enum BusError {
     /// The topic name is invalid.
     #[error("topic name: {0}")]
     Name(#[from] NameError),
-    /// A reliable reader is so far behind that the window stayed full until the time limit. The sample was dropped.
-    #[error("{topic}: a reliable reader is more than {window} samples behind; the sample was dropped")]
+    /// A reliable reader has not acknowledged a whole window of samples, or the parts of the previous message. Nothing was
+    /// sent.
+    #[error("{topic}: not sent: a reliable reader is {window} samples behind")]
     Full {
         /// Resolved topic name.
         topic: String,
@@ -29,17 +30,17 @@ pub enum BusError {
     /// The handle belongs to another bus.
     #[error("{0}: this handle does not belong to this bus")]
     Handle(&'static str),
-    /// The network returned an error.
+    /// An operation of DDS or of the operating system failed.
     #[error("{what}: {reason}")]
     Network {
         /// Operation that failed.
         what: String,
-        /// The error of DDS.
+        /// Text of its error.
         reason: String,
     },
 }
 
-/// Accepts that a sample was dropped: a crashed reader must not end the node, and the bus counts what it could not send.
+/// Takes a sample that was not sent for success: a crashed reader must not end the node. The bus counts such samples.
 pub fn tolerate_full(published: Result<i64, BusError>) -> Result<(), BusError> {
     match published {
         Ok(_) | Err(BusError::Full { .. }) => Ok(()),
@@ -47,7 +48,7 @@ pub fn tolerate_full(published: Result<i64, BusError>) -> Result<(), BusError> {
     }
 }
 
-/// RustDDS could not create something.
+/// An entity of DDS, a thread or a poll that could not be created.
 pub(crate) fn create_error(what: &str, error: &dyn std::error::Error) -> BusError {
     BusError::Network { what: format!("create {what}"), reason: error.to_string() }
 }

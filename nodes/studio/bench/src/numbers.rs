@@ -1,8 +1,8 @@
-//! Numbers of a report, and of a command line.
+//! Statistics of measurements, and numbers as text.
 
 use grainlab_console::fixed;
 
-/// Median of at least one number.
+/// Median; NaN of an empty list.
 pub(super) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -23,16 +23,16 @@ pub(super) fn rms(values: &[f64]) -> f64 {
     mean(&values.iter().map(|v| v * v).collect::<Vec<_>>()).sqrt()
 }
 
-/// A number with four significant digits.
+/// A number as text with four significant digits: all digits before the point, and at most six after it.
 pub(super) fn rounded(value: Option<f64>) -> String {
     let digits = value.map_or(0, |v| (3 - v.abs().max(1e-3).log10().floor() as i32).clamp(0, 6));
     fixed(value, digits as usize)
 }
 
-/// A number of the command line within a range.
+/// Parses a number between two limits.
 pub(super) fn between(text: &str, least: f64, most: f64) -> Result<f64, String> {
     let value = text.parse().ok().filter(|v| (least..=most).contains(v));
-    value.ok_or_else(|| format!("a number from {least:e} to {most:e}"))
+    value.ok_or_else(|| format!("it must be a number from {least} to {most}"))
 }
 
 #[cfg(test)]
@@ -40,14 +40,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_median_of_an_even_number_lies_between_the_middle_two() {
+    fn the_median_of_an_even_count_lies_between_the_middle_two() {
         assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(vec![4.0, 1.0, 3.0, 2.0]), 2.5);
         assert!(median(Vec::new()).is_nan());
     }
 
     #[test]
-    fn people_see_four_digits() {
+    fn text_has_four_significant_digits() {
         let shown = [21_345_678.9, 15.2345, 0.12345].map(|v| rounded(Some(v)));
         assert_eq!(shown, ["21345679", "15.23", "0.1235"].map(str::to_owned));
     }

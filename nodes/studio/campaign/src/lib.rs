@@ -1,10 +1,10 @@
 //! Campaigns: many runs, each in a folder of its own.
 //!
 //! - [`Campaign`]: the members, from a file; [`Member`]: one run
-//! - [`Folder`]: where they are, and how far each of them came
-//! - [`Engine`]: this machine, a cluster, or a script that does it
+//! - [`Folder`]: the folder of every member, and its state
+//! - [`Engine`]: runs the members on this machine or on a cluster, or prints a script that runs them
 //!
-//! A member is the command `grainlab launch … --run DIR`, which begins the run in DIR, continues it, or does nothing if it is
+//! A member is run by the command `grainlab launch … --run DIR`, which begins the run in DIR, continues it, or does nothing if it is
 //! finished. So a campaign can be interrupted at any moment, and started again.
 
 mod campaign;

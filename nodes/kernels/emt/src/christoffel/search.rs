@@ -1,29 +1,28 @@
-//! The search for the medium: damped Gauss-Newton on relative speeds.
+//! Fit of the five moduli to measured speeds by the method of Levenberg and Marquardt.
 //!
-//! Unknowns are the specific moduli, each divided by its scale (the v² of P or S waves), so that they are of
-//! order one.
+//! Unknowns are the specific moduli, each divided by its scale, so that they are of order one.
 
 use super::ray::{Column, Ray, UNKNOWNS};
 use nalgebra::{Const, SMatrix, SymmetricEigen};
 
-/// Relative change of the speeds per relative change of a combination of moduli, below which the combination
-/// counts as undetermined: speeds with errors of 0.1 % contain no information about it.
-const BLIND: f64 = 1e-3;
+/// Combinations of scaled moduli whose singular value is less are undetermined: speeds with errors of 0.1 % contain no
+/// information about them.
+const UNDETERMINED: f64 = 1e-3;
 
-/// Relative change of the speeds below which other media may have the same speeds.
+/// Singular value below which the fit is repeated from other starting points: other media may have the same speeds.
 const WEAK: f64 = 0.1;
 
-/// Distances from a medium at which others are searched, in scales of its moduli.
-const FAR: [f64; 4] = [-0.6, -0.3, 0.3, 0.6];
+/// Distances of these starting points from the first medium, in scales of its moduli.
+const OFFSETS: [f64; 4] = [-0.6, -0.3, 0.3, 0.6];
 
-/// A matrix of the specific moduli.
+/// A 5 × 5 matrix over the scaled moduli.
 pub(super) type Square = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
 /// Speeds with their weights.
 pub(super) struct Problem<'a> {
     rays: &'a [Ray],
     weights: &'a [f64],
-    /// Scale of each specific modulus: the v² of P or S waves, their difference for C13 + C44, m²/s².
+    /// Scale of each specific modulus, m²/s²: the v² of P or S waves, for C13 their difference, at least 0.2 v_P².
     pub(super) scale: Column,
     guess: Column,
 }
@@ -42,7 +41,7 @@ pub(super) struct Point {
 }
 
 impl<'a> Problem<'a> {
-    /// With a weight for each ray.
+    /// Speeds along `rays`, each with its weight.
     pub(super) fn new(rays: &'a [Ray], weights: &'a [f64]) -> Self {
         let mean_square = |compressional: bool| {
             let squares = rays.iter().filter(|r| r.is_compressional() == compressional);
@@ -64,15 +63,16 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// True if the sum of squares has one minimum: the rays whose polarization does not depend on the medium, whose v²
-    /// is linear in the moduli, determine all moduli but C13 (or there are no other rays), and every v² is monotone in
-    /// C13.
+    /// True if the sum of squares has one minimum: if the rays whose polarization does not depend on the medium determine
+    /// C11, C33 and C44, or if there are no other rays. The v² of these rays is linear in the moduli, and that of the others
+    /// is monotone in C13.
     pub(super) fn has_one_minimum(&self) -> bool {
-        let plain: Vec<(f64, Column)> =
+        let uncoupled: Vec<(f64, Column)> =
             self.rays.iter().filter(|r| !r.is_coupled()).map(|r| (0.0, self.row_of_motion(r))).collect();
-        let (basis, rank) = seen(&plain);
-        let is_settled = |modulus: usize| (rank..UNKNOWNS).all(|k| basis[(modulus, k)].abs() < BLIND);
-        plain.len() == self.rays.len() || [0, 1, 3].into_iter().all(is_settled)
+        let (basis, rank) = seen(&uncoupled);
+        let is_determined =
+            |modulus: usize| (rank..UNKNOWNS).all(|k| basis[(modulus, k)].abs() < UNDETERMINED);
+        uncoupled.len() == self.rays.len() || [0, 1, 3].into_iter().all(is_determined)
     }
 
     /// Relative derivatives of a ray's speed for exactly the measured polarization.
@@ -80,8 +80,8 @@ impl<'a> Problem<'a> {
         ray.slopes_of_motion().component_mul(&self.scale) / (2.0 * ray.speed * ray.speed)
     }
 
-    /// The best medium if every mode had exactly the measured polarization, a linear problem, and its weighted sum of
-    /// squares.
+    /// The solution of the linear problem, in which every mode has exactly the measured polarization, and its weighted sum
+    /// of squares.
     pub(super) fn linear(&self) -> Option<(Column, f64)> {
         let rows: Vec<(f64, Column)> = (self.rays.iter())
             .map(|ray| {
@@ -96,7 +96,7 @@ impl<'a> Problem<'a> {
         Some((self.guess + step.component_mul(&self.scale), cost))
     }
 
-    /// Starting points: the medium of the linear problem, then isotropic ones.
+    /// Starting points: the solution of the linear problem, then media with C11 = C33 and three values of C44.
     pub(super) fn starts(&self) -> impl Iterator<Item = Column> + '_ {
         let linear = self.linear().map(|(medium, _)| medium);
         let shears = [1.0, 0.4, 1.6].map(|shear| {
@@ -111,8 +111,8 @@ impl<'a> Problem<'a> {
     pub(super) fn around(&self, point: &Point) -> Vec<Column> {
         let Some(eigen) = directions(&point.rows) else { return Vec::new() };
         let weak = (0..UNKNOWNS).filter(|i| eigen.eigenvalues[*i] < WEAK * WEAK);
-        let ways = weak.map(|i| eigen.eigenvectors.column(i).component_mul(&self.scale));
-        ways.flat_map(|way| FAR.map(|far| point.specific + far * way)).collect()
+        let combinations = weak.map(|i| eigen.eigenvectors.column(i).component_mul(&self.scale));
+        combinations.flat_map(|of| OFFSETS.map(|offset| point.specific + offset * of)).collect()
     }
 
     fn at(&self, specific: Column) -> Option<Point> {
@@ -132,7 +132,8 @@ impl<'a> Problem<'a> {
         point.cost.is_finite().then_some(point)
     }
 
-    /// The local minimum, searched from `start`; `None` if `start` is not a stable medium.
+    /// The local minimum, searched from `start` in at most 100 iterations; `None` if `start` gives no real speed along a ray,
+    /// or if the normal matrix is singular.
     pub(super) fn descend(&self, start: Column) -> Option<Point> {
         let mut here = self.at(start)?;
         let mut damping = 1e-4;
@@ -143,7 +144,7 @@ impl<'a> Problem<'a> {
                 break;
             }
             let mut specific = here.specific + step.component_mul(&self.scale);
-            // C13 + C44 must stay positive; a step beyond zero is shortened to a tenth of the present value.
+            // C13 + C44 must stay positive: a change of C13 beyond that leaves a tenth of the sum.
             let coupling = here.specific[2] + here.specific[3];
             if specific[2] + specific[3] <= 0.0 {
                 specific[2] = 0.1 * coupling - specific[3];
@@ -153,16 +154,16 @@ impl<'a> Problem<'a> {
                     here = next;
                     damping *= 0.01;
                 }
-                // Changes of the cost are due to rounding.
+                // The step is too short, or no damping reduces the cost: its changes are due to rounding.
                 _ if damping > 1e8 || step.amax() < 1e-9 => break,
                 _ => damping = 10.0 * damping.max(1e-8),
             }
         }
-        Some(self.polished(here))
+        Some(self.refined(here))
     }
 
-    /// One or two last undamped steps, too short to change the cost.
-    fn polished(&self, mut point: Point) -> Point {
+    /// At most two last steps without damping, each too short to change the cost.
+    fn refined(&self, mut point: Point) -> Point {
         for _ in 0..2 {
             let (basis, rank) = seen(&point.rows);
             let step = self.step(&point.rows, &basis, rank, 0.0).filter(|step| step.amax() < 1e-6);
@@ -207,7 +208,7 @@ impl<'a> Problem<'a> {
 /// Orthonormal directions in the space of scaled moduli, the determined ones first, and the number of those.
 pub(super) fn seen(rows: &[(f64, Column)]) -> (Square, usize) {
     let Some(eigen) = directions(rows) else { return (Square::identity(), 0) };
-    let is_seen = |i: &usize| eigen.eigenvalues[*i] > BLIND * BLIND;
+    let is_seen = |i: &usize| eigen.eigenvalues[*i] > UNDETERMINED * UNDETERMINED;
     let first = (0..UNKNOWNS).filter(is_seen);
     let last = (0..UNKNOWNS).filter(|i| !is_seen(i));
     let mut basis = Square::zeros();
