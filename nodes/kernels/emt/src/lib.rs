@@ -15,7 +15,7 @@
 //!   - `directional`: each modulus with its own coordination number
 //!   - `relaxed`: the relaxed network
 //!   - `hertz_mindlin`: a pack with contacts in all directions alike, as in rock physics
-//! - `calibration`, `learn`: the constants of the models, and how they are learned from packings
+//! - `calibration`: the constants of the models; the crate `calibration` of the studio learns them from packings
 //! - `moments`, `eq16`, `medium`, `invariants`: the theory that the models share
 //! - `likelihood`, `estimate_likelihood`: the probability of moduli, as a model states it
 //! - `posterior`: draws, evidence, predictive checks and ranks
@@ -49,7 +49,6 @@ mod error;
 mod estimate;
 mod estimate_likelihood;
 mod invariants;
-mod learn;
 mod likelihood;
 mod medium;
 mod model;
@@ -71,9 +70,10 @@ mod warning;
 mod wave_moduli;
 
 pub use calibration::{
-    Calibration, CalibrationError, DeviatorLaw, IsotropicCalibration, ModelDiscrepancy, NetworkState,
-    RattlerLaw, Reach, RelaxationCalibration, ScalingLaw,
+    Calibration, CalibrationError, DeviatorLaw, GROUPS, ISOSTATIC, IsotropicCalibration, ModelDiscrepancy,
+    NetworkState, RattlerLaw, Reach, RelaxationCalibration, SCATTERED, ScalingLaw, Scatter,
 };
+pub use checks::{ROUNDING, check_structure};
 pub use conditions::{
     Conditions, Measured, StrainRatio, StrainRatioSource, UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO,
 };
@@ -82,7 +82,6 @@ pub use eq16::Eq16Reading;
 pub use error::EmtError;
 pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
 pub use invariants::Invariants;
-pub use learn::{CalibrationSample, check_structure, learn, with_errors};
 pub use likelihood::{Likelihood, Predicted};
 pub use medium::{Medium, MediumModuli};
 pub use model::Model;
