@@ -1,7 +1,7 @@
 //! Effective medium theory: forward models from microstructure to moduli, and their inversion.
 //!
 //! Implements Eqs. 10–18, 21 and 22 of La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012). The inversion is closed,
-//! or a root that is unique in its bracket; errors are propagated to first order or by sampling. SI units at every
+//! or a root that is unique in its bracket; errors are propagated to first order. SI units at every
 //! interface. The axis of anisotropy is e3; ε and g = γ/Δ are positive when there are more contacts, or more extension,
 //! along it.
 //!
@@ -20,7 +20,7 @@
 //! - `likelihood`, `estimate_likelihood`: the probability of moduli, as a model states it
 //! - `posterior`: draws, evidence, predictive checks and ranks
 //! - `prior`, `update`: prior knowledge, and estimates with it
-//! - `propagation`, `sampling`: errors to first order; the distribution, where they are large
+//! - `propagation`: errors to first order
 //! - [`christoffel`], [`WaveModuli`]: moduli from wave speeds
 //!
 //! ```
@@ -64,7 +64,6 @@ mod prior_conflict;
 mod propagation;
 mod random;
 mod registry;
-mod sampling;
 mod update;
 mod warning;
 mod wave_moduli;
@@ -96,6 +95,5 @@ pub use posterior::{
 };
 pub use prior::{Density, Prior, PriorError};
 pub use registry::{model, models, recommended};
-pub use sampling::{MonteCarlo, SamplingSettings, monte_carlo};
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;
