@@ -1,8 +1,8 @@
 //! The command line.
 
-use crate::commands::{analyze, bag, calibrate, completions, invert, launch, man, probe, run, scene};
+use crate::commands::{analyze, bag, completions, invert, launch, man, probe, run, scene};
 #[cfg(feature = "studio")]
-use crate::commands::{campaign, report, reproduce, verify, view};
+use crate::commands::{calibrate, campaign, report, reproduce, verify, view};
 use clap::{CommandFactory, Parser, Subcommand};
 #[cfg(feature = "studio")]
 use grainlab_bench as bench;
@@ -41,8 +41,6 @@ enum Command {
     Bag(bag::Command),
     /// Infer the microstructure from moduli: coordination and anisotropy with uncertainty.
     Invert(invert::Args),
-    /// Learn the constants of the models from measured packings.
-    Calibrate(calibrate::Args),
     /// Measure packings from files: structure, stress and the full stiffness.
     Analyze(analyze::Args),
     /// Send waves through packings from files: their speeds, and the moduli that follow.
@@ -60,6 +58,8 @@ enum Command {
 #[cfg(feature = "studio")]
 #[derive(Debug, Subcommand)]
 enum Studio {
+    /// Learn the constants of the models from measured packings.
+    Calibrate(calibrate::Args),
     /// Run many scenes: each a recorded run in a folder of its own, on this machine or a cluster.
     Campaign(campaign::Args),
     /// Report runs: a page with results, plots and packings; for many runs one row per run.
@@ -99,7 +99,6 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Bag(command)) => bag::run(&command),
         Some(Command::Invert(args)) => invert::run(&args),
-        Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Analyze(args)) => analyze::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),
         Some(Command::Completions(args)) => completions::run(&args, Cli::command()),
@@ -116,6 +115,7 @@ pub(crate) fn main() -> ExitCode {
 #[cfg(feature = "studio")]
 fn studio(command: &Studio) -> Result<Exit, Failure> {
     match command {
+        Studio::Calibrate(args) => calibrate::run(args),
         Studio::Campaign(args) => campaign::run(args),
         Studio::Report(args) => report::run(args),
         Studio::View(args) => view::run(args),

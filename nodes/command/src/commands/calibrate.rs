@@ -4,8 +4,8 @@
 
 mod packings;
 
+use grainlab_calibration::learn;
 use grainlab_console::{Failure, print, say, write_whole};
-use grainlab_emt::learn;
 use grainlab_node_kit::Exit;
 use packings::Naming;
 use std::path::PathBuf;

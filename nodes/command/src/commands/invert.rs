@@ -33,6 +33,7 @@ mod table;
 use super::packings::import::in_range;
 use answer::{Answer, More};
 use case::cases;
+#[cfg(feature = "studio")]
 pub(super) use columns::{BadRow, Row};
 use grainlab_console::{Failure, Format, print, say};
 use grainlab_emt::{Measured, Modulus};

@@ -2,6 +2,7 @@
 
 pub(crate) mod analyze;
 pub(crate) mod bag;
+#[cfg(feature = "studio")]
 pub(crate) mod calibrate;
 #[cfg(feature = "studio")]
 pub(crate) mod campaign;

@@ -1,7 +1,8 @@
-//! The warnings that apply to the estimate of any model.
+//! The warnings that apply to the estimate of any model, and the bounds of any structure.
 
 use crate::calibration::{Calibration, NetworkState, Outside};
 use crate::conditions::{Conditions, StrainRatioSource};
+use crate::error::EmtError;
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::{INPUT_NAMES, Observation};
 use crate::warning::Warning;
@@ -16,8 +17,14 @@ const ASYMMETRY: f64 = 0.05;
 /// Upper bound of asymmetry times the root of the number of grains, for packings that are isotropic about e3.
 const SCATTER: f64 = 2.2;
 
+/// Largest coordination number of a packing of spheres of similar sizes, with a margin.
+const MAX_COORDINATION: f64 = 15.0;
+
+/// Largest anisotropy, to either side: that of contacts along e3 alone, 2.5 of the coefficient of P2.
+const MAX_EPS: f64 = 2.5;
+
 /// Imbalance of moduli that were rounded to three or four digits.
-pub(crate) const ROUNDING: f64 = 5e-3;
+pub const ROUNDING: f64 = 5e-3;
 
 /// Probability with which chance alone raises the alarm that the data contradict the model, by χ² or by the modulus furthest
 /// from its prediction: with that of [`UNBALANCED`], consistent data raise less than one alarm in a hundred.
@@ -37,6 +44,20 @@ const LARGE_ERROR: f64 = 0.1;
 /// Relative error of the pressure, or of E* by the properties of the grains, beyond which linear propagation is inaccurate. The
 /// moduli grow with roots of them.
 const LARGE_STATE_ERROR: f64 = 0.3;
+
+/// Refuses a counted structure that no packing has.
+pub fn check_structure(structure: &Microstructure) -> Result<(), EmtError> {
+    for quantity in InferredQuantity::ALL {
+        let Some(value) = structure.get(quantity) else { continue };
+        let [low, high] =
+            if quantity.is_coordination() { [0.0, MAX_COORDINATION] } else { [-MAX_EPS, MAX_EPS] };
+        // Also where it is not a number.
+        if !(low..=high).contains(&value) {
+            return Err(EmtError::NoStructure { quantity: quantity.name(), value, low, high });
+        }
+    }
+    Ok(())
+}
 
 /// Warnings that follow from the structure alone; a prior may change them.
 pub(crate) fn of_structure(structure: &Microstructure) -> Vec<Warning> {
@@ -72,7 +93,7 @@ pub(crate) fn common(
         }
     };
     let outside = |v: f64, [low, high]: [f64; 2]| !(low..=high).contains(&v);
-    if let Some(range) = calibration.pressures().filter(|_| !compares_state) {
+    if let Some(range) = calibration.pressures.filter(|_| !compares_state) {
         let pressure = observation.pressure();
         // The tolerance of a servo is not an extrapolation.
         let wide = [0.99 * range[0], 1.01 * range[1]];

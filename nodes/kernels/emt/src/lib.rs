@@ -1,7 +1,7 @@
 //! Effective medium theory: forward models from microstructure to moduli, and their inversion.
 //!
 //! Implements Eqs. 10–18, 21 and 22 of La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012). The inversion is closed,
-//! or a root that is unique in its bracket; errors are propagated to first order or by sampling. SI units at every
+//! or a root that is unique in its bracket; errors are propagated to first order. SI units at every
 //! interface. The axis of anisotropy is e3; ε and g = γ/Δ are positive when there are more contacts, or more extension,
 //! along it.
 //!
@@ -15,12 +15,12 @@
 //!   - `directional`: each modulus with its own coordination number
 //!   - `relaxed`: the relaxed network
 //!   - `hertz_mindlin`: a pack with contacts in all directions alike, as in rock physics
-//! - `calibration`, `learn`: the constants of the models, and how they are learned from packings
+//! - `calibration`: the constants of the models; the crate `calibration` of the studio learns them from packings
 //! - `moments`, `eq16`, `medium`, `invariants`: the theory that the models share
 //! - `likelihood`, `estimate_likelihood`: the probability of moduli, as a model states it
 //! - `posterior`: draws, evidence, predictive checks and ranks
 //! - `prior`, `update`: prior knowledge, and estimates with it
-//! - `propagation`, `sampling`: errors to first order; the distribution, where they are large
+//! - `propagation`: errors to first order
 //! - [`christoffel`], [`WaveModuli`]: moduli from wave speeds
 //!
 //! ```
@@ -49,7 +49,6 @@ mod error;
 mod estimate;
 mod estimate_likelihood;
 mod invariants;
-mod learn;
 mod likelihood;
 mod medium;
 mod model;
@@ -65,15 +64,15 @@ mod prior_conflict;
 mod propagation;
 mod random;
 mod registry;
-mod sampling;
 mod update;
 mod warning;
 mod wave_moduli;
 
 pub use calibration::{
-    Calibration, CalibrationError, DeviatorLaw, IsotropicCalibration, ModelDiscrepancy, NetworkState,
-    RattlerLaw, Reach, RelaxationCalibration, ScalingLaw,
+    Calibration, CalibrationError, DeviatorLaw, GROUPS, ISOSTATIC, IsotropicCalibration, ModelDiscrepancy,
+    NetworkState, RattlerLaw, Reach, RelaxationCalibration, SCATTERED, ScalingLaw, Scatter,
 };
+pub use checks::{ROUNDING, check_structure};
 pub use conditions::{
     Conditions, Measured, StrainRatio, StrainRatioSource, UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO,
 };
@@ -82,7 +81,6 @@ pub use eq16::Eq16Reading;
 pub use error::EmtError;
 pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
 pub use invariants::Invariants;
-pub use learn::{CalibrationSample, check_structure, learn, with_errors};
 pub use likelihood::{Likelihood, Predicted};
 pub use medium::{Medium, MediumModuli};
 pub use model::Model;
@@ -97,6 +95,5 @@ pub use posterior::{
 };
 pub use prior::{Density, Prior, PriorError};
 pub use registry::{model, models, recommended};
-pub use sampling::{MonteCarlo, SamplingSettings, monte_carlo};
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

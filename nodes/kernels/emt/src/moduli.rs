@@ -154,7 +154,7 @@ impl Moduli {
 
     /// True if no medium has these moduli, by more than so many standard deviations of their errors: some strain would cost no
     /// energy. Considers the known ones of C11, C33, C13 and G12.
-    pub(crate) fn unstable(&self, covariance: Option<&ModuliCovariance>, sigmas: f64) -> bool {
+    pub fn unstable(&self, covariance: Option<&ModuliCovariance>, sigmas: f64) -> bool {
         let [c11, c33, c13, g12] =
             [Modulus::C11, Modulus::C33, Modulus::C13, Modulus::G12].map(|m| self.get(m));
         let beyond = |margin: f64, slopes: [f64; MODULI]| {

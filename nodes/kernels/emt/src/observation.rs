@@ -177,7 +177,7 @@ impl Observation {
     }
 
     /// Refuses the first value that is not finite or out of range, the covariance excepted.
-    pub(crate) fn check_values(&self) -> Result<(), EmtError> {
+    fn check_values(&self) -> Result<(), EmtError> {
         for (modulus, value) in self.moduli.known() {
             if !value.is_finite() {
                 return Err(EmtError::NotFinite { quantity: modulus.name(), value });

@@ -156,7 +156,7 @@ pub enum Warning {
     },
     /// The error of a modulus is too large for linear error propagation.
     #[error(
-        "{modulus} is known to {:.0} % only: intervals from linear error propagation are too narrow, use sampling",
+        "{modulus} is known to {:.0} % only: intervals from linear error propagation are too narrow",
         100.0 * relative
     )]
     ErrorsLarge {

@@ -1,10 +1,11 @@
 //! From the rows of a table to the packings that a calibration is learned from.
 
 use crate::commands::invert::{BadRow, Row, Rows, State};
+use grainlab_calibration::CalibrationSample;
 use grainlab_console::{Failure, say};
 use grainlab_core::Material;
 use grainlab_core::contact::SpringLaw;
-use grainlab_emt::{CalibrationSample, Modulus};
+use grainlab_emt::Modulus;
 use std::path::Path;
 
 /// Largest median of |eps| of isotropic packings, and what chance makes of it over the root of the number of grains: .27 in

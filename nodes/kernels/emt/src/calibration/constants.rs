@@ -1,7 +1,6 @@
 //! The constants of all models.
 
 use super::discrepancy::ModelDiscrepancy;
-use super::file::Grains;
 use super::isotropic::IsotropicCalibration;
 use super::relaxation::RelaxationCalibration;
 use crate::conditions::StrainRatioSource;
@@ -10,20 +9,32 @@ use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCov
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
+/// A material, as the file has it.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Material", deny_unknown_fields)]
+struct Grains {
+    shear_modulus: f64,
+    poisson_ratio: f64,
+    density: f64,
+}
+
 /// Constants of the models, measured on packings of one material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
     pub(crate) name: Cow<'static, str>,
+    /// Lowest and highest pressure of its packings, Pa; `None` if not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) pressures: Option<[f64; 2]>,
+    pub pressures: Option<[f64; 2]>,
     #[serde(with = "Grains")]
     pub(crate) material: Material,
     pub(crate) isotropic: IsotropicCalibration,
+    /// Constants of the model `relaxed`; `None` if the calibration lacks them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) network: Option<Box<RelaxationCalibration>>,
+    pub network: Option<Box<RelaxationCalibration>>,
+    /// Errors of the models; empty for those that they have with the constants of the paper.
     #[serde(default, rename = "discrepancy", skip_serializing_if = "Vec::is_empty")]
-    pub(crate) discrepancies: Vec<ModelDiscrepancy>,
+    pub discrepancies: Vec<ModelDiscrepancy>,
 }
 
 impl Calibration {
@@ -54,11 +65,6 @@ impl Calibration {
     /// Material of its packings.
     pub fn material(&self) -> &Material {
         &self.material
-    }
-
-    /// Lowest and highest pressure of its packings, Pa; `None` if not known.
-    pub fn pressures(&self) -> Option<[f64; 2]> {
-        self.pressures
     }
 
     /// Constants of the model `relaxed`; `None` if the calibration lacks them.

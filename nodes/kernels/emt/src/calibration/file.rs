@@ -4,16 +4,6 @@ use super::constants::Calibration;
 use super::discrepancy::ModelDiscrepancy;
 use super::error::{CalibrationError, constant};
 use grainlab_core::Material;
-use serde::{Deserialize, Serialize};
-
-/// A material, as the file has it.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Material", deny_unknown_fields)]
-pub(super) struct Grains {
-    shear_modulus: f64,
-    poisson_ratio: f64,
-    density: f64,
-}
 
 impl Calibration {
     /// Reads the text of a calibration file.

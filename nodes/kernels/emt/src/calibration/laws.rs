@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Coordination number at which a network of frictional grains is isostatic: 3 z/2 force components for 6 degrees of
 /// freedom per grain. Its response to a change of coordination diverges there.
-pub(crate) const ISOSTATIC: f64 = 4.0;
+pub const ISOSTATIC: f64 = 4.0;
 
 /// p/E* at which the terms in the pressure vanish.
 pub(crate) const REFERENCE_PRESSURE: f64 = 1e-6;
@@ -48,13 +48,13 @@ pub struct ScalingLaw {
 
 impl ScalingLaw {
     /// The terms that the coefficients multiply.
-    pub(crate) fn terms(z: f64, onset: f64, state: &NetworkState) -> [f64; 8] {
+    pub fn terms(z: f64, onset: f64, state: &NetworkState) -> [f64; 8] {
         let (ln_z, ln_p, kappa) = (z.ln(), state.ln_pressure, state.stiffness_ratio);
         [1.0, ln_z, (z - onset).ln(), ln_p, kappa, state.size_variance, kappa * ln_z, ln_p * ln_z]
     }
 
     /// Logarithm of X.
-    pub(crate) fn value(&self, z: f64, state: &NetworkState) -> f64 {
+    pub fn value(&self, z: f64, state: &NetworkState) -> f64 {
         dot(&self.coefficients, &Self::terms(z, self.onset, state))
     }
 
@@ -80,10 +80,10 @@ pub struct DeviatorLaw {
 
 impl DeviatorLaw {
     /// Number of coefficients.
-    pub(crate) const TERMS: usize = 11;
+    pub const TERMS: usize = 11;
 
     /// The terms that the coefficients multiply, those of ε first.
-    pub(crate) fn terms(z: f64, eps: f64, state: &NetworkState) -> [f64; Self::TERMS] {
+    pub fn terms(z: f64, eps: f64, state: &NetworkState) -> [f64; Self::TERMS] {
         let [a0, a1, a2, a3, a4, a5, a6, a7] = Self::factors(z, state).map(|f| f * eps);
         let [b0, b1, b2] = Self::stress_factors(z, state).map(|f| f * state.stress_ratio);
         [a0, a1, a2, a3, a4, a5, a6, a7, b0, b1, b2]
@@ -99,7 +99,8 @@ impl DeviatorLaw {
         [1.0, u, u * state.ln_pressure]
     }
 
-    pub(crate) fn new(coefficients: [f64; Self::TERMS]) -> Self {
+    /// The law with these coefficients, in the order of the terms.
+    pub fn new(coefficients: [f64; Self::TERMS]) -> Self {
         let [a0, a1, a2, a3, a4, a5, a6, a7, by_stress_ratio @ ..] = coefficients;
         Self { by_eps: [a0, a1, a2, a3, a4, a5, a6, a7], by_stress_ratio }
     }
@@ -115,7 +116,7 @@ impl DeviatorLaw {
     }
 
     /// Value of X.
-    pub(crate) fn value(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
+    pub fn value(&self, z: f64, eps: f64, state: &NetworkState) -> f64 {
         self.by_eps(z, state) * eps + self.by_stress_ratio(z, state) * state.stress_ratio
     }
 
@@ -134,13 +135,13 @@ pub struct RattlerLaw(pub [f64; 7]);
 
 impl RattlerLaw {
     /// The terms that the coefficients multiply.
-    pub(crate) fn terms(z: f64, state: &NetworkState) -> [f64; 7] {
+    pub fn terms(z: f64, state: &NetworkState) -> [f64; 7] {
         let s2 = state.size_variance;
         [1.0, z, z * z, z * z * z, state.ln_pressure, s2, z * s2]
     }
 
     /// Coordination number k.
-    pub(crate) fn value(&self, z: f64, state: &NetworkState) -> f64 {
+    pub fn value(&self, z: f64, state: &NetworkState) -> f64 {
         dot(&self.0, &Self::terms(z, state))
     }
 

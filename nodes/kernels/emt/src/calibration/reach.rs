@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 const UNKNOWN: f64 = 0.5;
 
 /// Factor of the variance at the distance [`UNKNOWN`], less 1. The laws are smooth, but their errors outside are those of an
-/// extrapolation: packings outside the packings taught (`tests/ensembles`) need it.
+/// extrapolation: packings outside the packings taught (`tests/ensembles` of `grainlab_calibration`) need it.
 const GROWTH: f64 = 12.0;
 
 /// Factor of the variance just outside, at the distance [`TOLERANCE`].

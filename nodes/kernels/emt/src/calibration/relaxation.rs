@@ -21,13 +21,13 @@ const MIN_EXCESS: f64 = 0.05;
 const OF_THE_SAMPLE: [f64; 2] = [0.45, 0.6];
 
 /// Number of quantities whose scatter is known: five invariants of the stiffness, ε weighted by stiffness, and k.
-pub(crate) const SCATTERED: usize = 7;
+pub const SCATTERED: usize = 7;
 
 /// The scattered quantities whose scatter changes alike with the state: scalars, deviators with the ε weighted by stiffness, k.
-pub(crate) const GROUPS: [Range<usize>; 3] = [0..2, 2..6, 6..7];
+pub const GROUPS: [Range<usize>; 3] = [0..2, 2..6, 6..7];
 
 /// Covariance of the scatter of packings with the same structure.
-pub(crate) type Scatter = SMatrix<f64, SCATTERED, SCATTERED>;
+pub type Scatter = SMatrix<f64, SCATTERED, SCATTERED>;
 
 /// Constants of the model `relaxed`, for moduli in units of E*^⅔ p^⅓, the scaling of Hertz contacts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,7 +65,7 @@ pub struct RelaxationCalibration {
 
 impl NetworkState {
     /// State of grains of this material at this pressure, Pa, with this standard deviation of the radii over their mean and q/p.
-    pub(crate) fn of(pressure: f64, material: &Material, size_spread: f64, stress_ratio: f64) -> Self {
+    pub fn of(pressure: f64, material: &Material, size_spread: f64, stress_ratio: f64) -> Self {
         let stiffness_ratio = material.stiffness_ratio();
         Self {
             ln_pressure: (pressure / material.effective_young() / REFERENCE_PRESSURE).ln(),
@@ -84,18 +84,18 @@ impl RelaxationCalibration {
     }
 
     /// (z − 4)/z, by which the scatter of all but k is divided: fluctuations grow towards the isostatic point.
-    pub(crate) fn excess(z: f64) -> f64 {
+    pub fn excess(z: f64) -> f64 {
         ((z - ISOSTATIC) / z).max(MIN_EXCESS)
     }
 
     /// By what the residual of each scattered quantity is multiplied at this z.
-    pub(crate) fn weights(z: f64) -> [f64; SCATTERED] {
+    pub fn weights(z: f64) -> [f64; SCATTERED] {
         let w = Self::excess(z);
         [w, w, w, w, w, w, 1.0]
     }
 
     /// Factors of the variances of the scatter in this state.
-    pub(crate) fn growth(by_state: &[[f64; 2]; GROUPS.len()], state: &NetworkState) -> [f64; SCATTERED] {
+    pub fn growth(by_state: &[[f64; 2]; GROUPS.len()], state: &NetworkState) -> [f64; SCATTERED] {
         let mut factors = [1.0; SCATTERED];
         for (group, [by_sizes, by_pressure]) in GROUPS.into_iter().zip(by_state) {
             factors[group].fill((by_sizes * state.size_variance + by_pressure * state.ln_pressure).exp());

@@ -6,8 +6,9 @@
 
 use crate::csv;
 use crate::least_squares::{Fit, Point, within_packings};
+use grainlab_calibration::CalibrationSample;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Calibration, CalibrationSample, Moduli, Modulus, StrainRatioSource};
+use grainlab_emt::{Calibration, Moduli, Modulus, StrainRatioSource};
 
 /// A number of a packing.
 type Number = fn(&CalibrationSample) -> f64;

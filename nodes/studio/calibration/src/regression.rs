@@ -1,18 +1,18 @@
 //! Weighted linear least squares, and minimisation in one variable.
 
-use crate::calibration::CalibrationError;
+use grainlab_emt::CalibrationError;
 use nalgebra::{DMatrix, DVector};
 
 /// Coefficients, and the inverse of the normal matrix.
-pub(super) struct Regression {
-    pub(super) coefficients: Vec<f64>,
-    pub(super) inverse: DMatrix<f64>,
+pub(crate) struct Regression {
+    pub(crate) coefficients: Vec<f64>,
+    pub(crate) inverse: DMatrix<f64>,
     /// Weighted sum of squared residuals.
-    pub(super) squares: f64,
+    pub(crate) squares: f64,
 }
 
 /// Fits y by linear combinations of the columns of x. Each row is (x, y, weight of the residual).
-pub(super) fn linear<const N: usize>(
+pub(crate) fn linear<const N: usize>(
     rows: &[([f64; N], f64, f64)],
     what: &'static str,
 ) -> Result<Regression, CalibrationError> {
@@ -36,9 +36,9 @@ pub(super) fn linear<const N: usize>(
 }
 
 /// Coefficients of all columns, 0 for those that the rows do not determine, and the weighted sum of squared residuals.
-pub(super) struct Determined<const N: usize> {
-    pub(super) coefficients: [f64; N],
-    pub(super) squares: f64,
+pub(crate) struct Determined<const N: usize> {
+    pub(crate) coefficients: [f64; N],
+    pub(crate) squares: f64,
 }
 
 /// Share of a column that the columns before it must leave unexplained for its coefficient to be determined.
@@ -46,7 +46,7 @@ const INDEPENDENT: f64 = 1e-5;
 
 /// As [`linear`], but a column that is zero or a combination of those before it gets the coefficient 0: packings of one
 /// material do not determine how the material acts.
-pub(super) fn determined<const N: usize>(
+pub(crate) fn determined<const N: usize>(
     rows: &[([f64; N], f64, f64)],
     what: &'static str,
 ) -> Result<Determined<N>, CalibrationError> {
@@ -86,7 +86,7 @@ pub(super) fn determined<const N: usize>(
 }
 
 /// The minimum of `f` in [low, high], if it is the only one there, by golden-section search.
-pub(super) fn minimum(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+pub(crate) fn minimum(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     let golden = (5f64.sqrt() - 1.0) / 2.0;
     let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
     let (mut at_a, mut at_b) = (f(a), f(b));

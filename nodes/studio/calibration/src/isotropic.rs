@@ -1,14 +1,13 @@
 //! Eqs. 21 and 22 from isotropic packings.
 
-use super::regression::linear;
-use super::sample::{CalibrationSample, bounds};
-use crate::calibration::{CalibrationError, IsotropicCalibration};
-use crate::invariants::Invariants;
+use crate::regression::linear;
+use crate::sample::{CalibrationSample, bounds};
+use grainlab_emt::{CalibrationError, Invariants, IsotropicCalibration};
 use std::collections::BTreeSet;
 
 /// Fits Eqs. 21 and 22 by relative residuals. States of one packing at several pressures are not independent: the
 /// covariance counts packings, not states.
-pub(super) fn of_isotropic(samples: &[CalibrationSample]) -> Result<IsotropicCalibration, CalibrationError> {
+pub(crate) fn of_isotropic(samples: &[CalibrationSample]) -> Result<IsotropicCalibration, CalibrationError> {
     let packings = samples.iter().map(|s| &s.packing).collect::<BTreeSet<_>>().len();
     let fit = |modulus: fn(&Invariants) -> f64| {
         let rows: Vec<_> = samples

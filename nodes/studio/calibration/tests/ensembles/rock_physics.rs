@@ -1,8 +1,9 @@
 //! The model of rock physics on counted packings.
 
 use crate::csv;
+use grainlab_calibration::CalibrationSample;
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Calibration, CalibrationSample, Estimate, StrainRatioSource, Warning};
+use grainlab_emt::{Calibration, Estimate, StrainRatioSource, Warning};
 
 fn estimates(samples: &[CalibrationSample]) -> Vec<(f64, Estimate)> {
     let model = grainlab_emt::model("hertz-mindlin").unwrap();

@@ -1,13 +1,12 @@
 //! The laws of relaxed networks, and the scatter of packings about them.
 
-use super::regression::{determined, minimum};
-use super::sample::{CalibrationSample, bounds};
-use crate::calibration::{
-    CalibrationError, DeviatorLaw, GROUPS, ISOSTATIC, NetworkState, RattlerLaw, Reach, RelaxationCalibration,
-    SCATTERED, ScalingLaw, Scatter,
+use crate::regression::{determined, minimum};
+use crate::sample::{CalibrationSample, bounds};
+use crate::student::student;
+use grainlab_emt::{
+    CalibrationError, DeviatorLaw, GROUPS, ISOSTATIC, Invariants, NetworkState, RattlerLaw, Reach,
+    RelaxationCalibration, SCATTERED, ScalingLaw, Scatter,
 };
-use crate::invariants::Invariants;
-use crate::normal::student;
 use std::collections::BTreeSet;
 
 /// Number of recipes needed: the laws are tested on each with those learned from the others.
@@ -28,7 +27,7 @@ struct Reduced<'a> {
 }
 
 /// The laws from these packings, and their scatter from laws learned without the recipe of each packing.
-pub(super) fn network(samples: &[&CalibrationSample]) -> Result<RelaxationCalibration, CalibrationError> {
+pub(crate) fn network(samples: &[&CalibrationSample]) -> Result<RelaxationCalibration, CalibrationError> {
     let recipes: BTreeSet<&str> = samples.iter().map(|s| s.preparation.as_str()).collect();
     if recipes.len() < RECIPES {
         let what = "different recipes";

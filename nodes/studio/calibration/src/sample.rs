@@ -1,13 +1,11 @@
 //! Packings that a calibration is learned from.
 
-use crate::calibration::CalibrationError;
-use crate::checks::{CERTAIN, ROUNDING};
-use crate::conditions::{Conditions, Measured, StrainRatio, StrainRatioSource};
-use crate::error::EmtError;
-use crate::moduli::{Moduli, Modulus};
-use crate::observation::Observation;
 use grainlab_core::Material;
-use grainlab_core::results::{InferredQuantity, Microstructure, StrainRatios};
+use grainlab_core::results::{Microstructure, StrainRatios};
+use grainlab_emt::{
+    CalibrationError, Conditions, Measured, Moduli, Modulus, Observation, ROUNDING, StrainRatio,
+    StrainRatioSource, check_structure,
+};
 
 /// Θ over E*^⅔ p^⅓ of any packing of spheres, with a wide margin: .21 to .44 in those of `tests/golden/ensembles`. A modulus or a
 /// pressure in another unit is outside.
@@ -16,28 +14,8 @@ const REDUCED_BULK: [f64; 2] = [0.05, 2.0];
 /// Share by which k may exceed z: rattlers have few contacts, so that k is below z.
 const K_ABOVE_Z: f64 = 0.01;
 
-/// Largest coordination number of a packing of spheres of similar sizes, with a margin.
-const MAX_COORDINATION: f64 = 15.0;
-
-/// Largest anisotropy, to either side: that of contacts along e3 alone, 2.5 of the coefficient of P2.
-const MAX_EPS: f64 = 2.5;
-
 /// Largest spread of the radii over their mean.
 const MAX_SPREAD: f64 = 1.0;
-
-/// Refuses a counted structure that no packing has.
-pub fn check_structure(structure: &Microstructure) -> Result<(), EmtError> {
-    for quantity in InferredQuantity::ALL {
-        let Some(value) = structure.get(quantity) else { continue };
-        let [low, high] =
-            if quantity.is_coordination() { [0.0, MAX_COORDINATION] } else { [-MAX_EPS, MAX_EPS] };
-        // Also where it is not a number.
-        if !(low..=high).contains(&value) {
-            return Err(EmtError::NoStructure { quantity: quantity.name(), value, low, high });
-        }
-    }
-    Ok(())
-}
 
 /// One packing: its moduli, and its structure counted from the contacts.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,7 +94,7 @@ impl CalibrationSample {
                 "k = {k} is above z = {z}: k counts all grains, z those that are no rattlers"
             ));
         }
-        if self.moduli.unstable(None, CERTAIN) {
+        if self.moduli.unstable(None, 0.0) {
             return fault("no stable medium has these moduli: they are not of one state".to_owned());
         }
         if let Some(relative) = self.moduli.imbalance().filter(|relative| relative.abs() > ROUNDING) {
@@ -138,12 +116,12 @@ impl CalibrationSample {
     }
 
     /// Ratio p/E*, dimensionless.
-    pub(super) fn reduced_pressure(&self) -> f64 {
+    pub(crate) fn reduced_pressure(&self) -> f64 {
         self.pressure / self.material.effective_young()
     }
 
     /// True if every number is finite and every modulus positive.
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         let numbers = [
             self.pressure,
             self.solid_fraction,
@@ -162,6 +140,6 @@ impl CalibrationSample {
 }
 
 /// Lowest and highest.
-pub(super) fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub(crate) fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }

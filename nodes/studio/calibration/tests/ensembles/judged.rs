@@ -3,10 +3,11 @@
 
 use crate::csv;
 use crate::left_out::truth;
+use grainlab_calibration::CalibrationSample;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, CalibrationSample, EmtError, Estimate, MODULI, Measured, Model, ModuliCovariance, Modulus,
-    Observation, Relaxed, Status, StrainRatioSource, UNKNOWN_STRESS_RATIO, Warning, models,
+    Calibration, EmtError, Estimate, MODULI, Measured, Model, ModuliCovariance, Modulus, Observation,
+    Relaxed, Status, StrainRatioSource, UNKNOWN_STRESS_RATIO, Warning, models,
 };
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};

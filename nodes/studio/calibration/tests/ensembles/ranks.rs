@@ -1,10 +1,11 @@
 //! Ranks of the counted structure among draws from the posterior, for packings of recipes that taught nothing.
 
 use crate::left_out::{Packings, truth};
+use grainlab_calibration::CalibrationSample;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    CREDIBLE_LEVEL, Calibration, CalibrationSample, EmtError, Posterior, PosteriorSettings, Prior,
-    RankHistogram, Relaxed, StrainRatioSource,
+    CREDIBLE_LEVEL, Calibration, EmtError, Posterior, PosteriorSettings, Prior, RankHistogram, Relaxed,
+    StrainRatioSource,
 };
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,16 +1,23 @@
-//! From packings to constants.
+//! From packings to the constants of the models of effective medium theory.
+//!
+//! - `sample`: a packing to learn from
+//! - `isotropic`: Eqs. 21 and 22
+//! - `relaxation`: the laws of relaxed networks, and the scatter of packings about them
+//! - `discrepancy`: the errors of the models on the packings
+//! - `regression`, `student`: least squares, and the distribution of a mean of few
 
 mod discrepancy;
 mod isotropic;
 mod regression;
 mod relaxation;
 mod sample;
+mod student;
 
-pub use sample::{CalibrationSample, check_structure};
+pub use sample::CalibrationSample;
 
-use crate::calibration::{Calibration, CalibrationError};
 use discrepancy::discrepancies;
 use grainlab_core::Material;
+use grainlab_emt::{Calibration, CalibrationError};
 use isotropic::of_isotropic;
 use relaxation::network;
 use sample::bounds;
@@ -27,10 +34,8 @@ pub fn learn(
     let material = material(&own)?;
     others.iter().try_for_each(CalibrationSample::check)?;
     let (low, high) = bounds(own.iter().map(|s| s.pressure));
-    let mut calibration = Calibration {
-        pressures: Some([low, high]),
-        ..Calibration::of_isotropic(name.to_owned(), of_isotropic(isotropic)?, material)
-    };
+    let mut calibration = Calibration::of_isotropic(name.to_owned(), of_isotropic(isotropic)?, material);
+    calibration.pressures = Some([low, high]);
     if !anisotropic.is_empty() {
         let all: Vec<&CalibrationSample> = own.into_iter().chain(others).collect();
         calibration.network = Some(Box::new(network(&all)?));
@@ -46,7 +51,9 @@ pub fn with_errors(
 ) -> Result<Calibration, CalibrationError> {
     samples.iter().try_for_each(CalibrationSample::check)?;
     let all: Vec<&CalibrationSample> = samples.iter().collect();
-    Ok(Calibration { discrepancies: discrepancies(&all, constants), ..constants.clone() })
+    let mut calibration = constants.clone();
+    calibration.discrepancies = discrepancies(&all, constants);
+    Ok(calibration)
 }
 
 fn material(samples: &[&CalibrationSample]) -> Result<Material, CalibrationError> {

@@ -1,8 +1,9 @@
 //! Stored measurements, written by `grainlab analyze` and the ensemble script.
 
+use grainlab_calibration::CalibrationSample;
 use grainlab_core::Material;
 use grainlab_core::results::StrainRatios;
-use grainlab_emt::{CalibrationSample, Moduli, Observation, StrainRatio};
+use grainlab_emt::{Moduli, Observation, StrainRatio};
 use std::path::Path;
 
 /// Header and rows of a file in `tests/golden`.

@@ -1,8 +1,9 @@
 //! The inversion of packings of recipes that taught nothing, and of packings outside what was taught.
 
 use crate::csv;
+use grainlab_calibration::{CalibrationSample, learn};
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::{Calibration, CalibrationSample, EmtError, Relaxed, Status, StrainRatioSource, learn};
+use grainlab_emt::{Calibration, EmtError, Relaxed, Status, StrainRatioSource};
 use grainlab_emt::{Estimate, Model};
 use std::collections::BTreeSet;
 

@@ -1,12 +1,8 @@
 //! The errors of the models on the packings.
 
-use super::sample::CalibrationSample;
-use crate::calibration::{Calibration, ModelDiscrepancy};
-use crate::conditions::{StrainRatio, StrainRatioSource};
-use crate::error::EmtError;
-use crate::model::Model;
-use crate::normal::student;
-use crate::registry::models;
+use crate::sample::CalibrationSample;
+use crate::student::student;
+use grainlab_emt::{Calibration, EmtError, Model, ModelDiscrepancy, StrainRatio, StrainRatioSource, models};
 use std::collections::BTreeMap;
 
 /// Share of the packings of recipes left out that may be more than [`FAR`] standard deviations off.
@@ -17,7 +13,7 @@ const FAR: f64 = 3.0;
 
 /// The errors of every model without its own error estimate, for each γ/Δ. Every recipe counts alike.
 /// The errors of each recipe are judged by those of the others, and all are enlarged until nearly none is [`FAR`] off.
-pub(super) fn discrepancies(
+pub(crate) fn discrepancies(
     samples: &[&CalibrationSample],
     calibration: &Calibration,
 ) -> Vec<ModelDiscrepancy> {
