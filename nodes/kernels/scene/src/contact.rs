@@ -37,5 +37,5 @@ fn parameters(
     known: Option<&[f64]>,
 ) -> Vec<f64> {
     let default = |k: usize| known.map_or(list[k].default, |values| Some(values[k]));
-    keys.iter().enumerate().map(|(k, key)| r.number_or(key, default(k))).collect()
+    keys.iter().enumerate().map(|(k, key)| r.number(key, default(k))).collect()
 }

@@ -1,9 +1,8 @@
 //! Faults of a scene.
 
-use std::fmt;
-
 /// One fault of a scene, with its place.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{place}: {message}")]
 pub struct Fault {
     /// The place: for example `phase[2] (load).friction`.
     pub place: String,
@@ -11,14 +10,9 @@ pub struct Fault {
     pub message: String,
 }
 
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.message)
-    }
-}
-
 /// All faults of a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the scene has {}", list(.faults))]
 pub struct SceneError {
     /// Every fault found, in the order of the text; at least one.
     pub faults: Vec<Fault>,
@@ -36,15 +30,8 @@ impl SceneError {
     }
 }
 
-impl fmt::Display for SceneError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let n = self.faults.len();
-        write!(f, "the scene has {n} fault{}:", if n == 1 { "" } else { "s" })?;
-        for fault in &self.faults {
-            write!(f, "\n  {fault}")?;
-        }
-        Ok(())
-    }
+/// Number of faults, and one line for each.
+fn list(faults: &[Fault]) -> String {
+    let lines: String = faults.iter().map(|fault| format!("\n  {fault}")).collect();
+    format!("{} fault{}:{lines}", faults.len(), if faults.len() == 1 { "" } else { "s" })
 }
-
-impl std::error::Error for SceneError {}

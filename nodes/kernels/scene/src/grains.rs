@@ -13,10 +13,7 @@ const LARGEST_RATIO: f64 = 20.0;
 /// Reads `[grains]`: number and sizes.
 pub(crate) fn read(r: &mut Reader<'_>) -> (u32, Sizes) {
     let listed = r.get(&keys::DIAMETER).and_then(counts);
-    let count = match listed {
-        Some(sum) => r.whole_or(&keys::GRAIN_COUNT, Some(sum)),
-        None => r.whole(&keys::GRAIN_COUNT),
-    };
+    let count = r.whole(&keys::GRAIN_COUNT, listed);
     if let Some(sum) = listed.filter(|sum| *sum != count) {
         r.fault("count", format!("is {count}, but the counts in diameter sum to {sum}"));
     }

@@ -40,14 +40,14 @@ fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
             r.fault(key.name(), "changes a base, and this scene has none");
         }
     }
-    let name = r.text(&keys::NAME);
+    let name = r.text(&keys::NAME, None);
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
     if r.has(&keys::NAME) && name.is_empty() || !name.chars().all(plain) {
         let message = format!("is {name:?}; use lower case letters, digits, _ and - (it names files)");
         r.fault("name", message);
     }
-    let description = r.text(&keys::DESCRIPTION);
-    let seed = r.whole(&keys::SEED);
+    let description = r.text(&keys::DESCRIPTION, None);
+    let seed = r.whole(&keys::SEED, None);
     let friction = r.optional(&keys::FRICTION);
     let start = start::read(r);
     if start.is_some() && packing.is_none() {
@@ -101,17 +101,17 @@ fn fingerprint(text: &str) -> u64 {
 
 fn read_material(r: &mut Reader<'_>, default: &Material) -> Material {
     Material {
-        shear_modulus: r.number_or(&keys::SHEAR_MODULUS, Some(default.shear_modulus)),
-        poisson_ratio: r.number_or(&keys::POISSON_RATIO, Some(default.poisson_ratio)),
-        density: r.number_or(&keys::DENSITY, Some(default.density)),
+        shear_modulus: r.number(&keys::SHEAR_MODULUS, Some(default.shear_modulus)),
+        poisson_ratio: r.number(&keys::POISSON_RATIO, Some(default.poisson_ratio)),
+        density: r.number(&keys::DENSITY, Some(default.density)),
     }
 }
 
 fn read_numerics(r: &mut Reader<'_>) -> Numerics {
     let tangential = [("rescaled", TangentialLaw::Rescaled), ("incremental", TangentialLaw::Incremental)];
     Numerics {
-        time_step_safety: r.number(&keys::TIME_STEP_SAFETY),
-        skin: r.number(&keys::SKIN),
+        time_step_safety: r.number(&keys::TIME_STEP_SAFETY, None),
+        skin: r.number(&keys::SKIN, None),
         tangential: r.choice(&keys::TANGENTIAL, "rescaled", &tangential),
         energy_balance: r.flag(&keys::ENERGY_BALANCE),
     }

@@ -126,8 +126,8 @@ fn one(
 }
 
 fn cycle(r: &mut Reader<'_>, place: &str, inherited: &mut Inherited<'_>, out: &mut Vec<Phase>) {
-    r.text_or(&keys::PHASE_NAME, Some("cycle"));
-    let times = r.whole(&keys::TIMES) as usize;
+    r.text(&keys::PHASE_NAME, Some("cycle"));
+    let times = r.whole(&keys::TIMES, None) as usize;
     let mut body = Vec::new();
     list(r, &keys::CYCLE_PHASES, &format!("{place}.phase"), inherited, &mut body);
     let unrolled = body.len().saturating_mul(times);
@@ -141,13 +141,13 @@ fn cycle(r: &mut Reader<'_>, place: &str, inherited: &mut Inherited<'_>, out: &m
 }
 
 fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited<'_>) -> Phase {
-    let name = r.text_or(&keys::PHASE_NAME, Some(word));
+    let name = r.text(&keys::PHASE_NAME, Some(word));
     let kind = match word {
         "gas" => PhaseKind::Gas {
             method: r.choice(&keys::METHOD, "event_driven", &GAS_METHODS),
-            initial_solid_fraction: r.number(&keys::INITIAL_SOLID_FRACTION),
-            speed: r.number(&keys::SPEED),
-            rate: r.number(&keys::GAS_RATE),
+            initial_solid_fraction: r.number(&keys::INITIAL_SOLID_FRACTION, None),
+            speed: r.number(&keys::SPEED, None),
+            rate: r.number(&keys::GAS_RATE, None),
         },
         "relax" => PhaseKind::Relax,
         "strain" => PhaseKind::Strain { rate: six(r, &keys::STRAIN_RATE) },
@@ -166,10 +166,10 @@ fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited<'_>) -> Phase
     let phase = Phase {
         name,
         friction: friction(r, gas, inherited),
-        damping: r.number_or(&keys::DAMPING, Some(damping)),
-        drag: r.number(&keys::DRAG),
-        spin_drag: r.number_or(&keys::SPIN_DRAG, Some(spin_drag)),
-        control_period: r.whole_or(&keys::CONTROL_PERIOD, Some(period)) as u32,
+        damping: r.number(&keys::DAMPING, Some(damping)),
+        drag: r.number(&keys::DRAG, None),
+        spin_drag: r.number(&keys::SPIN_DRAG, Some(spin_drag)),
+        control_period: r.whole(&keys::CONTROL_PERIOD, Some(period)) as u32,
         reference: r.flag(&keys::REFERENCE),
         publish: r.flag(&keys::PUBLISH),
         record: record::read(r),
@@ -189,7 +189,7 @@ fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited<'_>) -> Phase
 /// The friction of a phase: its own, else that of the scene, which is in the canonical form once.
 fn friction(r: &mut Reader<'_>, gas: bool, inherited: &mut Inherited<'_>) -> f64 {
     if gas || r.has(&keys::PHASE_FRICTION) {
-        return r.number_or(&keys::PHASE_FRICTION, gas.then_some(0.0));
+        return r.number(&keys::PHASE_FRICTION, gas.then_some(0.0));
     }
     r.get(&keys::PHASE_FRICTION);
     inherited.taken |= inherited.friction.is_some();

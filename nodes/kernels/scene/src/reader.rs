@@ -81,14 +81,10 @@ impl<'a> Reader<'a> {
         self.entries.retain(|(name, _)| keys.iter().all(|k| k.name() != *name));
     }
 
-    /// A number with the default of its key.
-    pub(crate) fn number(&mut self, key: &'static Key) -> f64 {
-        let default = if let DefaultValue::Number(value) = key.default { Some(value) } else { None };
-        self.number_or(key, default)
-    }
-
-    /// A number; `default` if it is absent, a fault if there is no default.
-    pub(crate) fn number_or(&mut self, key: &'static Key, default: Option<f64>) -> f64 {
+    /// A number; `default`, else the default of its key, if it is absent, a fault if there is neither.
+    pub(crate) fn number(&mut self, key: &'static Key, default: Option<f64>) -> f64 {
+        let of_key = if let DefaultValue::Number(value) = key.default { Some(value) } else { None };
+        let default = default.or(of_key);
         let read = |value: &Value| number_of(key, value);
         self.read(key, default, read, |v| number(*v)).or(default).unwrap_or(f64::NAN)
     }
@@ -116,13 +112,10 @@ impl<'a> Reader<'a> {
         Some(self.read(key, None, |value| number_of(key, value), |v| number(*v)).unwrap_or(1.0))
     }
 
-    /// A whole number with the default of its key.
-    pub(crate) fn whole(&mut self, key: &'static Key) -> u64 {
-        let default = if let DefaultValue::Whole(value) = key.default { Some(value) } else { None };
-        self.whole_or(key, default)
-    }
-
-    pub(crate) fn whole_or(&mut self, key: &'static Key, default: Option<u64>) -> u64 {
+    /// A whole number, as [`Reader::number`].
+    pub(crate) fn whole(&mut self, key: &'static Key, default: Option<u64>) -> u64 {
+        let of_key = if let DefaultValue::Whole(value) = key.default { Some(value) } else { None };
+        let default = default.or(of_key);
         let (min, max) = if let Domain::Whole(min, max) = key.domain { (min, max) } else { (0, u64::MAX) };
         let within = |v: &u64| (min..=max).contains(v);
         let read = |value: &Value| u64::try_from(value.as_integer()?).ok().filter(within);
@@ -136,13 +129,10 @@ impl<'a> Reader<'a> {
         self.read(key, Some(default), Value::as_bool, entry).unwrap_or(default)
     }
 
-    /// A text with the default of its key.
-    pub(crate) fn text(&mut self, key: &'static Key) -> String {
-        let default = if let DefaultValue::Text(value) = key.default { Some(value) } else { None };
-        self.text_or(key, default)
-    }
-
-    pub(crate) fn text_or(&mut self, key: &'static Key, default: Option<&str>) -> String {
+    /// A text, as [`Reader::number`].
+    pub(crate) fn text(&mut self, key: &'static Key, default: Option<&str>) -> String {
+        let of_key = if let DefaultValue::Text(value) = key.default { Some(value) } else { None };
+        let default = default.or(of_key);
         let read = |value: &Value| value.as_str().map(str::to_owned);
         let entry = |v: &String| Entry::Value(Value::from(v.as_str()).to_string());
         self.read(key, default.map(str::to_owned), read, entry).unwrap_or_default()

@@ -32,7 +32,7 @@ impl Record {
 /// The interval in the text; `None` if the phase publishes no packing within.
 pub(crate) fn read(r: &mut Reader<'_>) -> Option<Record> {
     r.sub(&keys::RECORD, |r| {
-        let steps = r.get(&keys::EVERY_STEPS).map(|_| Record::EverySteps(r.whole(&keys::EVERY_STEPS)));
+        let steps = r.get(&keys::EVERY_STEPS).map(|_| Record::EverySteps(r.whole(&keys::EVERY_STEPS, None)));
         let strain = r.optional(&keys::EVERY_STRAIN).map(Record::EveryStrain);
         let time = r.optional(&keys::EVERY_TIME).map(Record::EveryTime);
         let found: Vec<Record> = [steps, strain, time].into_iter().flatten().collect();

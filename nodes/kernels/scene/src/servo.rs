@@ -11,7 +11,7 @@ use toml::{Table, Value};
 pub(crate) fn read(r: &mut Reader<'_>) -> PhaseKind {
     let controls = r.sub(&keys::CONTROL, |r| SymTensor::COMPONENTS.map(|c| component(r, c)));
     let controls = controls.unwrap_or([ComponentControl::Held; 6]);
-    let rate_limit = r.number(&keys::RATE_LIMIT);
+    let rate_limit = r.number(&keys::RATE_LIMIT, None);
     let law = law(r);
     let targets = controls[..3]
         .iter()
@@ -31,9 +31,14 @@ fn law(r: &mut Reader<'_>) -> ServoLaw {
     let default = if r.has(&keys::RESPONSE_TIME) { "scaled" } else { "normalised" };
     let laws = ["normalised", "scaled", "integral"].map(|law| (law, law));
     match r.choice(&keys::LAW, default, &laws) {
-        "scaled" => ServoLaw::Scaled { response_time: r.number(&keys::RESPONSE_TIME) },
-        "integral" => ServoLaw::Integral { gain: r.number(&keys::GAIN), leak: r.number(&keys::LEAK) },
-        _ => ServoLaw::Normalised { share: r.number(&keys::GAIN_SHARE), leak: r.number(&keys::LEAK) },
+        "scaled" => ServoLaw::Scaled { response_time: r.number(&keys::RESPONSE_TIME, None) },
+        "integral" => {
+            ServoLaw::Integral { gain: r.number(&keys::GAIN, None), leak: r.number(&keys::LEAK, None) }
+        }
+        _ => ServoLaw::Normalised {
+            share: r.number(&keys::GAIN_SHARE, None),
+            leak: r.number(&keys::LEAK, None),
+        },
     }
 }
 

@@ -15,14 +15,14 @@ const SAME: f64 = 1e-5;
 /// Reads `[start]`; `None` if the scene has none.
 pub(crate) fn read(r: &mut Reader<'_>) -> Option<Start> {
     r.sub(&keys::START, |r| {
-        let packing = r.text(&keys::START_PACKING);
+        let packing = r.text(&keys::START_PACKING, None);
         let forces = &keys::START_CONTACT_FORCES;
-        let contact_forces = r.get(forces).map(|_| r.text(forces));
+        let contact_forces = r.get(forces).map(|_| r.text(forces, None));
         let contact_columns = columns(r);
         if !contact_columns.is_empty() && contact_forces.is_none() {
             r.fault("contact_columns", "names columns of contact_forces, which is missing");
         }
-        let step = r.get(&keys::START_STEP).map(|_| r.whole(&keys::START_STEP));
+        let step = r.get(&keys::START_STEP).map(|_| r.whole(&keys::START_STEP, None));
         Start { packing, contact_forces, contact_columns, step }
     })
 }

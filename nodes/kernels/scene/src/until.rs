@@ -34,8 +34,8 @@ pub(crate) fn read(r: &mut Reader<'_>, servoed: bool) -> Conditions {
         if servoed {
             all.extend(r.optional(&keys::UNTIL_ON_TARGET).map(|v| Condition::OnTarget { fraction: v }));
         }
-        let hold = r.number(&keys::HOLD);
-        let timeout = r.number(&keys::TIMEOUT);
+        let hold = r.number(&keys::HOLD, None);
+        let timeout = r.number(&keys::TIMEOUT, None);
         if hold >= timeout {
             let message =
                 format!("is {hold}, not below the timeout of {timeout} s: the phase could never end");

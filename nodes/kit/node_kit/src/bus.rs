@@ -101,7 +101,7 @@ pub trait Bus {
     fn caller(&self) -> Option<Caller>;
 
     /// Readers matched with this publisher, of those that [`Bus::identity`] counts, as known at the last [`Bus::wait`].
-    /// A crashed peer counts until its lease ends, up to a minute: see [`crate::Peers`].
+    /// A crashed peer counts until its lease ends, up to a minute: see [`crate::PeerWatch`].
     fn readers(&self, publisher: PublisherId) -> usize;
 
     /// Writers matched with this subscription, of those that [`Bus::identity`] counts, as known at the last

@@ -69,7 +69,7 @@ pub use parameters::{
     FromParameter, IntoParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range,
     parameter_text, parse_value,
 };
-pub use peers::{Liveliness, Peer, PeerWatch, Peers, SILENCE};
+pub use peers::{Liveliness, Peer, PeerWatch, SILENCE};
 pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};
 pub use sample::{Sample, SampleId, SampleInfo};
 pub use source::Source;

@@ -20,7 +20,7 @@ const LIBRARIES: [&str; 6] =
     [LOG_TARGET, "ros2_client", "mio", "foxglove", "tokio_tungstenite", "tungstenite"];
 
 static LOGGER: Logger = Logger {
-    settings: Mutex::new(Settings {
+    settings: Mutex::new(LogSettings {
         name: String::new(),
         level: LevelFilter::Off,
         logger_levels: Vec::new(),
@@ -38,7 +38,7 @@ thread_local! {
 }
 
 /// The settings that can change after the logger is installed.
-struct Settings {
+struct LogSettings {
     name: String,
     level: LevelFilter,
     logger_levels: Vec<(String, LevelFilter)>,
@@ -52,14 +52,14 @@ struct Settings {
 
 /// The logger of this process.
 pub struct Logger {
-    settings: Mutex<Settings>,
+    settings: Mutex<LogSettings>,
 }
 
 impl Logger {
     /// Installs the logger, or changes the name and levels of the installed one. `node` is the fully qualified
     /// node name. A logger of other code that was installed before keeps stderr.
     pub fn install(node: &str, args: &RosArgs) -> &'static Logger {
-        let settings = Settings {
+        let settings = LogSettings {
             // ROS 2 writes namespaces with dots in logger names.
             name: node.trim_start_matches('/').replace('/', "."),
             level: args.log_level,
@@ -82,7 +82,7 @@ impl Logger {
         &LOGGER
     }
 
-    fn lock(&self) -> std::sync::MutexGuard<'_, Settings> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, LogSettings> {
         self.settings.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -114,7 +114,7 @@ impl Logger {
     }
 }
 
-impl Settings {
+impl LogSettings {
     /// The level of a module.
     fn level_of(&self, target: &str) -> LevelFilter {
         let named = |logger: &str| {
@@ -184,8 +184,8 @@ impl log::Log for Logger {
 mod tests {
     use super::*;
 
-    fn settings(level: LevelFilter, logger_levels: &[(&str, LevelFilter)]) -> Settings {
-        Settings {
+    fn settings(level: LevelFilter, logger_levels: &[(&str, LevelFilter)]) -> LogSettings {
+        LogSettings {
             name: "n".into(),
             level,
             logger_levels: logger_levels.iter().map(|(n, l)| ((*n).into(), *l)).collect(),

@@ -54,28 +54,42 @@ impl Peer {
 }
 
 /// All processes that publish on `/diagnostics`, this one included.
-#[derive(Clone, Debug, Default)]
-pub struct Peers {
+#[derive(Debug)]
+pub struct PeerWatch {
+    subscription: Subscription<DiagnosticArray>,
     by_participant: BTreeMap<[u8; 12], Peer>,
 }
 
-impl Peers {
-    /// Processes one heartbeat and returns its reports.
-    pub fn receive(&mut self, message: &DiagnosticArray, info: &SampleInfo, now: Duration) -> Vec<Report> {
-        let reports = Report::from_message(message);
-        for report in &reports {
-            let participant = info.writer.participant();
-            if self.by_participant.len() >= KEPT && !self.by_participant.contains_key(&participant) {
-                self.forget_quietest();
+impl PeerWatch {
+    /// Subscribes to `/diagnostics`.
+    pub fn subscribe(bus: &mut dyn Bus) -> Result<Self, BusError> {
+        let subscription = Subscription::subscribe(bus, &topics::DIAGNOSTICS, Demand::best_effort(BACKLOG))?;
+        Ok(Self { subscription, by_participant: BTreeMap::new() })
+    }
+
+    /// Processes the heartbeats since the last call, and passes the origin and report of each sample to the
+    /// caller.
+    pub fn update(
+        &mut self,
+        bus: &mut dyn Bus,
+        mut each: impl FnMut(&SampleInfo, &Report),
+    ) -> Result<(), BusError> {
+        while let Some((message, info)) = self.subscription.take_valid(bus)? {
+            let last_heard = bus.now();
+            for report in Report::from_message(&message) {
+                each(&info, &report);
+                let participant = info.writer.participant();
+                if self.by_participant.len() >= KEPT && !self.by_participant.contains_key(&participant) {
+                    self.forget_quietest();
+                }
+                self.by_participant.insert(participant, Peer { report, participant, last_heard });
             }
-            self.by_participant
-                .insert(participant, Peer { report: report.clone(), participant, last_heard: now });
         }
-        reports
+        Ok(())
     }
 
     fn forget_quietest(&mut self) {
-        let quietest = self.by_participant.values().min_by_key(|p| p.last_heard).map(|p| p.participant);
+        let quietest = self.iter().min_by_key(|p| p.last_heard).map(|p| p.participant);
         if let Some(participant) = quietest {
             self.by_participant.remove(&participant);
         }
@@ -91,92 +105,55 @@ impl Peers {
     pub fn find(&self, node: &str) -> Option<&Peer> {
         self.iter().filter(|p| p.report.node == node).max_by_key(|p| p.last_heard)
     }
-
-    /// The peer that owns a writer.
-    pub fn owner(&self, participant: [u8; 12]) -> Option<&Peer> {
-        self.by_participant.get(&participant)
-    }
-}
-
-/// [`Peers`] with a subscription to their heartbeats.
-#[derive(Debug)]
-pub struct PeerWatch {
-    subscription: Subscription<DiagnosticArray>,
-    peers: Peers,
-}
-
-impl PeerWatch {
-    /// Subscribes to `/diagnostics`.
-    pub fn subscribe(bus: &mut dyn Bus) -> Result<Self, BusError> {
-        let subscription = Subscription::subscribe(bus, &topics::DIAGNOSTICS, Demand::best_effort(BACKLOG))?;
-        Ok(Self { subscription, peers: Peers::default() })
-    }
-
-    /// Processes the heartbeats since the last call, and passes the origin and report of each sample to the
-    /// caller.
-    pub fn update(
-        &mut self,
-        bus: &mut dyn Bus,
-        mut each: impl FnMut(&SampleInfo, &Report),
-    ) -> Result<(), BusError> {
-        while let Some((message, info)) = self.subscription.take_valid(bus)? {
-            let now = bus.now();
-            for report in self.peers.receive(&message, &info, now) {
-                each(&info, &report);
-            }
-        }
-        Ok(())
-    }
-
-    /// The known peers.
-    pub fn peers(&self) -> &Peers {
-        &self.peers
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_msgs::Guid;
+    use crate::memory::{Hub, MemoryBus};
+    use crate::names::Names;
+    use crate::typed::Publisher;
     use grainlab_msgs::Health;
 
-    fn beat(pid: u32, exit: Option<Exit>) -> (DiagnosticArray, SampleInfo) {
-        let report = Report {
-            node: "/servo".into(),
-            pid,
-            health: Health::default(),
-            exit,
-            published: Vec::new(),
-            received: Vec::new(),
-        };
-        let writer = Guid([pid as u8; 16]);
-        (
-            report.to_message(0),
-            SampleInfo { writer, sequence: 1, source_time: None, received: 0, about: None },
-        )
+    fn bus(hub: &Hub) -> MemoryBus {
+        hub.bus(Names::new("servo").unwrap())
+    }
+
+    fn beat(hub: &Hub, bus: &mut MemoryBus, pid: u32, exit: Option<Exit>, at: u64) {
+        hub.advance(Duration::from_secs(at) - hub.now());
+        let (node, health) = ("/servo".into(), Health::default());
+        let (published, received) = (Vec::new(), Vec::new());
+        let report = Report { node, pid, health, exit, published, received };
+        let publisher = Publisher::advertise(bus, &topics::DIAGNOSTICS).unwrap();
+        publisher.publish(bus, &report.to_message(0)).unwrap();
     }
 
     #[test]
     fn a_peer_is_alive_then_silent_then_left() {
-        let mut peers = Peers::default();
-        let (message, info) = beat(1, None);
-        peers.receive(&message, &info, Duration::from_secs(10));
-        let life = |peers: &Peers, at| peers.find("/servo").map(|p| p.liveliness(Duration::from_secs(at)));
-        assert_eq!(life(&peers, 15), Some(Liveliness::Alive));
-        assert_eq!(life(&peers, 16), Some(Liveliness::Silent(Duration::from_secs(6))));
-        let (message, info) = beat(1, Some(Exit::Done));
-        peers.receive(&message, &info, Duration::from_secs(20));
-        assert_eq!(life(&peers, 100), Some(Liveliness::Left(Exit::Done)));
+        let hub = Hub::new(1);
+        let (mut reader, mut node) = (bus(&hub), bus(&hub));
+        let mut watch = PeerWatch::subscribe(&mut reader).unwrap();
+        beat(&hub, &mut node, 1, None, 10);
+        watch.update(&mut reader, |_, _| {}).unwrap();
+        let life =
+            |watch: &PeerWatch, at| watch.find("/servo").map(|p| p.liveliness(Duration::from_secs(at)));
+        assert_eq!(life(&watch, 15), Some(Liveliness::Alive));
+        assert_eq!(life(&watch, 16), Some(Liveliness::Silent(Duration::from_secs(6))));
+        beat(&hub, &mut node, 1, Some(Exit::Done), 20);
+        watch.update(&mut reader, |_, _| {}).unwrap();
+        assert_eq!(life(&watch, 100), Some(Liveliness::Left(Exit::Done)));
     }
 
     #[test]
     fn a_restarted_node_hides_its_predecessor() {
-        let mut peers = Peers::default();
-        for (pid, at) in [(9, 1), (3, 8)] {
-            let (message, info) = beat(pid, None);
-            peers.receive(&message, &info, Duration::from_secs(at));
-        }
-        assert_eq!(peers.iter().count(), 2);
-        assert_eq!(peers.find("/servo").map(|p| p.report.pid), Some(3));
+        let hub = Hub::new(1);
+        let (mut reader, mut old, mut new) = (bus(&hub), bus(&hub), bus(&hub));
+        let mut watch = PeerWatch::subscribe(&mut reader).unwrap();
+        beat(&hub, &mut old, 9, None, 1);
+        watch.update(&mut reader, |_, _| {}).unwrap();
+        beat(&hub, &mut new, 3, None, 8);
+        watch.update(&mut reader, |_, _| {}).unwrap();
+        assert_eq!(watch.iter().count(), 2);
+        assert_eq!(watch.find("/servo").map(|p| p.report.pid), Some(3));
     }
 }

@@ -9,8 +9,8 @@ use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, PackingReport, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, stamp, topics};
 use grainlab_node_kit::{
-    Bus, BusError, DdsBus, Demand, Identity, Names, Participant, Report, Stranger, Subscription, bus_named,
-    member_of, watchdog,
+    Bus, BusError, DdsBus, Demand, Identity, Names, Participant, Report, Subscription, bus_named, member_of,
+    watchdog,
 };
 use grainlab_recorder::strangers::name;
 use std::collections::BTreeSet;
@@ -259,8 +259,10 @@ fn watch(
         if bus.now() >= next_look {
             next_look = bus.now() + DISCOVERY_TIME;
             watchdog::check().map_err(|e| e.to_string())?;
-            for (topic, stranger) in strangers(bus) {
-                let name = name(&stranger);
+            let strange =
+                OF_THE_RUN.iter().flat_map(|t| bus.strange_writers(t).into_iter().map(|w| (t.name, w)));
+            for (topic, writer) in strange {
+                let name = name(&bus.describe(writer));
                 if named.len() < NAMED && named.insert(name.clone()) {
                     send(Event::Stranger(format!("{name} publishes {topic} in this domain")));
                 }
@@ -269,14 +271,6 @@ fn watch(
         bus.wait(POLL_PERIOD);
     }
     Ok(())
-}
-
-/// Processes outside the run that publish on its topics.
-fn strangers(bus: &dyn Bus) -> Vec<(&'static str, Stranger)> {
-    let of = |topic: &Topic| {
-        bus.strange_writers(topic).into_iter().map(|w| (topic.name, bus.describe(w))).collect()
-    };
-    OF_THE_RUN.iter().flat_map(|topic| -> Vec<_> { of(topic) }).collect()
 }
 
 /// Why no estimate of a microstructure is recommended; `None` if one is.

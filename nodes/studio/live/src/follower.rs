@@ -5,7 +5,7 @@ use grainlab_console::Failure;
 use grainlab_msgs::msg::{Microstructure, Packing, PackingReport, RunState, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, topics};
 use grainlab_node_kit::{
-    BulkSubscription, Bus, BusError, DdsBus, Demand, Identity, Names, Network, Participant, PeerWatch, Peers,
+    BulkSubscription, Bus, BusError, DdsBus, Demand, Identity, Names, Network, Participant, Peer, PeerWatch,
     RunId, SampleInfo, Scope, Subscription, run_of,
 };
 use std::collections::BTreeMap;
@@ -89,8 +89,8 @@ impl Follower {
     }
 
     /// All processes that report.
-    pub(crate) fn peers(&self) -> &Peers {
-        self.watch.peers()
+    pub(crate) fn peers(&self) -> impl Iterator<Item = &Peer> {
+        self.watch.iter()
     }
 
     /// Number of runs on the bus that are not followed.

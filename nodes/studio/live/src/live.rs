@@ -145,7 +145,7 @@ impl Show {
         parts.set("structure", known.structure());
         parts.set("no-packing", known.no_packing().into());
         if let Some(follower) = follower {
-            parts.set("nodes", known.nodes(follower.peers().iter(), follower.bus_now()));
+            parts.set("nodes", known.nodes(follower.peers(), follower.bus_now()));
         }
         parts.sample = known.sample().into();
         let values = known.timeline.count();

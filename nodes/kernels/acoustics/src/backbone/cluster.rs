@@ -63,7 +63,7 @@ pub(crate) fn clusters(network: &SpringNetwork, mass: &[f64], inertia: &[f64]) -
         let mut at = 0;
         while at < cluster.len() && loose(cluster[at]) {
             for link in &links[cluster[at] as usize] {
-                let towards = Vec3::from(link.branch);
+                let towards = Vec3::from(link.branch());
                 let (other, step) =
                     if link.i == cluster[at] { (link.j, towards) } else { (link.i, -towards) };
                 if loose(other) && !std::mem::replace(&mut seen[other as usize], true) {
@@ -86,7 +86,7 @@ pub(crate) fn clusters(network: &SpringNetwork, mass: &[f64], inertia: &[f64]) -
 fn softest(
     cluster: Vec<u32>,
     offsets: Vec<Vec3>,
-    links: &[Vec<ContactSpring>],
+    links: &[Vec<&ContactSpring>],
     mass: &[f64],
     inertia: &[f64],
 ) -> Option<Cluster> {
@@ -102,7 +102,7 @@ fn softest(
             }
             debug_assert!(i == Some(at) || j == Some(at));
             let (n, mut felt) = (Vec3::from(link.normal), DMatrix::<f64>::zeros(3, rows));
-            for (place, sign, lever) in [(i, -1.0, link.levers[0]), (j, 1.0, link.levers[1])] {
+            for (place, sign, lever) in [(i, -1.0, link.levers()[0]), (j, 1.0, link.levers()[1])] {
                 let Some(place) = place else { continue };
                 for k in 0..3 {
                     felt[(k, 6 * place + k)] += sign;

@@ -38,15 +38,16 @@ pub(crate) struct Bloch<'a> {
 
 impl<'a> Bloch<'a> {
     pub(crate) fn new(backbone: &'a Backbone, q: &Vec3) -> Self {
-        let contact = |l: ContactSpring| {
-            let half = 0.5 * q.dot(&Vec3::from(l.branch));
-            let ContactSpring { i, j, normal, levers, tangential, kn_minus_kt, .. } = l;
+        let contact = |l: &ContactSpring| {
+            let half = 0.5 * q.dot(&Vec3::from(l.branch()));
+            let ContactSpring { i, j, normal, tangential, kn_minus_kt, .. } = *l;
+            let levers = l.levers();
             let lever = 0.5 * (levers[0] + levers[1]);
             let share = levers.map(|own| own / lever);
             let (sin, cos) = (half.sin(), half.cos());
             BlochContact { i, j, normal, lever, share, tangential, kn_minus_kt, cos, sin }
         };
-        let contacts: Vec<BlochContact> = backbone.network.contact_springs().map(contact).collect();
+        let contacts: Vec<BlochContact> = backbone.network.contact_springs().iter().map(contact).collect();
         let mut blocks = vec![[[0.0; 6]; 6]; backbone.mass.len()];
         for contact in &contacts {
             for (grain, block) in contact.blocks() {

@@ -10,7 +10,7 @@
 
 use super::lanes::{Lanes, Real, WIDTH};
 use super::preconditioner::{Block, generalised_inverse};
-use super::spring_network::{Spring, SpringNetwork};
+use super::spring_network::{ContactSpring, SpringNetwork};
 
 /// Degrees of freedom of one grain, or the conjugate forces, in the units of the sweeps: rows u_x, u_y, u_z,
 /// φ_x, φ_y, φ_z.
@@ -76,7 +76,7 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
         let blocks = network.diagonal_blocks();
         let traces: f64 = blocks.iter().map(|b| b[0][0] + b[1][1] + b[2][2]).sum();
         let unit = if traces > 0.0 { traces / (3 * blocks.len()) as f64 } else { 1.0 };
-        let between = |s: &&Spring| s.i != s.j;
+        let between = |s: &&ContactSpring| s.i != s.j;
         let mut springs: Vec<(u32, Half<T>)> =
             network.springs.iter().filter(between).map(|s| Half::of(s, &places, unit)).collect();
         springs.sort_by_key(|(earlier, half)| (*earlier, half.later));
@@ -215,7 +215,7 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
 
 impl<T: Real> Half<T> {
     /// With the place of the earlier grain.
-    fn of(s: &Spring, places: &[u32], unit: f64) -> (u32, Self) {
+    fn of(s: &ContactSpring, places: &[u32], unit: f64) -> (u32, Self) {
         let (i, j) = (places[s.i as usize], places[s.j as usize]);
         let side = if i < j { 1.0 } else { -1.0 };
         let [on_i, on_j] = s.levers();

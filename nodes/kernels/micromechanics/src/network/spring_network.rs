@@ -57,10 +57,13 @@ impl Springs {
 
 /// One contact of the network, with the data for the operator.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spring {
-    pub(crate) i: u32,
-    pub(crate) j: u32,
-    pub(crate) normal: [f64; 3],
+pub struct ContactSpring {
+    /// Index of the first grain.
+    pub i: u32,
+    /// Index of the second grain.
+    pub j: u32,
+    /// Unit normal, along the branch.
+    pub normal: [f64; 3],
     /// Half the branch, |l|/2, m.
     half_branch: f64,
     /// |l|/(2a): mean lever of a scaled rotation.
@@ -68,36 +71,17 @@ pub(crate) struct Spring {
     /// Levers of i and j over their mean, 1 ± (R_i − R_j)/|l|: exactly 1 where radii are equal.
     share: [f64; 2],
     /// Tangential stiffness k_t, N/m.
-    pub(crate) tangential: f64,
-    /// k_n − k_t, N/m.
-    pub(crate) kn_minus_kt: f64,
-    /// F_n/|l|, N/m, which reduces the stiffness across the normal; 0 without prestress.
-    pub(crate) geometric: f64,
-}
-
-/// One contact, for other operators on the same network.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSpring {
-    /// Index of the first grain.
-    pub i: u32,
-    /// Index of the second grain.
-    pub j: u32,
-    /// Branch vector from `i` to the touched image of `j`, m.
-    pub branch: [f64; 3],
-    /// Unit normal, along the branch.
-    pub normal: [f64; 3],
-    /// Levers of scaled rotations φ of `i` and `j`: (R − δ/2)/a with a the [`SpringNetwork::spin_scale`].
-    pub levers: [f64; 2],
-    /// Tangential stiffness k_t, N/m.
     pub tangential: f64,
     /// k_n − k_t, N/m.
     pub kn_minus_kt: f64,
+    /// F_n/|l|, N/m, which reduces the stiffness across the normal; 0 without prestress.
+    pub(crate) geometric: f64,
 }
 
 /// The frozen contact network of a packing: grains, springs, volume.
 #[derive(Clone, Debug)]
 pub struct SpringNetwork {
-    pub(super) springs: Vec<Spring>,
+    pub(super) springs: Vec<ContactSpring>,
     grains: usize,
     volume: f64,
     spin_scale: f64,
@@ -124,7 +108,7 @@ impl SpringNetwork {
             let (k_n, k_t) = view.contact_stiffnesses[index];
             let k_t = if kind.has_tangential(packing.friction) { k_t } else { 0.0 };
             let skew = (packing.radii[c.i as usize] - packing.radii[c.j as usize]) / length;
-            springs.push(Spring {
+            springs.push(ContactSpring {
                 i: c.i,
                 j: c.j,
                 normal: normal.into(),
@@ -198,17 +182,9 @@ impl SpringNetwork {
         self.volume
     }
 
-    /// Every contact, in the order of the packing; without prestress.
-    pub fn contact_springs(&self) -> impl Iterator<Item = ContactSpring> {
-        self.springs.iter().map(|s| ContactSpring {
-            i: s.i,
-            j: s.j,
-            branch: s.normal.map(|n| 2.0 * s.half_branch * n),
-            normal: s.normal,
-            levers: s.levers(),
-            tangential: s.tangential,
-            kn_minus_kt: s.kn_minus_kt,
-        })
+    /// Every contact, in the order of the packing.
+    pub fn contact_springs(&self) -> &[ContactSpring] {
+        &self.springs
     }
 
     /// The length a that scales rotations, m: θ = φ/a.
@@ -323,7 +299,7 @@ impl SpringNetwork {
     }
 }
 
-impl Spring {
+impl ContactSpring {
     /// The work of the motions `a` and `b` of both grains against their own forces, every column with every column.
     fn energies(&self, a: &GrainDofs<6>, b: &GrainDofs<6>) -> Block {
         let (w, d) = (self.relative(a, b), self.apart(a, b));
@@ -334,8 +310,8 @@ impl Spring {
         std::array::from_fn(|row| std::array::from_fn(|column| sum(row, column)))
     }
 
-    /// Levers of scaled rotations of i and j.
-    pub(crate) fn levers(&self) -> [f64; 2] {
+    /// Levers of scaled rotations φ of i and j: (R − δ/2)/a with a the [`SpringNetwork::spin_scale`].
+    pub fn levers(&self) -> [f64; 2] {
         self.share.map(|share| self.lever * share)
     }
 
@@ -426,9 +402,9 @@ impl Spring {
         }
     }
 
-    /// Branch vector l, m.
+    /// Branch vector l from i to the touched image of j, m.
     #[inline(always)]
-    pub(crate) fn branch(&self) -> [f64; 3] {
+    pub fn branch(&self) -> [f64; 3] {
         self.normal.map(|n| 2.0 * self.half_branch * n)
     }
 

@@ -1,6 +1,6 @@
 //! One participant of the network in memory.
 
-use super::state::{Reader, State, Writer};
+use super::state::{MemoryState, Reader, Writer};
 use crate::admission::{Admission, Participant, Stranger};
 use crate::bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
 use crate::bus_error::BusError;
@@ -18,7 +18,7 @@ use std::time::Duration;
 /// A bus of a [`crate::Hub`]. Waiting advances virtual time.
 #[derive(Debug)]
 pub struct MemoryBus {
-    state: Rc<RefCell<State>>,
+    state: Rc<RefCell<MemoryState>>,
     participant: Participant,
     admission: Admission,
     names: Names,
@@ -32,7 +32,7 @@ pub struct MemoryBus {
 
 impl MemoryBus {
     pub(super) fn new(
-        state: Rc<RefCell<State>>,
+        state: Rc<RefCell<MemoryState>>,
         participant: Participant,
         names: Names,
         identity: Identity,

@@ -2,7 +2,7 @@
 
 use super::bus::MemoryBus;
 use super::faults::Faults;
-use super::state::State;
+use super::state::MemoryState;
 use crate::admission::Participant;
 use crate::identity::Identity;
 use crate::names::Names;
@@ -13,13 +13,13 @@ use std::time::Duration;
 /// A network in memory. Cloning gives another handle to the same one.
 #[derive(Clone, Debug)]
 pub struct Hub {
-    state: Rc<RefCell<State>>,
+    state: Rc<RefCell<MemoryState>>,
 }
 
 impl Hub {
     /// An empty network at time zero. The faults follow from the seed.
     pub fn new(seed: u64) -> Self {
-        Self { state: Rc::new(RefCell::new(State::new(seed))) }
+        Self { state: Rc::new(RefCell::new(MemoryState::new(seed))) }
     }
 
     /// A new participant for one node. Dropping it acts as a clean exit and as a crash.

@@ -12,7 +12,7 @@ use std::time::Duration;
 const EPOCH_NANOS: u64 = 1_700_000_000_000_000_000;
 
 #[derive(Debug)]
-pub(super) struct State {
+pub(super) struct MemoryState {
     pub(super) now: Duration,
     /// Offset by which the wall clock was set, ns.
     pub(super) wall_offset: i64,
@@ -54,7 +54,7 @@ pub(super) fn writer_id(participant: Participant, entity: usize) -> Guid {
     Guid(bytes)
 }
 
-impl State {
+impl MemoryState {
     pub(super) fn new(seed: u64) -> Self {
         Self {
             now: Duration::ZERO,

@@ -1,7 +1,6 @@
 //! ROS 2 parameter files: node keys (`/**`, `/ns/node`, nested namespaces), then `ros__parameters`.
 
-use super::set::ParameterError;
-use super::value::ParameterValue;
+use super::value::{ParameterError, ParameterValue};
 use super::yaml::Yaml;
 use std::path::Path;
 

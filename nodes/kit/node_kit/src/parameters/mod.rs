@@ -6,8 +6,8 @@ mod spec;
 mod value;
 mod yaml;
 
+pub use set::Parameters;
 pub(crate) use set::coerce;
-pub use set::{ParameterError, Parameters};
 pub use spec::{ParameterSpec, Range};
-pub use value::{FromParameter, IntoParameter, ParameterValue, parameter_text};
+pub use value::{FromParameter, IntoParameter, ParameterError, ParameterValue, parameter_text};
 pub use yaml::parse_value;

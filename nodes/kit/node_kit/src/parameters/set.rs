@@ -1,16 +1,11 @@
 //! The parameter values of a node.
 
 use super::spec::ParameterSpec;
-use super::value::{FromParameter, ParameterValue, parameter_text, type_name};
+use super::value::{FromParameter, ParameterError, ParameterValue, parameter_text, type_name};
 use super::{file, yaml::parse_value};
 use crate::{args::RosArgs, lock::lock, names::Names};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
-
-/// Why a parameter or a parameter file is refused. The process then ends with [`crate::Exit::Usage`].
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct ParameterError(pub(super) String);
 
 /// Every declared parameter with its value, sorted by name. Clones share the values.
 #[derive(Clone, Debug)]

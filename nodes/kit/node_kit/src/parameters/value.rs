@@ -2,6 +2,11 @@
 
 pub use ros2_client::ParameterValue;
 
+/// Why a parameter or a parameter file is refused. The process then ends with [`crate::Exit::Usage`].
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct ParameterError(pub(super) String);
+
 /// The ROS 2 name of the value's type.
 pub(crate) fn type_name(value: &ParameterValue) -> &'static str {
     match value {

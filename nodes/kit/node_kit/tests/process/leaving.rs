@@ -81,7 +81,7 @@ fn a_signal_ends_a_node_cleanly_and_its_final_counts_balance_what_was_received()
             let (highest, count) = observer.seen[&writer.writer];
             assert_eq!((highest as u64, count), (writer.count, writer.count), "{}", writer.topic);
         }
-        let peer = observer.watch.peers().find(&format!("/{role}")).unwrap();
+        let peer = observer.watch.find(&format!("/{role}")).unwrap();
         assert_eq!(peer.liveliness(observer.bus.now()), Liveliness::Left(exit));
     }
 }
@@ -130,7 +130,7 @@ fn a_killed_process_falls_silent_while_dds_still_shows_it() {
     observer.until_third_report();
     child.signal(libc::SIGKILL);
     child.end();
-    let life = |o: &Observer| o.watch.peers().find("/talker").map(|p| p.liveliness(o.bus.now()));
+    let life = |o: &Observer| o.watch.find("/talker").map(|p| p.liveliness(o.bus.now()));
     observer.until("silence", |o| matches!(life(o), Some(Liveliness::Silent(_))));
     assert_eq!(observer.bus.foreign_writers(&topics::RUN_STATE).len(), 1, "its lease has not ended yet");
 }
