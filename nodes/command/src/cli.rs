@@ -33,12 +33,12 @@ enum Command {
     Launch(launch::Args),
     /// List, show, check and create scenes: what a run simulates.
     #[command(subcommand)]
-    Scene(scene::Command),
+    Scene(scene::SceneCommand),
     /// Run one node as this process, with ROS 2 arguments.
     Run(run::Args),
     /// Record, play and inspect recordings.
     #[command(subcommand)]
-    Bag(bag::Command),
+    Bag(bag::BagCommand),
     /// Infer the microstructure from moduli: coordination and anisotropy with uncertainty.
     Invert(invert::Args),
     /// Measure packings from files: structure, stress and the full stiffness.

@@ -14,7 +14,7 @@ use grainlab_recorder::play;
 
 /// Commands for recordings.
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+pub(crate) enum BagCommand {
     /// Record topics until SIGINT or SIGTERM.
     Record(record::Args),
     /// Publish the messages of a recording.
@@ -34,16 +34,16 @@ pub(crate) enum Command {
 }
 
 /// Runs the command.
-pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
+pub(crate) fn run(command: &BagCommand) -> Result<Exit, Failure> {
     match command {
-        Command::Record(args) => record::run(args),
-        Command::Play(args) => play::run(args),
-        Command::Info(args) => info::run(args),
-        Command::Check(args) => check::run(args),
+        BagCommand::Record(args) => record::run(args),
+        BagCommand::Play(args) => play::run(args),
+        BagCommand::Info(args) => info::run(args),
+        BagCommand::Check(args) => check::run(args),
         #[cfg(feature = "studio")]
-        Command::Export(args) => export::run(args),
-        Command::Recover(args) => recover::run(args),
+        BagCommand::Export(args) => export::run(args),
+        BagCommand::Recover(args) => recover::run(args),
         #[cfg(feature = "studio")]
-        Command::Tool(command) => grainlab_bag_tools::run(command),
+        BagCommand::Tool(command) => grainlab_bag_tools::run(command),
     }
 }

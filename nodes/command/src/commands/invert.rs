@@ -36,7 +36,7 @@ use case::cases;
 #[cfg(feature = "studio")]
 pub(super) use columns::{BadRow, Row};
 use grainlab_console::{Failure, Format, print, say};
-use grainlab_emt::{Measured, Modulus};
+use grainlab_emt::{Conditions, Measured, Modulus};
 use grainlab_node_kit::Exit;
 use print::Printer;
 pub(super) use rows::Rows;
@@ -326,27 +326,29 @@ impl Args {
         Ok(State {
             relative_error: self.error,
             grain_shear_modulus: self.grain_shear_modulus,
-            grain_shear_modulus_sigma: self.grain_shear_modulus_sigma,
             poisson: self.poisson,
-            poisson_sigma: self.poisson_sigma,
+            conditions: Conditions {
+                shear_modulus_stddev: self.grain_shear_modulus_sigma,
+                poisson_ratio_stddev: self.poisson_sigma,
+                ..Conditions::default()
+            },
             ..State::default()
         })
     }
 
     /// The state given by the flags.
-    fn state(&self, defaults: State) -> Result<State, Failure> {
+    fn state(&self, mut state: State) -> Result<State, Failure> {
         let pressure = self.pressure.ok_or_else(|| Failure::usage("--pressure is needed, or --table"))?;
-        let pressure = Measured { value: pressure, stddev: self.pressure_sigma };
-        let mut state = State { pressure, ..defaults };
+        state.conditions.pressure = Measured { value: pressure, stddev: self.pressure_sigma };
         let given = [self.g12, self.g13, self.theta, self.c11, self.c33, self.c13];
         for (modulus, value) in Modulus::ALL.into_iter().zip(given) {
             value.into_iter().for_each(|value| state.set_modulus(modulus, value));
         }
         state.gamma = self.gamma_over_delta.map(Measured::exact);
-        state.phi = self.phi.map(Measured::exact);
-        state.stress_ratio =
+        state.conditions.solid_fraction = self.phi.map(Measured::exact);
+        state.conditions.stress_ratio =
             self.stress_ratio.map(|value| Measured { value, stddev: self.stress_ratio_sigma });
-        state.size_spread = self.size_spread;
+        state.conditions.size_spread = self.size_spread;
         state.grains = self.grains.map(f64::from);
         if let (Some(path), Some(value)) = (&self.speeds, self.density) {
             speeds::add(&mut state, path, Measured { value, stddev: self.density_sigma })?;

@@ -4,7 +4,7 @@ use super::campaign::{self, gather};
 use grainlab_campaign::{Campaign, Engine, Folder, Options};
 use grainlab_console::{Failure, Format, Table, fixed, print, worse};
 use grainlab_node_kit::Exit;
-use grainlab_paper::{Distance, Observed, States};
+use grainlab_paper::{DISTANCE, Observed, States, distance};
 use grainlab_reproduce::{Provenance, Reproduction, Size, campaign_text, pressure_of_phase, sample_of_scene};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -56,7 +56,7 @@ pub(crate) struct Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(folder) = &args.distance {
-        return distance(folder, args.format);
+        return judge(folder, args.format);
     }
     let grains = args.grains.unwrap_or(if args.quick { QUICK } else { 2000 });
     let size = Size { grains, seeds: args.seeds, first_seed: args.first_seed };
@@ -98,7 +98,7 @@ fn observed(state: gather::State<'_>) -> Option<Observed> {
 }
 
 /// Judges each set of values of a campaign.
-fn distance(folder: &Path, format: Format) -> Result<Exit, Failure> {
+fn judge(folder: &Path, format: Format) -> Result<Exit, Failure> {
     let (folder, campaign) = Folder::open(folder)?;
     let (states, exit) = gather::states(&campaign, &folder)?;
     let mut groups: BTreeMap<String, Vec<Observed>> = BTreeMap::new();
@@ -106,34 +106,14 @@ fn distance(folder: &Path, format: Format) -> Result<Exit, Failure> {
         let settings = state.member.sets().join(" ");
         groups.entry(settings).or_default().extend(observed(state));
     }
-    let judged = groups.into_iter().map(|(settings, all)| (settings, Distance::of(&States::new(all))));
-    let mut judged: Vec<(String, Option<Distance>)> = judged.collect();
-    let total = |d: &Option<Distance>| d.map_or(f64::INFINITY, |d| d.total());
+    let judged = groups.into_iter().map(|(settings, all)| (settings, distance(&States::new(all))));
+    let mut judged: Vec<(String, Option<[f64; 7]>)> = judged.collect();
+    let total = |terms: &Option<[f64; 7]>| terms.map_or(f64::INFINITY, |t| t[0]);
     judged.sort_by(|a, b| total(&a.1).total_cmp(&total(&b.1)));
-    let mut table = Table::new([
-        "settings",
-        "distance",
-        "z",
-        "eps",
-        "gamma/Delta",
-        "phi",
-        "k (not counted)",
-        "G12 (not counted)",
-    ]);
-    for (settings, d) in &judged {
-        let terms = d.map(|d| {
-            [
-                d.total(),
-                d.coordination,
-                d.anisotropy,
-                d.strain_ratio,
-                d.solid_fraction,
-                d.all_grains,
-                d.shear_modulus,
-            ]
-        });
+    let mut table = Table::new(std::iter::once("settings").chain(DISTANCE));
+    for (settings, terms) in judged {
         let cells = (0..7).map(|n| fixed(terms.map(|t| t[n]), 3));
-        table.row(std::iter::once(settings.clone()).chain(cells));
+        table.row(std::iter::once(settings).chain(cells));
     }
     print(&if format == Format::Table { table.text() } else { table.csv() })?;
     Ok(exit)

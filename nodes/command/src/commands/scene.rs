@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 /// Commands for scenes.
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+pub(crate) enum SceneCommand {
     /// List the built-in scenes.
     List,
     /// Show the complete scene: bases applied, every default written out.
@@ -58,16 +58,16 @@ pub(crate) struct New {
 }
 
 /// Runs the command.
-pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
+pub(crate) fn run(command: &SceneCommand) -> Result<Exit, Failure> {
     match command {
-        Command::List => list(),
-        Command::Show(show) => {
+        SceneCommand::List => list(),
+        SceneCommand::Show(show) => {
             print(&scenes::load(&show.scene, &show.set, show.seed)?.text)?;
             Ok(Exit::Done)
         }
-        Command::Check(check) => check_all(&check.scenes),
-        Command::New(new) => create(new),
-        Command::Keys => {
+        SceneCommand::Check(check) => check_all(&check.scenes),
+        SceneCommand::New(new) => create(new),
+        SceneCommand::Keys => {
             print(&grainlab_scene::reference())?;
             Ok(Exit::Done)
         }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The source of a γ/Δ.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StrainRatioSource {
     /// The total strain since the reference state, which is mostly plastic. That of the paper's Table II.
@@ -21,6 +21,7 @@ pub enum StrainRatioSource {
     #[serde(skip)]
     Given,
     /// Not known, and set to zero.
+    #[default]
     Zero,
 }
 
@@ -47,7 +48,7 @@ impl StrainRatioSource {
 }
 
 /// The strain ratio g = γ/Δ given to a model.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrainRatio {
     /// Value of g, dimensionless.
     pub value: f64,
@@ -131,7 +132,7 @@ pub(crate) const LARGEST_SPREAD: f64 = 0.3;
 pub(crate) const STATE_INPUTS: usize = 7;
 
 /// The inputs of a model besides the moduli.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Conditions {
     /// Confining pressure, Pa, positive in compression.
     pub pressure: Measured,
@@ -157,19 +158,8 @@ pub struct Conditions {
 
 impl Conditions {
     /// At this pressure, Pa, with nothing else known.
-    pub const fn at(pressure: f64) -> Self {
-        Self {
-            pressure: Measured::exact(pressure),
-            gamma: StrainRatio::ZERO,
-            solid_fraction: None,
-            stress_ratio: None,
-            size_spread: None,
-            material: None,
-            shear_modulus_stddev: 0.0,
-            poisson_ratio_stddev: 0.0,
-            contact_law: None,
-            smooth: false,
-        }
+    pub fn at(pressure: f64) -> Self {
+        Self { pressure: Measured::exact(pressure), ..Self::default() }
     }
 
     /// Standard deviations of the inputs of the state, in the order of the last of [`crate::INPUT_NAMES`]: relative ones of the

@@ -1,9 +1,11 @@
 //! One value of a table.
 
 use crate::output::exact;
+use serde::Serialize;
 
 /// A typed value.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Cell {
     /// Undefined, or not known.
     #[default]

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 /// Interval of the lines during a long phase, where there is no terminal.
 const STILL: Duration = Duration::from_secs(10);
 
-/// Time over which the pace of a phase is a mean.
-const PACE: Duration = Duration::from_secs(10);
+/// Time over which the pace of a phase is a mean, s.
+const PACE: u64 = 10;
 
 /// Prints lines with the time since the start.
 #[derive(Debug)]
@@ -35,7 +35,7 @@ struct Phase {
     note: String,
     /// Last report of the simulator.
     report: PhaseReport,
-    pace: Pace,
+    pace: Pace<PACE>,
 }
 
 impl Progress {
@@ -115,7 +115,7 @@ impl Progress {
             first_step: state.step,
             note: state.message.clone(),
             report: PhaseReport::default(),
-            pace: Pace::over(PACE),
+            pace: Pace::default(),
         });
         if Terminal::on_stderr().is_none() {
             let PhaseName { number, of, name } = name;

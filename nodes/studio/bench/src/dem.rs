@@ -62,7 +62,7 @@ pub struct Args {
 
 /// One case: medians over its repetitions.
 #[derive(Debug, Serialize)]
-struct Row {
+struct Speed {
     grains: u64,
     threads: u32,
     features: Features,
@@ -134,16 +134,16 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             done.push(stepping::run(&packing, pressure, case)?);
         }
     }
-    let rows: Vec<Row> = cases.iter().zip(&loops).map(|(case, loops)| row(case, loops)).collect();
+    let rows: Vec<Speed> = cases.iter().zip(&loops).map(|(case, loops)| row(case, loops)).collect();
     let report = BTreeMap::from([("rows", &rows)]);
     args.format.print(&report, || table(&rows, exact).csv(), || table(&rows, rounded).text())?;
     Ok(Exit::Done)
 }
 
-fn row(case: &Case, loops: &[Loop]) -> Row {
+fn row(case: &Case, loops: &[Loop]) -> Speed {
     let of = |part: &dyn Fn(&Loop) -> f64| median(loops.iter().map(part).collect());
     let work = case.grains as f64 * f64::from(case.steps);
-    Row {
+    Speed {
         grains: case.grains,
         threads: case.threads,
         features: case.features,
@@ -165,7 +165,7 @@ fn row(case: &Case, loops: &[Loop]) -> Row {
     }
 }
 
-fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
+fn table(rows: &[Speed], number: impl Fn(Option<f64>) -> String) -> Table {
     let mut t = Table::new([
         "features",
         "grains",

@@ -20,7 +20,7 @@ const CALIBRATION: &str = "grainlab";
 
 /// One line of the file.
 #[derive(Debug, Deserialize)]
-struct State {
+struct HeldOut {
     grains: u32,
     phi: f64,
     pressure_pa: f64,
@@ -37,7 +37,7 @@ struct State {
     poisson: f64,
 }
 
-impl State {
+impl HeldOut {
     fn observation(&self) -> Observation {
         let moduli =
             [self.g12_pa, self.g13_pa, self.theta_pa, self.ti_c11_pa, self.ti_c33_pa, self.ti_c13_pa];
@@ -72,23 +72,23 @@ pub(super) fn rows(passes: u32) -> Result<Vec<Row>, Failure> {
     Ok(rows)
 }
 
-fn states() -> Result<Vec<State>, Failure> {
+fn states() -> Result<Vec<HeldOut>, Failure> {
     let failed = |e| Failure::failed(format!("held-out states in this program: {e}"));
     csv::Reader::from_reader(HELD_OUT.as_bytes()).deserialize().collect::<Result<_, _>>().map_err(failed)
 }
 
 fn of(
     model: &dyn Model,
-    states: &[State],
+    states: &[HeldOut],
     calibration: &Calibration,
     passes: u32,
 ) -> Result<Vec<Row>, Failure> {
-    let observations: Vec<Observation> = states.iter().map(State::observation).collect();
+    let observations: Vec<Observation> = states.iter().map(HeldOut::observation).collect();
     let all = || Ok(observations.iter().map(|o| model.infer(o, calibration)).collect());
     let (seconds, found): (f64, Result<Vec<Result<Estimate, EmtError>>, Failure>) = timed(passes, all)?;
     let found = found?;
-    let quantity = |family: Family, quantity: InferredQuantity, truth: fn(&State) -> f64| {
-        let error = |(state, found): (&State, &Result<Estimate, EmtError>)| {
+    let quantity = |family: Family, quantity: InferredQuantity, truth: fn(&HeldOut) -> f64| {
+        let error = |(state, found): (&HeldOut, &Result<Estimate, EmtError>)| {
             Some(found.as_ref().ok()?.structure.get(quantity)? - truth(state))
         };
         let errors: Vec<f64> = states.iter().zip(&found).filter_map(error).collect();

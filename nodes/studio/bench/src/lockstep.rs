@@ -45,7 +45,7 @@ struct Microseconds {
 
 /// One round of the two kinds.
 #[derive(Debug, Serialize)]
-struct Row {
+struct Timing {
     /// Number of the round; `null` for all rounds together.
     value: Option<u32>,
     /// Duration of the exchanges of the row over the bus of grainlab.
@@ -79,8 +79,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if lost > 0 { Exit::DataLoss } else { Exit::Done })
 }
 
-fn row(value: Option<u32>, [ours, alone]: [&[f64]; 2], lost: u64) -> Row {
-    Row {
+fn row(value: Option<u32>, [ours, alone]: [&[f64]; 2], lost: u64) -> Timing {
+    Timing {
         value,
         seconds: ours.iter().sum::<f64>() * 1e-6,
         exchanges: ours.len(),
@@ -101,7 +101,7 @@ fn percentiles(micros: &[f64]) -> Microseconds {
     Microseconds { p50: rank(0.5), p99: rank(0.99) }
 }
 
-fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
+fn table(rows: &[Timing], number: impl Fn(Option<f64>) -> String) -> Table {
     let mut t =
         Table::new(["round", "exchanges", "p50_us", "p99_us", "alone_p50_us", "alone_p99_us", "lost"]);
     for r in rows {

@@ -3,32 +3,17 @@
 mod cluster;
 mod local;
 mod options;
-mod pending;
-mod print;
 
-pub use options::Options;
+pub use options::{Engine, Options};
 
 use crate::campaign::Campaign;
+use crate::command::{command, line};
 use crate::folder::{Folder, MemberState};
 use crate::member::Member;
 use crate::progress::Progress;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::Exit;
 use grainlab_recordings::end_reason;
-
-/// An engine that runs the members of a campaign.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum Engine {
-    /// On this machine, some at a time
-    #[default]
-    Local,
-    /// As a job array of Slurm, by sbatch
-    Slurm,
-    /// As a task array of HyperQueue, by hq
-    Hq,
-    /// Nowhere: print the commands as a shell script
-    Print,
-}
 
 impl Options {
     /// Runs the members that are not finished; the caller holds the lock of the folder. The exit is 0 if all are.
@@ -37,7 +22,7 @@ impl Options {
     /// A folder in use, a scheduler that cannot be reached, a folder that cannot be written.
     pub fn run(self, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
         if self.engine == Engine::Print {
-            print::run(campaign, folder)?;
+            print_script(campaign, folder)?;
             return Ok(Exit::Done);
         }
         if self.redo_failed {
@@ -47,7 +32,7 @@ impl Options {
                 folder.remove(member)?;
             }
         }
-        let pending = pending::pending(campaign, folder);
+        let pending = folder.pending(campaign);
         let is_finished = |m: &&Member| folder.state(m) == MemberState::Finished;
         let finished = campaign.members.iter().filter(is_finished).count();
         let failed = campaign.members.len() - pending.len() - finished;
@@ -86,4 +71,19 @@ fn report(campaign: &Campaign, folder: &Folder) -> Exit {
         );
     }
     exit
+}
+
+/// Prints the commands of the members as a script.
+fn print_script(campaign: &Campaign, folder: &Folder) -> Result<(), Failure> {
+    let mut script = format!(
+        "#!/bin/sh\n# Campaign {}: {}, in any order. Each line can be repeated: a finished run is left as it is, an\n\
+         # interrupted one is continued.\nunset ROS_DOMAIN_ID\n",
+        campaign.name,
+        grainlab_console::count(campaign.members.len(), "run")
+    );
+    for member in &campaign.members {
+        script += &line(&command(campaign, folder, member)?);
+        script.push('\n');
+    }
+    grainlab_console::print(&script)
 }

@@ -103,6 +103,14 @@ impl Folder {
         }
     }
 
+    /// Numbers of the members that can still be run.
+    pub(crate) fn pending(&self, campaign: &Campaign) -> Vec<usize> {
+        let can_run = |n: &usize| {
+            matches!(self.state(&campaign.members[*n]), MemberState::Waiting | MemberState::Interrupted)
+        };
+        (0..campaign.members.len()).filter(can_run).collect()
+    }
+
     /// The file that says with which exit code a member was given up.
     fn given_up(&self, member: &Member) -> PathBuf {
         self.logs().join(format!("{}.failed", member.name))

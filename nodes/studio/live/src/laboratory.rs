@@ -13,11 +13,11 @@ use std::time::Duration;
 /// Phases of a run of which nothing is known yet: they share the bins of the curves.
 const PHASES: usize = 6;
 
-/// Time over which the rate of the simulation is a mean.
-const RATE_WINDOW: Duration = Duration::from_secs(3);
+/// Time over which the rate of the simulation is a mean, s.
+const RATE_WINDOW: u64 = 3;
 
-/// Time over which the pace of a phase is a mean.
-const PHASE_WINDOW: Duration = Duration::from_secs(10);
+/// Time over which the pace of a phase is a mean, s.
+const PHASE_WINDOW: u64 = 10;
 
 /// Most estimates that are kept of one packing.
 const ESTIMATES: usize = 64;
@@ -44,7 +44,7 @@ pub(crate) struct PhaseReport {
 }
 
 /// One run. Messages are taken as they arrive; times are those of the reader's clock.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Laboratory {
     /// The id that the launcher gave, if it was launched.
     pub(crate) run: Option<RunId>,
@@ -57,11 +57,11 @@ pub struct Laboratory {
     /// The estimates from one packing, with its step.
     pub(crate) inferred: (u64, Vec<Inference>),
     pub(crate) grains: Option<u32>,
-    pub(crate) steps: Pace,
+    pub(crate) steps: Pace<RATE_WINDOW>,
     /// The phase under way.
     pub(crate) of_phase: PhaseReport,
     /// The share of that phase.
-    pub(crate) pace: Pace,
+    pub(crate) pace: Pace<PHASE_WINDOW>,
     pub(crate) end: Option<End>,
     /// When it was first heard of.
     pub(crate) began: Duration,
@@ -78,25 +78,7 @@ pub struct Laboratory {
 impl Laboratory {
     /// A run that was first heard of at this time.
     pub fn new(run: Option<RunId>, now: Duration) -> Self {
-        Self {
-            run,
-            scene: String::new(),
-            timeline: Timeline::of_phases(PHASES),
-            latest: None,
-            state: None,
-            report: None,
-            inferred: (0, Vec::new()),
-            grains: None,
-            steps: Pace::over(RATE_WINDOW),
-            of_phase: PhaseReport::default(),
-            pace: Pace::over(PHASE_WINDOW),
-            end: None,
-            began: now,
-            heard: now,
-            pictured: 0,
-            too_large: None,
-            refused: 0,
-        }
+        Self { run, timeline: Timeline::of_phases(PHASES), began: now, heard: now, ..Self::default() }
     }
 
     /// Takes a request of the lockstep.
@@ -178,7 +160,7 @@ impl Laboratory {
             unmet: text("unmet"),
         };
         if of_phase.name != self.of_phase.name {
-            self.pace = Pace::over(PHASE_WINDOW);
+            self.pace = Pace::default();
         }
         if let Some(share) = of_phase.share {
             self.pace.push(now, share);

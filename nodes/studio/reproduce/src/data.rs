@@ -6,6 +6,7 @@ use grainlab_page::Dataset;
 use grainlab_paper::inversion::Errors;
 use grainlab_paper::{Comparison, PAPER, PRESSURE};
 use serde_json::{Value, json as object};
+use std::collections::BTreeMap;
 
 /// A column: its name, and its value in a row.
 type Column = (&'static str, fn(&Comparison) -> Cell);
@@ -42,19 +43,8 @@ impl Reproduction {
         let p = &self.provenance;
         let claims =
             self.claims.iter().map(|c| object!({"claim": c.text, "holds": c.holds, "found": c.found}));
-        let compared = self.compared.iter().map(|c| {
-            object!({
-                "quantity": c.quantity.key(),
-                "sample": PAPER[c.sample].name,
-                "pressure_pa": PRESSURE[c.pressure],
-                "ours": c.ours.value,
-                "standard_error": c.ours.error,
-                "seeds": c.ours.count,
-                "paper": c.paper.map(|p| p.value),
-                "paper_is_printed": c.paper.map(|p| p.is_printed),
-                "difference_in_errors": c.in_errors(),
-            })
-        });
+        let compared =
+            self.compared.iter().map(|c| BTreeMap::from(COLUMNS.map(|(name, cell)| (name, cell(c)))));
         let judged = self.judged.iter().map(|j| {
             object!({
                 "model": j.case.model.name(),

@@ -2,7 +2,6 @@
 
 use crate::Reproduction;
 use crate::tables::{head, mean, of_paper};
-use grainlab_emt::Calibration;
 use grainlab_page::{Cell, Html, code, html, signed, table};
 use grainlab_paper::inversion::{Errors, Judged, Row, of_the_paper};
 use grainlab_paper::{Mean, PAPER, Quantity, States};
@@ -72,37 +71,6 @@ impl Reproduction {
         );
         let header = "sample | p/kPa | paper, error of k | ratio k | error | relaxed k | error | paper, error of ε | \
                       ratio ε | error | relaxed ε | error";
-        table(caption, header.split(" | "), rows)
-    }
-
-    /// Our isotropic calibration compared with Eqs. 21 and 22.
-    pub(crate) fn calibration_table(&self) -> Html {
-        let all = ["paper", "grainlab"].into_iter().filter_map(Calibration::builtin);
-        let rows = all.map(|calibration| {
-            let isotropic = calibration.isotropic();
-            let [alpha, beta, rho, zeta] = isotropic.constants();
-            let [low, high] = isotropic.fitted;
-            let fitted =
-                if high.is_finite() { format!("{low:.2} to {high:.2}") } else { format!("above {low}") };
-            let constants =
-                [(alpha, 1), (beta, 2), (rho, 1), (zeta, 2)].map(|(v, digits)| Cell::fixed(v, digits));
-            let moduli = [5.0, 6.0].into_iter().flat_map(|k| {
-                [isotropic.shear_modulus(k, 100e3), isotropic.bulk_modulus(k, 100e3)]
-                    .map(|m| Cell::fixed(m / 1e6, 1))
-            });
-            [Cell::text(calibration.name())]
-                .into_iter()
-                .chain(constants)
-                .chain([Cell::text(fitted)])
-                .chain(moduli)
-                .collect::<Vec<_>>()
-        });
-        let caption = html!(
-            "Isotropic packings: G = α(k̂ + β) p^⅓ and Θ = ρ(k̂ + ζ) p^⅓ in MPa (Eqs. 21 and 22), and both at 100 kPa. \
-             Ours are learned by {{ command }}",
-            command => code("grainlab calibrate tests/golden/ensembles/isotropic.csv")
-        );
-        let header = "constants | α | β | ρ | ζ | fitted for k̂ | G at 5 | Θ at 5 | G at 6 | Θ at 6";
         table(caption, header.split(" | "), rows)
     }
 }

@@ -101,7 +101,7 @@ impl Reproduction {
              of the strain since the reference state, as in the paper; elastic that of an isotropic stress increment; contact that \
              of the overlaps.",
         );
-        about + self.bias() + self.rows_table() + self.judged_table() + self.calibration_table()
+        about + self.bias() + self.rows_table() + self.judged_table()
     }
 
     /// The sign of the errors of the paper's model, here and in the paper.

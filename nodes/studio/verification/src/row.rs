@@ -48,18 +48,6 @@ pub enum Measure {
     Absolute,
 }
 
-impl Measure {
-    /// Name in data.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Relative => "relative",
-            Self::OfLargest => "of_largest",
-            Self::OfSum => "of_sum",
-            Self::Absolute => "absolute",
-        }
-    }
-}
-
 /// The verdict on a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -78,17 +66,6 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Name in data.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Passed => "passed",
-            Self::Explained => "explained",
-            Self::Differs => "differs",
-            Self::NotComparable => "not_comparable",
-            Self::Failed => "failed",
-        }
-    }
-
     /// The word in the table.
     pub fn word(self) -> &'static str {
         match self {

@@ -29,11 +29,11 @@ pub(crate) struct About<'a> {
     by_coordination: Vec<Colour>,
     rattler: Colour,
     carrier: Colour,
-    states: Vec<State<'a>>,
+    states: Vec<AboutState<'a>>,
 }
 
 #[derive(Debug, Serialize)]
-struct State<'a> {
+struct AboutState<'a> {
     label: &'a str,
     /// Rows of the matrix whose columns are the cell vectors, m.
     cell: Vec<f64>,
@@ -58,7 +58,7 @@ fn has_ids(views: &[&View]) -> bool {
 
 pub(crate) fn about<'a>(name: &'a str, views: &[&'a View]) -> About<'a> {
     let grains = views.first().map_or(0, |v| v.grains());
-    let state = |v: &&'a View| State {
+    let state = |v: &&'a View| AboutState {
         label: &v.label,
         cell: v.matrix().transpose().iter().copied().collect(),
         volume: v.cell.volume(),

@@ -184,7 +184,8 @@ impl Columns {
             }
         }
         if let Some(text) = self.label(cells, "contact_law").filter(|text| !text.is_empty()) {
-            state.contact_law = Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
+            state.conditions.contact_law =
+                Some(text.parse().map_err(|e| format!("column contact_law: {e}"))?);
         }
         let smooth = flag(self.label(cells, "smooth"), "smooth")?;
         let friction = self.label(cells, "friction").and_then(|text| text.parse().ok());
@@ -195,7 +196,7 @@ impl Columns {
                 "column friction is 0: {reason}; if springs were added, say so by a column smooth, false"
             ));
         }
-        state.smooth = smooth.unwrap_or(false);
+        state.conditions.smooth = smooth.unwrap_or(false);
         if flag(self.label(cells, "axis_found"), "axis_found")? == Some(false) {
             let note = "no axis stood out in the wave speeds: the moduli are about e3, which need not be an axis of symmetry";
             state.notes.push(note.to_owned());

@@ -77,9 +77,9 @@ const DATA: [Input; 30] = inputs! {
     "c13_sigma_pa" Stddev "of c13_pa" |s| s.sigma_of(Modulus::C13), |s, v| s.set_sigma(Modulus::C13, v);
     "theta_printed_pa" Datum "theta_pa of the model ratio-as-printed"
         |s| s.theta_printed, |s, v| s.theta_printed = Some(v);
-    "pressure_pa" Pressure "" |s| Some(s.pressure.value), |s, v| s.pressure.value = v;
+    "pressure_pa" Pressure "" |s| Some(s.conditions.pressure.value), |s, v| s.conditions.pressure.value = v;
     "pressure_sigma_pa" Stddev "standard deviation of the pressure"
-        |s| Some(s.pressure.stddev), |s, v| s.pressure.stddev = v;
+        |s| Some(s.conditions.pressure.stddev), |s, v| s.conditions.pressure.stddev = v;
     "gamma_over_delta" Datum "ratio of deviatoric to volumetric strain; measured by grainlab analyze: the next three (see --gamma)"
         |s| s.gamma.map(|g| g.value), |s, v| s.gamma = Some(Measured::exact(v));
     "gamma_over_delta_sigma" Stddev "standard deviation of gamma_over_delta"
@@ -89,16 +89,16 @@ const DATA: [Input; 30] = inputs! {
     "g_contact" Datum "" |s| s.measured_gamma.contact, |s, v| s.measured_gamma.contact = Some(v);
     "grain_shear_modulus_pa" Datum "" |s| s.grain_shear_modulus, |s, v| s.grain_shear_modulus = Some(v);
     "grain_shear_modulus_sigma_pa" Stddev "standard deviation of the shear modulus of the grains"
-        |s| Some(s.grain_shear_modulus_sigma), |s, v| s.grain_shear_modulus_sigma = v;
+        |s| Some(s.conditions.shear_modulus_stddev), |s, v| s.conditions.shear_modulus_stddev = v;
     "poisson" Datum "" |s| s.poisson, |s, v| s.poisson = Some(v);
-    "poisson_sigma" Stddev "standard deviation of poisson" |s| Some(s.poisson_sigma), |s, v| s.poisson_sigma = v;
-    "phi" Datum "" |s| s.phi.map(|p| p.value), |s, v| s.phi = Some(Measured::exact(v));
+    "poisson_sigma" Stddev "standard deviation of poisson" |s| Some(s.conditions.poisson_ratio_stddev), |s, v| s.conditions.poisson_ratio_stddev = v;
+    "phi" Datum "" |s| s.conditions.solid_fraction.map(|p| p.value), |s, v| s.conditions.solid_fraction = Some(Measured::exact(v));
     "phi_sigma" Stddev "standard deviation of phi"
-        |s| s.phi.map(|p| p.stddev), |s, v| if let Some(phi) = &mut s.phi { phi.stddev = v };
-    "axial_q_over_p" Datum "" |s| s.stress_ratio.map(|r| r.value), |s, v| s.stress_ratio = Some(Measured::exact(v));
+        |s| s.conditions.solid_fraction.map(|p| p.stddev), |s, v| if let Some(phi) = &mut s.conditions.solid_fraction { phi.stddev = v };
+    "axial_q_over_p" Datum "" |s| s.conditions.stress_ratio.map(|r| r.value), |s, v| s.conditions.stress_ratio = Some(Measured::exact(v));
     "axial_q_over_p_sigma" Stddev "standard deviation of axial_q_over_p"
-        |s| s.stress_ratio.map(|r| r.stddev), |s, v| if let Some(ratio) = &mut s.stress_ratio { ratio.stddev = v };
-    "size_spread" Datum "" |s| s.size_spread, |s, v| s.size_spread = Some(v);
+        |s| s.conditions.stress_ratio.map(|r| r.stddev), |s, v| if let Some(ratio) = &mut s.conditions.stress_ratio { ratio.stddev = v };
+    "size_spread" Datum "" |s| s.conditions.size_spread, |s, v| s.conditions.size_spread = Some(v);
     "grains" Datum "" |s| s.grains, |s, v| s.grains = Some(v);
 };
 
@@ -173,7 +173,7 @@ impl Serialize for State {
         for input in INPUTS.iter().filter(|input| !matches!(input.role, Role::Truth(_))) {
             map.serialize_entry(input.key, &input.get(self))?;
         }
-        map.serialize_entry("contact_law", &self.contact_law.map(|law| law.to_string()))?;
+        map.serialize_entry("contact_law", &self.conditions.contact_law.map(|law| law.to_string()))?;
         map.serialize_entry("asymmetry", &self.asymmetry)?;
         map.serialize_entry("relative_error", &self.relative_error)?;
         map.end()

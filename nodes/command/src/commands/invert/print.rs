@@ -28,7 +28,7 @@ impl Printer<'_> {
         let mut text = CsvText::default();
         for (result, case) in answer.inferences(self.cases).iter().zip(self.cases) {
             text.cell(answer.sample().unwrap_or_default());
-            text.number(state.map(|s| s.pressure.value));
+            text.number(state.map(|s| s.conditions.pressure.value));
             result.exact_cells(&mut text);
             text.number(result.gamma_over_delta);
             text.cell(state.map_or("", |s| s.gamma_source(case)));
@@ -65,7 +65,7 @@ impl Printer<'_> {
         for answer in answers {
             let line = answer.line.map_or_else(String::new, |l| format!("line {l}"));
             let sample = answer.sample().map_or_else(|| line.clone(), str::to_owned);
-            let pressure = answer.state.as_ref().ok().map(|s| kilopascals(s.pressure.value));
+            let pressure = answer.state.as_ref().ok().map(|s| kilopascals(s.conditions.pressure.value));
             let results = answer.inferences(self.cases);
             for (result, case) in results.iter().zip(self.cases) {
                 let asked = case.gamma.map_or("-", grainlab_emt::StrainRatioSource::name).to_owned();

@@ -42,7 +42,7 @@ pub(super) fn add(state: &mut State, path: &Path, density: Measured) -> Result<(
     }
     let (speeds, lines): (Vec<WaveSpeed>, Vec<u64>) =
         parsed(&text).map_err(|fault| Failure::usage(format!("{name}: {fault}")))?.into_iter().unzip();
-    let conditions = Conditions { pressure: state.pressure, ..Conditions::at(state.pressure.value) };
+    let conditions = Conditions { pressure: state.conditions.pressure, ..Conditions::default() };
     let fitted = moduli_from_speeds(&speeds, density, Some(Vec3::z()), conditions).map_err(|e| {
         let exit = if e.is_input_error() { Exit::Usage } else { Exit::PhysicsInvalid };
         Failure::new(exit, format!("{name}: {e}"))

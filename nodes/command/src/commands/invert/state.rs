@@ -2,7 +2,6 @@
 
 use super::case::Case;
 use grainlab_core::Material;
-use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::Microstructure;
 use grainlab_core::results::StrainRatios;
 use grainlab_emt::{
@@ -27,32 +26,19 @@ pub(crate) struct State {
     pub(crate) relative_error: Option<f64>,
     /// Θ for the model `ratio-as-printed`, if it differs, Pa.
     pub(crate) theta_printed: Option<f64>,
-    /// Confining pressure, Pa.
-    pub(crate) pressure: Measured,
+    /// The state besides γ/Δ and the material.
+    pub(crate) conditions: Conditions,
     /// The γ/Δ given.
     pub(crate) gamma: Option<Measured>,
     /// The γ/Δ measured by `grainlab analyze`.
     pub(crate) measured_gamma: StrainRatios,
-    pub(crate) phi: Option<Measured>,
-    /// (σ_33 − (σ_11 + σ_22)/2)/p.
-    pub(crate) stress_ratio: Option<Measured>,
-    /// Standard deviation of the radii over their mean.
-    pub(crate) size_spread: Option<f64>,
     /// Shear modulus of the grains, Pa.
     pub(crate) grain_shear_modulus: Option<f64>,
-    /// Pa; 0: exact.
-    pub(crate) grain_shear_modulus_sigma: f64,
     pub(crate) poisson: Option<f64>,
-    /// Standard deviation; 0: exact.
-    pub(crate) poisson_sigma: f64,
-    /// True if the moduli are those without tangential springs.
-    pub(crate) smooth: bool,
     /// Notes on the data, for every estimate.
     pub(crate) notes: Vec<String>,
     /// True if the data contradict each other, as the notes say.
     pub(crate) in_conflict: bool,
-    /// Contact law of the grains, if a table contains it.
-    pub(crate) contact_law: Option<ContactLaw>,
     /// Number of grains, if a table contains it.
     pub(crate) grains: Option<f64>,
     /// The true microstructure, if a table contains it.
@@ -66,11 +52,11 @@ impl State {
         [
             (self.grain_shear_modulus.is_some(), ("grain-shear-modulus", "grain_shear_modulus_pa")),
             (
-                self.grain_shear_modulus_sigma > 0.0,
+                self.conditions.shear_modulus_stddev > 0.0,
                 ("grain-shear-modulus-sigma", "grain_shear_modulus_sigma_pa"),
             ),
             (self.poisson.is_some(), ("poisson", "poisson")),
-            (self.poisson_sigma > 0.0, ("poisson-sigma", "poisson_sigma")),
+            (self.conditions.poisson_ratio_stddev > 0.0, ("poisson-sigma", "poisson_sigma")),
         ]
         .into_iter()
         .filter_map(|(given, flag)| given.then_some(flag))
@@ -112,16 +98,7 @@ impl State {
 
     /// The observation for this case.
     pub(super) fn observation(&self, case: &Case) -> Result<Observation, EmtError> {
-        let mut conditions = Conditions::at(self.pressure.value);
-        conditions.pressure = self.pressure;
-        conditions.solid_fraction = self.phi;
-        conditions.stress_ratio = self.stress_ratio;
-        conditions.size_spread = self.size_spread;
-        conditions.material = self.material(&case.calibration);
-        conditions.shear_modulus_stddev = self.grain_shear_modulus_sigma;
-        conditions.poisson_ratio_stddev = self.poisson_sigma;
-        conditions.smooth = self.smooth;
-        conditions.contact_law = self.contact_law;
+        let mut conditions = Conditions { material: self.material(&case.calibration), ..self.conditions };
         if case.model.uses_gamma() {
             let model = case.model.name();
             conditions.gamma =
@@ -196,7 +173,8 @@ impl State {
     /// is given, nor an error of one.
     fn material(&self, calibration: &Calibration) -> Option<Material> {
         let own = calibration.material();
-        let has_error = self.grain_shear_modulus_sigma > 0.0 || self.poisson_sigma > 0.0;
+        let has_error =
+            self.conditions.shear_modulus_stddev > 0.0 || self.conditions.poisson_ratio_stddev > 0.0;
         (self.grain_shear_modulus.is_some() || self.poisson.is_some() || has_error).then(|| Material {
             shear_modulus: self.grain_shear_modulus.unwrap_or(own.shear_modulus),
             poisson_ratio: self.poisson.unwrap_or(own.poisson_ratio),
@@ -239,7 +217,7 @@ mod tests {
             moduli,
             projected,
             relative_error: Some(0.01),
-            pressure: Measured::exact(5e4),
+            conditions: Conditions::at(5e4),
             ..State::default()
         }
     }
@@ -274,7 +252,7 @@ mod tests {
 
     #[test]
     fn unknown_properties_of_grains_are_those_of_the_calibration() {
-        let state = State { poisson: Some(0.3), pressure: Measured::exact(5e4), ..State::default() };
+        let state = State { poisson: Some(0.3), conditions: Conditions::at(5e4), ..State::default() };
         let material = state.material(&Calibration::PAPER).unwrap();
         assert_eq!((material.poisson_ratio, material.shear_modulus), (0.3, Material::GLASS.shear_modulus));
         assert_eq!(State::default().material(&Calibration::PAPER), None);

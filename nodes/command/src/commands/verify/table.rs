@@ -96,13 +96,13 @@ const COLUMNS: [Column; 17] = [
     ("ours", |r| exact(r.worst().map(|p| p.ours))),
     ("explained", |r| exact(r.worst().and_then(|p| p.explained))),
     ("unit", |r| r.unit.to_owned()),
-    ("measure", |r| r.measure.name().to_owned()),
+    ("measure", |r| name(r.measure)),
     ("difference", |r| exact(r.difference())),
     ("unexplained_difference", |r| exact(r.unexplained())),
     ("reproduced", |r| exact(r.worst().and_then(|p| p.reproduced))),
     ("unreproduced_difference", |r| exact(r.unreproduced())),
     ("tolerance", |r| exact(Some(r.tolerance))),
-    ("verdict", |r| r.verdict().name().to_owned()),
+    ("verdict", |r| name(r.verdict())),
     ("note", |r| r.note.clone()),
 ];
 
@@ -111,6 +111,11 @@ pub(super) fn csv(rows: &[Row]) -> String {
     let mut table = Table::new(COLUMNS.map(|(name, _)| name));
     rows.iter().for_each(|row| table.row(COLUMNS.map(|(_, cell)| cell(row))));
     table.csv()
+}
+
+/// The name of a measure or a verdict, as in JSON.
+fn name(word: impl Serialize) -> String {
+    serde_json::json!(word).as_str().unwrap_or_default().to_owned()
 }
 
 fn dash() -> String {

@@ -1,7 +1,6 @@
 //! Members as an array of tasks of a scheduler.
 
 use super::options::Options;
-use super::pending::pending;
 use crate::campaign::Campaign;
 use crate::command::{command, line};
 use crate::folder::{Folder, MemberState};
@@ -101,7 +100,7 @@ pub(super) fn run(
 ) -> Result<bool, Failure> {
     let signals = Signals::install().map_err(Failure::failed)?;
     for tries in 0..=options.retries {
-        let open = pending(campaign, folder);
+        let open = folder.pending(campaign);
         if open.is_empty() {
             break;
         }
@@ -145,7 +144,7 @@ pub(super) fn run(
             return Err(Failure::failed(format!("{name} ended with {status}: {last}: {advice}")));
         }
     }
-    pending(campaign, folder).iter().try_for_each(|n| folder.give_up(&campaign.members[*n]))?;
+    folder.pending(campaign).iter().try_for_each(|n| folder.give_up(&campaign.members[*n]))?;
     Ok(false)
 }
 

@@ -1,6 +1,18 @@
 //! Options of a campaign.
 
-use super::Engine;
+/// An engine that runs the members of a campaign.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Engine {
+    /// On this machine, some at a time
+    #[default]
+    Local,
+    /// As a job array of Slurm, by sbatch
+    Slurm,
+    /// As a task array of HyperQueue, by hq
+    Hq,
+    /// Nowhere: print the commands as a shell script
+    Print,
+}
 
 /// Engine that runs the members, and its options.
 #[derive(Clone, Copy, Debug, clap::Args)]

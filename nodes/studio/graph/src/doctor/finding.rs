@@ -43,11 +43,7 @@ impl Finding {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let severity = match self.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-            Severity::Note => "note",
-        };
+        let severity = format!("{:?}", self.severity).to_lowercase();
         writeln!(f, "{severity}: {}", self.what)?;
         writeln!(f, "  {}", self.advice)
     }

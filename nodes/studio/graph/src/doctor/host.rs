@@ -1,7 +1,7 @@
 //! Network and environment of this host.
 
 use super::finding::Finding;
-use super::processes::udp_sockets;
+use super::processes::{first_port, udp_sockets};
 use grainlab_node_kit::{Network, Reach};
 use socket2::{Domain, Protocol, Socket, Type};
 use std::collections::BTreeSet;
@@ -19,11 +19,6 @@ const BUFFER: u64 = 1 << 20;
 
 /// Greatest domain whose ports do not overlap with the ephemeral ports of Linux.
 const SAFE_DOMAIN: u16 = 101;
-
-/// The first port of a domain (RTPS 9.6.2.3).
-pub(super) fn first_port(domain: u16) -> u16 {
-    7400 + 250 * domain
-}
 
 /// Variables that have no effect, or that contradict each other.
 pub(super) fn environment(get: impl Fn(&str) -> Option<String>) -> Vec<Finding> {

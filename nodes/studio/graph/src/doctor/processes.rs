@@ -1,10 +1,14 @@
 //! Processes of a domain that are stopped. Discovery does not show them to a process that starts later.
 
 use super::finding::Finding;
-use super::host::first_port;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
+
+/// The first port of a domain (RTPS 9.6.2.3).
+pub(super) fn first_port(domain: u16) -> u16 {
+    7400 + 250 * domain
+}
 
 /// Findings about stopped processes of this host that hold a UDP port of the domain.
 pub(super) fn stopped(domain: u16) -> Vec<Finding> {

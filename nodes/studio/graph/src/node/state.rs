@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 #[derive(Serialize)]
-struct Row {
+struct NodeState {
     node: String,
     /// `ok`, `warning`, `error`, or `silent`.
     level: &'static str,
@@ -19,7 +19,7 @@ struct Row {
     values: BTreeMap<String, String>,
 }
 
-fn row(report: &Report) -> Row {
+fn row(report: &Report) -> NodeState {
     let level = match report.health.level {
         Level::Ok => "ok",
         Level::Warn => "warning",
@@ -27,17 +27,17 @@ fn row(report: &Report) -> Row {
     };
     let values = report.health.values.iter().map(|(key, value)| (key.clone(), value.clone())).collect();
     let state = report.health.message.clone();
-    Row { node: report.node.clone(), level, state, pid: Some(report.pid), values }
+    NodeState { node: report.node.clone(), level, state, pid: Some(report.pid), values }
 }
 
 pub(super) fn run(common: &Common) -> Result<Exit, Failure> {
     let mut observer = Observer::join()?;
     let graph = observer.settled(common.patience());
     let heard = latest_reports(&mut observer)?;
-    let mut rows: BTreeMap<String, Row> =
+    let mut rows: BTreeMap<String, NodeState> =
         heard.iter().map(|(node, report)| (node.clone(), row(report))).collect();
     for node in graph.reporting() {
-        rows.entry(node.clone()).or_insert_with(|| Row {
+        rows.entry(node.clone()).or_insert_with(|| NodeState {
             node,
             level: "silent",
             state: "no report: stopped, hanging, or killed less than a minute ago".into(),
@@ -45,7 +45,7 @@ pub(super) fn run(common: &Common) -> Result<Exit, Failure> {
             values: BTreeMap::new(),
         });
     }
-    let rows: Vec<Row> = rows.into_values().collect();
+    let rows: Vec<NodeState> = rows.into_values().collect();
     common.show(&rows, || {
         let mut table = Table::new(["node", "level", "pid", "state"]);
         for r in &rows {

@@ -1,6 +1,7 @@
 //! Results of rows and headers.
 
 use super::*;
+use grainlab_emt::Conditions;
 
 fn columns(header: &str) -> Columns {
     Columns::of_header(header.as_bytes(), &[], State::default()).unwrap()
@@ -162,7 +163,7 @@ fn a_packing_without_stiffness_is_a_row_without_moduli() {
 fn pressures_are_in_the_unit_that_their_column_names() {
     for header in ["p_kpa,g12_pa", "p_pa,g12_pa", "pressure_pa,g12_pa"] {
         let unit = if header.starts_with("p_kpa") { 1e3 } else { 1.0 };
-        assert_eq!(state(header, "50,1").unwrap().pressure.value, 50.0 * unit, "{header}");
+        assert_eq!(state(header, "50,1").unwrap().conditions.pressure.value, 50.0 * unit, "{header}");
     }
     assert!(state("p_pa,g12_pa", ",1").unwrap_err().contains("p_pa is empty"));
 }
@@ -199,9 +200,9 @@ fn smooth_grains_of_an_analysis_and_errors_of_what_is_not_there_are_not_overlook
     assert!(
         ["true", "True"]
             .iter()
-            .all(|yes| state("p_pa,g12_pa,smooth", &format!("5e4,1e8,{yes}")).unwrap().smooth)
+            .all(|yes| state("p_pa,g12_pa,smooth", &format!("5e4,1e8,{yes}")).unwrap().conditions.smooth)
     );
-    assert!(!state("p_pa,g12_pa,smooth", "5e4,1e8,").unwrap().smooth);
+    assert!(!state("p_pa,g12_pa,smooth", "5e4,1e8,").unwrap().conditions.smooth);
     assert!(state("p_pa,g12_pa,smooth", "5e4,1e8,maybe").unwrap_err().contains("not true or false"));
     let lonely = state("p_pa,g12_pa,axial_q_over_p,axial_q_over_p_sigma", "5e4,1e8,,0.1").unwrap_err();
     assert!(lonely.contains("column axial_q_over_p_sigma is a standard deviation"), "{lonely}");
@@ -210,7 +211,11 @@ fn smooth_grains_of_an_analysis_and_errors_of_what_is_not_there_are_not_overlook
 #[test]
 fn a_flag_beside_its_column_is_refused_and_fills_a_missing_one() {
     let with = |header: &str| {
-        let defaults = State { poisson: Some(0.3), grain_shear_modulus_sigma: 1e9, ..State::default() };
+        let defaults = State {
+            poisson: Some(0.3),
+            conditions: Conditions { shear_modulus_stddev: 1e9, ..Conditions::default() },
+            ..State::default()
+        };
         Columns::of_header(header.as_bytes(), &[], defaults).err().unwrap_or_default()
     };
     assert!(with("p_pa,g12_pa,poisson").contains("--poisson contradicts the column poisson"));
@@ -225,7 +230,7 @@ fn frictionless_rows_without_a_word_on_springs_are_refused() {
     let fault = state("p_pa,g12_pa,friction", "5e4,1e8,0").unwrap_err();
     assert!(fault.contains("no tangential springs") && fault.contains("column smooth"), "{fault}");
     assert!(state("p_pa,g12_pa,friction", "5e4,1e8,0.3").is_ok());
-    assert!(!state("p_pa,g12_pa,friction,smooth", "5e4,1e8,0,false").unwrap().smooth);
+    assert!(!state("p_pa,g12_pa,friction,smooth", "5e4,1e8,0,false").unwrap().conditions.smooth);
 }
 
 #[test]
