@@ -71,13 +71,7 @@ impl Observation {
     }
 
     /// The three moduli that the paper uses and the pressure, all Pa.
-    pub const fn from_g12_g13_theta(
-        g12: f64,
-        g13: f64,
-        theta: f64,
-        pressure: f64,
-        gamma: StrainRatio,
-    ) -> Self {
+    pub fn from_g12_g13_theta(g12: f64, g13: f64, theta: f64, pressure: f64, gamma: StrainRatio) -> Self {
         let mut conditions = Conditions::at(pressure);
         conditions.gamma = gamma;
         Self::new(Moduli::paper(g12, g13, theta), conditions)

@@ -5,7 +5,7 @@ use grainlab_calibration::CalibrationSample;
 use grainlab_console::{Failure, say};
 use grainlab_core::Material;
 use grainlab_core::contact::SpringLaw;
-use grainlab_emt::Modulus;
+use grainlab_emt::{Conditions, Modulus};
 use std::path::Path;
 
 /// Largest median of |eps| of isotropic packings, and what chance makes of it over the root of the number of grains: .27 in
@@ -70,8 +70,9 @@ pub(super) fn check_isotropic(samples: &[CalibrationSample]) -> Result<(), Strin
 
 /// The first `preparation` cells grouped by identify the preparation, those after them the packing.
 fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
-    let State { moduli, truth, phi, stress_ratio, size_spread, grains, grain_shear_modulus, poisson, .. } =
-        &row.state;
+    let State { moduli, truth, conditions, grains, grain_shear_modulus, poisson, .. } = &row.state;
+    let Conditions { pressure, solid_fraction, stress_ratio, size_spread, contact_law, smooth, .. } =
+        conditions;
     let need = |value: Option<f64>, name: &str| match value {
         Some(value) if value.is_finite() => Ok(value),
         Some(value) => Err(format!("{name} = {value} is not finite")),
@@ -82,17 +83,17 @@ fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
             return Err(format!("{modulus} is not positive: there is no network"));
         }
     }
-    need(Some(row.state.pressure.value), "the pressure")?;
+    need(Some(pressure.value), "the pressure")?;
     if let Some(spread) = size_spread.filter(|s| !(0.0..=1.0).contains(s)) {
         return Err(format!("size_spread = {spread} is outside [0, 1]"));
     }
     if let Some(ratio) = stress_ratio.filter(|r| !(-1.5..=3.0).contains(&r.value)) {
         return Err(format!("axial_q_over_p = {} is outside [-1.5, 3]", ratio.value));
     }
-    if row.state.smooth {
+    if *smooth {
         return Err("its moduli are those without tangential springs, which no model is for".to_owned());
     }
-    if let Some(law) = row.state.contact_law.filter(|law| law.springs != SpringLaw::HertzMindlin) {
+    if let Some(law) = contact_law.filter(|law| law.springs != SpringLaw::HertzMindlin) {
         return Err(format!("its contact law is {law}, and every model is for Hertz-Mindlin contacts"));
     }
     let (preparation, packing) = row.group.split_at(preparation);
@@ -105,8 +106,8 @@ fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
             poisson_ratio: poisson.unwrap_or(Material::GLASS.poisson_ratio),
             ..Material::GLASS
         },
-        pressure: row.state.pressure.value,
-        solid_fraction: need(phi.map(|p| p.value), "phi")?,
+        pressure: pressure.value,
+        solid_fraction: need(solid_fraction.map(|p| p.value), "phi")?,
         // Tables without them are of equal grains in an isotropic stress.
         stress_ratio: need(Some(stress_ratio.map_or(0.0, |ratio| ratio.value)), "axial_q_over_p")?,
         size_spread: need(Some(size_spread.unwrap_or(0.0)), "size_spread")?,
