@@ -2,10 +2,11 @@
 
 use crate::energy::residual;
 use crate::phased::{MOST_PHASES, PhaseAxis, Phased, bins_of};
+use grainlab_console::Failure;
 use grainlab_core::results::PackingReport;
 use grainlab_core::{ComponentControl, Packing};
 use grainlab_msgs::{Topic, msg, simulated_seconds, topics};
-use grainlab_recordings::{ChannelInfo, Message, OneRun, ReadError, Recording, RunSign, Selection};
+use grainlab_recordings::{ChannelInfo, Message, OneRun, Recording, RunSign, Selection};
 use grainlab_servo::ServoRequest;
 use grainlab_viewer::{Film, View};
 use std::collections::BTreeMap;
@@ -71,7 +72,7 @@ impl Timeline {
     }
 
     /// Reads the recording of a run of this number of phases.
-    pub(crate) fn read(recording: &Recording, phases: usize) -> Result<Self, ReadError> {
+    pub(crate) fn read(recording: &Recording, phases: usize) -> Result<Self, Failure> {
         let wanted =
             [topics::STRESS, topics::PACKING_REPORT, topics::PACKING, topics::RUN_STATE, topics::ENERGY];
         let of = |c: &ChannelInfo| {
