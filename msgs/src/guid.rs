@@ -12,16 +12,12 @@ pub struct Guid(pub [u8; 16]);
 impl Guid {
     /// Stands for every endpoint of a participant: its entity is zero.
     pub fn of_participant(participant: [u8; 12]) -> Self {
-        let mut id = [0; 16];
-        id[..12].copy_from_slice(&participant);
-        Self(id)
+        Self(std::array::from_fn(|n| participant.get(n).copied().unwrap_or(0)))
     }
 
     /// The GUID prefix: the 12 bytes that all endpoints of one process share.
     pub fn participant(&self) -> [u8; 12] {
-        let mut prefix = [0; 12];
-        prefix.copy_from_slice(&self.0[..12]);
-        prefix
+        std::array::from_fn(|n| self.0[n])
     }
 }
 
@@ -37,21 +33,18 @@ impl fmt::Debug for Guid {
     }
 }
 
-/// The text is not 32 hexadecimal digits.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is not a GUID: 32 hexadecimal digits are needed")]
-pub struct GuidError(pub String);
-
 impl FromStr for Guid {
-    type Err = GuidError;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, GuidError> {
+    fn from_str(text: &str) -> Result<Self, String> {
         // Digits only: from_str_radix alone would accept a sign.
         let value = match text.len() {
             32 if text.bytes().all(|b| b.is_ascii_hexdigit()) => u128::from_str_radix(text, 16).ok(),
             _ => None,
         };
-        value.map(|v| Self(v.to_be_bytes())).ok_or_else(|| GuidError(text.to_owned()))
+        value
+            .map(|v| Self(v.to_be_bytes()))
+            .ok_or_else(|| format!("{text:?} is not a GUID: 32 hexadecimal digits are needed"))
     }
 }
 

@@ -36,7 +36,7 @@ pub use generated::{
     builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs, sensor_msgs, std_msgs,
     tf2_msgs, visualization_msgs,
 };
-pub use guid::{Guid, GuidError};
+pub use guid::Guid;
 pub use health::{Health, Level};
 pub use message::{FieldInfo, Message, TypeInfo};
 pub use report::{Published, Received, Report};

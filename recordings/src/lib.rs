@@ -8,6 +8,7 @@
 //! - [`copy`]: recordings made from others: cut, merged, filtered, compressed
 //! - `definitions`: schemas of message types; `qos`: profiles of rosbag2
 //! - [`OneRun`]: whether packings and requests are of one run
+//! - [`TopicNames`]: topics on the command line
 //! - `player`: the schedule of a playback, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and recordings
 //! - [`input`]: external files, regular and of bounded size; [`runs`]: run directories; [`Lock`], [`run_state()`]: one process at a time in each, and how far it came; [`scenes`]: scenes by name or path
@@ -36,6 +37,7 @@ mod run_state;
 pub mod runs;
 pub mod scenes;
 pub mod strangers;
+mod topic_names;
 mod writer;
 
 pub use compression::Compression;
@@ -48,9 +50,10 @@ pub use one_run::{OneRun, RunSign, SeveralRuns};
 pub use player::{Play, PlayOptions, Player};
 pub use qos::{QosOverrides, adapted, offered_profiles, profiles};
 pub use reader::{
-    ChannelInfo, Check, Info, Message, Messages, Payload, ReadError, Recording, Selection, StoredDefinition,
-    StoredFile, TopicInfo, Warning, WarningKind,
+    ChannelInfo, Check, Info, Message, Messages, Payload, Recording, Selection, StoredDefinition, StoredFile,
+    TopicInfo, Warning, WarningKind,
 };
 pub use recover::{RecoveredFile, Recovery, recover};
 pub use run_state::{RunState, end_reason, run_state};
+pub use topic_names::TopicNames;
 pub use writer::{Finished, Incoming, Outcome, RunWriter, TopicSpec, WriterOptions};

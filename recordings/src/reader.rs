@@ -30,7 +30,8 @@ mod walk;
 
 pub use channel::ChannelInfo;
 pub use definition::StoredDefinition;
-pub use error::{ReadError, Warning, WarningKind};
+pub(crate) use error::no_such_topic;
+pub use error::{Warning, WarningKind};
 pub use info::{Info, TopicInfo};
 pub use message::{Message, Payload};
 pub use messages::Messages;

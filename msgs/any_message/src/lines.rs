@@ -51,22 +51,30 @@ pub(crate) fn declaration(line: &str) -> Result<Option<Declaration<'_>>, String>
     Ok(Some(Declaration { type_text, name, constant, default }))
 }
 
-/// The line before a `#` that is not within quotes.
-fn without_comment(line: &str) -> &str {
-    let mut quote = None;
-    let mut escaped = false;
-    for (at, c) in line.char_indices() {
+/// Places of a character that are not within quotes, and whether a quote is open at the end.
+pub(crate) fn outside_quotes(text: &str, wanted: char) -> (Vec<usize>, bool) {
+    let (mut places, mut quote, mut escaped) = (Vec::new(), None, false);
+    for (at, c) in text.char_indices() {
         match (c, quote) {
             _ if escaped => escaped = false,
             ('\\', Some(_)) => escaped = true,
-            ('#', None) => return &line[..at],
+            (c, None) if c == wanted => places.push(at),
             ('"' | '\'', None) => quote = Some(c),
             (c, Some(open)) if c == open => quote = None,
             _ => {}
         }
     }
-    // A single quote that is never closed is an apostrophe.
-    if quote.is_some() { line.split('#').next().unwrap_or(line) } else { line }
+    (places, quote.is_some())
+}
+
+/// The line before a `#` that is not within quotes.
+fn without_comment(line: &str) -> &str {
+    match outside_quotes(line, '#') {
+        (places, _) if !places.is_empty() => &line[..places[0]],
+        // A single quote that is never closed is an apostrophe.
+        (_, true) => line.split('#').next().unwrap_or(line),
+        _ => line,
+    }
 }
 
 /// The parts of `string<=10[<=3]` and the like.

@@ -1,5 +1,6 @@
 //! Values in message files: of constants and defaults, as rosidl reads them.
 
+use crate::lines::outside_quotes;
 use crate::types::{Element, FieldType, Length, Primitive};
 
 /// An error unless `text` is a value of the type.
@@ -101,22 +102,15 @@ fn check_text(text: &str, bound: Option<u32>) -> Result<(), String> {
 
 /// The parts between commas that are not within quotes.
 fn split(inside: &str) -> Vec<&str> {
-    let (mut parts, mut quote, mut escaped, mut from) = (Vec::new(), None, false, 0);
-    for (at, c) in inside.char_indices() {
-        match (c, quote) {
-            _ if escaped => escaped = false,
-            ('\\', Some(_)) => escaped = true,
-            (',', None) => {
-                parts.push(inside[from..at].trim());
-                from = at + 1;
-            }
-            ('"' | '\'', None) => quote = Some(c),
-            (c, Some(open)) if c == open => quote = None,
-            _ => {}
-        }
+    if inside.trim().is_empty() {
+        return Vec::new();
     }
-    parts.push(inside[from..].trim());
-    if inside.trim().is_empty() { Vec::new() } else { parts }
+    let (mut parts, mut from) = (Vec::new(), 0);
+    for at in outside_quotes(inside, ',').0.into_iter().chain([inside.len()]) {
+        parts.push(inside[from..at].trim());
+        from = at + 1;
+    }
+    parts
 }
 
 #[cfg(test)]

@@ -55,15 +55,15 @@ impl Schema {
     /// assert_eq!(mapping.notes(), ["the fields of p/A are in another order"]);
     /// ```
     pub fn compare(&self, wanted: &Self) -> Comparison {
-        let mut found = Found::default();
+        let mut found = Differences::default();
         if self.root().name != wanted.root().name {
             found.faults.push(format!("its type is {}, not {}", self.root().name, wanted.root().name));
         }
         found.message(self.root(), wanted.root());
         match found {
-            Found { faults, .. } if !faults.is_empty() => Comparison::Differs(faults),
-            Found { notes, .. } if notes.is_empty() => Comparison::Same,
-            Found { notes, .. } => {
+            Differences { faults, .. } if !faults.is_empty() => Comparison::Differs(faults),
+            Differences { notes, .. } if notes.is_empty() => Comparison::Same,
+            Differences { notes, .. } => {
                 Comparison::Mapped(Mapping { from: self.clone(), to: wanted.clone(), notes })
             }
         }
@@ -71,14 +71,14 @@ impl Schema {
 }
 
 #[derive(Default)]
-struct Found {
+struct Differences {
     faults: Vec<String>,
     notes: Vec<String>,
     /// Types that were compared.
     done: BTreeSet<String>,
 }
 
-impl Found {
+impl Differences {
     fn message(&mut self, written: &MessageType, wanted: &MessageType) {
         let name = &wanted.name;
         if !self.done.insert(name.clone()) {

@@ -250,7 +250,8 @@ pub(super) fn tensor_message(t: &SymTensor) -> SymmetricTensor {
     SymmetricTensor { xx: t.xx, yy: t.yy, zz: t.zz, yz: t.yz, xz: t.xz, xy: t.xy }
 }
 
-pub(super) fn vector_message(v: &Vec3) -> Vector3 {
+/// A vector as a message.
+pub fn vector_message(v: &Vec3) -> Vector3 {
     Vector3 { x: v.x, y: v.y, z: v.z }
 }
 

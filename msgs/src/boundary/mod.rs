@@ -6,7 +6,6 @@
 mod check;
 mod contact_statistics;
 mod elastic_stiffness;
-mod energy;
 mod error;
 mod estimate;
 mod fabric;
@@ -22,11 +21,10 @@ mod symmetry;
 mod wave_speeds;
 mod waveform;
 
-pub use energy::EnergyReading;
+pub use check::vector_message;
 pub use error::BoundaryError;
 pub use estimate::{DATA, Interval, ModelResult, Quantities};
 pub use moduli::ModuliReading;
 pub use packing::{packing_header, packing_message};
 pub use packing_report::packing_report_message;
 pub use wave_speeds::{WaveSpeedsReading, wave_speeds_message};
-pub use waveform::{TraceReading, WaveformReading, waveform_message};

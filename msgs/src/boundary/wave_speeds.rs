@@ -10,14 +10,16 @@ use grainlab_core::{MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 
 const CHECK: Check = Check("WaveSpeeds");
 
-/// A method with its code in messages.
-pub(super) const fn code(method: WaveMethod) -> u8 {
-    match method {
-        WaveMethod::FirstArrival => msg::WaveSpeed::METHOD_FIRST_ARRIVAL,
-        WaveMethod::CrossCorrelation => msg::WaveSpeed::METHOD_CROSS_CORRELATION,
-        WaveMethod::Peak => msg::WaveSpeed::METHOD_PEAK,
-        WaveMethod::StandingWave => msg::WaveSpeed::METHOD_STANDING_WAVE,
-        WaveMethod::Dispersion => msg::WaveSpeed::METHOD_DISPERSION,
+impl msg::WaveSpeed {
+    /// The code of a method in messages.
+    pub const fn code(method: WaveMethod) -> u8 {
+        match method {
+            WaveMethod::FirstArrival => Self::METHOD_FIRST_ARRIVAL,
+            WaveMethod::CrossCorrelation => Self::METHOD_CROSS_CORRELATION,
+            WaveMethod::Peak => Self::METHOD_PEAK,
+            WaveMethod::StandingWave => Self::METHOD_STANDING_WAVE,
+            WaveMethod::Dispersion => Self::METHOD_DISPERSION,
+        }
     }
 }
 
@@ -112,7 +114,7 @@ pub fn wave_speeds_message(
 fn speed_message(measured: &MeasuredWave) -> msg::WaveSpeed {
     let wave = &measured.wave;
     msg::WaveSpeed {
-        method: code(measured.method),
+        method: msg::WaveSpeed::code(measured.method),
         direction: vector_message(&wave.direction),
         polarization: vector_message(&wave.polarization),
         speed: wave.speed,
@@ -178,7 +180,7 @@ fn speed(index: usize, s: &msg::WaveSpeed) -> Result<MeasuredWave, BoundaryError
 
 /// The method of a code.
 pub(super) fn method(check: Check, field: &str, number: u8) -> Result<WaveMethod, BoundaryError> {
-    WaveMethod::ALL.into_iter().find(|m| code(*m) == number).ok_or_else(|| {
+    WaveMethod::ALL.into_iter().find(|m| msg::WaveSpeed::code(*m) == number).ok_or_else(|| {
         let known = "0 (first arrival), 1 (cross correlation), 2 (peak), 3 (standing wave), 4 (dispersion)";
         check.code(field, number, known)
     })

@@ -20,7 +20,7 @@ use grainlab_console::Failure;
 const BUFFER: usize = 1 << 20;
 
 pub(super) struct Output {
-    mcap: Option<mcap::Writer<BufWriter<File>>>,
+    mcap: mcap::Writer<BufWriter<File>>,
     /// The final name.
     path: PathBuf,
     new: NewPath,
@@ -48,8 +48,10 @@ impl Output {
         } else {
             new.partial().to_owned()
         };
-        let mut output = Self {
-            mcap: None,
+        let opened = File::create_new(&file).map_err(io("create the file"))?;
+        let mcap = options.writer(profile).create(BufWriter::with_capacity(BUFFER, opened));
+        Ok(Self {
+            mcap: mcap.map_err(|e| cannot(path, "write the header")(reason(e)))?,
             path: path.to_owned(),
             new,
             file,
@@ -58,11 +60,7 @@ impl Output {
             channels: Vec::new(),
             counts: Vec::new(),
             bounds: None,
-        };
-        let opened = File::create_new(&output.file).map_err(io("create the file"))?;
-        let mcap = options.writer(profile).create(BufWriter::with_capacity(BUFFER, opened));
-        output.mcap = Some(mcap.map_err(|e| cannot(path, "write the header")(reason(e)))?);
-        Ok(output)
+        })
     }
 
     fn with<T>(
@@ -70,11 +68,7 @@ impl Output {
         action: &'static str,
         run: impl FnOnce(&mut mcap::Writer<BufWriter<File>>) -> Result<T, McapError>,
     ) -> Result<T, Failure> {
-        let outcome = match self.mcap.as_mut() {
-            Some(mcap) => run(mcap),
-            None => Err(McapError::AttemptedWriteAfterFailure),
-        };
-        outcome.map_err(|e| cannot(&self.path, action)(reason(e)))
+        run(&mut self.mcap).map_err(|e| cannot(&self.path, action)(reason(e)))
     }
 
     /// Declares the next channel.
@@ -130,11 +124,9 @@ impl Output {
         let path = self.path.clone();
         let io = |action| cannot::<io::Error>(&path, action);
         self.with("write the index", |mcap| mcap.finish().map(drop))?;
-        if let Some(mcap) = self.mcap.take() {
-            let file = mcap.into_inner().into_inner();
-            file.map_err(|e| io("write the end of the file")(e.into_error()))?;
-        }
-        let bytes = self.file.metadata().map_err(io("query the size"))?.len();
+        let file = self.mcap.into_inner().into_inner();
+        let file = file.map_err(|e| io("write the end of the file")(e.into_error()))?;
+        let bytes = file.metadata().map_err(io("query the size"))?.len();
         if self.is_directory {
             let messages = self.counts.iter().sum();
             let name = self.file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();

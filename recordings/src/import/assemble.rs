@@ -9,7 +9,7 @@ use super::contacts::{self, SearchError};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::setting::Setting;
-use super::settings::{ImportOptions, Settings};
+use super::settings::{ImportOptions, Properties};
 use super::text::{Line, digits};
 
 /// Grains in the order and with the ids of a file.
@@ -64,7 +64,7 @@ pub(super) enum ListedForce {
 
 /// Other known properties of the state.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct State {
+pub(super) struct Moment {
     pub(super) step: u64,
     /// Simulated time, s.
     pub(super) time: f64,
@@ -73,7 +73,7 @@ pub(super) struct State {
     pub(super) time_step: f64,
 }
 
-impl State {
+impl Moment {
     pub(super) fn at(step: u64) -> Self {
         Self { step, time: 0.0, deformation: Packing::no_reference(), time_step: 0.0 }
     }
@@ -192,9 +192,9 @@ pub(super) fn apart_in_cell(cell: &Cell, difference: &Vec3) -> f64 {
 /// The packing of these grains; contacts that are not listed (`None`) are found from positions.
 pub(super) fn packing(
     grains: GrainTable,
-    settings: &Settings,
+    settings: &Properties,
     listed: Option<&[ListedContact]>,
-    state: State,
+    state: Moment,
     source: String,
     mut notes: Vec<String>,
 ) -> Result<Imported, ImportError> {

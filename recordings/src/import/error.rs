@@ -4,18 +4,18 @@ use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use grainlab_console::Failure;
 use grainlab_core::PackingError;
 
 use super::contacts::SearchError;
 use super::setting::Setting;
-use crate::reader::ReadError;
 
 /// Errors of an import.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
     /// A recording cannot be read.
     #[error(transparent)]
-    Recording(#[from] ReadError),
+    Recording(#[from] Failure),
     /// An error with its file.
     #[error("{path}: {source}")]
     In {

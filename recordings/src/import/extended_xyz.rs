@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 use grainlab_core::Mat3;
 use grainlab_core::contact::ContactLaw;
 
-use super::assemble::{self, GrainTable, State};
+use super::assemble::{self, GrainTable, Moment};
 use super::columns::{Columns, Names, three};
 use super::error::ImportError;
 use super::imported::Imported;
@@ -73,7 +73,7 @@ const NAMES: Names = Names {
 /// The comment of a frame.
 struct Frame {
     known: Known,
-    state: State,
+    state: Moment,
     columns: Columns,
     /// Places of the position.
     position: [usize; 3],
@@ -136,7 +136,7 @@ impl Frame {
                 law: law(line, &entries)?,
                 friction: number("friction")?,
             },
-            state: State { time: number("Time")?.unwrap_or(0.0), ..State::at(step.unwrap_or(0)) },
+            state: Moment { time: number("Time")?.unwrap_or(0.0), ..Moment::at(step.unwrap_or(0)) },
             columns: Columns::new(line, &names, &NAMES)?,
             position: position.ok_or_else(|| line.error("Properties has no column pos:R:3"))?,
             notes: unread(&bases),

@@ -15,7 +15,7 @@ const SKEW: f64 = 1e-3;
 const SAMPLE: usize = 2000;
 
 /// A row: the ids and the columns of the forces as numbers, and its text.
-pub(super) struct Row<'a> {
+pub(super) struct ForceRow<'a> {
     pub(super) ids: (u32, u32),
     /// On the first grain, N.
     pub(super) normal: Vec3,
@@ -51,13 +51,14 @@ fn is_across(force: &Vec3, direction: &Vec3, whole: f64) -> bool {
 /// Refuses columns that are not those of a normal and a tangential force, and names those that are. `columns` are the names of
 /// the ids, of the normal and of the tangential force, and `names` those of all columns.
 pub(super) fn check(
-    rows: &[Row<'_>],
+    rows: &[ForceRow<'_>],
     (columns, names): (&[&str], &[&str]),
     (grains, cell): (&GrainTable, &Cell),
 ) -> Result<(), ImportError> {
     let index = grains.ids.iter().enumerate().map(|(k, id)| (*id, k)).collect();
     let directions = Directions { grains, cell, index };
-    let known: Vec<(&Row<'_>, Vec3)> = rows.iter().filter_map(|r| Some((r, directions.of(r.ids)?))).collect();
+    let known: Vec<(&ForceRow<'_>, Vec3)> =
+        rows.iter().filter_map(|r| Some((r, directions.of(r.ids)?))).collect();
     let skew = |part: &str, count: usize, columns: &[&str]| {
         (count > 0).then(|| format!("{part} ({}) in {count} of {} contacts", columns.join(" "), known.len()))
     };
@@ -75,7 +76,7 @@ pub(super) fn check(
         return Err(refused(&problem.unwrap_or_default()));
     }
     let off = known.iter().filter(|(r, d)| !is_along(&r.normal, d)).count();
-    let whole = |r: &Row<'_>| r.normal.norm() + r.tangential.norm();
+    let whole = |r: &ForceRow<'_>| r.normal.norm() + r.tangential.norm();
     let along = known.iter().filter(|(r, d)| !is_across(&r.tangential, d, whole(r))).count();
     let faults: Vec<String> = [
         skew("the normal force is not along the line between the centres", off, &columns[2..5]),
@@ -92,7 +93,7 @@ pub(super) fn check(
 
 /// The columns that fit: three in a row along the line between the centres, and three in a row across it that are no part of
 /// the normal force.
-fn likely(rows: &[(&Row<'_>, Vec3)], names: &[&str], columns: &[&str]) -> String {
+fn likely(rows: &[(&ForceRow<'_>, Vec3)], names: &[&str], columns: &[&str]) -> String {
     let numbers: Vec<(Vec<f64>, Vec3)> = rows
         .iter()
         .map(|(r, d)| (r.text.split_whitespace().map(|w| w.parse().unwrap_or(f64::NAN)).collect(), *d))

@@ -8,11 +8,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use grainlab_core::{Mat3, Vec3};
 
-use super::assemble::{self, GrainTable, State};
+use super::assemble::{GrainTable, Moment};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::lammps_cell::lammps_cell;
-use super::lammps_local::{self, Local};
+use super::lammps_local;
 use super::settings::{ImportOptions, Known};
 use super::stated;
 use super::text::{Line, lines};
@@ -43,9 +43,7 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
             }
         }
     }
-    let of_step = |text| lammps_local::contacts(text, &options.contact_columns, file.step);
-    let local = options.contact_forces.as_deref().map(of_step).transpose()?;
-    file.finish(options, local.as_ref())
+    file.finish(options)
 }
 
 /// Sections of what is no single sphere, which the header counts under the same names.
@@ -166,11 +164,7 @@ impl DataFile {
         }
     }
 
-    fn finish(
-        mut self,
-        options: &ImportOptions,
-        forces: Option<&Local<'_>>,
-    ) -> Result<Imported, ImportError> {
+    fn finish(mut self, options: &ImportOptions) -> Result<Imported, ImportError> {
         let moving = self.motion.len();
         for (k, id) in self.grains.ids.iter().enumerate() {
             match self.motion.remove(id) {
@@ -212,13 +206,7 @@ impl DataFile {
                 .push(4.0 / 3.0 * std::f64::consts::PI * self.densities[k] * self.grains.radii[k].powi(3));
         }
         let grains = self.grains.sorted_by_id();
-        forces.map_or(Ok(()), |forces| forces.check(&grains, &settings.cell))?;
-        let contacts = forces.map(|forces| forces.contacts.as_slice());
-        let state = State::at(self.step);
-        let imported =
-            assemble::packing(grains, &settings, contacts, state, "LAMMPS data file".into(), Vec::new())?;
-        forces.map_or(Ok(()), |forces| forces.whole(&imported.packing))?;
-        Ok(imported)
+        lammps_local::packing(grains, &settings, options, Moment::at(self.step), "LAMMPS data file".into())
     }
 }
 

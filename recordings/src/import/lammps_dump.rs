@@ -9,13 +9,13 @@ use std::ops::ControlFlow;
 
 use grainlab_core::{Cell, Mat3, Vec3};
 
-use super::assemble::{self, GrainTable, State};
+use super::assemble::{self, GrainTable, Moment};
 use super::columns::{Columns, Names, three};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::lammps_cell::lammps_cell;
 use super::lammps_items::{Frame, full_lines, next_frame};
-use super::lammps_local::{self, Local};
+use super::lammps_local;
 use super::settings::{ImportOptions, Known};
 use super::text::Line;
 
@@ -48,11 +48,7 @@ pub fn each(
         number += 1;
         let source =
             if count > 1 { format!("LAMMPS dump, frame {number} of {count}") } else { "LAMMPS dump".into() };
-        let of_step = |text| lammps_local::contacts(text, &options.contact_columns, frame.step.unwrap_or(0));
-        let local = options.contact_forces.as_deref().map(of_step).transpose()?;
-        let imported = packing(&frame, options, local.as_ref(), source)?;
-        local.as_ref().map_or(Ok(()), |local| local.whole(&imported.packing))?;
-        if take(imported).is_break() {
+        if take(packing(&frame, options, source)?).is_break() {
             break;
         }
     }
@@ -116,12 +112,7 @@ fn bounds(item: &Line<'_>, words: &str, rows: &[Line<'_>; 3]) -> Result<(Vec3, M
     Ok((low.into(), lammps_cell(std::array::from_fn(|k| high[k] - low[k]), tilt)))
 }
 
-fn packing(
-    frame: &Frame<'_>,
-    options: &ImportOptions,
-    forces: Option<&Local<'_>>,
-    source: String,
-) -> Result<Imported, ImportError> {
+fn packing(frame: &Frame<'_>, options: &ImportOptions, source: String) -> Result<Imported, ImportError> {
     let Frame { step, time, bounds: stated, head, names, rows } = frame;
     let (line, form, sides) = stated.as_ref().ok_or_else(|| head.error("ATOMS come before BOX BOUNDS"))?;
     let (origin, matrix) = bounds(line, form, sides)?;
@@ -157,8 +148,6 @@ fn packing(
     let density = grains.density();
     let settings = Known { cell: Some(matrix), density, ..Known::default() }.complete(options)?;
     let grains = grains.sorted_by_id().folded_if_far(&settings.cell);
-    forces.map_or(Ok(()), |forces| forces.check(&grains, &settings.cell))?;
-    let contacts = forces.map(|forces| forces.contacts.as_slice());
-    let state = State { time: *time, ..State::at(step.unwrap_or(0)) };
-    assemble::packing(grains, &settings, contacts, state, source, Vec::new())
+    let state = Moment { time: *time, ..Moment::at(step.unwrap_or(0)) };
+    lammps_local::packing(grains, &settings, options, state, source)
 }

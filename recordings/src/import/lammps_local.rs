@@ -18,10 +18,12 @@
 
 use std::collections::BTreeMap;
 
-use super::assemble::{GrainTable, ListedContact, ListedForce};
+use super::assemble::{self, GrainTable, ListedContact, ListedForce, Moment};
 use super::error::ImportError;
-use super::lammps_columns::{self, Row};
+use super::imported::Imported;
+use super::lammps_columns::{self, ForceRow};
 use super::lammps_items::{Frame, full_lines, next_frame};
+use super::settings::{ImportOptions, Properties};
 use grainlab_core::{Cell, Vec3};
 
 /// Ids of the two grains, normal force, tangential force.
@@ -37,20 +39,37 @@ const LEAST: usize = 5;
 const CENTRAL: f64 = 1e-9;
 
 /// The content of a dump.
-pub(super) struct Local<'a> {
+struct Local<'a> {
     /// Pairs that carry force.
-    pub(super) contacts: Vec<ListedContact>,
+    contacts: Vec<ListedContact>,
     /// True if the columns include tangential forces.
     tangential: bool,
     /// Names of all columns, places of those that are read, and the rows of the contacts.
     names: Vec<&'a str>,
     columns: Vec<usize>,
-    rows: Vec<Row<'a>>,
+    rows: Vec<ForceRow<'a>>,
+}
+
+/// The packing of these grains, with the contact forces of the options, if any, at its step.
+pub(super) fn packing(
+    grains: GrainTable,
+    settings: &Properties,
+    options: &ImportOptions,
+    state: Moment,
+    source: String,
+) -> Result<Imported, ImportError> {
+    let of_step = |text| contacts(text, &options.contact_columns, state.step);
+    let forces = options.contact_forces.as_deref().map(of_step).transpose()?;
+    forces.as_ref().map_or(Ok(()), |forces| forces.check(&grains, &settings.cell))?;
+    let listed = forces.as_ref().map(|forces| forces.contacts.as_slice());
+    let imported = assemble::packing(grains, settings, listed, state, source, Vec::new())?;
+    forces.map_or(Ok(()), |forces| forces.whole(&imported.packing))?;
+    Ok(imported)
 }
 
 /// The contacts of the frame of this step, that of the grains; a dump without steps has one frame. `chosen` are the columns in
 /// the default order, five or eight; none for the default ones.
-pub(super) fn contacts<'a>(text: &'a str, chosen: &[String], step: u64) -> Result<Local<'a>, ImportError> {
+fn contacts<'a>(text: &'a str, chosen: &[String], step: u64) -> Result<Local<'a>, ImportError> {
     let mut lines = full_lines(text);
     if lines.peek().is_none() {
         return Err(ImportError::empty());
@@ -92,7 +111,7 @@ pub(super) fn contacts<'a>(text: &'a str, chosen: &[String], step: u64) -> Resul
             continue;
         }
         let ids = (line.id("first grain", field(0)?)?, line.id("second grain", field(1)?)?);
-        local.rows.push(Row { ids, normal, tangential, text: line.text });
+        local.rows.push(ForceRow { ids, normal, tangential, text: line.text });
         local.contacts.push(ListedContact {
             rolling: Vec3::zeros(),
             line: line.number,
@@ -107,7 +126,7 @@ pub(super) fn contacts<'a>(text: &'a str, chosen: &[String], step: u64) -> Resul
 
 impl Local<'_> {
     /// Refuses a pair that occurs twice, and columns that are not those of a normal and a tangential force.
-    pub(super) fn check(&self, grains: &GrainTable, cell: &Cell) -> Result<(), ImportError> {
+    fn check(&self, grains: &GrainTable, cell: &Cell) -> Result<(), ImportError> {
         let mut pairs = BTreeMap::new();
         for c in &self.contacts {
             let (a, b) = c.ids;
@@ -124,7 +143,7 @@ impl Local<'_> {
 
     /// Refuses normal forces given as the whole force: with friction and without columns of tangential forces,
     /// some force must have a tangential part.
-    pub(super) fn whole(&self, packing: &grainlab_core::Packing) -> Result<(), ImportError> {
+    fn whole(&self, packing: &grainlab_core::Packing) -> Result<(), ImportError> {
         let central =
             |c: &grainlab_core::Contact| c.tangential_force.norm() <= CENTRAL * c.normal_force.abs();
         let lacking = !self.tangential && packing.friction > 0.0 && packing.contacts.iter().all(central);

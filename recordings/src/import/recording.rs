@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use grainlab_console::Failure;
 use grainlab_core::Packing;
 use grainlab_msgs::{Message as _, msg, topics};
 
@@ -9,7 +10,7 @@ use super::ImportOptions;
 use super::error::ImportError;
 use super::imported::Imported;
 use crate::one_run::{OneRun, RunSign};
-use crate::reader::{Message, ReadError, Recording, Selection};
+use crate::reader::{Message, Recording, Selection, no_such_topic};
 
 /// Passes the packings of a recording to `take` one by one, in order of log time, until it stops. A message
 /// that is not a packing is an error; the readable part of a damaged or truncated recording is used, with
@@ -40,8 +41,8 @@ pub fn each(
     if channel.ros_type != msg::Packing::TYPE {
         let known = channels.iter().filter(|c| c.ros_type == msg::Packing::TYPE).map(|c| c.topic.as_str());
         let known = known.collect::<Vec<_>>().join(", ");
-        let (path, topic) = (recording.path().to_owned(), format!("{topic} of type {}", msg::Packing::TYPE));
-        return Err(ReadError::NoSuchTopic { path, topic, known }.into());
+        let topic = format!("{topic} of type {}", msg::Packing::TYPE);
+        return Err(no_such_topic(recording.path(), &topic, &known).into());
     }
     let mut any = false;
     // The sign may be in the last packing only, and the note is for the first, too.
@@ -62,7 +63,7 @@ pub fn each(
 }
 
 /// The sign in the packings of a topic that they are of several runs.
-fn several_runs(recording: &Recording, topic: &str) -> Result<Option<RunSign>, ReadError> {
+fn several_runs(recording: &Recording, topic: &str) -> Result<Option<RunSign>, Failure> {
     let mut run = OneRun::default();
     let sign = |message: Message| run.packing(topic, &packing(&message).ok()?.packing).err();
     Ok(recording.messages(&Selection::topics([topic]))?.find_map(sign))

@@ -65,7 +65,7 @@ pub(super) struct Known {
 
 /// All properties of a packing except its grains.
 #[derive(Clone, Debug)]
-pub(super) struct Settings {
+pub(super) struct Properties {
     pub(super) cell: Cell,
     pub(super) material: Material,
     pub(super) law: ContactLaw,
@@ -89,7 +89,7 @@ pub(super) fn replaced<T: PartialEq + std::fmt::Display>(
 
 impl Known {
     /// All settings, or the list of those that are missing.
-    pub(super) fn complete(&self, options: &ImportOptions) -> Result<Settings, ImportError> {
+    pub(super) fn complete(&self, options: &ImportOptions) -> Result<Properties, ImportError> {
         let mut missing = Vec::new();
         let mut need = |given: Option<f64>, known: Option<f64>, setting| {
             given.or(known).unwrap_or_else(|| {
@@ -125,6 +125,6 @@ impl Known {
             replaced("the cell", "m", options.cell.map(cells), self.cell.map(cells)),
         ];
         let law = options.law.or(self.law).unwrap_or_default();
-        Ok(Settings { cell, material, law, friction, notes: notes.into_iter().flatten().collect() })
+        Ok(Properties { cell, material, law, friction, notes: notes.into_iter().flatten().collect() })
     }
 }

@@ -4,7 +4,7 @@
 //! `Points`. Of `FieldData`: `cell`, `deformation`, `shear_modulus`, `poisson_ratio`, `density`, `friction`, `TimeValue`, `step`,
 //! `time_step`. Contacts are those of the file of contacts beside it, or else found from positions.
 
-use super::assemble::{self, GrainTable, ListedContact, ListedForce, State};
+use super::assemble::{self, GrainTable, ListedContact, ListedForce, Moment};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::settings::{ImportOptions, Known};
@@ -47,7 +47,7 @@ pub fn packing(
         friction: field("friction")?,
     };
     let settings = known.complete(options)?;
-    let state = State {
+    let state = Moment {
         step: match field("step")? {
             Some(step) if step < 0.0 || step.fract() != 0.0 => {
                 return Err(damaged(format!("step is {step}")));

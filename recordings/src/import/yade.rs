@@ -14,7 +14,7 @@
 
 use grainlab_core::{Mat3, Vec3};
 
-use super::assemble::{self, GrainTable, State};
+use super::assemble::{self, GrainTable, Moment};
 use super::columns::{Columns, Names, three};
 use super::error::ImportError;
 use super::imported::Imported;
@@ -82,7 +82,7 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
     let settings = Known { cell, ..Known::default() }.complete(options)?;
     let grains = grains.sorted_by_id().folded_if_far(&settings.cell);
     let source = format!("YADE export, {name}");
-    assemble::packing(grains, &settings, None, State::at(0), source, Vec::new())
+    assemble::packing(grains, &settings, None, Moment::at(0), source, Vec::new())
 }
 
 /// Formats and their columns; the names of attributes are in a comment.

@@ -1,56 +1,26 @@
 //! Errors that leave nothing to read, and warnings about missing parts.
 
 use std::fmt;
-use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use grainlab_console::Failure;
 use serde::Serialize;
 
-/// Why a recording cannot be read at all.
-#[derive(Debug, thiserror::Error)]
-pub enum ReadError {
-    /// The path cannot be read.
-    #[error("{path}: {source}")]
-    Io {
-        /// Path that was given.
-        path: PathBuf,
-        /// The error of the system.
-        source: io::Error,
-    },
-    /// A directory without a recording.
-    #[error("{path} contains no .mcap file: give a run directory or an MCAP file")]
-    Empty {
-        /// Path of the directory.
-        path: PathBuf,
-    },
-    /// Not an MCAP file.
-    #[error("{path} is not an MCAP file: it has {bytes} bytes and does not start with the MCAP magic")]
-    NotMcap {
-        /// Path of the file.
-        path: PathBuf,
-        /// Size, in bytes.
-        bytes: u64,
-    },
-    /// A topic that the recording does not have.
-    #[error("{path} has no topic {topic}; it has: {known}")]
-    NoSuchTopic {
-        /// Path of the recording.
-        path: PathBuf,
-        /// The topic requested.
-        topic: String,
-        /// The existing topics.
-        known: String,
-    },
+/// A file that does not start as MCAP, of this size in bytes.
+pub(super) fn not_mcap(path: &Path, bytes: u64) -> Failure {
+    let why = format!("it has {bytes} bytes and does not start with the MCAP magic");
+    Failure::failed(format!("{} is not an MCAP file: {why}", path.display()))
 }
 
-impl From<ReadError> for Failure {
-    fn from(error: ReadError) -> Self {
-        match error {
-            ReadError::NoSuchTopic { .. } => Self::usage(error),
-            other => Self::failed(other),
-        }
-    }
+/// A directory without a recording.
+pub(super) fn empty(path: &Path) -> Failure {
+    let advice = "give a run directory or an MCAP file";
+    Failure::failed(format!("{} contains no .mcap file: {advice}", path.display()))
+}
+
+/// A topic that the recording does not have, and those of it.
+pub(crate) fn no_such_topic(path: &Path, topic: &str, known: &str) -> Failure {
+    Failure::usage(format!("{} has no topic {topic}; it has: {known}", path.display()))
 }
 
 /// A part that could not be read, or that contradicts another; the rest of the recording is used.

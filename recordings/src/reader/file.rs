@@ -6,13 +6,14 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+use grainlab_console::Failure;
 use mcap::MAGIC;
 use mcap::records::Record;
 use memmap2::Mmap;
 
 use crate::input;
 
-use super::error::{ReadError, Warning, WarningKind};
+use super::error::{Warning, WarningKind, not_mcap};
 use super::held::Content;
 use super::index::{Block, Entry, Index, loose_blocks};
 use super::records::Records;
@@ -33,17 +34,16 @@ impl fmt::Debug for OpenFile {
 }
 
 impl OpenFile {
-    pub(super) fn map(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Self, ReadError> {
-        let io = |source| ReadError::Io { path: path.to_owned(), source };
-        let (file, size) = input::open(path).map_err(io)?;
+    pub(super) fn map(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Self, Failure> {
+        let (file, size) = input::open(path).map_err(Failure::at(path))?;
         if size == 0 {
-            return Err(ReadError::NotMcap { path: path.to_owned(), bytes: 0 });
+            return Err(not_mcap(path, 0));
         }
         // SAFETY: the mapping is read-only; the user must ensure that no process shortens the file meanwhile
         // (see the module).
-        let bytes = Arc::new(unsafe { Mmap::map(&file) }.map_err(io)?);
+        let bytes = Arc::new(unsafe { Mmap::map(&file) }.map_err(Failure::at(path))?);
         if !bytes.starts_with(MAGIC) {
-            return Err(ReadError::NotMcap { path: path.to_owned(), bytes: size });
+            return Err(not_mcap(path, size));
         }
         let index = Index::build(path, &bytes, warnings);
         Ok(Self { path: path.to_owned(), bytes, index, loose: OnceLock::new() })

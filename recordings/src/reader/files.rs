@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use grainlab_console::Failure;
 use serde::Deserialize;
 
 use crate::input;
 
-use super::error::{ReadError, Warning, WarningKind};
+use super::error::{self, Warning, WarningKind};
 
 /// Maximum size of a `metadata.yaml`, bytes.
 const METADATA: u64 = 16 << 20;
@@ -24,9 +25,8 @@ struct Information {
 }
 
 /// The file, or those of a directory in order.
-pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Vec<PathBuf>, ReadError> {
-    let io = |source| ReadError::Io { path: path.to_owned(), source };
-    if !fs::metadata(path).map_err(io)?.is_dir() {
+pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Vec<PathBuf>, Failure> {
+    if !fs::metadata(path).map_err(Failure::at(path))?.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
     let mut files: Vec<PathBuf> = Vec::new();
@@ -42,8 +42,8 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
     // Without a valid metadata.yaml (the recorder was killed): the existing files.
     let stems: BTreeSet<String> = files.iter().filter_map(|f| part(f)).map(|(stem, _)| stem).collect();
     let nothing_listed = files.is_empty();
-    for entry in fs::read_dir(path).map_err(io)? {
-        let file = entry.map_err(io)?.path();
+    for entry in fs::read_dir(path).map_err(Failure::at(path))? {
+        let file = entry.map_err(Failure::at(path))?.path();
         if file.extension().is_none_or(|e| e != "mcap") || files.contains(&file) {
             continue;
         }
@@ -62,7 +62,7 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
     if nothing_listed {
         warnings.extend(gaps(path, &files));
     }
-    if files.is_empty() { Err(ReadError::Empty { path: path.to_owned() }) } else { Ok(files) }
+    if files.is_empty() { Err(error::empty(path)) } else { Ok(files) }
 }
 
 /// The parts that are missing between others, where no `metadata.yaml` lists them.

@@ -2,7 +2,7 @@
 
 use super::channel::ChannelInfo;
 use super::chunk;
-use super::error::{ReadError, WarningKind};
+use super::error::WarningKind;
 use super::file::OpenFile;
 use super::held::Held;
 use super::index::Block;
@@ -10,6 +10,7 @@ use super::message::{Message, Payload};
 use super::recording::Recording;
 use super::records::Records;
 use super::selection::Selection;
+use grainlab_console::Failure;
 use mcap::records::{MessageHeader, op};
 use std::borrow::Cow;
 use std::cmp::Reverse;
@@ -36,14 +37,14 @@ impl Recording {
     ///
     /// # Errors
     /// If a named topic does not exist.
-    pub fn messages(&self, selection: &Selection) -> Result<Messages<'_>, ReadError> {
+    pub fn messages(&self, selection: &Selection) -> Result<Messages<'_>, Failure> {
         let topics = match &selection.topics {
             None => None,
             Some(names) => Some(
                 names
                     .iter()
                     .map(|n| Ok(self.channel(n)?.topic.clone()))
-                    .collect::<Result<BTreeSet<_>, ReadError>>()?,
+                    .collect::<Result<BTreeSet<_>, Failure>>()?,
             ),
         };
         Ok(Messages::new(self, topics, selection.start.unwrap_or(0), selection.end))
@@ -53,7 +54,7 @@ impl Recording {
     ///
     /// # Errors
     /// If the topic does not exist.
-    pub fn last(&self, topic: &str) -> Result<Option<Message>, ReadError> {
+    pub fn last(&self, topic: &str) -> Result<Option<Message>, Failure> {
         Ok(self.some_before(topic, None, 1)?.pop())
     }
 
@@ -61,12 +62,7 @@ impl Recording {
     ///
     /// # Errors
     /// If the topic does not exist.
-    pub fn some_before(
-        &self,
-        topic: &str,
-        time: Option<u64>,
-        count: usize,
-    ) -> Result<Vec<Message>, ReadError> {
+    pub fn some_before(&self, topic: &str, time: Option<u64>, count: usize) -> Result<Vec<Message>, Failure> {
         let is_before = |at: u64| time.is_none_or(|time| at < time);
         let topic = &self.channel(topic)?.topic;
         let topics = BTreeSet::from([topic.to_owned()]);

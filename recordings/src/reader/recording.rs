@@ -1,12 +1,13 @@
 //! An opened recording: its files, topics, stored files and ledger.
 
 use super::channel::ChannelInfo;
-use super::error::{ReadError, Warning, WarningKind};
+use super::error::{self, Warning, WarningKind, no_such_topic};
 use super::file::OpenFile;
 use super::files;
 use super::stored_file::{FileCount, StoredFile};
 use crate::ledger::{TopicTally, merge};
 use crate::metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
+use grainlab_console::Failure;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -26,7 +27,7 @@ impl Recording {
     /// # Errors
     /// If there is no file, or it is not MCAP. A damaged recording is not an error: see
     /// [`Recording::warnings`].
-    pub fn open(path: &Path) -> Result<Self, ReadError> {
+    pub fn open(path: &Path) -> Result<Self, Failure> {
         let mut warnings = BTreeSet::new();
         let mut paths = files::of_recording(path, &mut warnings)?;
         // A recorder that has just begun its next file has written nothing to it.
@@ -46,7 +47,7 @@ impl Recording {
             files.push(OpenFile::map(&file, &mut warnings)?);
         }
         if files.is_empty() {
-            return Err(ReadError::Empty { path: path.to_owned() });
+            return Err(error::empty(path));
         }
         Ok(Self { path: path.to_owned(), files, warnings: Mutex::new(warnings) })
     }
@@ -105,12 +106,12 @@ impl Recording {
     ///
     /// # Errors
     /// If it does not exist; the message lists the existing ones.
-    pub fn channel(&self, topic: &str) -> Result<Arc<ChannelInfo>, ReadError> {
+    pub fn channel(&self, topic: &str) -> Result<Arc<ChannelInfo>, Failure> {
         let channels = self.channels();
         let wanted = topic.trim_start_matches('/');
         channels.iter().find(|c| c.topic.trim_start_matches('/') == wanted).cloned().ok_or_else(|| {
             let known = channels.iter().map(|c| c.topic.as_str()).collect::<Vec<_>>().join(", ");
-            ReadError::NoSuchTopic { path: self.path.clone(), topic: topic.to_owned(), known }
+            no_such_topic(&self.path, topic, &known)
         })
     }
 

@@ -45,14 +45,14 @@ pub struct Check {
 impl Recording {
     /// Faults without those of the ledger: in a recovered file it also counts messages that are no longer readable.
     pub(crate) fn verify_files(&self) -> Vec<Warning> {
-        Found::of(self);
+        Contents::of(self);
         self.warnings()
     }
 
     /// Reads all data: counts, and all faults: checksums, the index against the messages, log times that decrease, and the ledger
     /// against the messages.
     pub fn check(&self) -> Check {
-        let found = Found::of(self);
+        let found = Contents::of(self);
         let ledger = self.ledger();
         let unaccounted = self.unaccounted();
         if let Some(ledger) = ledger.as_ref().filter(|_| unaccounted.is_empty()) {
@@ -87,7 +87,7 @@ impl Recording {
 
 /// Counts of all files.
 #[derive(Default)]
-struct Found {
+struct Contents {
     records: u64,
     chunks: u64,
     messages: u64,
@@ -98,7 +98,7 @@ struct Found {
     last_of_file: Option<u64>,
 }
 
-impl Found {
+impl Contents {
     fn of(recording: &Recording) -> Self {
         let mut found = Self::default();
         for file in &recording.files {

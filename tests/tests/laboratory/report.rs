@@ -1,6 +1,5 @@
 //! The page of a run, that of many runs, and pictures without a display.
 
-use grainlab_msgs::boundary::EnergyReading;
 use grainlab_msgs::{from_cdr, msg};
 use grainlab_recordings::{Recording, Selection};
 use serde_json::Value;
@@ -92,17 +91,19 @@ fn the_energy_balance_that_a_scene_asks_for_is_recorded_and_shown() {
     let run = lab.launch(&golden("scenes/tiny.toml"), &["--set", "numerics.energy_balance=true"]);
     let recording = Recording::open(&run).unwrap();
     let selection = Selection::topics(["/energy"]);
-    let balances: Vec<EnergyReading> = recording
-        .messages(&selection)
-        .unwrap()
-        .map(|m| EnergyReading::try_from(&from_cdr::<msg::EnergyBalance>(&m.payload).unwrap()).unwrap())
-        .collect();
+    let balances: Vec<msg::EnergyBalance> =
+        recording.messages(&selection).unwrap().map(|m| from_cdr(&m.payload).unwrap()).collect();
     let summary: Value = serde_json::from_str(&read(&run.join("summary.json"))).unwrap();
     assert!(balances.len() >= 3, "{balances:?} {}", summary["topics"]);
     let page = visible(&read(&run.join("report.html")));
     for b in &balances {
-        let size = b.strain_work.abs().max(b.dissipated.iter().map(|(_, v)| v.abs()).sum::<f64>());
-        assert!(b.residual().abs() < 1e-9 * size.max(b.start), "{b:?}");
+        let springs = b.normal_springs + b.tangential_springs + b.rolling_springs;
+        let damping = [b.normal_damping, b.tangential_damping, b.rolling_damping, b.drag, b.thermostat];
+        let lost = [&damping[..], &[b.sliding, b.rolling, b.history]].concat();
+        let size = b.strain_work.abs().max(lost.iter().map(|v| v.abs()).sum());
+        let residual =
+            b.start + b.strain_work + b.integration - b.kinetic - springs - lost.iter().sum::<f64>();
+        assert!(residual.abs() < 1e-9 * size.max(b.start), "{b:?}");
         assert!(page.contains(&format!("{:.3e}", b.strain_work)), "{}", b.phase_name);
     }
     let without = lab.launch(&golden("scenes/tiny.toml"), &[]);

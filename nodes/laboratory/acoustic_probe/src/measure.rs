@@ -4,9 +4,7 @@ use crate::Settings;
 use grainlab_acoustics::{AcousticsError, Measurement, Trace};
 use grainlab_core::results::NotJammed;
 use grainlab_core::{Packing, Vec3, stress};
-use grainlab_msgs::boundary::{
-    BoundaryError, TraceReading, WaveSpeedsReading, WaveformReading, wave_speeds_message, waveform_message,
-};
+use grainlab_msgs::boundary::{BoundaryError, WaveSpeedsReading, vector_message, wave_speeds_message};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{DecodeError, msg};
 
@@ -79,12 +77,11 @@ pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, 
 
 /// The messages for a measured packing; `header` is that of the message of the packing.
 pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Result<Measured, BoundaryError> {
-    let source_step = Some(packing.step).filter(|step| *step > 0);
     let stress = stress::stress(packing).tensor;
     let reading = WaveSpeedsReading {
         stamp: header.stamp,
         name: String::new(),
-        source_step,
+        source_step: Some(packing.step).filter(|step| *step > 0),
         grains: u32::try_from(packing.grains()).ok(),
         density: found.density,
         density_stddev: Some(found.density_stddev).filter(|s| *s > 0.0),
@@ -105,31 +102,27 @@ pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Resu
         warnings: found.warnings.iter().map(ToString::to_string).collect(),
     };
     let wave_speeds = wave_speeds_message(header.clone(), &reading)?;
-    let traces = found.traces.iter().map(|trace| waveform(header, source_step, trace));
+    let traces = found.traces.iter().map(|trace| waveform(header, packing.step, trace));
     Ok(Measured { wave_speeds, waveforms: traces.collect::<Result<_, _>>()? })
 }
 
-fn waveform(
-    header: &Header,
-    source_step: Option<u64>,
-    trace: &Trace,
-) -> Result<msg::Waveform, BoundaryError> {
-    // Single precision is that of a good digitiser, and far finer than any noise.
-    let channels = (1..).zip(&trace.channels).map(|(n, c)| TraceReading {
-        name: format!("receiver {n}"),
-        distance: c.distance,
-        samples: c.samples.iter().map(|s| *s as f32).collect(),
-    });
-    let reading = WaveformReading {
-        stamp: header.stamp,
+fn waveform(header: &Header, source_step: u64, trace: &Trace) -> Result<msg::Waveform, BoundaryError> {
+    let message = msg::Waveform {
+        header: header.clone(),
         source_step,
-        method: trace.method,
-        direction: trace.direction,
-        polarization: trace.polarization,
+        method: msg::WaveSpeed::code(trace.method),
+        direction: vector_message(&trace.direction),
+        polarization: vector_message(&trace.polarization),
         frequency: trace.frequency,
         sample_rate: trace.sample_rate,
         start: trace.start,
-        channels: channels.collect(),
+        quantity: msg::Waveform::QUANTITY.to_owned(),
+        unit: msg::Waveform::UNIT.to_owned(),
+        channel: (1..=trace.channels.len()).map(|n| format!("receiver {n}")).collect(),
+        distance: trace.channels.iter().map(|c| c.distance).collect(),
+        // Single precision is that of a good digitiser, and far finer than any noise.
+        sample: trace.channels.iter().flat_map(|c| &c.samples).map(|s| *s as f32).collect(),
     };
-    waveform_message(header.clone(), &reading)
+    message.checked()?;
+    Ok(message)
 }

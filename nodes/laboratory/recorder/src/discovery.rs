@@ -1,9 +1,8 @@
 //! Topics outside the contract, found on the bus.
 
-use crate::wanted::Wanted;
 use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::{Bus, Offer};
-use grainlab_recordings::{Definitions, QosOverrides, TopicSpec, TopicTally, adapted};
+use grainlab_recordings::{Definitions, QosOverrides, TopicNames, TopicSpec, TopicTally, adapted};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
@@ -22,10 +21,12 @@ const LOOK: Duration = Duration::from_millis(100);
 const PATIENCE: Duration = Duration::from_secs(3);
 
 /// Recorded topics outside the contract.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct OtherTopics {
     /// Selection of topics.
-    pub wanted: Wanted,
+    pub names: TopicNames,
+    /// Record hidden topics, too.
+    pub hidden: bool,
     /// Source of the definitions of their types.
     pub definitions: Definitions,
     /// The QoS of readers, instead of the one adapted to the writers; of topics of the contract, too.
@@ -33,6 +34,11 @@ pub struct OtherTopics {
 }
 
 impl OtherTopics {
+    /// True if the topic of this full name is recorded.
+    pub fn take(&self, name: &str) -> bool {
+        self.names.take(name, None, self.hidden)
+    }
+
     /// A topic of the contract with the QoS to ask for.
     pub(crate) fn requested(&self, topic: &Topic) -> Topic {
         Topic { qos: self.qos.apply(&topic.absolute_name(), topic.qos), ..*topic }
@@ -40,13 +46,14 @@ impl OtherTopics {
 }
 
 /// A topic to subscribe to.
-pub(crate) struct Found {
+pub(crate) struct FoundTopic {
     /// With the QoS to ask for.
     pub(crate) topic: Topic,
     pub(crate) spec: TopicSpec,
 }
 
 /// Finds topics on the bus.
+#[derive(Default)]
 pub(crate) struct Finder {
     settings: OtherTopics,
     next_look: Duration,
@@ -62,18 +69,11 @@ pub(crate) struct Finder {
 
 impl Finder {
     pub(crate) fn new(settings: OtherTopics) -> Self {
-        Self {
-            settings,
-            next_look: Duration::ZERO,
-            has_waited: false,
-            seen: BTreeMap::new(),
-            settled: BTreeSet::new(),
-            found: BTreeSet::new(),
-        }
+        Self { settings, ..Self::default() }
     }
 
     /// The topics that appeared, without those in `known`.
-    pub(crate) fn look(&mut self, bus: &dyn Bus, known: &BTreeSet<String>) -> Vec<Found> {
+    pub(crate) fn look(&mut self, bus: &dyn Bus, known: &BTreeSet<String>) -> Vec<FoundTopic> {
         let now = bus.now();
         if now < self.next_look {
             return Vec::new();
@@ -94,10 +94,7 @@ impl Finder {
                 self.compare_with_contract(&name, &offers);
                 continue;
             }
-            if !self.settings.wanted.takes(&name)
-                || !is_recorded(&offers[0])
-                || !self.has_one_type(&name, &offers)
-            {
+            if !self.settings.take(&name) || !is_recorded(&offers[0]) || !self.has_one_type(&name, &offers) {
                 continue;
             }
             if now.saturating_sub(*self.seen.entry(name.clone()).or_insert(now)) >= LOOK {
@@ -131,12 +128,12 @@ impl Finder {
     }
 
     /// The named topics that were not found. Those of the contract may have another name, with namespace and remaps.
-    fn missing(&self, known: &BTreeSet<String>) -> Vec<&String> {
-        let absent = |name: &&String| !known.contains(&format!("/{name}")) && Topic::by_name(name).is_none();
-        self.settings.wanted.names().iter().filter(absent).collect()
+    fn missing(&self, known: &BTreeSet<String>) -> Vec<&str> {
+        let absent = |name: &&str| !known.contains(&format!("/{name}")) && Topic::by_name(name).is_none();
+        self.settings.names.topics.iter().map(|name| name.trim_start_matches('/')).filter(absent).collect()
     }
 
-    fn found(&self, name: &str, offers: &[Offer]) -> Option<Found> {
+    fn found(&self, name: &str, offers: &[Offer]) -> Option<FoundTopic> {
         let offered: Vec<Qos> = offers.iter().map(|o| o.qos).collect();
         let least = adapted(&offered);
         let qos = self.settings.qos.apply(name, Qos { depth: least.depth.clamp(BACKLOG, MOST), ..least });
@@ -155,7 +152,7 @@ impl Finder {
         log::info!("{name}: found, {type_name}");
         let hash = if hash.is_empty() && definition.is_ok() { topic.info.hash } else { hash };
         let spec = TopicSpec::of_found(&topic, definition.ok(), hash, &offered);
-        Some(Found { topic, spec })
+        Some(FoundTopic { topic, spec })
     }
 
     /// True if all writers of a topic have one type; if not, says so once.

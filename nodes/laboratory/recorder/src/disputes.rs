@@ -17,7 +17,7 @@ struct RunState {
 }
 
 /// The disputes of one run.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Disputes {
     /// One line each.
     pub(crate) lines: Vec<String>,
@@ -35,14 +35,7 @@ pub(crate) struct Disputes {
 
 impl Disputes {
     pub(crate) fn new(scene: Option<u64>) -> Self {
-        Self {
-            lines: Vec::new(),
-            scene,
-            compared: BTreeSet::new(),
-            named: BTreeMap::new(),
-            of_scene: false,
-            of_processes: false,
-        }
+        Self { scene, ..Self::default() }
     }
 
     /// A process published about the run in addition to the first one.

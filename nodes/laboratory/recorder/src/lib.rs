@@ -4,7 +4,7 @@
 //! - `binding`: the messages of a run by hand; [`repeats`]: repetitions of recorded messages
 //! - `disputes`: processes that contradict each other, packings of another scene
 //! - [`strangers`]: processes on the bus that are not part of the run
-//! - [`OtherTopics`], [`Wanted`]: topics of other programs, found on the bus
+//! - [`OtherTopics`]: topics of other programs, found on the bus
 //! - [`Recorder`]: the node; [`ResultSlot`]: the finished recording
 //! - [`SnapshotSettings`]: the last seconds in memory, written when asked to
 //! - [`play`]: publishes the messages of a recording again
@@ -21,10 +21,8 @@ mod settings;
 mod snapshot;
 pub mod strangers;
 pub mod tallies;
-mod wanted;
 
 pub use discovery::OtherTopics;
 pub use node::{Recorder, ResultSlot};
 pub use settings::{Settings, contract_topics, parameters, set_parameter};
 pub use snapshot::SnapshotSettings;
-pub use wanted::Wanted;

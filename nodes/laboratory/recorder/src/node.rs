@@ -2,7 +2,7 @@
 
 use crate::Settings;
 use crate::binding::{Binding, Outside};
-use crate::discovery::{Finder, Found};
+use crate::discovery::{Finder, FoundTopic};
 use crate::disputes::Disputes;
 use crate::known_processes::KnownProcesses;
 use crate::repeats::{Novelty, Repeats};
@@ -160,7 +160,7 @@ impl Recorder {
     /// Subscribes to the topics outside the contract that appeared, and declares them.
     fn find(&mut self, bus: &mut dyn Bus) -> Result<(), NodeError> {
         let (Some(finder), Some(writer)) = (&mut self.finder, &mut self.writer) else { return Ok(()) };
-        for Found { topic, spec } in finder.look(bus, &self.names) {
+        for FoundTopic { topic, spec } in finder.look(bus, &self.names) {
             let demand = Demand { reliable: topic.qos.reliable, depth: topic.qos.depth };
             let source = Source::open(bus, &topic, demand)?;
             writer.add_topic(&spec).map_err(|e| lost(&e))?;

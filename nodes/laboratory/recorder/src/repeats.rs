@@ -4,10 +4,11 @@
 //! resumes from a packing repeats its requests: all with the same bytes. The recording holds each of them once. Other bytes
 //! in the place of a recorded message contradict it.
 
+use grainlab_console::Failure;
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{Guid, Topic, from_cdr, topics};
 use grainlab_node_kit::{member_of, run_of};
-use grainlab_recordings::{ChannelInfo, ReadError, Recording, Selection};
+use grainlab_recordings::{ChannelInfo, Recording, Selection};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -73,7 +74,7 @@ pub struct Repeats {
 
 impl Repeats {
     /// Reads the messages of earlier recorders.
-    pub fn remember(&mut self, recording: &Recording) -> Result<(), ReadError> {
+    pub fn remember(&mut self, recording: &Recording) -> Result<(), Failure> {
         let contract = |c: &ChannelInfo| Topic::of_channel(&c.topic, &c.ros_type).filter(|t| t.reproducible);
         let channels = recording.channels();
         let names = channels.iter().filter(|c| contract(c).is_some()).map(|c| c.topic.clone());

@@ -1,8 +1,9 @@
 //! Exchanges of the lockstep that a recording has, by the numbers that requests and answers carry.
 
+use grainlab_console::Failure;
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{Topic, topics};
-use grainlab_recordings::{ChannelInfo, Message, ReadError, Recording, Selection};
+use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
 
 /// Numbers of the requests and of the answers in a recording.
 #[derive(Debug, Default)]
@@ -13,7 +14,7 @@ pub struct Exchanges {
 
 impl Exchanges {
     /// Those of all parts of a run that was resumed.
-    pub fn of(recording: &Recording) -> Result<Self, ReadError> {
+    pub fn of(recording: &Recording) -> Result<Self, Failure> {
         let stress = |m: &Message| m.decoded::<Stress>().ok().map(|m| m.sequence);
         let rate = |m: &Message| m.decoded::<StrainRate>().ok().map(|m| m.sequence);
         Ok(Self {
@@ -45,7 +46,7 @@ fn numbers(
     recording: &Recording,
     name: &str,
     number: impl Fn(&Message) -> Option<u64>,
-) -> Result<Vec<u64>, ReadError> {
+) -> Result<Vec<u64>, Failure> {
     let channels = recording.channels();
     let is_wanted = |c: &&std::sync::Arc<ChannelInfo>| {
         Topic::of_channel(&c.topic, &c.ros_type).is_some_and(|t| t.name == name)

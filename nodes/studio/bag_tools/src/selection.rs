@@ -1,32 +1,16 @@
 //! Topics on the command line.
 
 use grainlab_console::Failure;
-use grainlab_recordings::{ChannelInfo, Recording};
-use regex_lite::Regex;
-
-/// An expression that matches whole names only: the longest match may be another alternative than the first one.
-fn whole(text: &str) -> Result<Regex, regex_lite::Error> {
-    Regex::new(&format!("^(?:{text})$"))
-}
+use grainlab_recordings::{ChannelInfo, Recording, TopicNames};
 
 /// Topics, by name, regular expression or type.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct Topics {
-    /// Topics to take, by name [default: all]
-    #[arg(long, num_args = 1.., value_name = "TOPIC")]
-    topics: Vec<String>,
-    /// Topics to take, by a regular expression that matches their whole name
-    #[arg(long, value_name = "REGEX", value_parser = whole)]
-    regex: Option<Regex>,
+    #[command(flatten)]
+    names: TopicNames,
     /// Topics to take, by type: sensor_msgs/msg/Imu
     #[arg(long, num_args = 1.., value_name = "TYPE")]
     types: Vec<String>,
-    /// Topics to leave out of those, by name
-    #[arg(long, num_args = 1.., value_name = "TOPIC")]
-    exclude: Vec<String>,
-    /// Topics to leave out of those, by a regular expression that matches their whole name
-    #[arg(long, value_name = "REGEX", value_parser = whole)]
-    exclude_regex: Option<Regex>,
 }
 
 fn bare(name: &str) -> &str {
@@ -36,18 +20,10 @@ fn bare(name: &str) -> &str {
 impl Topics {
     /// True for a channel that is wanted.
     pub(crate) fn take(&self, channel: &ChannelInfo) -> bool {
-        let name = channel.topic.as_str();
-        let is_one = |names: &[String]| names.iter().any(|n| bare(n) == bare(name));
-        let of_type = |types: &[String]| {
-            let short = channel.ros_type.replace("/msg/", "/");
-            types.iter().any(|t| *t == channel.ros_type || *t == short)
-        };
-        let all = self.topics.is_empty() && self.regex.is_none() && self.types.is_empty();
-        let taken = all
-            || is_one(&self.topics)
-            || self.regex.as_ref().is_some_and(|r| r.is_match(name))
-            || of_type(&self.types);
-        taken && !is_one(&self.exclude) && !self.exclude_regex.as_ref().is_some_and(|r| r.is_match(name))
+        let short = channel.ros_type.replace("/msg/", "/");
+        let is_one = |types: &[String]| types.iter().any(|t| *t == channel.ros_type || *t == short);
+        let of_type = (!self.types.is_empty()).then(|| is_one(&self.types));
+        self.names.take(&channel.topic, of_type, true)
     }
 
     /// An error if a name or type is in none of the recordings, or nothing is taken.
@@ -59,7 +35,7 @@ impl Topics {
             names.dedup();
             names.join(", ")
         };
-        for name in self.topics.iter().chain(&self.exclude) {
+        for name in self.names.topics.iter().chain(&self.names.exclude) {
             if !channels.iter().any(|c| bare(&c.topic) == bare(name)) {
                 return Err(Failure::usage(format!("no topic {name} in the recording; it has: {}", known())));
             }

@@ -36,14 +36,14 @@ pub(crate) struct Request {
 
 /// Channels and clients, by their numbers.
 #[derive(Default)]
-struct State {
+struct Registry {
     channels: BTreeMap<u64, Value>,
     clients: BTreeMap<u64, Client>,
     requests: BTreeSet<Request>,
     last: u64,
 }
 
-impl State {
+impl Registry {
     fn number(&mut self) -> u64 {
         self.last += 1;
         self.last
@@ -93,12 +93,12 @@ impl State {
 struct Shared {
     /// Time of the start, nanoseconds: tells a client that connects again that the numbers are new.
     session: u128,
-    state: Mutex<State>,
+    state: Mutex<Registry>,
     caller: Option<Caller>,
 }
 
 impl Shared {
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, Registry> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

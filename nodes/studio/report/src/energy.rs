@@ -1,7 +1,7 @@
 //! Energy of a run by its losses, where the scene asked for that.
 
 use crate::run::Run;
-use grainlab_msgs::boundary::EnergyReading;
+use grainlab_msgs::msg::EnergyBalance;
 use grainlab_page::plot::{Bar, Bars};
 use grainlab_page::{Cell, Html, csv, figure, grid, six_digits, table};
 
@@ -13,12 +13,45 @@ const DISSIPATED: [(&str, &[&str]); 4] = [
     ("contacts that change or open", &["contacts that change or open"]),
 ];
 
+/// Energies present at the end of a phase, J.
+fn stored(m: &EnergyBalance) -> [(&'static str, f64); 4] {
+    [
+        ("kinetic", m.kinetic),
+        ("normal springs", m.normal_springs),
+        ("tangential springs", m.tangential_springs),
+        ("rolling springs", m.rolling_springs),
+    ]
+}
+
+/// Energies dissipated in a phase, J.
+fn dissipated(m: &EnergyBalance) -> [(&'static str, f64); 8] {
+    [
+        ("normal dashpots", m.normal_damping),
+        ("tangential dashpots", m.tangential_damping),
+        ("rolling dashpots", m.rolling_damping),
+        ("friction", m.sliding),
+        ("rolling friction", m.rolling),
+        ("contacts that change or open", m.history),
+        ("drag", m.drag),
+        ("thermostat", m.thermostat),
+    ]
+}
+
+fn sum(parts: &[(&str, f64)]) -> f64 {
+    parts.iter().map(|(_, value)| value).sum()
+}
+
+/// Energy that the balance misses, J: rounding, in a correct run. Not finite if a part is not.
+pub(crate) fn residual(m: &EnergyBalance) -> f64 {
+    m.start + m.strain_work + m.integration - sum(&stored(m)) - sum(&dissipated(m))
+}
+
 impl Run {
     /// The section; `None` without balances.
     pub(crate) fn energy(&self) -> Option<Html> {
         let phases = &self.timeline.energy;
-        let names = phases.first()?.dissipated.map(|(name, _)| name);
-        let total = |i: usize| phases.iter().map(|p| p.dissipated[i].1).sum::<f64>();
+        let names = dissipated(phases.first()?).map(|(name, _)| name);
+        let total = |i: usize| phases.iter().map(|p| dissipated(p)[i].1).sum::<f64>();
         let all: f64 = (0..names.len()).map(total).sum();
         let bars = names.iter().enumerate().filter(|(i, _)| total(*i) != 0.0).map(|(i, name)| {
             let value = total(i) / all.abs().max(f64::MIN_POSITIVE) * 100.0;
@@ -32,18 +65,17 @@ impl Run {
 }
 
 /// One row per phase.
-fn balance(phases: &[EnergyReading]) -> Html {
-    let dissipated = DISSIPATED.map(|(name, _)| name);
+fn balance(phases: &[EnergyBalance]) -> Html {
+    let columns = DISSIPATED.map(|(name, _)| name);
     let header =
-        [&["phase", "work of strain", "change of stored"], &dissipated[..], &["time step", "residual"]]
-            .concat();
-    let row = |p: &EnergyReading| {
-        let stored = p.stored.iter().map(|(_, v)| v).sum::<f64>() - p.start;
+        [&["phase", "work of strain", "change of stored"], &columns[..], &["time step", "residual"]].concat();
+    let row = |p: &EnergyBalance| {
+        let stored = sum(&stored(p)) - p.start;
         let by = |(_, parts): (&str, &[&str])| {
-            p.dissipated.iter().filter(|(name, _)| parts.contains(name)).map(|(_, v)| v).sum::<f64>()
+            dissipated(p).iter().filter(|(name, _)| parts.contains(name)).map(|(_, v)| v).sum::<f64>()
         };
         let values =
-            [&[p.strain_work, stored], &DISSIPATED.map(by)[..], &[p.integration, p.residual()]].concat();
+            [&[p.strain_work, stored], &DISSIPATED.map(by)[..], &[p.integration, residual(p)]].concat();
         let values = values.into_iter().map(|v| Cell::number(format!("{v:.3e}")));
         std::iter::once(Cell::text(&p.phase_name)).chain(values).collect::<Vec<_>>()
     };
@@ -52,15 +84,15 @@ fn balance(phases: &[EnergyReading]) -> Html {
     table(caption, header, phases.iter().map(row))
 }
 
-fn data(phases: &[EnergyReading]) -> String {
+fn data(phases: &[EnergyBalance]) -> String {
     let rows = phases.iter().flat_map(|p| {
         let rest = [
             ("start", p.start),
             ("work of strain", p.strain_work),
             ("time step", p.integration),
-            ("residual", p.residual()),
+            ("residual", residual(p)),
         ];
-        let all = rest.into_iter().chain(p.stored).chain(p.dissipated);
+        let all = rest.into_iter().chain(stored(p)).chain(dissipated(p));
         all.map(|(part, value)| [p.phase_name.clone(), part.to_owned(), six_digits(value)])
     });
     csv(["phase", "part", "energy_j"], rows)

@@ -1,11 +1,12 @@
 //! A run against time, from one pass over its recording.
 
+use crate::energy::residual;
 use crate::phased::{MOST_PHASES, PhaseAxis, Phased, bins_of};
+use grainlab_console::Failure;
 use grainlab_core::results::PackingReport;
 use grainlab_core::{ComponentControl, Packing};
-use grainlab_msgs::boundary::EnergyReading;
 use grainlab_msgs::{Topic, msg, simulated_seconds, topics};
-use grainlab_recordings::{ChannelInfo, Message, OneRun, ReadError, Recording, RunSign, Selection};
+use grainlab_recordings::{ChannelInfo, Message, OneRun, Recording, RunSign, Selection};
 use grainlab_servo::ServoRequest;
 use grainlab_viewer::{Film, View};
 use std::collections::BTreeMap;
@@ -42,7 +43,7 @@ pub struct Timeline {
     /// The packings, for pictures.
     pub(crate) film: Film,
     /// Energy balances, by phase.
-    pub(crate) energy: Vec<EnergyReading>,
+    pub(crate) energy: Vec<msg::EnergyBalance>,
     /// The last packing.
     pub(crate) last: Option<Packing>,
     /// Messages that could not be read.
@@ -71,7 +72,7 @@ impl Timeline {
     }
 
     /// Reads the recording of a run of this number of phases.
-    pub(crate) fn read(recording: &Recording, phases: usize) -> Result<Self, ReadError> {
+    pub(crate) fn read(recording: &Recording, phases: usize) -> Result<Self, Failure> {
         let wanted =
             [topics::STRESS, topics::PACKING_REPORT, topics::PACKING, topics::RUN_STATE, topics::ENERGY];
         let of = |c: &ChannelInfo| {
@@ -108,7 +109,7 @@ impl Timeline {
         } else if topic == topics::PACKING.name {
             self.packing(Packing::try_from(&recorded.decoded::<msg::Packing>().ok()?).ok()?);
         } else if topic == topics::ENERGY.name {
-            let balance = EnergyReading::try_from(&recorded.decoded::<msg::EnergyBalance>().ok()?).ok()?;
+            let balance: msg::EnergyBalance = recorded.decoded().ok().filter(|b| residual(b).is_finite())?;
             // A restarted simulator sends the balance of a phase again.
             self.energy.retain(|b| b.phase != balance.phase);
             self.energy.push(balance);

@@ -5,7 +5,7 @@ use grainlab_core::contact::ContactLaw;
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::import::assemble::State;
+use crate::import::assemble::Moment;
 use crate::import::error::ImportError;
 use crate::import::settings::Known;
 use crate::import::stated;
@@ -107,9 +107,9 @@ impl Sidecar {
         })
     }
 
-    pub(super) fn state(&self) -> Result<State, ImportError> {
-        let state = State::at(self.step.unwrap_or(0));
-        Ok(State {
+    pub(super) fn state(&self) -> Result<Moment, ImportError> {
+        let state = Moment::at(self.step.unwrap_or(0));
+        Ok(Moment {
             time: self.time.unwrap_or(state.time),
             deformation: self.deformation.map_or(state.deformation, matrix),
             time_step: self.time_step.unwrap_or(state.time_step),

@@ -5,10 +5,8 @@ use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
 use grainlab_msgs::Topic;
 use grainlab_node_kit::{Exit, NodeSpec, Scope, run_node};
-use grainlab_recorder::{
-    OtherTopics, Recorder, ResultSlot, Settings, SnapshotSettings, Wanted, contract_topics,
-};
-use grainlab_recordings::{Compression, Definitions, QosOverrides, WriterOptions};
+use grainlab_recorder::{OtherTopics, Recorder, ResultSlot, Settings, SnapshotSettings, contract_topics};
+use grainlab_recordings::{Compression, Definitions, QosOverrides, TopicNames, WriterOptions};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -37,21 +35,11 @@ pub(crate) struct Args {
     /// Directory to make and record into [default: the next one under recordings/runs]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Topics to record, whatever their type
-    #[arg(long, num_args = 1.., value_name = "TOPIC", conflicts_with = "all")]
-    topics: Vec<String>,
+    #[command(flatten)]
+    names: TopicNames,
     /// Record every topic that is not hidden, which is the default
-    #[arg(short, long)]
+    #[arg(short, long, conflicts_with_all = ["topics", "regex"])]
     all: bool,
-    /// Record the topics whose whole name matches this regular expression
-    #[arg(long, value_name = "REGEX", conflicts_with_all = ["all", "topics"])]
-    regex: Option<String>,
-    /// Leave out the topics whose whole name matches this regular expression
-    #[arg(long, value_name = "REGEX")]
-    exclude_regex: Option<String>,
-    /// Leave out these topics
-    #[arg(long, num_args = 1.., value_name = "TOPIC")]
-    exclude_topics: Vec<String>,
     /// Record hidden topics, too: those with a part that begins with an underscore, and /parameter_events
     #[arg(long)]
     include_hidden_topics: bool,
@@ -111,25 +99,26 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// Topics of the contract, and which others.
 fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
-    let (regex, exclude_regex) = (args.regex.as_deref(), args.exclude_regex.as_deref());
-    let hidden = args.include_hidden_topics;
-    let wanted = Wanted::new(&args.topics, regex, exclude_regex, &args.exclude_topics, hidden);
-    let wanted = wanted.map_err(Failure::usage)?;
     let not_recorded = |name: &&String| Topic::by_name(name).is_some_and(|topic| !topic.is_recorded());
-    if let Some(name) = args.topics.iter().find(not_recorded) {
+    if let Some(name) = args.names.topics.iter().find(not_recorded) {
         contract_topics(std::slice::from_ref(name))?;
     }
     if let Some(folder) = args.msg_path.iter().find(|folder| !folder.is_dir()) {
         return Err(Failure::usage(format!("--msg-path {}: there is no such folder", folder.display())));
     }
-    let mut topics = contract_topics(&[])?;
-    topics.retain(|topic| wanted.takes(&topic.absolute_name()));
     let qos = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose()?;
-    let qos = qos.unwrap_or_default();
-    if let Some(name) = qos.topics().map(|name| format!("/{name}")).find(|name| !wanted.takes(name)) {
+    let others = OtherTopics {
+        names: args.names.clone(),
+        hidden: args.include_hidden_topics,
+        definitions: Definitions::with_folders(&args.msg_path),
+        qos: qos.unwrap_or_default(),
+    };
+    let mut topics = contract_topics(&[])?;
+    topics.retain(|topic| others.take(&topic.absolute_name()));
+    if let Some(name) = others.qos.topics().map(|name| format!("/{name}")).find(|name| !others.take(name)) {
         return Err(Failure::usage(format!("--qos-profile-overrides-path: {name} is not recorded")));
     }
-    Ok((topics, OtherTopics { wanted, definitions: Definitions::with_folders(&args.msg_path), qos }))
+    Ok((topics, others))
 }
 
 fn writer(args: &Args) -> WriterOptions {

@@ -2,7 +2,7 @@ use crate::sample::{DIAMETER, OVERLAP, lattice, measurement, message};
 use grainlab_acoustic_probe::{AcousticProbe, DECLINED_STEP, MeasureError, Settings, measure, messages};
 use grainlab_core::Material;
 use grainlab_core::results::NotJammed;
-use grainlab_msgs::boundary::{WaveSpeedsReading, WaveformReading};
+use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_msgs::msg::{Packing, WaveSpeeds, Waveform};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
@@ -77,9 +77,8 @@ fn speeds_go_out_with_header_step_and_what_an_instrument_knows() {
     assert!((reading.solid_fraction.unwrap() / phi - 1.0).abs() < 1e-12);
     assert_eq!(reading.grain_shear_modulus, Material::GLASS.shear_modulus);
     assert!(reading.warnings[0].starts_with("left out: "), "{:?}", reading.warnings);
-    let heard = WaveformReading::try_from(waveform).unwrap();
-    assert_eq!((heard.channels.len(), heard.channels[1].name.as_str()), (2, "receiver 2"));
-    assert_eq!(heard.channels[1].samples, [0.0, 1e-6, 0.0, -1e-6]);
+    assert_eq!(waveform.checked().unwrap().channel, ["receiver 1", "receiver 2"]);
+    assert_eq!(waveform.sample[4..], [0.0, 1e-6, 0.0, -1e-6]);
     assert_eq!((value(&node, "measured"), value(&node, "speeds")), ("1".into(), "2".into()));
 }
 

@@ -6,8 +6,7 @@ use grainlab_recordings::WriterOptions;
 const BEST_EFFORT: Qos = Qos { reliable: false, depth: 5, transient_local: false };
 
 fn settings() -> OtherTopics {
-    let wanted = Wanted::new(&[], None, None, &[], false).unwrap();
-    OtherTopics { wanted, definitions: Definitions::default(), qos: QosOverrides::default() }
+    OtherTopics::default()
 }
 
 fn bus(hub: &Hub, name: &str) -> MemoryBus {
@@ -19,7 +18,7 @@ fn publish(bus: &mut MemoryBus, name: &str, kind: &str, qos: Qos) {
 }
 
 /// All topics found within a second, by name.
-fn found(finder: &mut Finder, bus: &mut MemoryBus, known: &BTreeSet<String>) -> BTreeMap<String, Found> {
+fn found(finder: &mut Finder, bus: &mut MemoryBus, known: &BTreeSet<String>) -> BTreeMap<String, FoundTopic> {
     let mut all = BTreeMap::new();
     for _ in 0..10 {
         for found in finder.look(bus, &known.iter().cloned().chain(all.keys().cloned()).collect()) {

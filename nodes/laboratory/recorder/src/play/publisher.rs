@@ -11,33 +11,23 @@ use std::time::Duration;
 const SETTLE: Duration = Duration::from_millis(1000);
 
 /// The publisher of one topic.
-pub(super) enum TopicPublisher {
-    Plain(PublisherId),
+pub(super) struct TopicPublisher {
+    id: PublisherId,
     /// Packings of any length: large ones in parts.
-    Bulk(Box<BulkPublisher>),
+    bulk: Option<BulkPublisher>,
 }
 
 impl TopicPublisher {
-    pub(super) fn id(&self) -> PublisherId {
-        match self {
-            Self::Plain(id) => *id,
-            Self::Bulk(bulk) => bulk.id(),
-        }
-    }
-
     pub(super) fn publish(&mut self, bus: &mut DdsBus, body: &[u8]) -> Result<(), BusError> {
-        match self {
-            Self::Plain(id) => bus.publish(*id, body).map(|_| ()),
-            Self::Bulk(bulk) => bulk.publish(bus, body),
+        match &mut self.bulk {
+            None => bus.publish(self.id, body).map(|_| ()),
+            Some(bulk) => bulk.publish(bus, body),
         }
     }
 
     /// Sends parts of a large message; true if none is in transit.
     pub(super) fn advance(&mut self, bus: &mut DdsBus) -> Result<bool, Failure> {
-        match self {
-            Self::Plain(_) => Ok(true),
-            Self::Bulk(bulk) => bulk.advance(bus).map_err(Failure::failed),
-        }
+        self.bulk.as_mut().map_or(Ok(true), |bulk| bulk.advance(bus).map_err(Failure::failed))
     }
 }
 
@@ -68,9 +58,9 @@ pub(super) fn offer(
         return Ok(Err(format!("a live node publishes it (writer {writer})")));
     }
     let publisher = if topic.info == topics::PACKING.info {
-        BulkPublisher::advertise(bus, &topic).map(|bulk| TopicPublisher::Bulk(Box::new(bulk)))
+        BulkPublisher::advertise(bus, &topic).map(|bulk| TopicPublisher { id: bulk.id(), bulk: Some(bulk) })
     } else {
-        bus.advertise(&topic).map(TopicPublisher::Plain)
+        bus.advertise(&topic).map(|id| TopicPublisher { id, bulk: None })
     };
     match publisher {
         Err(BusError::Name(error)) => Ok(Err(error.to_string())),
@@ -101,7 +91,7 @@ pub(super) fn wait_for_readers(
     patience: Duration,
 ) -> bool {
     let end = bus.now() + patience;
-    let count = |bus: &DdsBus| publishers.values().map(|p| bus.readers(p.id())).collect::<Vec<_>>();
+    let count = |bus: &DdsBus| publishers.values().map(|p| bus.readers(p.id)).collect::<Vec<_>>();
     let (mut known, mut since) = (count(bus), bus.now());
     loop {
         let now = bus.now();
