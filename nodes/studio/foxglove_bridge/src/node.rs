@@ -1,7 +1,7 @@
 //! The node itself.
 
 use crate::server::Server;
-use crate::settings::Settings;
+use crate::settings::BridgeSettings;
 use crate::topics::Topics;
 use grainlab_node_kit::{Bus, Exit, Health, Next, Node, NodeError};
 use std::time::Duration;
@@ -21,8 +21,8 @@ impl FoxgloveBridge {
     ///
     /// # Errors
     /// If the port is in use, the address is none of this host, or the system cannot start a thread.
-    pub fn new(bus: &mut dyn Bus, settings: Settings) -> Result<Self, NodeError> {
-        let Settings { address, port, definitions } = settings;
+    pub fn new(bus: &mut dyn Bus, settings: BridgeSettings) -> Result<Self, NodeError> {
+        let BridgeSettings { address, port, definitions } = settings;
         let server = Server::start(address, port, bus.caller())
             .map_err(|e| NodeError::new(Exit::Failure, e.to_string()))?;
         let host = if address.is_ipv6() { format!("[{address}]") } else { address.to_string() };

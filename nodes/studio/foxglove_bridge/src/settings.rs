@@ -10,7 +10,7 @@ const PORT: i64 = 8765;
 
 /// Settings of the bridge.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub struct BridgeSettings {
     /// Address to listen on.
     pub address: IpAddr,
     /// Port to listen on; 0 is any free one.
@@ -37,7 +37,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
     ]
 }
 
-impl Settings {
+impl BridgeSettings {
     /// From the parameters of [`parameters`].
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Clients over sockets, with the bus in memory.
 
-use grainlab_foxglove_bridge::{FoxgloveBridge, Settings, parameters};
+use grainlab_foxglove_bridge::{BridgeSettings, FoxgloveBridge, parameters};
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus};
 use grainlab_msgs::msg::Moduli;
 use grainlab_msgs::{to_cdr, topics};
@@ -34,7 +34,7 @@ impl Bridge {
         let moduli = Publisher::advertise(&mut talker, &topics::MODULI).unwrap();
         let (ros, _) = RosArgs::parse(&["--ros-args", "-p", "port:=0"].map(str::to_owned)).unwrap();
         let values = Parameters::resolve(&parameters(), "foxglove_bridge", &names("foxglove_bridge"), &ros);
-        let settings = Settings::of(&values.unwrap()).unwrap();
+        let settings = BridgeSettings::of(&values.unwrap()).unwrap();
         let mut node = FoxgloveBridge::new(&mut bus, settings).unwrap();
         node.step(&mut bus).unwrap();
         Self { hub, talker, reports, moduli, bus, node }

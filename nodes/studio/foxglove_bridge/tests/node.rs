@@ -1,6 +1,6 @@
 //! The node on the bus in memory, without a client.
 
-use grainlab_foxglove_bridge::{FoxgloveBridge, Settings, parameters};
+use grainlab_foxglove_bridge::{BridgeSettings, FoxgloveBridge, parameters};
 use grainlab_msgs::msg::Stress;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{Bus, Hub, Names, Node, Parameters, Publisher, RosArgs};
@@ -9,12 +9,12 @@ fn names(name: &str) -> Names {
     Names::from_args(name, &RosArgs::default()).unwrap()
 }
 
-fn settings(arguments: &[&str]) -> Result<Settings, String> {
+fn settings(arguments: &[&str]) -> Result<BridgeSettings, String> {
     let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
     let (ros, _) = RosArgs::parse(&arguments).unwrap();
     let values =
         Parameters::resolve(&parameters(), "foxglove_bridge", &names("foxglove_bridge"), &ros).unwrap();
-    Settings::of(&values).map_err(|e| e.to_string())
+    BridgeSettings::of(&values).map_err(|e| e.to_string())
 }
 
 #[test]

@@ -1,6 +1,5 @@
 //! Energy of a run by its losses, where the scene asked for that.
 
-use crate::run::Run;
 use grainlab_msgs::msg::EnergyBalance;
 use grainlab_page::plot::{Bar, Bars};
 use grainlab_page::{Cell, Html, csv, figure, grid, six_digits, table};
@@ -46,22 +45,19 @@ pub(crate) fn residual(m: &EnergyBalance) -> f64 {
     m.start + m.strain_work + m.integration - sum(&stored(m)) - sum(&dissipated(m))
 }
 
-impl Run {
-    /// The section; `None` without balances.
-    pub(crate) fn energy(&self) -> Option<Html> {
-        let phases = &self.timeline.energy;
-        let names = dissipated(phases.first()?).map(|(name, _)| name);
-        let total = |i: usize| phases.iter().map(|p| dissipated(p)[i].1).sum::<f64>();
-        let all: f64 = (0..names.len()).map(total).sum();
-        let bars = names.iter().enumerate().filter(|(i, _)| total(*i) != 0.0).map(|(i, name)| {
-            let value = total(i) / all.abs().max(f64::MIN_POSITIVE) * 100.0;
-            Bar { name: (*name).to_owned(), colour: 0, value, interval: None, text: format!("{value:.2} %") }
-        });
-        let title = format!("Energy dissipated, % of {all:.3e} J");
-        let plot = Bars { title, from_zero: true, bars: bars.collect(), reference: None }.svg();
-        let figure = figure("energy", plot, "Sums over the phases in the table.", &data(phases));
-        Some(grid(figure) + balance(phases))
-    }
+/// The section on energy, one balance per phase; `None` without balances.
+pub(crate) fn section(phases: &[EnergyBalance]) -> Option<Html> {
+    let names = dissipated(phases.first()?).map(|(name, _)| name);
+    let total = |i: usize| phases.iter().map(|p| dissipated(p)[i].1).sum::<f64>();
+    let all: f64 = (0..names.len()).map(total).sum();
+    let bars = names.iter().enumerate().filter(|(i, _)| total(*i) != 0.0).map(|(i, name)| {
+        let value = total(i) / all.abs().max(f64::MIN_POSITIVE) * 100.0;
+        Bar { name: (*name).to_owned(), colour: 0, value, interval: None, text: format!("{value:.2} %") }
+    });
+    let title = format!("Energy dissipated, % of {all:.3e} J");
+    let plot = Bars { title, from_zero: true, bars: bars.collect(), reference: None }.svg();
+    let figure = figure("energy", plot, "Sums over the phases in the table.", &data(phases));
+    Some(grid(figure) + balance(phases))
 }
 
 /// One row per phase.

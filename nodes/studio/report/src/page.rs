@@ -1,5 +1,6 @@
 //! The page of one run: one file, without references to others.
 
+use crate::energy;
 use crate::run::{Run, recommended};
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{
@@ -36,7 +37,7 @@ impl Run {
             ("moduli", "Moduli", Some(self.moduli())),
             ("inference", "Inferred and counted", Some(self.inferred())),
             ("waves", "Waves", self.waves()),
-            ("energy", "Energy", self.energy()),
+            ("energy", "Energy", energy::section(&self.timeline.energy)),
             ("health", "Health of the run", Some(self.health())),
             ("repeat", "Repeat it", Some(self.repeat())),
         ];
