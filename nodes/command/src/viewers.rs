@@ -21,7 +21,7 @@ pub(crate) const VIEWERS: &[Viewer] = &[
         parameters: grainlab_foxglove_bridge::parameters,
         topics: None,
         build: |bus, parameters| {
-            let settings = grainlab_foxglove_bridge::Settings::of(parameters)?;
+            let settings = grainlab_foxglove_bridge::BridgeSettings::of(parameters)?;
             Ok(Box::new(grainlab_foxglove_bridge::FoxgloveBridge::new(bus, settings)?))
         },
     },

@@ -1,7 +1,6 @@
 //! Student's distribution, of a mean of few.
 
-/// Half width, in standard deviations, of the central 95 % of a normal distribution.
-const HALF_WIDTH: f64 = 1.959_963_984_540_054;
+use grainlab_emt::HALF_WIDTH;
 
 /// Half width of the central 95 % of Student's distribution over that of a normal one (Abramowitz & Stegun 26.7.5, to 2e-3
 /// from five degrees of freedom on).
