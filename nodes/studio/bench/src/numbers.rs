@@ -32,7 +32,7 @@ pub(super) fn rounded(value: Option<f64>) -> String {
 /// Parses a number between two limits.
 pub(super) fn between(text: &str, least: f64, most: f64) -> Result<f64, String> {
     let value = text.parse().ok().filter(|v| (least..=most).contains(v));
-    value.ok_or_else(|| format!("it must be a number from {least} to {most}"))
+    value.ok_or_else(|| format!("it must be a number from {least:?} to {most:?}"))
 }
 
 #[cfg(test)]
