@@ -59,9 +59,8 @@ pub(super) fn next_frame<'a>(
             let Some(names) = item.strip_prefix(kind) else { continue };
             if let Some(expected) = count.filter(|n| *n != rows.len()) {
                 let (found, kind) = (rows.len(), kind.to_lowercase());
-                return Err(head.error(format!(
-                    "{found} {kind} follow, {expected} were announced: the file is truncated"
-                )));
+                let why = if found < expected { ": the file is truncated" } else { "" };
+                return Err(head.error(format!("{found} {kind} follow, {expected} were announced{why}")));
             }
             let names = names.split_whitespace().collect();
             return Ok(Some(Frame { step, time, bounds, head, names, rows }));

@@ -8,7 +8,9 @@ use grainlab_core::Material;
 impl Calibration {
     /// Reads the text of a calibration file.
     pub fn parse(text: &str) -> Result<Self, CalibrationError> {
-        let found: Self = toml::from_str(text).map_err(|e| CalibrationError::Text(e.to_string()))?;
+        let wrong = |e| format!("{e}\nA calibration that an earlier version wrote must be learned anew.");
+        let found: Self =
+            toml::from_str(text).map_err(|e: toml::de::Error| CalibrationError::Text(wrong(e)))?;
         let Material { shear_modulus, poisson_ratio, density } = found.material;
         constant("material.shear_modulus", shear_modulus, shear_modulus > 0.0, "it must be positive")?;
         let fits = (0.0..=0.5).contains(&poisson_ratio);

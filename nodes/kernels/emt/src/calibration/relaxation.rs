@@ -139,6 +139,7 @@ impl RelaxationCalibration {
         ] {
             constant(field, low, low <= high && low.is_finite() && high.is_finite(), RANGE)?;
         }
+        constant("network.grains", f64::from(self.grains), self.grains > 0, "it must be positive")?;
         let [from, to] = self.domain();
         for (field, law) in [("network.theta", &self.theta), ("network.shear", &self.shear)] {
             constant(field, law.onset, law.onset < from, "the onset must lie below every z")?;

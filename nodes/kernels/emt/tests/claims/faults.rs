@@ -308,6 +308,20 @@ fn a_calibration_that_could_not_be_inverted_is_refused_by_field() {
 }
 
 #[test]
+fn a_calibration_file_with_an_impossible_number_or_of_an_earlier_version_is_refused() {
+    let text = Calibration::builtin("grainlab").unwrap().to_toml().unwrap();
+    for (sound, damaged, at_fault) in [
+        ("density = 2500.0", "density = 0.0", "material.density"),
+        ("grains = 2000", "grains = 0", "network.grains"),
+        ("[network]\n", "[network]\nabscissa = \"k\"\n", "must be learned anew"),
+    ] {
+        assert!(text.contains(sound), "{sound}");
+        let refused = Calibration::parse(&text.replace(sound, damaged)).unwrap_err();
+        assert!(refused.to_string().contains(at_fault), "{damaged}: {refused}");
+    }
+}
+
+#[test]
 fn what_is_missing_is_named() {
     let without = |name, modulus| {
         let mut o = sound();
