@@ -1,7 +1,7 @@
 //! Settings of the engine during a phase.
 
 use crate::error::DemError;
-use grainlab_core::contact::TangentialLaw;
+use grainlab_core::contact::{SpringDashpotSlider, TangentialLaw};
 
 /// The parts of the contact law that a phase needs. The force kernel is compiled for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,6 +80,12 @@ impl EngineSettings {
             return Ok(());
         }
         Err(DemError::Setting { name: "time_step", value: step, requirement: "more than 0" })
+    }
+
+    /// The contact law with these springs.
+    pub(crate) fn law<S>(&self, springs: S) -> SpringDashpotSlider<S> {
+        let &Self { friction, damping, tangential, .. } = self;
+        SpringDashpotSlider { springs, friction, damping, kept: tangential.kept() }
     }
 
     /// The parts of the contact law that these settings need.

@@ -34,7 +34,7 @@ struct Rolled {
 impl Rolled {
     fn new(damping: f64) -> Self {
         let springs = RollingSprings { springs: HertzMindlin::new(&GLASS), rolling: resistance(damping) };
-        let law = SpringDashpotSlider { springs, friction: 0.3, damping: 0.0 };
+        let law = SpringDashpotSlider { springs, friction: 0.3, damping: 0.0, kept: 0.0 };
         Self { law, normal: Vec3::z(), history: Vec3::zeros() }
     }
 

@@ -70,8 +70,7 @@ impl<S: ContactSprings> ForcedContact<S> {
             spin_velocity: lanes(m.spin_velocity),
             spin_sum: lanes(m.spin_sum),
         };
-        let f =
-            self.law.full_force::<f64, true, true, true>(&kinematics, lanes(self.history), self.time_step);
+        let f = self.law.full_force::<f64, true, true>(&kinematics, lanes(self.history), self.time_step);
         let vector = |v: LaneVec3<f64>| Vec3::new(v.x, v.y, v.z);
         (self.history, self.contact_radius) = (vector(f.history), contact_radius);
         Forces { normal: f.normal, tangential: vector(f.tangential) }

@@ -36,7 +36,7 @@ fn source(file: &str) -> String {
 
 /// The law with two bodies of `material` at rest: E* as theirs.
 fn law(material: Material, damping: f64) -> SpringDashpotSlider<HertzMindlin> {
-    SpringDashpotSlider { springs: HertzMindlin::new(&material), friction: FRICTION, damping }
+    SpringDashpotSlider { springs: HertzMindlin::new(&material), friction: FRICTION, damping, kept: 0.0 }
 }
 
 /// Two bodies of this material have E* = [`YOUNG`].

@@ -34,7 +34,7 @@ pub fn rows() -> Result<Vec<Row>, VerificationError> {
 
 fn contact(steps_per_step: f64) -> ForcedContact<Linear> {
     let springs = Linear { normal_stiffness: STIFFNESS, stiffness_ratio: RATIO };
-    let law = SpringDashpotSlider { springs, friction: FRICTION, damping: 0.0 };
+    let law = SpringDashpotSlider { springs, friction: FRICTION, damping: 0.0, kept: 0.0 };
     ForcedContact::new(law, 0.5 * RADIUS, 1.0, STEP / steps_per_step)
 }
 

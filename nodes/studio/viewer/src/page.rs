@@ -12,7 +12,7 @@ use grainlab_page::{Html, Page, data, heading, html};
 pub const STYLE: &str = include_str!("../assets/viewer.css");
 
 /// Scripts of the figure, in order: three.js and ours.
-pub const SCRIPTS: [&str; 5] = [
+pub static SCRIPTS: [&str; 5] = [
     include_str!("../assets/three.min.js"),
     include_str!("../assets/viewer_data.js"),
     include_str!("../assets/viewer_scene.js"),

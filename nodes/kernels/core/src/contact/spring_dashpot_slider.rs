@@ -71,6 +71,8 @@ pub struct SpringDashpotSlider<S> {
     pub friction: f64,
     /// Damping, as a fraction of critical.
     pub damping: f64,
+    /// Fraction of its tangential force that a contact keeps at least on unloading; see [`TangentialLaw::kept`](super::TangentialLaw::kept).
+    pub kept: f64,
 }
 
 impl<S: ContactSprings> SpringDashpotSlider<S> {
@@ -97,10 +99,9 @@ impl<S: ContactSprings> SpringDashpotSlider<S> {
     ///
     /// `SLIDING` applies the Coulomb limit, first to the elastic force, then to the sum of elastic and viscous force. (Limiting
     /// the elastic force to what the viscous one leaves of the limit, as in Luding, Granular Matter 10, 235 (2008), saves a
-    /// root. But then the elastic stress falls with the strain rate, and a stress servo becomes unstable early.) `RESCALED`
-    /// scales the history down with the stiffness on unloading.
+    /// root. But then the elastic stress falls with the strain rate, and a stress servo becomes unstable early.)
     #[inline(always)]
-    pub fn full_force<L: Lanes, const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool>(
+    pub fn full_force<L: Lanes, const ADVANCE: bool, const SLIDING: bool>(
         &self,
         c: &ContactKinematics<L>,
         history: LaneVec3<L>,
@@ -115,7 +116,7 @@ impl<S: ContactSprings> SpringDashpotSlider<S> {
         let limit = L::splat(self.friction) * elastic;
         let mut f = history;
         if ADVANCE {
-            f = self.history_step::<L, RESCALED>(c, f, dt).elastic;
+            f = self.history_step(c, f, dt).elastic;
             if SLIDING {
                 f = coulomb_limit(f, limit);
             }
@@ -133,17 +134,16 @@ impl<S: ContactSprings> SpringDashpotSlider<S> {
 
     /// The history one step further, without the Coulomb limit.
     #[inline(always)]
-    pub fn history_step<L: Lanes, const RESCALED: bool>(
+    pub fn history_step<L: Lanes>(
         &self,
         c: &ContactKinematics<L>,
         history: LaneVec3<L>,
         dt: f64,
     ) -> HistoryStep<L> {
         let (n, across, mean) = (c.normal, c.across(), c.mean_normal(dt));
-        let mut carried = rotate_history(history, c, mean, dt);
-        if RESCALED {
-            carried = carried.scale(self.springs.unloading(c.contact_radius_before, c.contact_radius));
-        }
+        let unloading = self.springs.unloading(c.contact_radius_before, c.contact_radius);
+        // Not a branch, which costs more than the quotient.
+        let carried = rotate_history(history, c, mean, dt).scale(unloading.max(L::splat(self.kept)));
         // With the mid-step normal: else a pair that spins about an oblique axis would seem to slip.
         let slip = across.sub_cross(c.spin_velocity, mean);
         let slip = slip.sub_scaled(n, slip.dot(n));

@@ -8,3 +8,13 @@ pub enum TangentialLaw {
     /// Kept on unloading: the increments of the stuck network, and LAMMPS's `mindlin/force`.
     Incremental,
 }
+
+impl TangentialLaw {
+    /// Fraction of its tangential force that a contact keeps at least on unloading.
+    pub fn kept(self) -> f64 {
+        match self {
+            TangentialLaw::Rescaled => 0.0,
+            TangentialLaw::Incremental => 1.0,
+        }
+    }
+}

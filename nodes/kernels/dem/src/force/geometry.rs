@@ -31,7 +31,7 @@ impl<'a, S: ContactSprings> ForceInput<'a, S> {
             twist: &state.twist,
             offset,
             rate: state.rate.into(),
-            law: SpringDashpotSlider { springs, friction: settings.friction, damping: settings.damping },
+            law: settings.law(springs),
             dt: state.time_step,
             common: CommonSize { radius, r_eff: effective_radius(radius, radius), m_eff },
         }

@@ -16,13 +16,7 @@ pub(crate) struct Frictionless<P, const SIZES: bool>(PhantomData<P>);
 
 /// Contacts with friction; see [`full_force`](grainlab_core::contact::SpringDashpotSlider::full_force) for the switches.
 /// `SIZES`: grains differ in size.
-pub(crate) struct Frictional<
-    P,
-    const ADVANCE: bool,
-    const SLIDING: bool,
-    const RESCALED: bool,
-    const SIZES: bool,
->(PhantomData<P>);
+pub(crate) struct Frictional<P, const ADVANCE: bool, const SLIDING: bool, const SIZES: bool>(PhantomData<P>);
 
 /// Forces of the pairs of a chunk, added to its sums. Returns the virial of periodic pairs, if it is asked for.
 pub(crate) fn forces<S: LawStage>(
@@ -32,6 +26,16 @@ pub(crate) fn forces<S: LawStage>(
     with_virial: bool,
 ) -> Virial {
     simd.run(ForceKernel::<S> { input, chunk, with_virial })
+}
+
+/// As [`forces`], with one lane, which gives the same bits: for a pass that is made once, at a resume.
+pub(crate) fn forces_once<S: LawStage>(
+    _: Simd,
+    input: ForceInput<'_, S::Springs>,
+    chunk: PairChunk<'_>,
+    with_virial: bool,
+) -> Virial {
+    ForceKernel::<S> { input, chunk, with_virial }.run::<f64>()
 }
 
 /// A law stage, run over a chunk.
@@ -127,8 +131,8 @@ impl<P: ContactSprings, const SIZES: bool> LawStage for Frictionless<P, SIZES> {
     }
 }
 
-impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool>
-    LawStage for Frictional<P, ADVANCE, SLIDING, RESCALED, SIZES>
+impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const SIZES: bool> LawStage
+    for Frictional<P, ADVANCE, SLIDING, SIZES>
 {
     const MOMENTS: bool = true;
     const SIZES: bool = SIZES;
@@ -166,7 +170,7 @@ impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const RESCALED
             spin_sum: c.spin_sum,
         };
         let history = load_vector(&block.history, lane);
-        let forces = input.law.full_force::<L, ADVANCE, SLIDING, RESCALED>(&kinematics, history, input.dt);
+        let forces = input.law.full_force::<L, ADVANCE, SLIDING>(&kinematics, history, input.dt);
         let touching = c.overlap.gt(L::splat(0.0));
         if P::ROLLS
             && let Some((block, rolling_moment)) = rolling

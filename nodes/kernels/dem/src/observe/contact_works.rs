@@ -1,6 +1,6 @@
 //! Forces and energies of the present contacts, by the scalar contact law.
 
-use super::pair_motion::{PairMotion, kinematics, lanes, law, vec3};
+use super::pair_motion::{PairMotion, kinematics, lanes, vec3};
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::types::Pair;
@@ -41,16 +41,16 @@ impl LawVisitor for ContactWorks<'_> {
 
     fn visit<S: ContactSprings>(self, springs: S) -> Vec<ContactWork> {
         let Self { state, contacts, settings, rate } = self;
-        let law = law(settings, springs);
+        let law = settings.law(springs);
         let no_slip = settings.features() == Features::NoSlip;
         let frictional = settings.features() != Features::Frictionless;
         let work = |p: Pair| {
             let m = kinematics(state, contacts, rate, &p, p.history.contact_radius);
             let (c, tangential) = (&m.contact, lanes(p.history.tangential));
             let f = if no_slip {
-                law.full_force::<f64, false, false, false>(c, tangential, 0.0)
+                law.full_force::<f64, false, false>(c, tangential, 0.0)
             } else {
-                law.full_force::<f64, false, true, false>(c, tangential, 0.0)
+                law.full_force::<f64, false, true>(c, tangential, 0.0)
             };
             let rolling = if S::ROLLS && frictional {
                 vec3(

@@ -3,8 +3,7 @@
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::types::Pair;
-use crate::settings::EngineSettings;
-use grainlab_core::contact::{ContactKinematics, ContactSprings, SpringDashpotSlider};
+use grainlab_core::contact::ContactKinematics;
 use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
 use grainlab_core::{Mat3, Vec3};
@@ -12,10 +11,6 @@ use grainlab_core::{Mat3, Vec3};
 /// Full overlap of a pair with this contact radius, m.
 pub(super) fn overlap(state: &State, p: &Pair, contact_radius: f64) -> f64 {
     contact_radius * contact_radius / effective_radius(state.radius[p.i as usize], state.radius[p.j as usize])
-}
-
-pub(super) fn law<S: ContactSprings>(settings: &EngineSettings, springs: S) -> SpringDashpotSlider<S> {
-    SpringDashpotSlider { springs, friction: settings.friction, damping: settings.damping }
 }
 
 /// Position and motion of a pair.

@@ -2,13 +2,13 @@
 
 use super::contact_works::{rolling_energy, tangential_energy};
 use super::energy::EnergyBalance;
-use super::pair_motion::{kinematics, lanes, law, overlap, vec3};
+use super::pair_motion::{kinematics, lanes, overlap, vec3};
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::types::Pair;
 use crate::settings::{EngineSettings, Features};
 use grainlab_core::Vec3;
-use grainlab_core::contact::{ContactSprings, HistoryStep, LawVisitor, TangentialLaw};
+use grainlab_core::contact::{ContactSprings, HistoryStep, LawVisitor};
 
 /// Works of springs and sliders from the positions of one evaluation to those of the next, under any law.
 pub(super) struct PathWorks<'a> {
@@ -23,7 +23,7 @@ impl LawVisitor for PathWorks<'_> {
 
     fn visit<S: ContactSprings>(self, springs: S) -> EnergyBalance {
         let Self { state, contacts, settings, before } = self;
-        let law = law(settings, springs);
+        let law = settings.law(springs);
         let frictional = settings.features() != Features::Frictionless;
         let normal_energy = |p: &Pair, contact_radius: f64| {
             let force = springs
@@ -48,14 +48,7 @@ impl LawVisitor for PathWorks<'_> {
             }
             let m = kinematics(state, contacts, &state.rate, &p, before.contact_radius);
             let history = lanes(before.tangential);
-            let step = match settings.tangential {
-                TangentialLaw::Rescaled => {
-                    law.history_step::<f64, true>(&m.contact, history, state.time_step)
-                }
-                TangentialLaw::Incremental => {
-                    law.history_step::<f64, false>(&m.contact, history, state.time_step)
-                }
-            };
+            let step = law.history_step(&m.contact, history, state.time_step);
             let k_t = springs.tangential_stiffness(p.history.contact_radius, 1.0);
             let slip = SpringStep::new(step, p.history.tangential, k_t);
             works.history -= slip.carried;

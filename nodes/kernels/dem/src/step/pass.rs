@@ -11,7 +11,7 @@ use crate::domain::compute::Compute;
 use crate::domain::distributed_state::{DistributedState, SubdomainView};
 use crate::domain::state::{GrainsMut, State};
 use crate::force::geometry::ForceInput;
-use crate::force::kernel::{Frictional, Frictionless, forces};
+use crate::force::kernel::{Frictional, Frictionless, forces, forces_once};
 use crate::force::virial::{self, Virial};
 use crate::pairs::contacts::Contacts;
 use crate::pairs::subdomain_pairs::SubdomainPairs;
@@ -19,7 +19,7 @@ use crate::pairs::types::PairChunk;
 use crate::settings::{EngineSettings, Features};
 use crate::simd::instruction_set::Simd;
 use crate::simd::simd_f64::CHUNK_SIZE;
-use grainlab_core::contact::{ContactSprings, LawVisitor, TangentialLaw};
+use grainlab_core::contact::{ContactSprings, LawVisitor};
 use std::mem::take;
 
 /// Work of a pass.
@@ -214,14 +214,11 @@ fn kernel_for<S: ContactSprings, const SIZES: bool>(
     settings: &EngineSettings,
     as_saved: bool,
 ) -> ForceKernel<S> {
-    let rescaled = settings.tangential == TangentialLaw::Rescaled;
-    match (settings.features(), rescaled, as_saved) {
-        (Features::Frictionless, ..) => forces::<Frictionless<S, SIZES>>,
-        (Features::Sliding, true, false) => forces::<Frictional<S, true, true, true, SIZES>>,
-        (Features::Sliding, false, false) => forces::<Frictional<S, true, true, false, SIZES>>,
-        (Features::NoSlip, true, false) => forces::<Frictional<S, true, false, true, SIZES>>,
-        (Features::NoSlip, false, false) => forces::<Frictional<S, true, false, false, SIZES>>,
-        (Features::Sliding, _, true) => forces::<Frictional<S, false, true, false, SIZES>>,
-        (Features::NoSlip, _, true) => forces::<Frictional<S, false, false, false, SIZES>>,
+    match (settings.features(), as_saved) {
+        (Features::Frictionless, _) => forces::<Frictionless<S, SIZES>>,
+        (Features::Sliding, false) => forces::<Frictional<S, true, true, SIZES>>,
+        (Features::NoSlip, false) => forces::<Frictional<S, true, false, SIZES>>,
+        (Features::Sliding, true) => forces_once::<Frictional<S, false, true, SIZES>>,
+        (Features::NoSlip, true) => forces_once::<Frictional<S, false, false, SIZES>>,
     }
 }

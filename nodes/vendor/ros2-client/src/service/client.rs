@@ -1,6 +1,6 @@
 #[cfg(any(feature = "mio_06", feature = "mio_1"))]
 use std::io;
-use std::sync::atomic;
+use std::{marker::PhantomData, sync::atomic};
 
 #[cfg(feature = "mio_06")]
 use rustdds::mio::{Evented, Poll, PollOpt, Ready, Token};
@@ -28,10 +28,43 @@ where
   Resp: Message,
 {
   service_mapping: ServiceMapping,
-  request_sender: DataWriterR<RequestWrapper<Req>>,
-  response_receiver: SimpleDataReaderR<ResponseWrapper<Resp>>,
+  request_sender: DataWriterR<RequestWrapper>,
+  response_receiver: SimpleDataReaderR<ResponseWrapper>,
   sequence_number_gen: atomic::AtomicI64, // used by basic and cyclone
   client_guid: GUID,                      // used by the Cyclone ServiceMapping
+  phantom: PhantomData<fn(Req) -> Resp>,
+}
+
+/// The DDS ends of a client. They carry bytes, so that they are compiled once,
+/// and not once per service type.
+fn ends(
+  node: &mut Node,
+  request_topic: &Topic,
+  response_topic: &Topic,
+  qos_request: Option<QosProfile>,
+  qos_response: Option<QosProfile>,
+) -> CreateResult<(DataWriterR<RequestWrapper>, SimpleDataReaderR<ResponseWrapper>)> {
+  Ok((
+    node.create_datawriter(request_topic, qos_request)?,
+    node.create_simpledatareader(response_topic, qos_response)?,
+  ))
+}
+
+fn take(
+  receiver: &SimpleDataReaderR<ResponseWrapper>,
+) -> ReadResult<Option<(MessageInfo, ResponseWrapper)>> {
+  receiver.drain_read_notifications();
+  let taken: Option<no_key::DeserializedCacheChange<ResponseWrapper>> = receiver.try_take_one()?;
+  Ok(taken.map(|dcc| (MessageInfo::from(&dcc), dcc.into_value())))
+}
+
+fn send(
+  sender: &DataWriterR<RequestWrapper>,
+  request: RequestWrapper,
+  options: WriteOptions,
+) -> WriteResult<RmwRequestId, ()> {
+  let sent = sender.write_with_options(request, options).map(RmwRequestId::from);
+  Ok(sent.map_err(|e| e.forget_data())?)
 }
 
 impl<Req, Resp> Client<Req, Resp>
@@ -47,15 +80,8 @@ where
     qos_request: Option<QosProfile>,
     qos_response: Option<QosProfile>,
   ) -> CreateResult<Self> {
-    let request_sender = node
-      .create_datawriter::<RequestWrapper<Req>, ServiceSerializerAdapter<RequestWrapper<Req>>>(
-        request_topic,
-        qos_request,
-      )?;
-    let response_receiver =
-      node.create_simpledatareader
-      ::<ResponseWrapper<Resp>, ServiceDeserializerAdapter<ResponseWrapper<Resp>>>(
-        response_topic, qos_response)?;
+    let (request_sender, response_receiver) =
+      ends(node, request_topic, response_topic, qos_request, qos_response)?;
 
     debug!(
       "Created new Client: request={} response={}",
@@ -69,6 +95,7 @@ where
       response_receiver,
       sequence_number_gen: atomic::AtomicI64::new(SequenceNumber::default().into()),
       client_guid,
+      phantom: PhantomData,
     })
   }
 
@@ -80,7 +107,7 @@ where
       writer_gid: Gid::from(self.client_guid),
       sequence_number: i64::from(self.sequence_number()),
     };
-    let req_wrapper = RequestWrapper::<Req>::new(
+    let req_wrapper = RequestWrapper::new(
       self.service_mapping,
       gen_rmw_req_id,
       RepresentationIdentifier::CDR_LE,
@@ -96,11 +123,8 @@ where
     } else {
       write_opts_builder.related_sample_identity(SampleIdentity::from(gen_rmw_req_id))
     };
-    let sent_rmw_req_id = self
-      .request_sender
-      .write_with_options(req_wrapper, write_opts_builder.build())
-      .map(RmwRequestId::from)
-      .map_err(|e| e.forget_data())?;
+    let sent_rmw_req_id =
+      send(&self.request_sender, req_wrapper, write_opts_builder.build())?;
 
     match self.service_mapping {
       ServiceMapping::Enhanced | ServiceMapping::ByClient => Ok(sent_rmw_req_id),
@@ -115,15 +139,9 @@ where
   /// the correct response. In case you receive someone else's response,
   /// please do receive again.
   pub fn receive_response(&self) -> ReadResult<Option<(RmwRequestId, Resp)>> {
-    self.response_receiver.drain_read_notifications();
-    let dcc_rw: Option<no_key::DeserializedCacheChange<ResponseWrapper<Resp>>> =
-      self.response_receiver.try_take_one()?;
-
-    match dcc_rw {
+    match take(&self.response_receiver)? {
       None => Ok(None),
-      Some(dcc) => {
-        let mi = MessageInfo::from(&dcc);
-        let res_wrapper = dcc.into_value();
+      Some((mi, res_wrapper)) => {
         let (ri, res) = res_wrapper.unwrap(self.service_mapping, mi, self.client_guid)?;
         Ok(Some((ri, res)))
       }
@@ -144,7 +162,7 @@ where
         }
       }.await;
 
-    let req_wrapper = RequestWrapper::<Req>::new(
+    let req_wrapper = RequestWrapper::new(
       self.service_mapping,
       gen_rmw_req_id,
       RepresentationIdentifier::CDR_LE,

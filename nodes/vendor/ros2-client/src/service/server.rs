@@ -1,5 +1,6 @@
 #[cfg(any(feature = "mio_06", feature = "mio_1"))]
 use std::io;
+use std::marker::PhantomData;
 
 #[cfg(feature = "mio_06")]
 use rustdds::mio::{Evented, Poll, PollOpt, Ready, Token};
@@ -28,8 +29,43 @@ where
   Resp: Message,
 {
   service_mapping: ServiceMapping,
-  request_receiver: SimpleDataReaderR<RequestWrapper<Req>>,
-  response_sender: DataWriterR<ResponseWrapper<Resp>>,
+  request_receiver: SimpleDataReaderR<RequestWrapper>,
+  response_sender: DataWriterR<ResponseWrapper>,
+  phantom: PhantomData<fn(Req) -> Resp>,
+}
+
+/// The DDS ends of a server. They carry bytes, so that they are compiled once,
+/// and not once per service type.
+fn ends(
+  node: &mut Node,
+  request_topic: &Topic,
+  response_topic: &Topic,
+  qos_request: Option<QosProfile>,
+  qos_response: Option<QosProfile>,
+) -> CreateResult<(SimpleDataReaderR<RequestWrapper>, DataWriterR<ResponseWrapper>)> {
+  Ok((
+    node.create_simpledatareader(request_topic, qos_request)?,
+    node.create_datawriter(response_topic, qos_response)?,
+  ))
+}
+
+fn take(
+  receiver: &SimpleDataReaderR<RequestWrapper>,
+) -> ReadResult<Option<(MessageInfo, RequestWrapper)>> {
+  receiver.drain_read_notifications();
+  let taken: Option<no_key::DeserializedCacheChange<RequestWrapper>> = receiver.try_take_one()?;
+  Ok(taken.map(|dcc| (MessageInfo::from(&dcc), dcc.into_value())))
+}
+
+fn send(
+  sender: &DataWriterR<ResponseWrapper>,
+  response: ResponseWrapper,
+  options: WriteOptions,
+) -> WriteResult<(), ()> {
+  sender
+    .write_with_options(response, options)
+    .map(|_| ())
+    .map_err(|e| WriteError::from(e.forget_data())) // lose SampleIdentity
 }
 
 impl<Req, Resp> Server<Req, Resp>
@@ -45,15 +81,8 @@ where
     qos_request: Option<QosProfile>,
     qos_response: Option<QosProfile>,
   ) -> CreateResult<Self> {
-    let request_receiver =
-      node.create_simpledatareader
-      ::<RequestWrapper<Req>, ServiceDeserializerAdapter<RequestWrapper<Req>>>(
-        request_topic, qos_request)?;
-    let response_sender = node
-      .create_datawriter::<ResponseWrapper<Resp>, ServiceSerializerAdapter<ResponseWrapper<Resp>>>(
-        response_topic,
-        qos_response,
-      )?;
+    let (request_receiver, response_sender) =
+      ends(node, request_topic, response_topic, qos_request, qos_response)?;
 
     debug!(
       "Created new Server: requests={} response={}",
@@ -65,21 +94,16 @@ where
       service_mapping,
       request_receiver,
       response_sender,
+      phantom: PhantomData,
     })
   }
 
   /// Receive a request from Client.
   /// Returns `Ok(None)` if no new requests have arrived.
   pub fn receive_request(&self) -> ReadResult<Option<(RmwRequestId, Req)>> {
-    self.request_receiver.drain_read_notifications();
-    let dcc_rw: Option<no_key::DeserializedCacheChange<RequestWrapper<Req>>> =
-      self.request_receiver.try_take_one()?;
-
-    match dcc_rw {
+    match take(&self.request_receiver)? {
       None => Ok(None),
-      Some(dcc) => {
-        let mi = MessageInfo::from(&dcc);
-        let req_wrapper = dcc.into_value();
+      Some((mi, req_wrapper)) => {
         let (ri, req) = req_wrapper.unwrap(self.service_mapping, &mi)?;
         Ok(Some((ri, req)))
       }
@@ -89,7 +113,7 @@ where
   /// Send response to request by Client.
   /// rmw_req_id identifies request being responded.
   pub fn send_response(&self, rmw_req_id: RmwRequestId, response: Resp) -> WriteResult<(), ()> {
-    let resp_wrapper = ResponseWrapper::<Resp>::new(
+    let resp_wrapper = ResponseWrapper::new(
       self.service_mapping,
       rmw_req_id,
       RepresentationIdentifier::CDR_LE,
@@ -103,12 +127,7 @@ where
       // WriteOptions (QoS ParameterList), but within data payload.
       // But maybe it is not harmful to send it in both?
       .build();
-    self
-      .response_sender
-      .write_with_options(resp_wrapper, write_opts)
-      .map(|_| ())
-      .map_err(|e| WriteError::from(e.forget_data())) // lose SampleIdentity
-    // result
+    send(&self.response_sender, resp_wrapper, write_opts)
   }
 
   /// The request_id must be sent back with the response to identify which
@@ -158,7 +177,7 @@ where
     rmw_req_id: RmwRequestId,
     response: Resp,
   ) -> WriteResult<(), ()> {
-    let resp_wrapper = ResponseWrapper::<Resp>::new(
+    let resp_wrapper = ResponseWrapper::new(
       self.service_mapping,
       rmw_req_id,
       RepresentationIdentifier::CDR_LE,

@@ -27,18 +27,16 @@ pub(super) trait Wrapper {
   fn bytes(&self) -> Bytes;
 }
 
-pub(crate) struct RequestWrapper<R> {
+pub(crate) struct RequestWrapper {
   serialized_message: Bytes,
   encoding: RepresentationIdentifier,
-  phantom: PhantomData<R>,
 }
 
-impl<R: Message> Wrapper for RequestWrapper<R> {
+impl Wrapper for RequestWrapper {
   fn from_bytes_and_ri(input_bytes: &[u8], encoding: RepresentationIdentifier) -> Self {
     RequestWrapper {
       serialized_message: Bytes::copy_from_slice(input_bytes), // cloning here
       encoding,
-      phantom: PhantomData,
     }
   }
   fn bytes(&self) -> Bytes {
@@ -46,9 +44,9 @@ impl<R: Message> Wrapper for RequestWrapper<R> {
   }
 }
 
-impl<R: Message> RequestWrapper<R> {
+impl RequestWrapper {
   // This will decode the RequestWrapper to Request in Server
-  pub(super) fn unwrap(
+  pub(super) fn unwrap<R: Message>(
     &self,
     service_mapping: ServiceMapping,
     message_info: &MessageInfo,
@@ -114,7 +112,7 @@ impl<R: Message> RequestWrapper<R> {
   }
 
   // Client creates new RequestWrappers from Requests
-  pub(super) fn new(
+  pub(super) fn new<R: Message>(
     service_mapping: ServiceMapping,
     r_id: RmwRequestId,
     encoding: RepresentationIdentifier,
@@ -142,23 +140,20 @@ impl<R: Message> RequestWrapper<R> {
     Ok(RequestWrapper {
       serialized_message: ser_buffer.into_inner().freeze(),
       encoding,
-      phantom: PhantomData,
     })
   }
 }
 
-pub(crate) struct ResponseWrapper<R> {
+pub(crate) struct ResponseWrapper {
   serialized_message: Bytes,
   encoding: RepresentationIdentifier,
-  phantom: PhantomData<R>,
 }
 
-impl<R: Message> Wrapper for ResponseWrapper<R> {
+impl Wrapper for ResponseWrapper {
   fn from_bytes_and_ri(input_bytes: &[u8], encoding: RepresentationIdentifier) -> Self {
     ResponseWrapper {
       serialized_message: Bytes::copy_from_slice(input_bytes), // cloning here
       encoding,
-      phantom: PhantomData,
     }
   }
   fn bytes(&self) -> Bytes {
@@ -166,10 +161,10 @@ impl<R: Message> Wrapper for ResponseWrapper<R> {
   }
 }
 
-impl<R: Message> ResponseWrapper<R> {
+impl ResponseWrapper {
   // Client decodes ResponseWrapper to Response
   // message_info is from Server's response message
-  pub(super) fn unwrap(
+  pub(super) fn unwrap<R: Message>(
     &self,
     service_mapping: ServiceMapping,
     message_info: MessageInfo,
@@ -213,7 +208,7 @@ impl<R: Message> ResponseWrapper<R> {
   }
 
   // Server creates new ResponseWrapper from Response
-  pub(super) fn new(
+  pub(super) fn new<R: Message>(
     service_mapping: ServiceMapping,
     r_id: RmwRequestId,
     encoding: RepresentationIdentifier,
@@ -238,7 +233,6 @@ impl<R: Message> ResponseWrapper<R> {
     Ok(ResponseWrapper {
       serialized_message,
       encoding,
-      phantom: PhantomData,
     })
   }
 }
