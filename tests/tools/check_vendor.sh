@@ -41,7 +41,7 @@ MANIFEST
         cp -R "$published/$part" "$here/a/$part"
         cp -R "$vendored/$part" "$here/b/$part"
     done
-    rm -rf "$here/a/src/bin"
+    rm -rf "$here/a/src/bin" "$here/a/src/ros2" "$here/a/src/ros2.rs"
     for part in "$vendored"/* "$vendored"/.[!.]*; do
         case ${part##*/} in
         Cargo.lock | target | '.[!.]*') ;; # not in version control

@@ -8,6 +8,7 @@
 //! - `cell`: the periodic cell; [`sorted_into_bins`]: grains by their place in it
 //! - `material`: the grain's material
 //! - [`contact`]: the contact laws; [`lanes`]: the arithmetic they are written in
+//! - [`instruction_sets`]: work compiled for those of the processor
 //! - `packing`: grains, cell and contact network at one instant
 //!   ([`Packing::consistent`] holds its contacts against its positions)
 //! - [`non_rattlers`], [`min_contacts`]: grains that carry force
@@ -24,6 +25,7 @@ mod cell;
 mod consistency;
 pub mod contact;
 mod control;
+pub mod instruction_sets;
 pub mod lanes;
 mod material;
 mod packing;

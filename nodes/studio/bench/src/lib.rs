@@ -18,7 +18,7 @@ mod lockstep;
 mod numbers;
 mod output;
 mod overview;
-mod packing;
+pub mod packing;
 mod plot;
 mod row;
 mod stiffness;

@@ -7,9 +7,6 @@ use grainlab_recordings::import::{ImportOptions, lammps_data, load as load_file}
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// 2,000 glass spheres from LAMMPS at 100 kPa, z = 5.11: see its README.
-const BUILT_IN: &[u8] = include_bytes!("../../../../tests/golden/packings/packing_2000.data.gz");
-
 /// Glass with the friction of the built-in packing.
 fn glass() -> ImportOptions {
     ImportOptions {
@@ -23,12 +20,19 @@ fn glass() -> ImportOptions {
 
 /// The first packing of the file, or the built-in one.
 pub(crate) fn load(path: Option<&Path>) -> Result<Packing, Failure> {
-    let Some(path) = path else {
-        let mut text = String::new();
-        GzDecoder::new(BUILT_IN).read_to_string(&mut text).map_err(Failure::failed)?;
-        return Ok(lammps_data::packing(&text, &glass()).map_err(Failure::failed)?.packing);
-    };
+    let Some(path) = path else { return built_in() };
     Ok(all_of(path)?.swap_remove(0))
+}
+
+/// 2,000 glass spheres from LAMMPS at 100 kPa, z = 5.11: see the README of its file.
+///
+/// # Errors
+/// None, unless the program itself is damaged.
+pub fn built_in() -> Result<Packing, Failure> {
+    let file = include_bytes!("../../../../tests/golden/packings/packing_2000.data.gz");
+    let mut text = String::new();
+    GzDecoder::new(&file[..]).read_to_string(&mut text).map_err(Failure::failed)?;
+    Ok(lammps_data::packing(&text, &glass()).map_err(Failure::failed)?.packing)
 }
 
 /// Every packing of the file, at least one. Glass if it does not contain the material.

@@ -3,7 +3,7 @@
 use flate2::read::GzDecoder;
 use grainlab_console::Failure;
 use grainlab_core::Packing;
-use grainlab_recordings::import::{ImportError, ImportOptions, csv, lammps_data, lammps_dump};
+use grainlab_recordings::import::{ImportError, ImportOptions, csv, lammps_dump};
 use grainlab_verification::lammps_packings::Reference;
 use serde::Deserialize;
 use std::io::Read as _;
@@ -64,7 +64,14 @@ pub(super) fn equal_spheres() -> Result<(Packing, Reference), Failure> {
 /// 400 unequal spheres of LAMMPS with the contact forces that it dumped, and its stress, Pa: xx yy zz xy xz yz.
 pub(super) fn unequal_spheres() -> Result<(Packing, [f64; 6]), Failure> {
     let contact_forces = Some(unpacked(include_bytes!(golden!("lammps/forces.dump.gz")))?);
-    let options = ImportOptions { contact_forces, ..glass(0.3) };
+    let options = ImportOptions {
+        shear_modulus: Some(29e9),
+        poisson_ratio: Some(0.2),
+        density: Some(2500.0),
+        friction: Some(0.3),
+        contact_forces,
+        ..ImportOptions::default()
+    };
     let text = unpacked(include_bytes!(golden!("lammps/grains.dump.gz")))?;
     let mut packings = read(lammps_dump::packings(&text, &options))?;
     let packing = packings.pop().ok_or_else(|| failed("grains.dump.gz", &"no packing"))?.packing;
@@ -74,23 +81,6 @@ pub(super) fn unequal_spheres() -> Result<(Packing, [f64; 6]), Failure> {
         .collect();
     let stress = stress.try_into().map_err(|_| failed("stress.txt", &"not six numbers"))?;
     Ok((packing, stress))
-}
-
-/// 2,000 grains of LAMMPS at 100 kPa.
-pub(super) fn to_compress() -> Result<Packing, Failure> {
-    let text = unpacked(include_bytes!(golden!("packings/packing_2000.data.gz")))?;
-    Ok(read(lammps_data::packing(&text, &glass(0.1)))?.packing)
-}
-
-/// Properties that the files of LAMMPS lack.
-fn glass(friction: f64) -> ImportOptions {
-    ImportOptions {
-        shear_modulus: Some(29e9),
-        poisson_ratio: Some(0.2),
-        density: Some(2500.0),
-        friction: Some(friction),
-        ..ImportOptions::default()
-    }
 }
 
 fn unpacked(bytes: &[u8]) -> Result<String, Failure> {

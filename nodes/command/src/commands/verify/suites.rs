@@ -42,7 +42,7 @@ pub(super) const SUITES: [Suite; 9] = [
         Ok(rows)
     }),
     quick(uniaxial::NAME, "uniaxial compression step by step compared with LAMMPS", || {
-        made(uniaxial::rows(&embedded::to_compress()?, embedded::UNIAXIAL))
+        made(uniaxial::rows(&grainlab_bench::packing::built_in()?, embedded::UNIAXIAL))
     }),
     Suite {
         name: agnolin_roux::NAME,

@@ -7,9 +7,10 @@
 
 use crate::dispersion::bloch::Bloch;
 use crate::dispersion::error::SolveError;
-use crate::dispersion::solve::inverse_iteration;
+use crate::dispersion::solve::InverseIteration;
 use crate::dispersion::subspace::{C, Subspace};
 use crate::dispersion::waves::{Amplitude, Block, Row, WAVES};
+use grainlab_core::instruction_sets::{Work, with_avx2};
 use grainlab_core::{Mat3, Vec3};
 use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
 
@@ -53,8 +54,14 @@ pub(crate) fn modes(
     let mut change = f64::INFINITY;
     for _ in 0..ROUNDS {
         let residual = RESIDUAL * tolerance.sqrt();
-        let solved = pulp::Arch::new()
-            .dispatch(|| inverse_iteration(bloch, &ritz.waves, &ritz.squares, residual, &mut budget))?;
+        let solve = InverseIteration {
+            bloch,
+            x: &ritz.waves,
+            squares: &ritz.squares,
+            tolerance: residual,
+            budget: &mut budget,
+        };
+        let solved = with_avx2(solve).unwrap_or_else(InverseIteration::run)?;
         let before = ritz.squares;
         let mut subspace = Subspace::new(count);
         // The change in this round, not its result, which is nearly parallel to the previous one.

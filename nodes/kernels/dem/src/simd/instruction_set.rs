@@ -1,7 +1,11 @@
 //! Choosing an instruction set at run time.
 
-use super::kernel::Kernel;
+use super::kernel::{InLanes, Kernel};
+#[cfg(target_arch = "x86_64")]
+use super::x86::{Avx2, Avx512};
+use grainlab_core::instruction_sets::{has_avx2, has_avx512, with_avx2, with_avx512, with_fma};
 use std::fmt;
+use std::marker::PhantomData;
 use std::str::FromStr;
 
 /// An instruction set for the force kernel. All give the same bits.
@@ -23,12 +27,8 @@ impl Simd {
     pub fn is_available(self) -> bool {
         match self {
             Simd::Scalar => true,
-            #[cfg(target_arch = "x86_64")]
-            Simd::Avx2 => super::x86::has_avx2(),
-            #[cfg(target_arch = "x86_64")]
-            Simd::Avx512 => super::x86::has_avx512(),
-            #[cfg(not(target_arch = "x86_64"))]
-            _ => false,
+            Simd::Avx2 => has_avx2(),
+            Simd::Avx512 => has_avx512(),
         }
     }
 
@@ -58,12 +58,12 @@ impl Simd {
         let kernel = {
             let tried = match self {
                 Simd::Scalar => Err(kernel),
-                Simd::Avx2 => super::x86::run_avx2(kernel),
-                Simd::Avx512 => super::x86::run_avx512(kernel),
+                Simd::Avx2 => with_avx2(InLanes::<K, Avx2>(kernel, PhantomData)).map_err(|work| work.0),
+                Simd::Avx512 => with_avx512(InLanes::<K, Avx512>(kernel, PhantomData)).map_err(|work| work.0),
             };
-            match tried.or_else(super::x86::run_scalar) {
+            match tried.or_else(|kernel| with_fma(InLanes::<K, f64>(kernel, PhantomData))) {
                 Ok(output) => return output,
-                Err(kernel) => kernel,
+                Err(work) => work.0,
             }
         };
         kernel.run::<f64>()

@@ -1,7 +1,10 @@
 //! Conjugate gradients on the sweeps of a network, in one precision.
 
 use super::gauss_seidel::{Rows, Sweeps, add_products, load, still, store};
+#[cfg(target_arch = "x86_64")]
+use super::lanes::Avx2;
 use super::lanes::{Lanes, Plain, Real, WIDTH};
+use grainlab_core::instruction_sets::{Work, with_avx2};
 use std::marker::PhantomData;
 
 /// The vectors of the conjugate gradients, one entry per grain, in the order of the sweeps.
@@ -179,54 +182,38 @@ pub(crate) trait Precision: Real {
     fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32;
 }
 
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 impl Precision for f32 {
     fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32 {
-        match pulp::x86::V3::try_new() {
-            Some(avx2) => avx2.vectorize(x86::Run { descent, goal, lanes: avx2 }),
-            None => descent.descend(Plain(PhantomData), goal),
+        #[cfg(target_arch = "x86_64")]
+        if let Some(lanes) = Avx2::of_processor()
+            && let Ok(iterations) = with_avx2(Run { descent, goal, lanes })
+        {
+            return iterations;
         }
-    }
-}
-
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-impl Precision for f64 {
-    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32 {
-        match pulp::x86::V3::try_new() {
-            Some(avx2) => avx2.vectorize(x86::Run { descent, goal, lanes: Plain(PhantomData) }),
-            None => descent.descend(Plain(PhantomData), goal),
-        }
-    }
-}
-
-#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-impl<T: Real> Precision for T {
-    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32 {
         descent.descend(Plain(PhantomData), goal)
     }
 }
 
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-mod x86 {
-    use super::super::lanes::Lanes;
-    use super::{Descent, Goal};
-    use pulp::NullaryFnOnce;
-
-    /// [`Descent::descend`] with its arguments, compiled for one instruction set. It contains no closures:
-    /// these are not inlined, and would use the baseline instruction set.
-    pub(super) struct Run<'d, 'a, V: Lanes, const G: bool> {
-        pub(super) descent: &'d mut Descent<'a, V::T, G>,
-        pub(super) goal: &'d Goal,
-        pub(super) lanes: V,
+impl Precision for f64 {
+    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32 {
+        with_avx2(Run { descent, goal, lanes: Plain(PhantomData) }).unwrap_or_else(Run::run)
     }
+}
 
-    impl<V: Lanes, const G: bool> NullaryFnOnce for Run<'_, '_, V, G> {
-        type Output = u32;
+/// [`Descent::descend`] with its arguments. It contains no closures: these are not inlined, and would use the baseline
+/// instruction set.
+struct Run<'d, 'a, V: Lanes, const G: bool> {
+    descent: &'d mut Descent<'a, V::T, G>,
+    goal: &'d Goal,
+    lanes: V,
+}
 
-        #[inline(always)]
-        fn call(self) -> u32 {
-            self.descent.descend(self.lanes, self.goal)
-        }
+impl<V: Lanes, const G: bool> Work for Run<'_, '_, V, G> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run(self) -> u32 {
+        self.descent.descend(self.lanes, self.goal)
     }
 }
 

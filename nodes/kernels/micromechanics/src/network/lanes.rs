@@ -112,61 +112,73 @@ impl<T: Real> Lanes for Plain<T> {
     }
 }
 
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+/// Single precision in one register of AVX2 with FMA.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx2(());
+
+#[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::{Lanes, WIDTH};
-    use pulp::x86::V3;
-    use pulp::{cast, f32x8};
+    use super::{Avx2, Lanes, WIDTH};
+    use grainlab_core::instruction_sets::has_avx2;
+    use std::arch::x86_64::*;
 
-    /// Single precision in one register of AVX2.
-    impl Lanes for V3 {
+    impl Avx2 {
+        /// None where the processor has no AVX2.
+        pub(crate) fn of_processor() -> Option<Self> {
+            has_avx2().then_some(Self(()))
+        }
+    }
+
+    // SAFETY, of all blocks: who has an `Avx2` asked the processor.
+    impl Lanes for Avx2 {
         type T = f32;
-        type Row = f32x8;
+        type Row = __m256;
 
         #[inline(always)]
-        fn load(self, from: &[f32; WIDTH]) -> f32x8 {
-            cast(*from)
+        fn load(self, from: &[f32; WIDTH]) -> __m256 {
+            unsafe { _mm256_loadu_ps(from.as_ptr()) }
         }
 
         #[inline(always)]
-        fn store(self, row: f32x8, to: &mut [f32; WIDTH]) {
-            *to = cast(row);
+        fn store(self, row: __m256, to: &mut [f32; WIDTH]) {
+            unsafe { _mm256_storeu_ps(to.as_mut_ptr(), row) }
         }
 
         #[inline(always)]
-        fn splat(self, value: f32) -> f32x8 {
-            self.splat_f32x8(value)
+        fn splat(self, value: f32) -> __m256 {
+            unsafe { _mm256_set1_ps(value) }
         }
 
         #[inline(always)]
-        fn add(self, a: f32x8, b: f32x8) -> f32x8 {
-            cast(self.avx._mm256_add_ps(cast(a), cast(b)))
+        fn add(self, a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_add_ps(a, b) }
         }
 
         #[inline(always)]
-        fn mul(self, a: f32x8, b: f32x8) -> f32x8 {
-            cast(self.avx._mm256_mul_ps(cast(a), cast(b)))
+        fn mul(self, a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_mul_ps(a, b) }
         }
 
         #[inline(always)]
-        fn mul_add(self, a: f32x8, b: f32x8, c: f32x8) -> f32x8 {
-            self.mul_add_f32x8(a, b, c)
+        fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+            unsafe { _mm256_fmadd_ps(a, b, c) }
         }
 
         #[inline(always)]
-        fn mul_sub_from(self, a: f32x8, b: f32x8, c: f32x8) -> f32x8 {
-            cast(self.fma._mm256_fnmadd_ps(cast(a), cast(b), cast(c)))
+        fn mul_sub_from(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+            unsafe { _mm256_fnmadd_ps(a, b, c) }
         }
     }
 }
 
-#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
+#[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
     use super::*;
 
     #[test]
     fn avx2_rounds_as_plain_arithmetic_does() {
-        let Some(avx2) = pulp::x86::V3::try_new() else { return };
+        let Some(avx2) = Avx2::of_processor() else { return };
         let plain = Plain::<f32>(PhantomData);
         let number = |n: u32| (n as f32 * 0.618_034).sin() * (n as f32 * 0.1).cos().exp();
         for n in 0..2_000 {
