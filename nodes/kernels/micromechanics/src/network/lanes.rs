@@ -130,7 +130,7 @@ mod x86 {
         }
     }
 
-    // SAFETY, of all blocks: who has an `Avx2` asked the processor.
+    // SAFETY, of all blocks: an `Avx2` is only made where the processor has it.
     impl Lanes for Avx2 {
         type T = f32;
         type Row = __m256;

@@ -2,7 +2,7 @@
 
 use super::state::State;
 use crate::calibration::{DeviatorLaw, NetworkState, Outside, RelaxationCalibration, SCATTERED};
-use crate::invariants::INVARIANTS;
+use crate::invariants::{INVARIANTS, Invariants};
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::{Jacobian, PointEstimate};
@@ -115,7 +115,6 @@ impl Fit {
                 .fold((Square::zeros(), WithFollowing::zeros()), |(a, b), (c, d)| (a + c, b + d))
         };
         let at_zero = data.masked(isotropic.slopes());
-        let first = Moduli::from(isotropic.moduli());
         let covariance = |slopes: &ByInvariants, by_eps: &Moduli, of_inputs: &Square| {
             let scatter = network
                 .scatter_at(z, &state.variance_factors)
@@ -140,12 +139,13 @@ impl Fit {
                 let direction = by_eps(&at_zero);
                 let (c, _) = covariance(&at_zero, &direction, &of_inputs(0.0).0);
                 let weighted = Cholesky::new(c)?.solve(&direction);
-                let residual = data.masked(data.value - first);
+                let residual = data.masked(data.value - Moduli::from(isotropic.moduli()));
                 weighted.dot(&residual) / weighted.dot(&direction)
             }
             None => 0.0,
         };
-        let invariants = state.invariants(network, z, eps);
+        let [dilatation, voigt, harmonic] = deviators.map(|law| law.value(z, eps, laws));
+        let invariants = Invariants { dilatation, voigt, harmonic, ..isotropic };
         let by_invariants = data.masked(invariants.slopes());
         let direction = by_eps(&by_invariants);
         let (of_inputs, with_following) = of_inputs(eps);
