@@ -46,8 +46,7 @@ impl Printer<'_> {
 
     /// An element of an array, without the separator.
     pub(super) fn json_element(&self, answer: &Answer) -> Result<String, Failure> {
-        let object = self.json(answer, More::default())?;
-        Ok(object.lines().map(|line| format!("\n  {line}")).collect())
+        Ok(format!("\n{}", self.json(answer, More::default())?.trim_end()).replace('\n', "\n  "))
     }
 
     /// One state, warnings below.
