@@ -97,7 +97,7 @@ pub const RUN_STATE: Topic = row::<msg::RunState>("run_state", Qos::LATCHED, "de
 /// Energy balance of a phase, one message per phase, if the scene asks for it.
 pub const ENERGY: Topic = row::<msg::EnergyBalance>("energy", Qos::LATCHED_SET, "dem_simulator");
 
-/// Simulated time, at most 100 times in a second, for tools; no node of grainlab waits for it.
+/// Simulated time, with each sampled request, for tools; no node of grainlab waits for it.
 pub const CLOCK: Topic = row::<rosgraph_msgs::Clock>("/clock", Qos::CLOCK, "dem_simulator");
 
 /// Lines of the logs of all nodes.

@@ -64,7 +64,9 @@ fn a_campaign_killed_at_any_moment_goes_on_to_the_same_bytes() {
 fn a_killed_member_is_continued_and_a_failed_one_costs_nothing_else() {
     let lab = Lab::new();
     let failing = "[[group]]\nscenes = ['demo']\nseeds = [9]\nset = { grains.count = 100, phase.rest.until.timeout = 1e-6 }";
-    let file = tiny(&lab, "[1, 2]", failing);
+    // Slow enough to be killed within the run.
+    let slow = "set = { grains.count = 400, phase.gas.rate = -0.6 }";
+    let file = tiny(&lab, "[1, 2]", &format!("{slow}\n{failing}"));
     let file = file.to_string_lossy();
     let campaign = lab.start(&["campaign", &file, "--out", "c", "--jobs", "2"]);
     let folder = lab.folder().join("c");
@@ -190,5 +192,5 @@ fn the_script_of_a_campaign_has_a_command_for_each_member() {
     assert_eq!(printed.code, Some(0), "{}", printed.stderr);
     let lines: Vec<&str> = printed.stdout.lines().filter(|l| l.contains(" launch ")).collect();
     assert_eq!(lines.len(), 4, "{}", printed.stdout);
-    assert!(lines[3].contains("--seed 4 --set phase.load.friction=0.2 --run "), "{}", lines[3]);
+    assert!(lines[3].contains("--seed 4 --set phase.load.friction=0.2 --record results --one-process --no-report --run "), "{}", lines[3]);
 }

@@ -17,6 +17,7 @@ mod live;
 mod main_job;
 mod messages;
 mod namespaces;
+mod one_process;
 mod other_dds;
 mod paper;
 mod posterior_draws;

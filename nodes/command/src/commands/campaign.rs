@@ -18,6 +18,7 @@ A campaign file:
   vary = { friction = [0.05, 0.1, 0.3] }    # every combination is run with every seed
   launch = \"demo\"                           # launch file; arguments = { simd = \"best\" }
   table = \"runs.csv\"                        # or single runs: columns scene, seed, and keys
+  record = \"all\"                            # every message; without it packings and results; report = true: a page each
   [[group]]                                 # other scenes, seeds and values
   scenes = [\"s2\"]
   seeds = [7]
@@ -76,7 +77,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         (None, Some(file)) => {
             let campaign = Campaign::read(file)?;
             let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));
-            let (folder, _lock) = begin(&campaign, &root)?;
+            let (folder, _lock) = begin(&campaign, &root, args.options.processes)?;
             let exit = args.options.run(&campaign, &folder)?;
             if args.options.engine == Engine::Print || exit == Exit::Interrupted {
                 return Ok(exit);
@@ -89,12 +90,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// The folder of a campaign, locked. Reads every scene and compares it with the runs that are there, so that a fault ends the
 /// campaign before it begins.
-pub(crate) fn begin(campaign: &Campaign, root: &Path) -> Result<(Folder, Lock), Failure> {
+pub(crate) fn begin(campaign: &Campaign, root: &Path, processes: bool) -> Result<(Folder, Lock), Failure> {
     let (folder, lock) = Folder::create(root)?;
-    let words: Vec<String> = std::iter::once(&campaign.launch).chain(&campaign.arguments).cloned().collect();
     for member in &campaign.members {
-        let of = (member.scene.as_str(), member.sets(), member.seed);
-        launch::check(words.clone(), of, &folder.run(member))
+        launch::check(campaign, member, !processes, &folder.run(member))
             .map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
     }
     folder.plan(campaign)?;

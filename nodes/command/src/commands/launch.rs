@@ -1,5 +1,7 @@
 //! `grainlab launch`: the main job.
 
+#[cfg(feature = "studio")]
+use grainlab_campaign::{Campaign, Member};
 use grainlab_console::{Failure, Format};
 use grainlab_launcher::agreement::names_of_run;
 use grainlab_launcher::{BUILT_IN, LaunchFile, NodePlan};
@@ -17,9 +19,9 @@ mod order;
 mod output;
 mod resume;
 
-use conduct::{conduct, domain};
+use conduct::{conduct, medium};
 use directory::Given;
-use order::Order;
+use order::{Order, Record};
 use output::Output;
 
 const EXAMPLES: &str = "\
@@ -65,6 +67,16 @@ pub(crate) struct Args {
     /// seed; the result is the same to the last byte as without the interruption
     #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "set", "seed", "out", "run"])]
     resume: Option<PathBuf>,
+    /// Run all nodes in this process, without DDS: the same bytes in less time. The run is not on the bus: `grainlab topic`, a
+    /// live page and other programs do not see it, and a node that fails ends it
+    #[arg(long, conflicts_with = "resume")]
+    one_process: bool,
+    /// Messages to record
+    #[arg(long, value_enum, default_value_t, conflicts_with = "resume")]
+    record: Record,
+    /// Write no report.html
+    #[arg(long)]
+    no_report: bool,
     /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -80,7 +92,8 @@ fn scene_help() -> String {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let output = Output { format: args.format, verbose: args.verbose, resumed: false };
+    let report = !args.no_report;
+    let output = Output { format: args.format, verbose: args.verbose, resumed: false, report };
     if let Some(run) = &args.resume {
         return resume::run(run, output);
     }
@@ -101,11 +114,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             }
         },
     };
-    let (domain, lock) = domain()?;
+    let medium = medium(order.one_process)?;
     directory::fill(&directory, &scene)?;
     order.keep(&directory)?;
     let plans = order.plans(&directory)?;
-    conduct(plans, domain, lock, &directory, &scene, output)
+    conduct(plans, medium, &directory, &scene, output)
 }
 
 /// The scene and the order of a launch. Invalid input is refused before a directory is created.
@@ -120,6 +133,8 @@ fn planned(args: &Args) -> Result<(SceneText, Order), Failure> {
         arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
         seed: scene.scene.seed,
         words: args.words.iter().map(|word| whole_path(word, path)).collect(),
+        record: args.record,
+        one_process: args.one_process,
     };
     let plans = order.plans(Path::new("."))?;
     refuse_unknown(&plans)?;
@@ -136,14 +151,23 @@ fn whole_path(word: &str, file: Option<&Path>) -> String {
     whole.map_or_else(|| word.to_owned(), |path| path.to_string_lossy().into_owned())
 }
 
-/// Refuses a launch that could not begin, or whose directory has another run. `words` are the launch file and its arguments.
+/// Refuses a member of a campaign that could not begin, or whose directory has another run.
 #[cfg(feature = "studio")]
 pub(crate) fn check(
-    words: Vec<String>,
-    (scene, set, seed): (&str, Vec<String>, u64),
+    campaign: &Campaign,
+    member: &Member,
+    one_process: bool,
     directory: &Path,
 ) -> Result<(), Failure> {
-    let args = Args { words, scene: Some(scene.to_owned()), set, seed: Some(seed), ..Args::default() };
+    let args = Args {
+        words: std::iter::once(&campaign.launch).chain(&campaign.arguments).cloned().collect(),
+        scene: Some(member.scene.clone()),
+        set: member.sets(),
+        seed: Some(member.seed),
+        record: if campaign.record_all { Record::All } else { Record::Results },
+        one_process,
+        ..Args::default()
+    };
     let (scene, order) = planned(&args)?;
     match grainlab_recordings::run_state(directory) {
         grainlab_recordings::RunState::Absent => Ok(()),

@@ -1,5 +1,6 @@
 //! The bus: a node's interface to the network. There are two implementations, over DDS and in memory.
 
+use crate::BULK_LIMIT;
 use crate::admission::{Participant, Stranger};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
@@ -152,6 +153,16 @@ pub trait Bus {
     /// signals.
     fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
         None
+    }
+
+    /// Largest body that is sent as one sample, bytes; see [`crate::BulkPublisher`].
+    fn longest_sample(&self) -> usize {
+        BULK_LIMIT
+    }
+
+    /// Name of the transport, for the recording.
+    fn transport(&self) -> &'static str {
+        "memory"
     }
 
     /// Waits until every reliable reader has acknowledged everything, or `timeout` has passed; true in the first case.

@@ -6,15 +6,17 @@
 //! - `offer`: the topics, types and QoS that other processes publish
 //! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `source`: samples of any topic; `worker`: long
 //!   computations
-//! - `dds`: the bus over DDS; `memory`: the bus in memory, with virtual time and faults, for tests
+//! - `dds`: the bus over DDS; `memory`: the bus in memory, for several nodes in one process, and with virtual time and faults
+//!   for tests
 //! - `identity`: the run of a process; `admission`: the samples that a process accepts
-//! - `node`: a node as a state machine; `run`: running it as a process, with its reports
+//! - `node`: a node as a state machine; `run`: running it as a process; `executor`: running several in one process;
+//!   `housekeeping`: reports and log lines between their steps
 //! - [`PackingNode`]: the template of nodes that measure packings
 //! - `peers`: liveliness of processes; [`watchdog`]: detects failed DDS threads
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
 //!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
-//! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants; `lock`: locks that survive a panic
+//! - `tool_bus`: the bus of a tool; `free_domain`: domains without participants; `off_the_bus`: runs in one process; `lock`: locks that survive a panic
 //! - `logging`: log lines on stderr; `rosout`: the same on `/rosout`, between steps; `wall_clock`: their stamps
 
 mod admission;
@@ -24,13 +26,16 @@ mod bus;
 mod bus_error;
 mod dds;
 mod demand;
+mod executor;
 mod free_domain;
+mod housekeeping;
 mod identity;
 mod lock;
 mod logging;
 mod memory;
 mod names;
 mod node;
+mod off_the_bus;
 mod offer;
 mod packing_node;
 mod parameters;
@@ -54,8 +59,10 @@ pub use bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
 pub use bus_error::{BusError, tolerate_full};
 pub use dds::{DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers};
 pub use demand::Demand;
+pub use executor::{Component, step_all};
 pub use free_domain::{FreeDomain, is_in_use, is_launched};
 pub use grainlab_msgs::{Exit, Health, Level, Published, Received, Report};
+pub use housekeeping::{DriveError, HEARTBEAT};
 pub use identity::{
     Identity, MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId, Scope, may_be_ours, member_of, run_of,
 };
@@ -63,6 +70,7 @@ pub use logging::Logger;
 pub use memory::{Actor, Dice, Faults, Hub, MemoryBus, run_until};
 pub use names::{NameError, Names};
 pub use node::{Next, Node, NodeError};
+pub use off_the_bus::OffTheBus;
 pub use offer::{Offer, type_hash};
 pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
 pub use parameters::{
@@ -70,7 +78,7 @@ pub use parameters::{
     parameter_text, parse_value,
 };
 pub use peers::{Liveliness, Peer, PeerWatch, SILENCE};
-pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};
+pub use run::{NodeSpec, drive, run_node};
 pub use sample::{Sample, SampleId, SampleInfo};
 pub use source::Source;
 pub use tool_bus::{bus_in, bus_named, tool_bus};

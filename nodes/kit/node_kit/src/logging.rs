@@ -9,8 +9,9 @@ use grainlab_msgs::wall_stamp;
 use log::{Level, LevelFilter, Metadata, Record};
 use std::cell::Cell;
 use std::collections::VecDeque;
-use std::io::IsTerminal;
-use std::sync::{Mutex, Once, PoisonError};
+use std::fs::File;
+use std::io::{IsTerminal, Write};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Maximum number of lines queued for `/rosout`; a full queue drops the oldest.
 const BACKLOG: usize = 1000;
@@ -19,14 +20,14 @@ const BACKLOG: usize = 1000;
 const LIBRARIES: [&str; 6] =
     [LOG_TARGET, "ros2_client", "mio", "foxglove", "tokio_tungstenite", "tungstenite"];
 
-static LOGGER: Logger = Logger {
+/// The logger of the process, of every thread that entered no other one.
+static OF_PROCESS: Logger = Logger {
     settings: Mutex::new(LogSettings {
         name: String::new(),
         level: LevelFilter::Off,
         logger_levels: Vec::new(),
-        stderr: false,
+        sink: Sink::None,
         rosout: false,
-        colour: false,
         queue: VecDeque::new(),
         dropped: 0,
     }),
@@ -35,6 +36,15 @@ static LOGGER: Logger = Logger {
 thread_local! {
     /// True while this thread publishes the lines: those about publishing would follow each other without end.
     static PUBLISHES: Cell<bool> = const { Cell::new(false) };
+    /// The logger of the node that this thread works for.
+    static CURRENT: Cell<&'static Logger> = const { Cell::new(&OF_PROCESS) };
+}
+
+/// Destination of the lines, besides `/rosout`.
+enum Sink {
+    None,
+    Stderr { colour: bool },
+    File(File),
 }
 
 /// The settings that can change after the logger is installed.
@@ -42,15 +52,14 @@ struct LogSettings {
     name: String,
     level: LevelFilter,
     logger_levels: Vec<(String, LevelFilter)>,
-    stderr: bool,
+    sink: Sink,
     rosout: bool,
-    colour: bool,
     queue: VecDeque<Log>,
     /// Number of lines that the full queue dropped since it was last taken.
     dropped: usize,
 }
 
-/// The logger of this process.
+/// The logger of this process, or of one of several nodes in it.
 pub struct Logger {
     settings: Mutex<LogSettings>,
 }
@@ -59,27 +68,32 @@ impl Logger {
     /// Installs the logger, or changes the name and levels of the installed one. `node` is the fully qualified
     /// node name. A logger of other code that was installed before keeps stderr.
     pub fn install(node: &str, args: &RosArgs) -> &'static Logger {
-        let settings = LogSettings {
-            // ROS 2 writes namespaces with dots in logger names.
-            name: node.trim_start_matches('/').replace('/', "."),
-            level: args.log_level,
-            logger_levels: args.logger_levels.clone(),
-            stderr: args.stderr,
-            rosout: args.rosout,
-            colour: colour_wanted(|name| std::env::var(name).ok(), std::io::stderr().is_terminal()),
-            queue: VecDeque::new(),
-            dropped: 0,
-        };
-        let most = settings.logger_levels.iter().map(|(_, level)| *level).fold(settings.level, Ord::max);
-        *LOGGER.lock() = settings;
-        static SET: Once = Once::new();
-        SET.call_once(|| {
-            if log::set_logger(&LOGGER).is_err() {
-                LOGGER.lock().stderr = false;
-            }
-        });
-        log::set_max_level(most);
-        &LOGGER
+        let colour = colour_wanted(|name| std::env::var(name).ok(), std::io::stderr().is_terminal());
+        let settings = LogSettings::of(node, args, Sink::Stderr { colour });
+        log::set_max_level(settings.most());
+        *OF_PROCESS.lock() = settings;
+        if !is_set() {
+            OF_PROCESS.lock().sink = Sink::None;
+        }
+        &OF_PROCESS
+    }
+
+    /// The logger of one of several nodes in this process, into `file`; see [`Logger::enter`].
+    pub fn of_node(node: &str, args: &RosArgs, file: File) -> &'static Logger {
+        is_set();
+        let settings = LogSettings::of(node, args, Sink::File(file));
+        log::set_max_level(log::max_level().max(settings.most()));
+        Box::leak(Box::new(Logger { settings: Mutex::new(settings) }))
+    }
+
+    /// Sends the lines of this thread to this logger from now on.
+    pub(crate) fn enter(&'static self) {
+        CURRENT.set(self);
+    }
+
+    /// The logger of this thread.
+    pub(crate) fn of_thread() -> &'static Logger {
+        CURRENT.get()
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, LogSettings> {
@@ -114,7 +128,34 @@ impl Logger {
     }
 }
 
+/// Hands each line to the logger of its thread.
+struct Router;
+
+/// Installs the router, once for the process; false if other code has installed its own before.
+fn is_set() -> bool {
+    static SET: OnceLock<bool> = OnceLock::new();
+    *SET.get_or_init(|| log::set_logger(&Router).is_ok())
+}
+
 impl LogSettings {
+    fn of(node: &str, args: &RosArgs, sink: Sink) -> Self {
+        Self {
+            // ROS 2 writes namespaces with dots in logger names.
+            name: node.trim_start_matches('/').replace('/', "."),
+            level: args.log_level,
+            logger_levels: args.logger_levels.clone(),
+            sink: if args.stderr { sink } else { Sink::None },
+            rosout: args.rosout,
+            queue: VecDeque::new(),
+            dropped: 0,
+        }
+    }
+
+    /// The level of the most talkative module.
+    fn most(&self) -> LevelFilter {
+        self.logger_levels.iter().map(|(_, level)| *level).fold(self.level, Ord::max)
+    }
+
     /// The level of a module.
     fn level_of(&self, target: &str) -> LevelFilter {
         let named = |logger: &str| {
@@ -139,9 +180,9 @@ fn severity(level: Level) -> (&'static str, u8, &'static str) {
     }
 }
 
-impl log::Log for Logger {
+impl log::Log for Router {
     fn enabled(&self, metadata: &Metadata) -> bool {
-        metadata.level() <= self.lock().level_of(metadata.target())
+        metadata.level() <= CURRENT.get().lock().level_of(metadata.target())
     }
 
     fn log(&self, record: &Record) {
@@ -149,15 +190,19 @@ impl log::Log for Logger {
             return;
         }
         let text = record.args().to_string();
-        let (name, number, colour) = severity(record.level());
-        let mut settings = self.lock();
+        let (name, number, paint) = severity(record.level());
+        let mut settings = CURRENT.get().lock();
         // Stamped under the lock, so that the lines of all threads are queued in the order of their stamps.
         let stamp = wall_stamp(wall_nanos());
-        if settings.stderr {
-            let line = format!("[{name}] [{}.{:09}] [{}]: {text}", stamp.sec, stamp.nanosec, settings.name);
-            let (colour, reset) =
-                if settings.colour && !colour.is_empty() { (colour, "\x1b[0m") } else { ("", "") };
-            write_above_live_line(&format!("{colour}{line}{reset}\n"));
+        let line = || format!("[{name}] [{}.{:09}] [{}]: {text}", stamp.sec, stamp.nanosec, settings.name);
+        match &settings.sink {
+            Sink::None => {}
+            Sink::Stderr { colour: true } if !paint.is_empty() => {
+                write_above_live_line(&format!("{paint}{}\x1b[0m\n", line()));
+            }
+            Sink::Stderr { .. } => write_above_live_line(&(line() + "\n")),
+            // A full disk ends the recording, which says so; the log cannot.
+            Sink::File(file) => _ = (&*file).write_all((line() + "\n").as_bytes()),
         }
         if settings.rosout && !PUBLISHES.get() {
             if settings.queue.len() >= BACKLOG {
@@ -189,9 +234,8 @@ mod tests {
             name: "n".into(),
             level,
             logger_levels: logger_levels.iter().map(|(n, l)| ((*n).into(), *l)).collect(),
-            stderr: false,
+            sink: Sink::None,
             rosout: true,
-            colour: false,
             queue: VecDeque::new(),
             dropped: 0,
         }

@@ -1,6 +1,7 @@
 //! Computations that take longer than a node may leave its bus unattended.
 
 use crate::bus::{Bus, Caller};
+use crate::logging::Logger;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -49,7 +50,9 @@ impl<J: Send + 'static, R: Send + 'static> Worker<J, R> {
     {
         let (jobs, its_jobs) = channel::<J>();
         let (its_results, results) = channel();
+        let logger = Logger::of_thread();
         std::thread::Builder::new().name(name.into()).spawn(move || {
+            logger.enter();
             for job in its_jobs {
                 let outcome = catch_unwind(AssertUnwindSafe(|| work(job)));
                 let last = outcome.is_err();

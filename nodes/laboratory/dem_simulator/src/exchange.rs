@@ -82,6 +82,7 @@ impl DemSimulator {
             self.done = Some(now);
             self.next_beat = now + BEAT;
             self.publish_run_state(RunState::FINISHED, "");
+            self.samples.tell_time(bus, self.run.engine().time())?;
             log::info!("the loading path is done at step {}", self.run.engine().steps());
             return self.wait_after_end(bus);
         };

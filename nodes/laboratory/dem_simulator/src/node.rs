@@ -11,9 +11,8 @@ use crate::settings::Settings;
 use crate::speculative_step::{self, SpeculativeStep};
 use grainlab_experiment::Simulation;
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
-use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
-use grainlab_msgs::{stamp, to_cdr, topics};
+use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{
     BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
 };
@@ -29,8 +28,6 @@ pub const PHASE: &str = "phase";
 
 /// Period of `run_state` where nothing happens, wall time.
 pub(crate) const BEAT: Duration = Duration::from_secs(1);
-/// Least period of `/clock`, wall time.
-const CLOCK_PERIOD: Duration = Duration::from_millis(10);
 /// Period of the log message of a run that waits.
 pub(crate) const NOTICE_PERIOD: Duration = Duration::from_secs(5);
 /// Pause before the next attempt while a slow reader holds up the send queue.
@@ -61,7 +58,6 @@ pub struct DemSimulator {
     pub(crate) run_state: Publisher<RunState>,
     /// With `energy_balance` of the scene.
     pub(crate) energy: Option<Publisher<grainlab_msgs::msg::EnergyBalance>>,
-    pub(crate) clock: Publisher<Clock>,
     pub(crate) strain_rate: Subscription<StrainRate>,
     pub(crate) run_states: Subscription<RunState>,
     pub(crate) inversions: Inversions,
@@ -88,7 +84,6 @@ pub struct DemSimulator {
     /// Wall time from the first request to the latest applied answer.
     pub(crate) wall: Duration,
     pub(crate) next_beat: Duration,
-    pub(crate) next_clock: Duration,
     /// Condition that the start waits for, in words.
     pub(crate) awaited: String,
     pub(crate) next_notice: Duration,
@@ -126,7 +121,6 @@ impl DemSimulator {
         let run_state = Publisher::advertise(bus, &topics::RUN_STATE)?;
         let energy = run.scene().numerics.energy_balance;
         let energy = energy.then(|| Publisher::advertise(bus, &topics::ENERGY)).transpose()?;
-        let clock = Publisher::advertise(bus, &topics::CLOCK)?;
         let frames: Publisher<TFMessage> = Publisher::advertise(bus, &topics::TF_STATIC)?;
         let strain_rate = Subscription::subscribe(bus, &topics::STRAIN_RATE, Demand::best_effort(64))?;
         // Another simulator repeats its state every second; a reliable reader of our own topic might fill our own
@@ -142,7 +136,6 @@ impl DemSimulator {
             samples,
             run_state,
             energy,
-            clock,
             strain_rate,
             run_states,
             inversions,
@@ -163,7 +156,6 @@ impl DemSimulator {
             computing: Duration::ZERO,
             wall: Duration::ZERO,
             next_beat: now,
-            next_clock: now,
             awaited: String::new(),
             next_notice: now + NOTICE_PERIOD,
             run,
@@ -184,20 +176,14 @@ impl DemSimulator {
         Ok(())
     }
 
-    /// Publishes the progress once a second and the simulated time at most every 10 ms.
-    fn publish_progress(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
-        // Published only after the run has begun: before that, no reader is there to receive it.
-        if now >= self.next_clock && self.stage != Stage::Starting {
-            self.next_clock = now + CLOCK_PERIOD;
-            self.clock.publish(bus, &Clock { clock: stamp(self.run.engine().time()) })?;
-        }
+    /// Publishes the progress once a second.
+    fn publish_progress(&mut self, now: Duration) {
         if now >= self.next_beat {
             self.next_beat = now + BEAT;
             let state = if self.stage == Stage::Finished { RunState::FINISHED } else { RunState::RUNNING };
             let left_out = self.run.left_out();
             self.publish_run_state(state, &left_out);
         }
-        Ok(())
     }
 
     /// True if the log message of a waiting run is due.
@@ -267,7 +253,7 @@ impl Node for DemSimulator {
         if let Some(reason) = self.receive_answers(bus, now)? {
             return self.fail(bus, &reason);
         }
-        self.publish_progress(bus, now)?;
+        self.publish_progress(now);
         if !self.send_queue.deliver(bus)? {
             return Ok(Next::Wait(HOLD));
         }

@@ -1,6 +1,7 @@
-//! Some of the requests for viewers.
+//! Some of the requests for viewers, and simulated time with them.
 
-use grainlab_msgs::{msg, topics};
+use grainlab_msgs::rosgraph_msgs::Clock;
+use grainlab_msgs::{msg, stamp, topics};
 use grainlab_node_kit::{Bus, BusError, Publisher, tolerate_full};
 use grainlab_servo::ServoRequest;
 
@@ -10,16 +11,19 @@ const EXCHANGES: u64 = 64;
 /// Particle-steps after which a sample is due earlier: some 30 ms of computation, whatever the number of grains.
 const PARTICLE_STEPS: u64 = 1_000_000;
 
-/// Publishes some of the requests on [`topics::STRESS_SAMPLED`]. Which ones follows from the run alone, not from clocks.
+/// Publishes some of the requests on [`topics::STRESS_SAMPLED`], and their times on `/clock`. Which ones follows from the run
+/// alone, not from clocks.
 #[derive(Debug)]
 pub(crate) struct Samples {
     publisher: Publisher<msg::Stress>,
+    pub(crate) clock: Publisher<Clock>,
     due: Due,
 }
 
 impl Samples {
     pub(crate) fn advertise(bus: &mut dyn Bus) -> Result<Self, BusError> {
-        Ok(Self { publisher: Publisher::advertise(bus, &topics::STRESS_SAMPLED)?, due: Due::default() })
+        let publisher = Publisher::advertise(bus, &topics::STRESS_SAMPLED)?;
+        Ok(Self { publisher, clock: Publisher::advertise(bus, &topics::CLOCK)?, due: Due::default() })
     }
 
     /// Publishes a request, if a sample is due. A viewer that is behind loses it.
@@ -33,7 +37,13 @@ impl Samples {
         if !self.due.at(request.sequence, request.step, grains) {
             return Ok(());
         }
-        tolerate_full(bus.publish(self.publisher.id(), body))
+        tolerate_full(bus.publish(self.publisher.id(), body))?;
+        self.tell_time(bus, request.time)
+    }
+
+    /// Publishes a simulated time, s.
+    pub(crate) fn tell_time(&self, bus: &mut dyn Bus, time: f64) -> Result<(), BusError> {
+        tolerate_full(self.clock.publish(bus, &Clock { clock: stamp(time) }))
     }
 }
 

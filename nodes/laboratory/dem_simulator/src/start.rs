@@ -100,7 +100,7 @@ impl DemSimulator {
                 name if name == topics::PACKING.name => {
                     (self.send_queue.packings.id(), self.settings.min_packing_readers.unwrap_or(of_all))
                 }
-                name if name == topics::CLOCK.name => (self.clock.id(), 1),
+                name if name == topics::CLOCK.name => (self.samples.clock.id(), 1),
                 _ => (self.run_state.id(), of_all),
             };
             let found = bus.readers(publisher);

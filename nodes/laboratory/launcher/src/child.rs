@@ -134,7 +134,7 @@ fn end_with_launcher(command: &mut Command) {
     }
 }
 
-fn open_log(logs: &Path, name: &str) -> io::Result<File> {
+pub(crate) fn open_log(logs: &Path, name: &str) -> io::Result<File> {
     std::fs::create_dir_all(logs)?;
     OpenOptions::new().create(true).append(true).open(log_path(logs, name))
 }

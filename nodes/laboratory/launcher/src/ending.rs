@@ -61,7 +61,7 @@ impl Supervisor {
         watch: &Watch,
     ) -> bool {
         let mut hurried = false;
-        self.progress.wait_for("ending the processes");
+        self.followed.progress.wait_for("ending the processes");
         for ending in [Ending::Farewell, Ending::Save, Ending::Record, Ending::Exit] {
             // An interrupted run ends at once; a complete run waits for stopped processes.
             let waits = exit != Exit::Interrupted && !hurried;
@@ -76,7 +76,7 @@ impl Supervisor {
 
     /// True if the simulator has a state to save: it has published one.
     fn may_save(&self) -> bool {
-        self.first_step.is_some()
+        self.followed.first_step.is_some()
     }
 
     /// True if an end still waits for this child.
@@ -84,8 +84,8 @@ impl Supervisor {
         let [recorder, simulator] = [NodeKind::Recorder, NodeKind::DemSimulator].map(|n| child.plan.is(n));
         match (ending, child.pid) {
             (_, None) => false,
-            (Ending::Farewell, Some(pid)) => !recorder && !self.left.contains(&pid),
-            (Ending::Save, Some(pid)) => simulator && self.may_save() && !self.left.contains(&pid),
+            (Ending::Farewell, Some(pid)) => !recorder && !self.followed.left.contains(&pid),
+            (Ending::Save, Some(pid)) => simulator && self.may_save() && !self.followed.left.contains(&pid),
             (Ending::Record, _) => recorder,
             (Ending::Exit, _) => true,
         }
@@ -125,13 +125,13 @@ impl Supervisor {
                     _ = self.interrupt.recv() => hurried = true,
                     _ = self.terminate.recv() => hurried = true,
                     Some(ended) = self.ended.recv() => { self.note_end(&ended); }
-                    Some(event) = events.recv() => self.take(event),
+                    Some(event) = events.recv() => self.followed.take(event),
                     () = sleep_until((now + POLL_PERIOD).min(deadline)) => {
                         if waits && self.look_for_stopped() {
                             deadline = (tokio::time::Instant::now() + time).min(latest);
                         }
                         if slow_at.take_if(|at| tokio::time::Instant::now() >= *at).is_some() {
-                            self.progress.say(slow.unwrap_or_default());
+                            self.followed.progress.say(slow.unwrap_or_default());
                         }
                     }
                 }
@@ -158,7 +158,7 @@ impl Supervisor {
         // Data loss is in the table; other errors are only in the recorder's log.
         let failed = self.children.iter().position(|c| c.plan.is(RECORDER) && c.code == Some(1));
         if let Some(recorder) = failed {
-            self.complain(format!("{RECORDER} ended with exit code 1: see logs/{RECORDER}.log"));
+            self.followed.complain(format!("{RECORDER} ended with exit code 1: see logs/{RECORDER}.log"));
             self.children[recorder].quote_log(&self.logs);
         }
         // A code of its own says why.
@@ -168,7 +168,7 @@ impl Supervisor {
             if last_packing::is_complete(&self.directory) {
                 return exit;
             }
-            self.complain(format!("{RECORDER} was ended before its file was complete"));
+            self.followed.complain(format!("{RECORDER} was ended before its file was complete"));
         }
         worse(exit, Exit::DataLoss)
     }

@@ -7,6 +7,7 @@
 //!   what a resumed run has of them
 //! - `watch`: the messages of the run
 //! - `stopped`: processes stopped by a signal; `time_limit`: a time limit that does not count the time for which they are
+//! - `followed`: progress and end of a run by its messages; `one_process`: all nodes in this process
 //! - `supervisor`: restarts, and ends of processes that end the run; `ending`: the order in which processes end
 //! - `nodes`: every node of ours, and how it is started; [`last_packing`]: what a simulator continues from
 //! - [`pipe`]: ends a node whose launcher was killed
@@ -15,8 +16,10 @@ pub mod agreement;
 mod child;
 mod deadline;
 mod ending;
+mod followed;
 pub mod last_packing;
 mod nodes;
+mod one_process;
 mod pending_results;
 mod phase_line;
 pub mod pipe;
@@ -33,4 +36,6 @@ pub use child::Run;
 pub use nodes::{NodeKind, Viewer};
 pub use plan::{BUILT_IN, LaunchFile, NodePlan};
 pub use recorded_speeds::RecordedSpeeds;
-pub use supervisor::{Outline, Received, Supervised, Supervisor};
+pub use followed::{Outline, Received};
+pub use one_process::{check_one_process, run_in_one_process};
+pub use supervisor::{Supervised, Supervisor};

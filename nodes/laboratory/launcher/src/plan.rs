@@ -65,6 +65,9 @@ struct Executable {
 const OF_LAUNCHER: [(&str, &str, &str); 3] =
     [("scene", "demo", "scene"), ("seed", "-1", "seed"), ("out", "''", "output")];
 
+/// Topics that are recorded where only packings and results are.
+const RESULTS: &str = "topics:=[packing,packing_report,moduli,wave_speeds,microstructure,run_state,energy,diagnostics,tf_static]";
+
 /// Maximum number of processes of a run. A member number is one byte: 0 means none, and 255 is the launcher.
 const PLACES: usize = 254;
 
@@ -113,8 +116,31 @@ impl NodePlan {
             // The last value of a parameter takes precedence: this one is before those of the launch file, after `run NODE`.
             let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
             self.arguments.splice(2..2, given);
-            let stay = ["--ros-args", "-p", "exit_when_finished:=false"].map(str::to_owned);
-            self.arguments.extend(stay);
+            self.insist(&["exit_when_finished:=false"]);
+        }
+    }
+
+    /// Sets parameters of the node; they take precedence over those of the launch file.
+    fn insist(&mut self, parameters: &[&str]) {
+        for given in parameters {
+            self.arguments.extend(["--ros-args", "-p", given].map(str::to_owned));
+        }
+    }
+
+    /// Records packings and results alone: no other node waits for a recorder of the lockstep.
+    pub fn record_results(&mut self) {
+        match self.node {
+            Some(NodeKind::Recorder) => self.insist(&[RESULTS]),
+            Some(NodeKind::DemSimulator) => self.insist(&["wait_for:=[packing]"]),
+            Some(NodeKind::ServoController) => self.insist(&["min_readers:=1"]),
+            _ => {}
+        }
+    }
+
+    /// Makes ready for one process with the servo: the answer is there at once, and nothing is gained by a speculative step.
+    pub fn composed(&mut self) {
+        if self.is(NodeKind::DemSimulator) {
+            self.insist(&["ahead:=false"]);
         }
     }
 }

@@ -1,12 +1,11 @@
 //! Runs the processes of a launch: restarts them, and ends the run.
 
 use super::child::{Child, Ended, Run};
-use super::deadline::{Deadline, nothing};
-use super::pending_results::{PendingResults, ResultState, Source};
+use super::deadline::Deadline;
+use super::followed::{Followed, Outline, Received, Verdict};
+use super::pending_results::ResultState;
 use super::plan::NodePlan;
-use super::progress::Progress;
 use super::recorded_speeds::RecordedSpeeds;
-use super::said;
 use super::stopped::Stopped;
 use super::time_limit::TimeLimit;
 use super::watch::{Event, Watch};
@@ -14,10 +13,7 @@ use crate::agreement::names_of_run;
 use crate::last_packing;
 use crate::nodes::NodeKind;
 use grainlab_console::{Failure, worse};
-use grainlab_msgs::msg::RunState;
-use grainlab_msgs::topics;
 use grainlab_node_kit::{Exit, Names};
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tokio::signal::unix::{Signal, SignalKind, signal};
@@ -45,20 +41,6 @@ const RECORDER: NodeKind = NodeKind::Recorder;
 /// The simulator, which continues from its last packing after a crash.
 const SIMULATOR: NodeKind = NodeKind::DemSimulator;
 
-/// The last packing is being measured by the probe, or is in its queue.
-const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
-
-/// Outline of the loading path of the run.
-#[derive(Clone, Copy, Debug)]
-pub struct Outline {
-    /// Number of phases.
-    pub phases: usize,
-    /// The run starts from a packing, which is published as that of step 0.
-    pub starts_from_packing: bool,
-    /// The last packing is recorded within a phase: it may have no results.
-    pub ends_within: bool,
-}
-
 /// A run from its first process to its last.
 pub struct Supervisor {
     pub(super) children: Vec<Child>,
@@ -72,31 +54,12 @@ pub struct Supervisor {
     pub(super) interrupt: Signal,
     pub(super) terminate: Signal,
     hangup: Signal,
-    pub(super) progress: Progress,
-    outline: Outline,
-    begun: bool,
-    /// Last message of the simulator on what it does or waits for.
-    simulator: Option<String>,
-    /// The step at which the run began or resumed.
-    pub(super) first_step: Option<u64>,
-    finished: Option<RunState>,
-    failed: Option<String>,
-    /// The watch failed: the end of the run would not be noticed.
-    blind: bool,
-    pending: PendingResults,
-    /// The probe reported work since the last check.
-    probing: bool,
+    pub(super) followed: Followed,
     pub(super) stopped: Stopped,
     /// Number of recorded packings at each crash of the simulator.
     crashes: Vec<u64>,
     /// A third-party program failed.
     foreign_failure: bool,
-    /// Why the run did not end as it should.
-    reasons: Vec<String>,
-    /// Received results: steps of packings by topic.
-    results: BTreeMap<&'static str, BTreeSet<u64>>,
-    /// Ids of the processes that sent their last report.
-    pub(super) left: BTreeSet<u32>,
 }
 
 /// The result of a run.
@@ -114,21 +77,12 @@ pub struct Supervised {
     pub received: Received,
 }
 
-/// The messages of the run that the launcher received.
-#[derive(Debug, Default)]
-pub struct Received {
-    /// Packings, by the last run state; `None` if the path was not finished.
-    pub packings: Option<u32>,
-    /// Steps of the packings with a result, by topic.
-    pub results: BTreeMap<&'static str, BTreeSet<u64>>,
-}
-
 impl Supervisor {
     /// Call this inside the runtime.
     pub fn new(plans: Vec<NodePlan>, run: Run, directory: &Path, outline: Outline) -> Result<Self, Failure> {
         let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
-        let pending = PendingResults::of(&plans);
+        let followed = Followed::new(&plans, outline);
         let names = names_of_run(&plans).map_err(Failure::usage)?;
         Ok(Self {
             names,
@@ -141,29 +95,17 @@ impl Supervisor {
             interrupt: handler(SignalKind::interrupt())?,
             terminate: handler(SignalKind::terminate())?,
             hangup: handler(SignalKind::hangup())?,
-            progress: Progress::new(outline.phases),
-            outline,
-            begun: false,
-            first_step: None,
-            simulator: None,
-            finished: None,
-            failed: None,
-            blind: false,
-            pending,
-            probing: false,
+            followed,
             stopped: Stopped::default(),
             crashes: Vec::new(),
             foreign_failure: false,
-            reasons: Vec::new(),
-            results: BTreeMap::new(),
-            left: BTreeSet::new(),
         })
     }
 
     /// Takes over what a resumed run has recorded before.
     #[must_use]
     pub fn resuming(mut self, recorded: &RecordedSpeeds) -> Self {
-        self.pending.remember(recorded);
+        self.followed.pending.remember(recorded);
         self
     }
 
@@ -173,14 +115,14 @@ impl Supervisor {
         let (watch, mut events) = Watch::start(self.run, self.names.clone(), self.member(SIMULATOR))?;
         // The watch starts first, so that it receives all messages.
         if let Some(event) = events.recv().await {
-            self.take(event);
+            self.followed.take(event);
         }
         let started = (0..self.children.len()).try_for_each(|index| self.start(index));
         let mut exit = match started {
-            Ok(()) if self.blind => Exit::Failure,
+            Ok(()) if self.followed.blind => Exit::Failure,
             Ok(()) => self.attend(&mut events).await,
             Err(failure) => {
-                self.complain(failure.to_string());
+                self.followed.complain(failure.to_string());
                 failure.exit
             }
         };
@@ -191,17 +133,15 @@ impl Supervisor {
         // A simulator that ended with an error fails the run, whatever was received before.
         let simulator = self.code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
         if exit == Exit::Done && simulator != Exit::Done {
-            self.complain(format!("{SIMULATOR} failed: see logs/{SIMULATOR}.log"));
+            self.followed.complain(format!("{SIMULATOR} failed: see logs/{SIMULATOR}.log"));
             exit = simulator;
         }
         if self.foreign_failure {
             exit = worse(exit, Exit::Failure);
         }
         drop(watch);
-        let packings = self.finished.as_ref().map(|state| state.packings);
-        let received = Received { packings, results: self.results };
-        let (reasons, children) = (self.reasons, self.children);
-        Ok(Supervised { exit, reasons, children, wall: begin.elapsed(), received })
+        let (reasons, received) = self.followed.received();
+        Ok(Supervised { exit, reasons, children: self.children, wall: begin.elapsed(), received })
     }
 
     /// The exit code of a node that has ended by itself.
@@ -229,8 +169,8 @@ impl Supervisor {
                 _ = self.terminate.recv() => return self.interrupted("SIGTERM"),
                 _ = self.hangup.recv() => return self.interrupted("SIGHUP"),
                 event = events.recv() => {
-                    self.take(event.unwrap_or_else(|| Event::Failed("the watch ended".into())));
-                    if self.blind {
+                    self.followed.take(event.unwrap_or_else(|| Event::Failed("the watch ended".into())));
+                    if self.followed.blind {
                         return Exit::Failure;
                     }
                 }
@@ -240,7 +180,7 @@ impl Supervisor {
                     }
                 }
                 () = sleep(POLL_PERIOD) => {
-                    self.progress.draw();
+                    self.followed.progress.draw();
                     let suspended = self.look_for_stopped();
                     if let Some(late) = deadline.as_mut()
                         && late.limit.is_over(suspended)
@@ -249,36 +189,21 @@ impl Supervisor {
                         if late.of == ResultState::Settling {
                             return self.caught_up().await;
                         }
-                        self.complain(message);
+                        self.followed.complain(message);
                         return exit;
                     }
-                    if !self.begun && beginning.is_over(suspended) {
+                    if !self.followed.begun && beginning.is_over(suspended) {
                         beginning = TimeLimit::new(BEGINS_WITHIN);
-                        self.say_what_is_waited_for();
+                        self.followed.say_what_is_waited_for();
                     }
                     continue;
                 }
             }
-            let Some(last) = self.finished.as_ref().map(RunState::last_packing) else { continue };
-            let Some(step) = last else { return self.caught_up().await };
-            match self.pending.state_of(step) {
-                ResultState::Complete => return self.caught_up().await,
-                ResultState::Declined(_) | ResultState::Left if self.outline.ends_within => {
-                    return self.caught_up().await;
-                }
-                ResultState::Declined(node) => {
-                    self.complain(format!("the last packing has no {}", nothing(node)));
-                    return Exit::PhysicsInvalid;
-                }
-                standing => {
-                    // Bursts through a long path may take any time; the run waits for a probe that works.
-                    let at_work = std::mem::take(&mut self.probing) && standing == PROBED;
-                    if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
-                        let of =
-                            if self.outline.ends_within { Deadline::within_a_phase } else { Deadline::of };
-                        deadline = Some(of(standing));
-                    }
-                }
+            match self.followed.verdict() {
+                Verdict::UnderWay => {}
+                Verdict::Complete => return self.caught_up().await,
+                Verdict::Invalid => return Exit::PhysicsInvalid,
+                Verdict::Pending(late) => deadline = late.or(deadline),
             }
         }
     }
@@ -286,15 +211,15 @@ impl Supervisor {
     /// Ends a complete run, but waits until a stopped process continues and has had time to catch up: its writers keep
     /// the samples it missed only until they leave.
     async fn caught_up(&mut self) -> Exit {
-        if let Some(text) = self.pending.silent_programs() {
-            self.progress.say(&text);
+        if let Some(text) = self.followed.pending.silent_programs() {
+            self.followed.progress.say(&text);
         }
         self.look_for_stopped();
         let behind = self.stopped.any_within(CATCHES_UP_WITHIN);
         let mut catching_up = TimeLimit::new(if behind { CATCHES_UP_WITHIN } else { Duration::ZERO });
         let mut waiting = TimeLimit::new(STOPPED_AT_MOST);
         loop {
-            self.progress.draw();
+            self.followed.progress.draw();
             let suspended = self.look_for_stopped();
             if catching_up.is_over(suspended) || waiting.is_over(false) {
                 return Exit::Done;
@@ -309,90 +234,22 @@ impl Supervisor {
         }
     }
 
-    pub(super) fn take(&mut self, event: Event) {
-        match event {
-            Event::State(state) => {
-                let first = *self.first_step.get_or_insert(state.step);
-                self.begun |= state.step != first || state.state != RunState::RUNNING;
-                self.progress.show(&state);
-                match state.state {
-                    RunState::RUNNING => {}
-                    RunState::FINISHED => self.finished = Some(state),
-                    _ => self.failed = Some(state.message),
-                }
-            }
-            Event::Phase(report) => self.progress.report(report),
-            Event::Simulator(says) => self.simulator = Some(says),
-            Event::Goodbye(pid) => {
-                self.left.insert(pid);
-            }
-            Event::Open => {}
-            Event::Measured(topic, step) => {
-                self.note_result(topic, step);
-                self.pending.measured(topic, step);
-            }
-            Event::MeasuredStart if self.outline.starts_from_packing => self.pending.measured_start(),
-            Event::MeasuredStart => {}
-            Event::Declined(topic, step) => self.pending.declined(topic, step),
-            Event::Probing(step) => {
-                self.probing = true;
-                if self.finished.is_some() {
-                    self.progress.still(&format!("measuring waves through the packing of step {step}"));
-                }
-            }
-            Event::Microstructure { source, step, member, nothing } => {
-                self.note_result(topics::MICROSTRUCTURE.name, step);
-                self.pending.inverted(&source, step, member);
-                let is_of_start =
-                    self.outline.starts_from_packing && self.pending.is_measured_by_node(&source);
-                self.progress.say(&said::inverted(&source, step, is_of_start, nothing.as_deref()));
-            }
-            Event::Stranger(text) => {
-                grainlab_console::say!("grainlab: {text} and is not of this run: it is ignored")
-            }
-            Event::Failed(message) => {
-                self.complain(format!("the launcher cannot use the bus: {message}; the run ends"));
-                self.blind = true;
-            }
-        }
-    }
-
-    /// Prints why the run does not end as it should, and keeps it for the result.
-    pub(super) fn complain(&mut self, reason: String) {
-        grainlab_console::say!("grainlab: {reason}");
-        self.reasons.push(reason);
-    }
-
-    /// Data of an external instrument do not belong to a packing of the run.
-    fn note_result(&mut self, topic: &'static str, step: u64) {
-        if step > 0 {
-            self.results.entry(topic).or_default().insert(step);
-        }
-    }
-
     /// Prints once which processes are stopped or continue; true while any is stopped.
     pub(super) fn look_for_stopped(&mut self) -> bool {
         let changes = self.stopped.look(&self.children);
         for (name, pid) in changes.stopped {
-            self.progress.say(&format!(
+            self.followed.progress.say(&format!(
                 "{name} (pid {pid}) is stopped by a signal: waiting for it (kill -CONT {pid})"
             ));
         }
         for name in changes.resumed {
-            self.progress.say(&format!("{name} continues"));
+            self.followed.progress.say(&format!("{name} continues"));
         }
         self.stopped.any()
     }
 
-    /// Prints the condition that a run that has not begun waits for, as far as its simulator has said it.
-    fn say_what_is_waited_for(&self) {
-        if let Some(what) = said::awaited(self.simulator.as_deref(), self.first_step) {
-            self.progress.say(&format!("the run has not begun: {what}"));
-        }
-    }
-
     fn interrupted(&self, name: &str) -> Exit {
-        self.progress.say(&format!("{name}: ending every process and finishing the recording"));
+        self.followed.progress.say(&format!("{name}: ending every process and finishing the recording"));
         Exit::Interrupted
     }
 
@@ -403,7 +260,7 @@ impl Supervisor {
         let (name, node, code) = (child.plan.name.clone(), child.plan.node, child.code);
         let meant = code.and_then(Exit::from_code);
         let Some(node) = node else { return self.on_foreign_end(ended.index, &how).await };
-        if node == SIMULATOR && self.finished.is_some() && code == Some(0) {
+        if node == SIMULATOR && self.followed.finished.is_some() && code == Some(0) {
             return None;
         }
         let exit = match (node, meant) {
@@ -415,14 +272,14 @@ impl Supervisor {
             _ if child.plan.respawn => return self.restart(ended.index, &how).await,
             _ => Exit::Failure,
         };
-        let reason = self.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
+        let reason = self.followed.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
         let text = format!("{name} {how}: {reason}");
         Some(self.give_up(ended.index, text, exit))
     }
 
     /// Complains about a process, with the errors of its log.
     fn give_up(&mut self, index: usize, reason: String, exit: Exit) -> Exit {
-        self.complain(reason);
+        self.followed.complain(reason);
         self.children[index].quote_log(&self.logs);
         exit
     }
@@ -434,12 +291,12 @@ impl Supervisor {
             return self.restart(index, how).await;
         }
         if !self.children.iter().any(|c| c.plan.node.is_none() && c.pid.is_some()) {
-            self.pending.instruments_left();
+            self.followed.pending.instruments_left();
         }
         if child.code == Some(0) {
-            self.progress.say(&format!("{} {how}", child.plan.name));
+            self.followed.progress.say(&format!("{} {how}", child.plan.name));
         } else {
-            self.complain(format!("{name} {how}: see logs/{name}.log", name = child.plan.name));
+            self.followed.complain(format!("{name} {how}: see logs/{name}.log", name = child.plan.name));
             self.foreign_failure = true;
         }
         None
@@ -457,9 +314,9 @@ impl Supervisor {
         }
         self.children[index].quote_log(&self.logs);
         let from = if packings == 0 { "from the beginning" } else { "from the last packing recorded" };
-        self.progress.say(&format!("{SIMULATOR} {how}: the run continues {from}"));
+        self.followed.progress.say(&format!("{SIMULATOR} {how}: the run continues {from}"));
         self.children[index].resume_from = (packings > 0).then(|| self.directory.clone());
-        self.finished = None;
+        self.followed.finished = None;
         self.start_again(index).await
     }
 
@@ -473,7 +330,7 @@ impl Supervisor {
             let again = format!("{name} {how}, {recent} times within {window} s: not restarted");
             return Some(self.give_up(index, again, Exit::Failure));
         }
-        self.progress.say(&format!("{name} {how}: restarted"));
+        self.followed.progress.say(&format!("{name} {how}: restarted"));
         self.start_again(index).await
     }
 
@@ -482,7 +339,7 @@ impl Supervisor {
         sleep(RESTART_PAUSE).await;
         let started = self.start(index);
         started.err().map(|failure| {
-            self.complain(failure.to_string());
+            self.followed.complain(failure.to_string());
             failure.exit
         })
     }

@@ -33,7 +33,7 @@ const DISCOVERY_TIME: Duration = Duration::from_secs(1);
 const LEAVE_WITHIN: Duration = Duration::from_secs(2);
 
 /// The member number of the launcher: none of its processes has it.
-const LAUNCHER: u8 = u8::MAX;
+pub(crate) const LAUNCHER: u8 = u8::MAX;
 
 /// Maximum number of messages about processes outside the run.
 const NAMED: usize = 32;
@@ -154,7 +154,7 @@ impl Drop for Watch {
 }
 
 /// Subscriptions to the run's messages.
-struct RunSubscriptions {
+pub(crate) struct RunSubscriptions {
     states: Subscription<RunState>,
     simulator: Option<u8>,
     /// Other processes of the run that published a state.
@@ -167,7 +167,8 @@ struct RunSubscriptions {
 }
 
 impl RunSubscriptions {
-    fn new(bus: &mut dyn Bus, simulator: Option<u8>) -> Result<Self, BusError> {
+    /// Subscribes. `simulator` is the member number of the simulator: another process cannot end the run by a state.
+    pub(crate) fn new(bus: &mut dyn Bus, simulator: Option<u8>) -> Result<Self, BusError> {
         let demand = Demand::reliable(BACKLOG);
         let reports = Demand::best_effort(BACKLOG);
         Ok(Self {
@@ -182,7 +183,8 @@ impl RunSubscriptions {
         })
     }
 
-    fn receive(&mut self, bus: &mut dyn Bus, mut send: impl FnMut(Event)) -> Result<(), BusError> {
+    /// Passes what arrived to `send`.
+    pub(crate) fn receive(&mut self, bus: &mut dyn Bus, mut send: impl FnMut(Event)) -> Result<(), BusError> {
         while let Some((state, info)) = self.states.take_valid(bus)? {
             let who = info.writer.participant();
             if self.simulator.is_some_and(|member| member_of(&who) != member) {

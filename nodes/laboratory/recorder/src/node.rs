@@ -128,6 +128,7 @@ impl Recorder {
             writer.set_metadata("seed", &scene.scene.seed.to_string());
         }
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
+        writer.set_metadata("transport", bus.transport());
         for channel in channels.iter().filter(|c| !c.topic.reproducible) {
             writer.ledger_mut().count_from_first(&channel.name);
         }

@@ -13,14 +13,15 @@ pub struct Exchanges {
 }
 
 impl Exchanges {
-    /// Those of all parts of a run that was resumed.
-    pub fn of(recording: &Recording) -> Result<Self, Failure> {
+    /// Those of all parts of a run that was resumed; `None` if requests and answers were not recorded.
+    pub fn of(recording: &Recording) -> Result<Option<Self>, Failure> {
         let stress = |m: &Message| m.decoded::<Stress>().ok().map(|m| m.sequence);
         let rate = |m: &Message| m.decoded::<StrainRate>().ok().map(|m| m.sequence);
-        Ok(Self {
-            stress: numbers(recording, topics::STRESS.name, stress)?,
-            rates: numbers(recording, topics::STRAIN_RATE.name, rate)?,
-        })
+        let (stress, rates) = (
+            numbers(recording, topics::STRESS.name, stress)?,
+            numbers(recording, topics::STRAIN_RATE.name, rate)?,
+        );
+        Ok(stress.zip(rates).map(|(stress, rates)| Self { stress, rates }))
     }
 
     /// Number of answered requests, up to the last answer in the recording; those before it may be missing.
@@ -41,22 +42,25 @@ impl Exchanges {
     }
 }
 
-/// Distinct numbers of a topic's messages, sorted.
+/// Distinct numbers of a topic's messages, sorted; `None` if the recording does not have the topic.
 fn numbers(
     recording: &Recording,
     name: &str,
     number: impl Fn(&Message) -> Option<u64>,
-) -> Result<Vec<u64>, Failure> {
+) -> Result<Option<Vec<u64>>, Failure> {
     let channels = recording.channels();
     let is_wanted = |c: &&std::sync::Arc<ChannelInfo>| {
         Topic::of_channel(&c.topic, &c.ros_type).is_some_and(|t| t.name == name)
     };
-    let of_topic = channels.iter().filter(is_wanted).map(|c| c.topic.clone());
+    let of_topic: Vec<String> = channels.iter().filter(is_wanted).map(|c| c.topic.clone()).collect();
+    if of_topic.is_empty() {
+        return Ok(None);
+    }
     let messages = recording.messages(&Selection::topics(of_topic))?;
     let mut numbers: Vec<u64> = messages.filter_map(|m| number(&m)).collect();
     numbers.sort_unstable();
     numbers.dedup();
-    Ok(numbers)
+    Ok(Some(numbers))
 }
 
 #[cfg(test)]

@@ -129,7 +129,7 @@ pub struct Launched {
     /// Seed of the scene.
     pub seed: u64,
     /// Number of the DDS domain.
-    pub domain: u16,
+    pub domain: Option<u16>,
     /// Id of the run.
     pub run: String,
     /// The run was resumed: times and rates are those of its last part, and counts those of the whole run.

@@ -1,6 +1,6 @@
 //! The members of a campaign, from its file.
 
-use crate::file::{CampaignFile, Group};
+use crate::file::{CampaignFile, Group, Record};
 use crate::member::{Member, Setting};
 use grainlab_console::Failure;
 use grainlab_recordings::input;
@@ -26,6 +26,12 @@ pub struct Campaign {
     pub launch: String,
     /// Values for its arguments, as `NAME:=VALUE`.
     pub arguments: Vec<String>,
+    /// Every message is recorded, not only packings and results.
+    #[serde(default)]
+    pub record_all: bool,
+    /// Each run has its page.
+    #[serde(default)]
+    pub report: bool,
     /// The runs, in the order of their results.
     pub members: Vec<Member>,
     /// The text of the file.
@@ -93,6 +99,8 @@ impl Campaign {
                 .iter()
                 .map(|(name, value)| format!("{name}:={}", plain(value)))
                 .collect(),
+            record_all: file.record == Record::All,
+            report: file.report,
             members,
             text: text.to_owned(),
         })

@@ -1,6 +1,7 @@
 //! Engines that run the members of a campaign.
 
 mod cluster;
+mod limits;
 mod local;
 mod options;
 
@@ -13,7 +14,6 @@ use crate::member::Member;
 use crate::progress::Progress;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::Exit;
-use grainlab_recordings::end_reason;
 
 impl Options {
     /// Runs the members that are not finished; the caller holds the lock of the folder. The exit is 0 if all are.
@@ -22,14 +22,14 @@ impl Options {
     /// A folder in use, a scheduler that cannot be reached, a folder that cannot be written.
     pub fn run(self, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
         if self.engine == Engine::Print {
-            print_script(campaign, folder)?;
+            print_script(campaign, folder, self)?;
             return Ok(Exit::Done);
         }
         if self.redo_failed {
             for member in
                 campaign.members.iter().filter(|m| matches!(folder.state(m), MemberState::Failed(_)))
             {
-                folder.remove(member)?;
+                folder.redo(member)?;
             }
         }
         let pending = folder.pending(campaign);
@@ -57,7 +57,7 @@ fn report(campaign: &Campaign, folder: &Folder) -> Exit {
             MemberState::Finished => continue,
             MemberState::Failed(code) => {
                 let of = Exit::ALL.into_iter().find(|e| e.code() == code).unwrap_or(Exit::Failure);
-                let reason = end_reason(&folder.run(member)).map_or_else(String::new, |r| format!(": {r}"));
+                let reason = folder.reason(member).map_or_else(String::new, |r| format!(": {r}"));
                 (format!("failed with exit code {code}{reason}"), of)
             }
             MemberState::Waiting => ("did not begin".to_owned(), Exit::Failure),
@@ -74,7 +74,7 @@ fn report(campaign: &Campaign, folder: &Folder) -> Exit {
 }
 
 /// Prints the commands of the members as a script.
-fn print_script(campaign: &Campaign, folder: &Folder) -> Result<(), Failure> {
+fn print_script(campaign: &Campaign, folder: &Folder, options: Options) -> Result<(), Failure> {
     let mut script = format!(
         "#!/bin/sh\n# Campaign {}: {}, in any order. Each line can be repeated: a finished run is left as it is, an\n\
          # interrupted one is continued.\nunset ROS_DOMAIN_ID\n",
@@ -82,7 +82,7 @@ fn print_script(campaign: &Campaign, folder: &Folder) -> Result<(), Failure> {
         grainlab_console::count(campaign.members.len(), "run")
     );
     for member in &campaign.members {
-        script += &line(&command(campaign, folder, member)?);
+        script += &line(&command(campaign, folder, member, options.processes)?);
         script.push('\n');
     }
     grainlab_console::print(&script)

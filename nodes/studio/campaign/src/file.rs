@@ -23,6 +23,12 @@ pub(crate) struct CampaignFile {
     /// Values for arguments of the launch file.
     #[serde(default)]
     pub(crate) arguments: BTreeMap<String, Value>,
+    /// Messages to record: `results` (packings, and what was measured and inferred) or `all`.
+    #[serde(default)]
+    pub(crate) record: Record,
+    /// Each member has a page, `report.html`.
+    #[serde(default)]
+    pub(crate) report: bool,
     /// Keys set in every scene.
     #[serde(default)]
     pub(crate) set: Table,
@@ -34,6 +40,15 @@ pub(crate) struct CampaignFile {
     pub(crate) group: Vec<Group>,
     /// A table of runs: CSV by its path from this file, with the columns `scene`, `seed`, and keys of scenes.
     pub(crate) table: Option<String>,
+}
+
+/// Messages that the recording of a member has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Record {
+    #[default]
+    Results,
+    All,
 }
 
 /// Scenes, each run with every combination of `vary` and every seed.

@@ -4,7 +4,7 @@ use crate::campaign::Campaign;
 use crate::member::Member;
 use grainlab_console::{Failure, json, write_whole};
 use grainlab_msgs::Exit;
-use grainlab_recordings::{Lock, RunState, input, run_state};
+use grainlab_recordings::{Lock, RunState, end_reason, input, run_state};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -92,7 +92,7 @@ impl Folder {
     /// Progress of a member.
     pub fn state(&self, member: &Member) -> MemberState {
         let given_up = std::fs::read_to_string(self.given_up(member)).ok();
-        if let Some(code) = given_up.and_then(|text| text.trim().parse().ok()) {
+        if let Some(code) = given_up.and_then(|text| text.lines().next()?.trim().parse().ok()) {
             return MemberState::Failed(code);
         }
         match run_state(&self.run(member)) {
@@ -111,7 +111,7 @@ impl Folder {
         (0..campaign.members.len()).filter(can_run).collect()
     }
 
-    /// The file that says with which exit code a member was given up.
+    /// The file with the exit code of a member that was given up, and the limit that it reached.
     fn given_up(&self, member: &Member) -> PathBuf {
         self.logs().join(format!("{}.failed", member.name))
     }
@@ -119,8 +119,35 @@ impl Folder {
     /// Gives up a member that ended so again and again.
     pub(crate) fn give_up(&self, member: &Member) -> Result<(), Failure> {
         let RunState::Ended(code) = run_state(&self.run(member)) else { return Ok(()) };
+        self.fail(member, code, "")
+    }
+
+    /// Notes that a member failed; `limit` is the one that it reached.
+    pub(crate) fn fail(&self, member: &Member, code: u8, limit: &str) -> Result<(), Failure> {
         let path = self.given_up(member);
-        std::fs::write(&path, format!("{code}\n")).map_err(Failure::at(&path))
+        write_whole(&path, format!("{code}\n{limit}\n")).map_err(Failure::at(&path))
+    }
+
+    /// The limit that a member reached.
+    fn limit(&self, member: &Member) -> Option<String> {
+        let text = std::fs::read_to_string(self.given_up(member)).ok()?;
+        text.lines().nth(1).filter(|line| !line.is_empty()).map(str::to_owned)
+    }
+
+    /// Why a member failed, if that is known.
+    pub fn reason(&self, member: &Member) -> Option<String> {
+        self.limit(member).or_else(|| end_reason(&self.run(member)))
+    }
+
+    /// Lets a failed member begin anew, or continue from where it reached a limit.
+    pub(crate) fn redo(&self, member: &Member) -> Result<(), Failure> {
+        match self.limit(member) {
+            None => self.remove(member),
+            Some(_) => {
+                let path = self.given_up(member);
+                std::fs::remove_file(&path).map_err(Failure::at(&path))
+            }
+        }
     }
 
     /// Removes the run of a member.
@@ -187,6 +214,11 @@ mod tests {
         again.remove(&known.members[0]).unwrap();
         again.remove(&known.members[0]).unwrap();
         assert_eq!(again.state(&known.members[0]), MemberState::Waiting);
+        folder.fail(&known.members[2], 1, "ended at the limit").unwrap();
+        assert_eq!(again.state(&known.members[2]), MemberState::Failed(1));
+        assert_eq!(again.reason(&known.members[2]).as_deref(), Some("ended at the limit"));
+        again.redo(&known.members[2]).unwrap();
+        assert_eq!(again.state(&known.members[2]), MemberState::Interrupted, "it continues");
         assert!(Folder::open(&root.path().join("logs")).unwrap_err().to_string().contains("not the folder"));
     }
 }

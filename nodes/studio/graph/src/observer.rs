@@ -4,7 +4,7 @@ use crate::graph::{Endpoint, Graph, NodeEntry};
 use crate::names::printable;
 use grainlab_console::Failure;
 use grainlab_msgs::Guid;
-use grainlab_node_kit::Network;
+use grainlab_node_kit::{Network, OffTheBus};
 use ros2_client::qos::{Durability, History, WhenFull};
 use ros2_client::{Context, MessageTypeName, Node, NodeName, NodeOptions, QosProfile, Subscription};
 use serde::{Deserialize, Serialize};
@@ -44,6 +44,7 @@ pub(crate) struct Observer {
 impl Observer {
     /// Joins the domain and network of the environment.
     pub(crate) fn join() -> Result<Self, Failure> {
+        OffTheBus::note().iter().for_each(|note| grainlab_console::say!("grainlab: {note}"));
         Self::join_network(Network::from_env().map_err(Failure::usage)?)
     }
 

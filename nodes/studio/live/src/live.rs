@@ -7,7 +7,7 @@ use crate::server::Server;
 use crate::snapshot::{Pictures, Snapshot};
 use crate::status::waiting;
 use grainlab_console::{Failure, Signals, print};
-use grainlab_node_kit::{Exit, Logger, Names, RosArgs};
+use grainlab_node_kit::{Exit, Logger, Names, OffTheBus, RosArgs};
 use std::time::{Duration, Instant};
 
 /// Time between two snapshots.
@@ -117,7 +117,7 @@ impl Show {
         match laboratory {
             None => {
                 self.snapshot = Snapshot::default();
-                self.snapshot.set("heading", waiting(&self.choice.awaited()));
+                self.snapshot.set("heading", waiting(&self.choice.awaited(), OffTheBus::note()));
                 self.snapshot.set("stage", "waiting".into());
             }
             Some(laboratory) => self.draw(laboratory, follower),

@@ -10,10 +10,11 @@ use std::time::Duration;
 /// Silence of the simulator that is mentioned: it reports once a second.
 const QUIET: Duration = Duration::from_secs(3);
 
-/// The page while no run is on the bus.
-pub(crate) fn waiting(awaited: &str) -> Html {
+/// The page while no run is on the bus, with a note on those in one process.
+pub(crate) fn waiting(awaited: &str, off_the_bus: Option<String>) -> Html {
     heading("grainlab", "Waiting for a run", "")
         + verdict("", &format!("No laboratory is on the bus {awaited}. This page follows the next one."))
+        + off_the_bus.map_or_else(Html::default, |note| paragraph(&note))
         + html!("<p>Start one in another terminal: <code>grainlab launch --scene demo</code></p>\n")
 }
 

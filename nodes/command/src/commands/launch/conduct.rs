@@ -4,8 +4,8 @@ use super::finish::finish;
 use super::order;
 use super::output::Output;
 use grainlab_console::Failure;
-use grainlab_launcher::{NodePlan, Outline, RecordedSpeeds, Run, Supervised, Supervisor};
-use grainlab_node_kit::{Exit, FreeDomain, Network, RunId};
+use grainlab_launcher::{NodePlan, Outline, RecordedSpeeds, Run, Supervised, Supervisor, run_in_one_process};
+use grainlab_node_kit::{Exit, FreeDomain, Network, OffTheBus, RunId};
 use grainlab_recordings::scenes::SceneText;
 use grainlab_recordings::{Lock, Recording};
 use grainlab_scene::Scene;
@@ -14,20 +14,20 @@ use std::path::Path;
 /// Starts the processes, follows the run to its end, and reports it.
 pub(super) fn conduct(
     mut plans: Vec<NodePlan>,
-    domain: u16,
-    lock: Option<FreeDomain>,
+    medium: Medium,
     directory: &Path,
     scene: &SceneText,
     output: Output,
 ) -> Result<Exit, Failure> {
     plans.iter_mut().for_each(NodePlan::supervised);
-    let run = Run { id: RunId::fresh(), domain };
+    let id = RunId::fresh();
+    let domain = medium.domain();
+    let place = domain.map_or_else(|| "in one process".to_owned(), |domain| format!("DDS domain {domain}"));
     grainlab_console::say!(
-        "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}, run {}; {}",
+        "grainlab: scene {}, seed {}, {} grains; {place}, run {id}; {}",
         scene.scene.name,
         scene.scene.seed,
         scene.scene.grains,
-        run.id,
         directory.display()
     );
     for note in scene.scene.notes() {
@@ -36,14 +36,18 @@ pub(super) fn conduct(
     // Programs that measured packings before an interruption are waited for as before it.
     let resumed = output.resumed && Recording::open(directory).is_ok();
     let recorded = if resumed { RecordedSpeeds::read(directory)? } else { RecordedSpeeds::default() };
-    let supervised = supervise(plans, run, directory, &scene.scene, &recorded);
-    drop(lock);
+    let outline = outline(&scene.scene);
+    let supervised = match domain {
+        None => run_in_one_process(plans, id, directory, outline, &recorded),
+        Some(domain) => supervise(plans, Run { id, domain }, directory, outline, &recorded),
+    };
+    drop(medium);
     let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;
     let failed = matches!(supervised.exit, Exit::Failure | Exit::Usage);
     if failed && remove_if_unused(directory) {
         return Ok(supervised.exit);
     }
-    finish(output, directory, scene, run, supervised)
+    finish(output, directory, scene, (id, domain), supervised)
 }
 
 /// Removes the directory of a run that did not start, if it holds only the scene and empty logs. False if there is
@@ -67,37 +71,58 @@ fn remove_if_unused(directory: &Path) -> bool {
     unused && silent && std::fs::remove_dir_all(directory).is_ok()
 }
 
-fn network() -> Result<Network, Failure> {
-    Network::from_env().map_err(Failure::usage)
+/// Transport of the messages of a run.
+pub(super) enum Medium {
+    /// The memory of this process, which tools of this host can find.
+    Memory(#[expect(dead_code, reason = "held to the end of the run")] OffTheBus),
+    /// The DDS domain of the environment.
+    Domain(u16),
+    /// A free domain, reserved until this is dropped.
+    Free(FreeDomain),
 }
 
-/// The domain of the environment, else a free one, which is reserved until the second value is dropped.
-pub(super) fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
-    let network = network()?;
-    if std::env::var("ROS_DOMAIN_ID").is_ok_and(|v| !v.trim().is_empty()) {
-        return Ok((network.domain, None));
+impl Medium {
+    fn domain(&self) -> Option<u16> {
+        match self {
+            Self::Memory(_) => None,
+            Self::Domain(domain) => Some(*domain),
+            Self::Free(free) => Some(free.id),
+        }
     }
-    let free = FreeDomain::take()?;
-    Ok((free.id, Some(free)))
+}
+
+/// The medium of a run in one process, or else of processes: the domain of the environment, or a free one.
+pub(super) fn medium(one_process: bool) -> Result<Medium, Failure> {
+    if one_process {
+        return Ok(Medium::Memory(OffTheBus::enter()));
+    }
+    let network = Network::from_env().map_err(Failure::usage)?;
+    if std::env::var("ROS_DOMAIN_ID").is_ok_and(|v| !v.trim().is_empty()) {
+        return Ok(Medium::Domain(network.domain));
+    }
+    FreeDomain::take().map(Medium::Free)
 }
 
 fn supervise(
     plans: Vec<NodePlan>,
     run: Run,
     directory: &Path,
-    scene: &Scene,
+    outline: Outline,
     recorded: &RecordedSpeeds,
 ) -> Result<Supervised, Failure> {
-    let last = scene.phases.iter().rfind(|p| p.publish || p.record.is_some());
-    let outline = Outline {
-        phases: scene.phases.len(),
-        starts_from_packing: scene.start.is_some(),
-        ends_within: last.is_some_and(|p| !p.publish),
-    };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
     runtime
         .block_on(async { Supervisor::new(plans, run, directory, outline)?.resuming(recorded).run().await })
+}
+
+fn outline(scene: &Scene) -> Outline {
+    let last = scene.phases.iter().rfind(|p| p.publish || p.record.is_some());
+    Outline {
+        phases: scene.phases.len(),
+        starts_from_packing: scene.start.is_some(),
+        ends_within: last.is_some_and(|p| !p.publish),
+    }
 }
 
 #[cfg(test)]

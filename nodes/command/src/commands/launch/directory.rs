@@ -51,11 +51,11 @@ pub(super) fn given(directory: &Path, scene: &SceneText, order: &Order) -> Resul
 /// Refuses a directory with a run of another scene, seed or launch file, or with other arguments.
 pub(super) fn refuse_another(directory: &Path, scene: &SceneText, order: &Order) -> Result<(), Failure> {
     let known = std::fs::read_to_string(directory.join("scene.toml")).unwrap_or_default();
-    if known == scene.text && Order::read(directory)?.is_same(order) {
+    if known == scene.text && Order::read(directory)?.contains(order) {
         return Ok(());
     }
     Err(Failure::usage(format!(
-        "{}: the run there has another scene, seed, launch file or arguments: use another directory, or remove it",
+        "{}: the run there has another scene, seed, launch file or arguments, or fewer recorded messages: use another directory, or remove it",
         directory.display()
     )))
 }

@@ -3,9 +3,8 @@
 use super::output::Output;
 use grainlab_console::{Failure, Format, json, print, worse, write_whole};
 use grainlab_launcher::NodeKind;
-use grainlab_launcher::Run;
 use grainlab_launcher::{Received, Supervised};
-use grainlab_node_kit::Exit;
+use grainlab_node_kit::{Exit, RunId};
 use grainlab_recordings::Recording;
 use grainlab_recordings::scenes::SceneText;
 use grainlab_results::continuity::Exchanges;
@@ -37,7 +36,7 @@ pub(super) fn finish(
     output: Output,
     directory: &Path,
     scene: &SceneText,
-    run: Run,
+    (run, domain): (RunId, Option<u16>),
     supervised: Supervised,
 ) -> Result<Exit, Failure> {
     let mut exit = supervised.exit;
@@ -50,7 +49,7 @@ pub(super) fn finish(
         exit = worse(exit, Exit::DataLoss);
     }
     let mut missing = missing(&supervised.received, &back);
-    let exchanges = recording.as_ref().ok().map(Exchanges::of).transpose().map_err(Failure::failed)?;
+    let exchanges = recording.as_ref().ok().map(Exchanges::of).transpose()?.flatten();
     // An interrupted run may end with an unanswered request.
     if let (Some(_), Some(exchanges)) = (supervised.received.packings, &exchanges) {
         missing.extend(exchanges.missing());
@@ -81,8 +80,8 @@ pub(super) fn finish(
     let launched = Launched {
         scene: scene.scene.name.clone(),
         seed: scene.scene.seed,
-        domain: run.domain,
-        run: run.id.to_string(),
+        domain,
+        run: run.to_string(),
         resumed: output.resumed,
         exchanges: exchanges.map(|e| e.count()),
         recorded: topics.into_iter().map(|t| (t.name, t.messages)).collect(),
@@ -126,7 +125,7 @@ pub(super) fn finish(
         exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
     }
     #[cfg(feature = "studio")]
-    if recording.is_ok() {
+    if recording.is_ok() && output.report {
         report(output, directory);
     }
     Ok(exit)

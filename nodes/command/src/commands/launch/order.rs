@@ -2,7 +2,7 @@
 
 use crate::viewers::VIEWERS;
 use grainlab_console::{Failure, json, write_whole};
-use grainlab_launcher::{LaunchFile, NodePlan};
+use grainlab_launcher::{LaunchFile, NodePlan, check_one_process};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -23,12 +23,34 @@ pub(super) struct Order {
     /// The launch file, by its built-in name or whole path, and the arguments: the words of the command.
     #[serde(default)]
     pub(super) words: Vec<String>,
+    /// Messages that are recorded.
+    #[serde(default)]
+    pub(super) record: Record,
+    /// All nodes are in the process of the launcher.
+    #[serde(default)]
+    pub(super) one_process: bool,
+}
+
+/// Messages that are recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Record {
+    /// Every message
+    #[default]
+    All,
+    /// Packings, what was measured of them and inferred from it, and the states of the run; not the lockstep and the log
+    Results,
 }
 
 impl Order {
-    /// True if the other one starts the same processes, wherever its launch file is.
-    pub(super) fn is_same(&self, other: &Self) -> bool {
-        self.launch == other.launch && self.arguments == other.arguments && self.seed == other.seed
+    /// True if this one starts the nodes of the other, wherever its launch file is, as processes or in one, and records what the
+    /// other does, or more.
+    pub(super) fn contains(&self, other: &Self) -> bool {
+        let is_recorded = self.record == other.record || self.record == Record::All;
+        self.launch == other.launch
+            && self.arguments == other.arguments
+            && self.seed == other.seed
+            && is_recorded
     }
 
     /// Writes it into the run directory.
@@ -61,10 +83,17 @@ impl Order {
         values.insert("seed", self.seed.to_string());
         values.insert("out", path(directory));
         let file = LaunchFile::parse(&self.launch).map_err(Failure::usage)?;
-        let plans = file.nodes(&values, VIEWERS).map_err(Failure::usage)?;
+        let mut plans = file.nodes(&values, VIEWERS).map_err(Failure::usage)?;
         let scene = directory.join("scene.toml");
         let agrees = |plan: &NodePlan| plan.check_handed_on(&scene, self.seed, directory);
         plans.iter().try_for_each(agrees).map_err(Failure::usage)?;
+        if self.record == Record::Results {
+            plans.iter_mut().for_each(NodePlan::record_results);
+        }
+        if self.one_process {
+            check_one_process(&plans).map_err(Failure::usage)?;
+            plans.iter_mut().for_each(NodePlan::composed);
+        }
         Ok(plans)
     }
 }
@@ -79,13 +108,17 @@ mod tests {
     fn what_was_launched_is_read_back_as_it_was() {
         let directory = tempfile::tempdir().unwrap();
         let arguments = BTreeMap::from([("simd".to_owned(), "scalar".to_owned())]);
+        let (launch, words) = (BUILT_IN[0].1.to_owned(), vec!["demo".to_owned()]);
         let order =
-            Order { launch: BUILT_IN[0].1.to_owned(), arguments, seed: 7, words: vec!["demo".to_owned()] };
+            Order { launch, arguments, seed: 7, words, record: Record::Results, one_process: false };
         order.keep(directory.path()).unwrap();
         let known = Order::read(directory.path()).unwrap();
         assert_eq!(known, order);
-        assert!(known.is_same(&Order { words: Vec::new(), ..order.clone() }));
-        assert!(!known.is_same(&Order { seed: 8, ..order }));
+        assert!(known.contains(&Order { words: Vec::new(), ..order.clone() }));
+        assert!(known.contains(&Order { one_process: true, ..order.clone() }));
+        assert!(!known.contains(&Order { record: Record::All, ..order.clone() }));
+        assert!(Order { record: Record::All, ..order.clone() }.contains(&known));
+        assert!(!known.contains(&Order { seed: 8, ..order }));
         let plans = known.plans(directory.path()).unwrap();
         let simulator = plans.iter().find(|p| p.is(NodeKind::DemSimulator)).unwrap();
         assert!(

@@ -10,4 +10,6 @@ pub(super) struct Output {
     pub(super) verbose: bool,
     /// The run is continued: its times are those of the last part.
     pub(super) resumed: bool,
+    /// Write the page of the run.
+    pub(super) report: bool,
 }

@@ -4,7 +4,7 @@
 //! is so now. Recorded files are unchanged. The recorder continues in the next file of the recording; messages that the processes
 //! repeat with the same bytes are not recorded again.
 
-use super::conduct::{conduct, domain};
+use super::conduct::{conduct, medium};
 use super::order::Order;
 use super::output::Output;
 use grainlab_console::Failure;
@@ -65,6 +65,5 @@ pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
             plan.arguments.extend(["--ros-args".to_owned(), "-p".to_owned(), given]);
         }
     }
-    let (domain, lock) = domain()?;
-    conduct(plans, domain, lock, &directory, &scene, output)
+    conduct(plans, medium(order.one_process)?, &directory, &scene, output)
 }

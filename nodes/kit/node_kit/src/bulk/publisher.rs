@@ -1,6 +1,6 @@
 //! The sender on a bus.
 
-use super::limits::{LIMIT, POLL_PERIOD, WINDOW};
+use super::limits::{POLL_PERIOD, WINDOW};
 use super::part_topics::beside;
 use super::sender::Sender;
 use crate::bus::{Bus, PublisherId};
@@ -86,7 +86,7 @@ impl BulkPublisher {
     /// Publishes without waiting for readers that lack the previous message: they never receive it. For the last message
     /// of a process.
     pub fn supersede(&mut self, bus: &mut dyn Bus, body: &[u8]) -> Result<(), BusError> {
-        if body.len() <= LIMIT {
+        if body.len() <= bus.longest_sample() {
             bus.publish(self.plain, body)?;
             self.sender.retire();
             return Ok(());

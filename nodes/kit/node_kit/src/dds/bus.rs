@@ -436,6 +436,10 @@ impl Bus for DdsBus {
         self.signals.as_ref().map(Signals::flag)
     }
 
+    fn transport(&self) -> &'static str {
+        "dds"
+    }
+
     fn identity(&self) -> Identity {
         self.gate.identity()
     }

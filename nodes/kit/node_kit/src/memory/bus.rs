@@ -1,6 +1,7 @@
 //! One participant of the network in memory.
 
 use super::state::{MemoryState, Reader, Writer};
+use crate::BULK_LIMIT;
 use crate::admission::{Admission, Participant, Stranger};
 use crate::bus::{Bus, Caller, PublisherId, SubscriptionId, Wake};
 use crate::bus_error::BusError;
@@ -13,6 +14,8 @@ use grainlab_msgs::{Guid, Published, Received, Topic};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 /// A bus of a [`crate::Hub`]. Waiting advances virtual time.
@@ -50,7 +53,8 @@ impl MemoryBus {
     /// True if a sample can be taken now.
     pub fn has_data(&self) -> bool {
         let state = self.state.borrow();
-        self.readers.iter().any(|r| state.readers[*r].has_data(state.now))
+        let now = state.time.now();
+        self.readers.iter().any(|r| state.readers[*r].has_data(now))
     }
 
     /// Present writers of a topic, sorted, of those that count.
@@ -119,7 +123,7 @@ impl Bus for MemoryBus {
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
         let reader = *self.readers.get(subscription.0).ok_or(BusError::Handle("take"))?;
         let mut state = self.state.borrow_mut();
-        let now = state.now;
+        let now = state.time.now();
         while let Some(sample) = state.readers[reader].take(now) {
             let (taken, _) = self.admission.takes(sample.info.writer, &state.readers[reader].topic);
             if taken {
@@ -135,22 +139,32 @@ impl Bus for MemoryBus {
             return Wake::Shutdown;
         }
         let mut state = self.state.borrow_mut();
-        let deadline = state.now + timeout;
+        let deadline = state.time.now() + timeout;
         let due = self.readers.iter().filter_map(|r| state.readers[*r].next_due()).min();
-        match due {
-            Some(due) if due <= deadline => {
-                state.now = state.now.max(due);
-                Wake::Data
-            }
-            _ => {
-                state.now = deadline;
-                Wake::Timeout
-            }
+        if let Some(due) = due.filter(|due| *due <= deadline) {
+            state.time.advance_to(due);
+            return Wake::Data;
         }
+        if let Some(alarm) = state.time.alarm() {
+            alarm.wait(timeout);
+            return if alarm.was_called() { Wake::Called } else { Wake::Timeout };
+        }
+        state.time.advance_to(deadline);
+        Wake::Timeout
     }
 
     fn caller(&self) -> Option<Caller> {
-        None
+        let alarm = self.state.borrow().time.alarm().cloned();
+        alarm.map(|alarm| Caller(Arc::new(move || alarm.call())))
+    }
+
+    fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
+        self.state.borrow().time.alarm().map(|alarm| Arc::clone(&alarm.stop))
+    }
+
+    fn longest_sample(&self) -> usize {
+        // A single thread steps the nodes: none could take parts while another one waits for it.
+        if self.state.borrow().time.alarm().is_some() { usize::MAX } else { BULK_LIMIT }
     }
 
     fn readers(&self, publisher: PublisherId) -> usize {
@@ -244,11 +258,11 @@ impl Bus for MemoryBus {
     }
 
     fn now(&self) -> Duration {
-        self.state.borrow().now
+        self.state.borrow().time.now()
     }
 
     fn wall_nanos(&self) -> u64 {
-        self.state.borrow().wall_nanos()
+        self.state.borrow().time.wall_nanos()
     }
 }
 

@@ -1,14 +1,18 @@
-//! The network that all buses of one test share.
+//! The network that all buses of one process share.
 
+use super::alarm::Alarm;
 use super::bus::MemoryBus;
 use super::faults::Faults;
 use super::state::MemoryState;
+use super::time::Time;
 use crate::admission::Participant;
 use crate::identity::Identity;
 use crate::names::Names;
 use std::cell::RefCell;
 use std::rc::Rc;
-use std::time::Duration;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
 
 /// A network in memory. Cloning gives another handle to the same one.
 #[derive(Clone, Debug)]
@@ -17,9 +21,29 @@ pub struct Hub {
 }
 
 impl Hub {
-    /// An empty network at time zero. The faults follow from the seed.
+    /// An empty network at virtual time zero. The faults follow from the seed.
     pub fn new(seed: u64) -> Self {
-        Self { state: Rc::new(RefCell::new(MemoryState::new(seed))) }
+        Self::with(seed, Time::Virtual { now: Duration::ZERO, wall_offset: 0 })
+    }
+
+    /// An empty network with the clocks of this host. Computations end early once `stop` is true.
+    pub fn real_time(stop: Arc<AtomicBool>) -> Self {
+        Self::with(0, Time::Real { start: Instant::now(), alarm: Arc::new(Alarm::new(stop)) })
+    }
+
+    fn with(seed: u64, time: Time) -> Self {
+        Self { state: Rc::new(RefCell::new(MemoryState::new(seed, time))) }
+    }
+
+    /// Waits in real time until a worker thread calls, the user asks to stop, or `time` has passed, 50 ms at most.
+    pub(crate) fn wait(&self, time: Duration) {
+        let alarm = self.state.borrow().time.alarm().cloned();
+        alarm.inspect(|alarm| alarm.wait(time));
+    }
+
+    /// True once after a call of a worker thread.
+    pub(crate) fn was_called(&self) -> bool {
+        self.state.borrow().time.alarm().is_some_and(|alarm| alarm.was_called())
     }
 
     /// A new participant for one node. Dropping it acts as a clean exit and as a crash.
@@ -39,19 +63,22 @@ impl Hub {
         self.state.borrow_mut().faults.insert(topic.into(), faults);
     }
 
-    /// Virtual time since the start.
+    /// Time since the start.
     pub fn now(&self) -> Duration {
-        self.state.borrow().now
+        self.state.borrow().time.now()
     }
 
     /// Advances virtual time.
     pub fn advance(&self, time: Duration) {
-        self.state.borrow_mut().now += time;
+        let later = self.now() + time;
+        self.state.borrow_mut().time.advance_to(later);
     }
 
-    /// Sets the wall clock forward or back; the monotonic time does not change.
+    /// Sets the wall clock of virtual time forward or back; the monotonic time does not change.
     pub fn set_wall_clock(&self, forward_nanos: i64) {
-        self.state.borrow_mut().wall_offset += forward_nanos;
+        if let Time::Virtual { wall_offset, .. } = &mut self.state.borrow_mut().time {
+            *wall_offset += forward_nanos;
+        }
     }
 
     /// Time of the next arrival of a sample in transit, if any.

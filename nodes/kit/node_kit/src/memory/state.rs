@@ -3,19 +3,15 @@
 use super::faults::{Dice, Faults};
 use crate::admission::Participant;
 use crate::demand::Demand;
+use super::time::Time;
 use crate::sample::{Sample, SampleId, SampleInfo};
 use grainlab_msgs::{Guid, Qos, Topic};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
-/// Virtual time zero as wall-clock time, ns since 1970.
-const EPOCH_NANOS: u64 = 1_700_000_000_000_000_000;
-
 #[derive(Debug)]
 pub(super) struct MemoryState {
-    pub(super) now: Duration,
-    /// Offset by which the wall clock was set, ns.
-    pub(super) wall_offset: i64,
+    pub(super) time: Time,
     dice: Dice,
     pub(super) faults: BTreeMap<String, Faults>,
     pub(super) participants: u32,
@@ -55,10 +51,9 @@ pub(super) fn writer_id(participant: Participant, entity: usize) -> Guid {
 }
 
 impl MemoryState {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(super) fn new(seed: u64, time: Time) -> Self {
         Self {
-            now: Duration::ZERO,
-            wall_offset: 0,
+            time,
             dice: Dice::new(seed),
             faults: BTreeMap::new(),
             participants: 0,
@@ -69,12 +64,9 @@ impl MemoryState {
 
     /// Time of the next arrival of a sample in transit, if any.
     pub(super) fn next_arrival(&self) -> Option<Duration> {
-        let next = |r: &Reader| r.queue.iter().map(|(due, _)| *due).find(|due| *due > self.now);
+        let now = self.time.now();
+        let next = |r: &Reader| r.queue.iter().map(|(due, _)| *due).find(|due| *due > now);
         self.readers.iter().filter(|r| r.alive).filter_map(next).min()
-    }
-
-    pub(super) fn wall_nanos(&self) -> u64 {
-        (EPOCH_NANOS + self.now.as_nanos() as u64).saturating_add_signed(self.wall_offset)
     }
 
     pub(super) fn add_writer(&mut self, participant: Participant, topic: String, of: &Topic) -> usize {
@@ -88,8 +80,9 @@ impl MemoryState {
     pub(super) fn add_reader(&mut self, participant: Participant, topic: String, demand: Demand) -> usize {
         let mut queue = VecDeque::new();
         if demand.reliable {
+            let now = self.time.now();
             for writer in self.writers.iter().filter(|w| w.alive && w.topic == topic) {
-                queue.extend(writer.latched.iter().map(|sample| (self.now, sample.clone())));
+                queue.extend(writer.latched.iter().map(|sample| (now, sample.clone())));
             }
         }
         self.readers.push(Reader { participant, topic, demand, queue, taken: 0, refused: 0, alive: true });
@@ -97,7 +90,7 @@ impl MemoryState {
     }
 
     pub(super) fn publish(&mut self, writer: usize, body: &[u8], about: Option<SampleId>) -> i64 {
-        let (now, received) = (self.now, self.wall_nanos());
+        let (now, received) = (self.time.now(), self.time.wall_nanos());
         let writer = &mut self.writers[writer];
         writer.count += 1;
         let info = SampleInfo {
@@ -107,7 +100,10 @@ impl MemoryState {
             received,
             about,
         };
-        let sample = Sample { body: body.to_vec(), info };
+        let mut body = body.to_vec();
+        // RTPS pads a sample to four bytes: the same bytes are recorded from every bus.
+        body.resize(body.len().next_multiple_of(4), 0);
+        let sample = Sample { body, info };
         if writer.qos.transient_local {
             writer.latched.push_back(sample.clone());
             while writer.latched.len() > writer.qos.depth as usize {
@@ -118,7 +114,7 @@ impl MemoryState {
         for reader in self.readers.iter_mut().filter(|r| r.alive && r.topic == writer.topic) {
             let reliable = reader.demand.reliable && writer.qos.reliable;
             for delay in self.dice.arrivals(&faults, reliable) {
-                reader.deliver(now + delay, sample.clone(), reliable);
+                reader.deliver(now + delay, sample.clone(), reliable, &self.time);
             }
         }
         info.sequence
@@ -127,11 +123,11 @@ impl MemoryState {
 
 impl Reader {
     /// Inserts a sample by its due time; a reliable one not before an earlier one of the same writer.
-    fn deliver(&mut self, due: Duration, mut sample: Sample, reliable: bool) {
+    fn deliver(&mut self, due: Duration, mut sample: Sample, reliable: bool, time: &Time) {
         let writer = sample.info.writer;
         let behind = self.queue.iter().filter(|(_, s)| s.info.writer == writer).map(|(due, _)| *due).max();
         let due = if reliable { behind.map_or(due, |b| b.max(due)) } else { due };
-        sample.info.received = EPOCH_NANOS + due.as_nanos() as u64;
+        sample.info.received = time.wall_at(due);
         let place = self.queue.partition_point(|(other, _)| *other <= due);
         self.queue.insert(place, (due, sample));
         while self.queue.len() > self.demand.depth as usize {

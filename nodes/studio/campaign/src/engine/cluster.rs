@@ -107,7 +107,7 @@ pub(super) fn run(
         if tries > 0 && tries == options.retries {
             open.iter().try_for_each(|n| folder.remove(&campaign.members[*n]))?;
         }
-        let mut process = submit(scheduler, campaign, folder, &open)?;
+        let mut process = submit(scheduler, campaign, folder, &open, options.processes)?;
         let (began, mut done) = (Instant::now(), BTreeSet::new());
         let status = loop {
             let ended = process.try_wait().map_err(Failure::failed)?;
@@ -154,6 +154,7 @@ fn submit(
     campaign: &Campaign,
     folder: &Folder,
     members: &[usize],
+    processes: bool,
 ) -> Result<Child, Failure> {
     let task = scheduler.task;
     let mut script = format!(
@@ -161,7 +162,7 @@ fn submit(
         campaign.name
     );
     for (n, member) in members.iter().map(|m| &campaign.members[*m]).enumerate() {
-        script += &format!("{}) exec {} ;;\n", n + 1, line(&command(campaign, folder, member)?));
+        script += &format!("{}) exec {} ;;\n", n + 1, line(&command(campaign, folder, member, processes)?));
     }
     script += &format!("*) echo \"task {task} is not of this campaign\" >&2; exit 2 ;;\nesac\n");
     let array = Array {

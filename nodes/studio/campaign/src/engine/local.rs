@@ -1,11 +1,13 @@
 //! Members on this machine, some at a time.
 
+use super::limits::{Reached, reached, send};
 use super::options::Options;
 use crate::campaign::Campaign;
 use crate::command::command;
 use crate::folder::{Folder, MemberState};
 use crate::progress::Progress;
 use grainlab_console::{Failure, Signals};
+use grainlab_msgs::Exit;
 use std::collections::VecDeque;
 use std::fs::OpenOptions;
 use std::os::unix::process::CommandExt;
@@ -27,6 +29,8 @@ struct Job {
     task: Task,
     process: Child,
     began: Instant,
+    /// The limit that it reached.
+    reached: Option<Reached>,
 }
 
 /// Runs these members; true if a signal ended the campaign.
@@ -47,26 +51,35 @@ pub(super) fn run(
         if signals.requested() && !told {
             told = true;
             // Each launcher ends its run in order, so that it can be continued.
-            running.iter().for_each(|job| interrupt(&job.process));
+            running.iter().for_each(|job| send(libc::SIGINT, job.process.id()));
         }
         while !signals.requested() && running.len() < jobs {
             let Some(task) = waiting.pop_front() else { break };
             if task.tries > 0 && task.tries >= options.retries {
                 folder.remove(&campaign.members[task.member])?;
             }
-            let process = start(campaign, folder, task.member)?;
-            running.push(Job { task, process, began: Instant::now() });
+            let process = start(campaign, folder, task.member, options.processes)?;
+            running.push(Job { task, process, began: Instant::now(), reached: None });
             progress.running(running.len());
         }
         let mut n = 0;
         while n < running.len() {
-            let ended = running[n].process.try_wait().map_err(Failure::failed)?.is_some();
-            if !ended {
+            let job = &mut running[n];
+            if job.process.try_wait().map_err(Failure::failed)?.is_none() {
+                let reached = reached(options, job.process.id(), job.began);
+                // Once for each signal: a second interrupt would end it without its state.
+                if let Some(new) = reached.filter(|r| job.reached.as_ref().is_none_or(|o| o.signal != r.signal)) {
+                    send(new.signal, job.process.id());
+                    job.reached = Some(new);
+                }
                 n += 1;
                 continue;
             }
-            let Job { task, began, .. } = running.swap_remove(n);
+            let Job { task, began, reached, .. } = running.swap_remove(n);
             let member = &campaign.members[task.member];
+            if let Some(limit) = reached.filter(|_| folder.state(member) != MemberState::Finished) {
+                folder.fail(member, Exit::Failure.code(), &limit.reason)?;
+            }
             match folder.state(member) {
                 MemberState::Finished => progress.finished(&member.name, began.elapsed()),
                 MemberState::Failed(_) => progress.failed(&member.name),
@@ -88,9 +101,9 @@ pub(super) fn run(
 }
 
 /// Starts the run of a member; its output is appended to its log.
-fn start(campaign: &Campaign, folder: &Folder, n: usize) -> Result<Child, Failure> {
+fn start(campaign: &Campaign, folder: &Folder, n: usize, processes: bool) -> Result<Child, Failure> {
     let member = &campaign.members[n];
-    let words = command(campaign, folder, member)?;
+    let words = command(campaign, folder, member, processes)?;
     let path = folder.logs().join(format!("{}.log", member.name));
     let failed = Failure::at(&path);
     let log = OpenOptions::new().create(true).append(true).open(&path).map_err(&failed)?;
@@ -109,11 +122,4 @@ fn start(campaign: &Campaign, folder: &Folder, n: usize) -> Result<Child, Failur
         });
     }
     command.spawn().map_err(failed)
-}
-
-fn interrupt(process: &Child) {
-    if let Ok(pid) = i32::try_from(process.id()) {
-        // SAFETY: kill takes two integers. The process is a child and was not waited for, so the id is still its own.
-        unsafe { libc::kill(pid, libc::SIGINT) };
-    }
 }

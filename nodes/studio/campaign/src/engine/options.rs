@@ -27,7 +27,16 @@ pub struct Options {
     /// Number of further trials of an interrupted member, the last one anew
     #[arg(long, value_name = "N", default_value_t = 2)]
     pub(crate) retries: u16,
-    /// Run members again that failed
+    /// Run members again that failed; those that reached a limit continue
     #[arg(long)]
     pub(crate) redo_failed: bool,
+    /// Run the nodes of a member as processes over DDS: slower, with the same bytes, and visible to other programs
+    #[arg(long)]
+    pub processes: bool,
+    /// Wall-clock time after which a member on this machine counts as failed, s; with a longer one, --redo-failed continues it
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) member_time: Option<u32>,
+    /// Memory above which a member on this machine counts as failed, MiB
+    #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) member_memory: Option<u32>,
 }
