@@ -1,5 +1,6 @@
 //! Serialization: plain CDR (XCDR1) after a 4-byte encapsulation header, with alignment counted from byte 4.
 
+use crate::decode_error::DecodeError;
 use crate::message::Message;
 use byteorder::{BigEndian, LittleEndian};
 
@@ -8,16 +9,6 @@ const BIG_ENDIAN: [u8; 2] = [0, 0];
 const HEADER: usize = 4;
 /// RTPS pads a payload to four bytes.
 const PADDING: usize = 3;
-
-/// Why bytes are not a valid message.
-#[derive(Debug, thiserror::Error)]
-#[error("{type_name}: {problem}")]
-pub struct DecodeError {
-    /// The expected type.
-    pub type_name: &'static str,
-    /// Description of the fault.
-    pub problem: String,
-}
 
 /// A message as CDR, little endian, with the encapsulation header `00 01 00 00`.
 ///
@@ -28,6 +19,25 @@ pub struct DecodeError {
 /// assert_eq!(from_cdr::<Time>(&bytes).unwrap().nanosec, 2);
 /// ```
 pub fn to_cdr<T: Message>(message: &T) -> Vec<u8> {
+    message.encoded()
+}
+
+/// Encoding and decoding of one type: compiled in this crate, for speed, and once.
+macro_rules! codec {
+    () => {
+        fn encoded(&self) -> Vec<u8> {
+            crate::cdr::encode(self)
+        }
+
+        fn decoded(bytes: &[u8]) -> Result<Self, crate::decode_error::DecodeError> {
+            crate::cdr::decode(bytes)
+        }
+    };
+}
+pub(crate) use codec;
+
+/// Encodes a message.
+pub(crate) fn encode<T: Message>(message: &T) -> Vec<u8> {
     let mut bytes = vec![LITTLE_ENDIAN[0], LITTLE_ENDIAN[1], 0, 0];
     // The encoder counts alignment from its start, which is byte 4. It fails on sequences of unknown length
     // and on writers that fail; generated types have no such sequences and a vector never fails.
@@ -39,6 +49,11 @@ pub fn to_cdr<T: Message>(message: &T) -> Vec<u8> {
 /// Decodes a message from `bytes` including the header. Never panics, and does not trust length prefixes:
 /// memory is reserved only as elements arrive.
 pub fn from_cdr<T: Message>(bytes: &[u8]) -> Result<T, DecodeError> {
+    T::decoded(bytes)
+}
+
+/// Decodes a message.
+pub(crate) fn decode<T: Message>(bytes: &[u8]) -> Result<T, DecodeError> {
     let fault = |problem: String| DecodeError { type_name: T::TYPE, problem };
     let length = bytes.len();
     let Some((header, body)) = bytes.split_at_checked(HEADER) else {

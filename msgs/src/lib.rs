@@ -15,6 +15,7 @@
 pub mod boundary;
 mod cdr;
 mod clock;
+mod decode_error;
 mod description;
 mod exit;
 mod fixed_array;
@@ -27,8 +28,9 @@ mod topic;
 pub mod topics;
 mod types;
 
-pub use cdr::{DecodeError, from_cdr, to_cdr};
+pub use cdr::{from_cdr, to_cdr};
 pub use clock::{EPOCH_SECONDS, simulated_seconds, stamp, wall_stamp};
+pub use decode_error::DecodeError;
 pub use description::{FieldDescription, FieldTypeDescription, MessageDescription, TypeDescription};
 pub use exit::Exit;
 pub use generated::grainlab_msgs as msg;

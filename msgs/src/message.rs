@@ -1,5 +1,6 @@
 //! Name, hash and schema of a message type.
 
+use crate::decode_error::DecodeError;
 use serde::{Serialize, de::DeserializeOwned};
 
 /// A ROS 2 message type.
@@ -16,6 +17,12 @@ pub trait Message: Serialize + DeserializeOwned + Send + 'static {
     const FIELDS: &'static [FieldInfo];
     /// Schema text as rosbag2 writes it: the message file, then every message file that it depends on.
     const DEFINITION: &'static str;
+
+    /// The message as CDR; see [`crate::to_cdr`].
+    fn encoded(&self) -> Vec<u8>;
+
+    /// Decodes a message; see [`crate::from_cdr`].
+    fn decoded(bytes: &[u8]) -> Result<Self, DecodeError>;
 }
 
 /// The constants of a [`Message`] as a value: for programs that handle types by name.

@@ -192,5 +192,11 @@ fn the_script_of_a_campaign_has_a_command_for_each_member() {
     assert_eq!(printed.code, Some(0), "{}", printed.stderr);
     let lines: Vec<&str> = printed.stdout.lines().filter(|l| l.contains(" launch ")).collect();
     assert_eq!(lines.len(), 4, "{}", printed.stdout);
-    assert!(lines[3].contains("--seed 4 --set phase.load.friction=0.2 --record results --one-process --no-report --run "), "{}", lines[3]);
+    assert!(
+        lines[3].contains(
+            "--seed 4 --set phase.load.friction=0.2 --record results --one-process --no-report --run "
+        ),
+        "{}",
+        lines[3]
+    );
 }

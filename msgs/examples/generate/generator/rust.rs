@@ -50,6 +50,7 @@ pub(crate) fn message(file: &MessageFile, library: &Library) -> Result<String, S
     let full = format!("{}/msg/{}", file.package, file.name);
     let mut out = format!("// Generated from {} by examples/generate; not edited by hand.\n\n", file.path);
     let mut uses = vec![
+        "crate::cdr::codec".to_owned(),
         "crate::message::{FieldInfo, Message, definition, fields}".to_owned(),
         "serde::{Deserialize, Serialize}".to_owned(),
     ];
@@ -85,7 +86,7 @@ pub(crate) fn message(file: &MessageFile, library: &Library) -> Result<String, S
     if by_hand {
         out += &default_impl(file);
     }
-    out += &format!("\nimpl Message for {} {{\n", file.name);
+    out += &format!("\nimpl Message for {} {{\n    codec!();\n", file.name);
     for (name, value) in [("PACKAGE", &file.package), ("NAME", &file.name), ("TYPE", &full)] {
         out += &format!("    const {name}: &'static str = \"{value}\";\n");
     }

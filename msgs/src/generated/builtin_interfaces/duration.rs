@@ -1,5 +1,6 @@
 // Generated from std/builtin_interfaces/msg/Duration.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,7 @@ pub struct Duration {
 }
 
 impl Message for Duration {
+    codec!();
     const PACKAGE: &'static str = "builtin_interfaces";
     const NAME: &'static str = "Duration";
     const TYPE: &'static str = "builtin_interfaces/msg/Duration";

@@ -1,5 +1,6 @@
 // Generated from std/builtin_interfaces/msg/Time.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,7 @@ pub struct Time {
 }
 
 impl Message for Time {
+    codec!();
     const PACKAGE: &'static str = "builtin_interfaces";
     const NAME: &'static str = "Time";
     const TYPE: &'static str = "builtin_interfaces/msg/Time";

@@ -1,5 +1,6 @@
 // Generated from std/diagnostic_msgs/msg/DiagnosticArray.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::diagnostic_msgs::DiagnosticStatus;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -15,6 +16,7 @@ pub struct DiagnosticArray {
 }
 
 impl Message for DiagnosticArray {
+    codec!();
     const PACKAGE: &'static str = "diagnostic_msgs";
     const NAME: &'static str = "DiagnosticArray";
     const TYPE: &'static str = "diagnostic_msgs/msg/DiagnosticArray";

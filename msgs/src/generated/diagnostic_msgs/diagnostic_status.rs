@@ -1,5 +1,6 @@
 // Generated from std/diagnostic_msgs/msg/DiagnosticStatus.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::diagnostic_msgs::KeyValue;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -34,6 +35,7 @@ impl DiagnosticStatus {
 }
 
 impl Message for DiagnosticStatus {
+    codec!();
     const PACKAGE: &'static str = "diagnostic_msgs";
     const NAME: &'static str = "DiagnosticStatus";
     const TYPE: &'static str = "diagnostic_msgs/msg/DiagnosticStatus";

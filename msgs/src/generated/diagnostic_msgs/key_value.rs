@@ -1,5 +1,6 @@
 // Generated from std/diagnostic_msgs/msg/KeyValue.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,7 @@ pub struct KeyValue {
 }
 
 impl Message for KeyValue {
+    codec!();
     const PACKAGE: &'static str = "diagnostic_msgs";
     const NAME: &'static str = "KeyValue";
     const TYPE: &'static str = "diagnostic_msgs/msg/KeyValue";

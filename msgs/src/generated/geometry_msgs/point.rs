@@ -1,5 +1,6 @@
 // Generated from std/geometry_msgs/msg/Point.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,7 @@ pub struct Point {
 }
 
 impl Message for Point {
+    codec!();
     const PACKAGE: &'static str = "geometry_msgs";
     const NAME: &'static str = "Point";
     const TYPE: &'static str = "geometry_msgs/msg/Point";

@@ -1,5 +1,6 @@
 // Generated from std/geometry_msgs/msg/Pose.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Point;
 use crate::generated::geometry_msgs::Quaternion;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -15,6 +16,7 @@ pub struct Pose {
 }
 
 impl Message for Pose {
+    codec!();
     const PACKAGE: &'static str = "geometry_msgs";
     const NAME: &'static str = "Pose";
     const TYPE: &'static str = "geometry_msgs/msg/Pose";

@@ -1,5 +1,6 @@
 // Generated from std/geometry_msgs/msg/Quaternion.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,7 @@ impl Default for Quaternion {
 }
 
 impl Message for Quaternion {
+    codec!();
     const PACKAGE: &'static str = "geometry_msgs";
     const NAME: &'static str = "Quaternion";
     const TYPE: &'static str = "geometry_msgs/msg/Quaternion";

@@ -1,5 +1,6 @@
 // Generated from std/geometry_msgs/msg/Transform.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Quaternion;
 use crate::generated::geometry_msgs::Vector3;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -15,6 +16,7 @@ pub struct Transform {
 }
 
 impl Message for Transform {
+    codec!();
     const PACKAGE: &'static str = "geometry_msgs";
     const NAME: &'static str = "Transform";
     const TYPE: &'static str = "geometry_msgs/msg/Transform";

@@ -1,5 +1,6 @@
 // Generated from std/geometry_msgs/msg/TransformStamped.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Transform;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -17,6 +18,7 @@ pub struct TransformStamped {
 }
 
 impl Message for TransformStamped {
+    codec!();
     const PACKAGE: &'static str = "geometry_msgs";
     const NAME: &'static str = "TransformStamped";
     const TYPE: &'static str = "geometry_msgs/msg/TransformStamped";

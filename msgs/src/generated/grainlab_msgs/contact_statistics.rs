@@ -1,5 +1,6 @@
 // Generated from msg/ContactStatistics.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::grainlab_msgs::ForceStatistics;
 use crate::generated::grainlab_msgs::MobilisedFriction;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -27,6 +28,7 @@ pub struct ContactStatistics {
 }
 
 impl Message for ContactStatistics {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "ContactStatistics";
     const TYPE: &'static str = "grainlab_msgs/msg/ContactStatistics";

@@ -1,5 +1,6 @@
 // Generated from msg/ElasticStiffness.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +59,7 @@ impl Default for ElasticStiffness {
 }
 
 impl Message for ElasticStiffness {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "ElasticStiffness";
     const TYPE: &'static str = "grainlab_msgs/msg/ElasticStiffness";

@@ -1,5 +1,6 @@
 // Generated from msg/EnergyBalance.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -49,6 +50,7 @@ pub struct EnergyBalance {
 }
 
 impl Message for EnergyBalance {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "EnergyBalance";
     const TYPE: &'static str = "grainlab_msgs/msg/EnergyBalance";

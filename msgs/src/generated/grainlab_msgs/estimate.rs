@@ -1,5 +1,6 @@
 // Generated from msg/Estimate.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -91,6 +92,7 @@ impl Default for Estimate {
 }
 
 impl Message for Estimate {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Estimate";
     const TYPE: &'static str = "grainlab_msgs/msg/Estimate";

@@ -1,5 +1,6 @@
 // Generated from msg/Fabric.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Vector3;
 use crate::generated::grainlab_msgs::OrientationHistogram;
 use crate::generated::grainlab_msgs::PrincipalAxis;
@@ -35,6 +36,7 @@ pub struct Fabric {
 }
 
 impl Message for Fabric {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Fabric";
     const TYPE: &'static str = "grainlab_msgs/msg/Fabric";

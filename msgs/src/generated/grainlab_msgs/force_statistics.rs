@@ -1,5 +1,6 @@
 // Generated from msg/ForceStatistics.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,7 @@ pub struct ForceStatistics {
 }
 
 impl Message for ForceStatistics {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "ForceStatistics";
     const TYPE: &'static str = "grainlab_msgs/msg/ForceStatistics";

@@ -1,5 +1,6 @@
 // Generated from msg/Microstructure.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::grainlab_msgs::Estimate;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -21,6 +22,7 @@ pub struct Microstructure {
 }
 
 impl Message for Microstructure {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Microstructure";
     const TYPE: &'static str = "grainlab_msgs/msg/Microstructure";

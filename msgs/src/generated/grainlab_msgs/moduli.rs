@@ -1,5 +1,6 @@
 // Generated from msg/Moduli.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Vector3;
 use crate::generated::grainlab_msgs::StrainRatios;
 use crate::generated::std_msgs::Header;
@@ -61,6 +62,7 @@ pub struct Moduli {
 }
 
 impl Message for Moduli {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Moduli";
     const TYPE: &'static str = "grainlab_msgs/msg/Moduli";

@@ -1,5 +1,6 @@
 // Generated from msg/OrientationFit.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,7 @@ pub struct OrientationFit {
 }
 
 impl Message for OrientationFit {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "OrientationFit";
     const TYPE: &'static str = "grainlab_msgs/msg/OrientationFit";

@@ -1,5 +1,6 @@
 // Generated from msg/OrientationHistogram.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::grainlab_msgs::OrientationFit;
 use crate::generated::grainlab_msgs::OverlapAnisotropyFit;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -21,6 +22,7 @@ pub struct OrientationHistogram {
 }
 
 impl Message for OrientationHistogram {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "OrientationHistogram";
     const TYPE: &'static str = "grainlab_msgs/msg/OrientationHistogram";

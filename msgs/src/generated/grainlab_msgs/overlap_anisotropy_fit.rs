@@ -1,5 +1,6 @@
 // Generated from msg/OverlapAnisotropyFit.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,7 @@ pub struct OverlapAnisotropyFit {
 }
 
 impl Message for OverlapAnisotropyFit {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "OverlapAnisotropyFit";
     const TYPE: &'static str = "grainlab_msgs/msg/OverlapAnisotropyFit";

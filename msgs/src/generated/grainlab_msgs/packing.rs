@@ -1,5 +1,6 @@
 // Generated from msg/Packing.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -67,6 +68,7 @@ pub struct Packing {
 }
 
 impl Message for Packing {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Packing";
     const TYPE: &'static str = "grainlab_msgs/msg/Packing";

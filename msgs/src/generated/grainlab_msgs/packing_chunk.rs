@@ -1,5 +1,6 @@
 // Generated from msg/PackingChunk.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +27,7 @@ pub struct PackingChunk {
 }
 
 impl Message for PackingChunk {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "PackingChunk";
     const TYPE: &'static str = "grainlab_msgs/msg/PackingChunk";

@@ -1,5 +1,6 @@
 // Generated from msg/PackingCredit.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +21,7 @@ pub struct PackingCredit {
 }
 
 impl Message for PackingCredit {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "PackingCredit";
     const TYPE: &'static str = "grainlab_msgs/msg/PackingCredit";

@@ -1,5 +1,6 @@
 // Generated from msg/PackingReport.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::grainlab_msgs::ContactStatistics;
 use crate::generated::grainlab_msgs::ElasticStiffness;
 use crate::generated::grainlab_msgs::Fabric;
@@ -76,6 +77,7 @@ impl PackingReport {
 }
 
 impl Message for PackingReport {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "PackingReport";
     const TYPE: &'static str = "grainlab_msgs/msg/PackingReport";

@@ -1,5 +1,6 @@
 // Generated from msg/PrincipalAxis.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Vector3;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -20,6 +21,7 @@ pub struct PrincipalAxis {
 }
 
 impl Message for PrincipalAxis {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "PrincipalAxis";
     const TYPE: &'static str = "grainlab_msgs/msg/PrincipalAxis";

@@ -1,5 +1,6 @@
 // Generated from msg/RunState.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -39,6 +40,7 @@ impl RunState {
 }
 
 impl Message for RunState {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "RunState";
     const TYPE: &'static str = "grainlab_msgs/msg/RunState";

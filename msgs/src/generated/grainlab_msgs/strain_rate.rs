@@ -1,5 +1,6 @@
 // Generated from msg/StrainRate.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -18,6 +19,7 @@ pub struct StrainRate {
 }
 
 impl Message for StrainRate {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "StrainRate";
     const TYPE: &'static str = "grainlab_msgs/msg/StrainRate";

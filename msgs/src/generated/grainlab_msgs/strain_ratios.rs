@@ -1,5 +1,6 @@
 // Generated from msg/StrainRatios.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,7 @@ pub struct StrainRatios {
 }
 
 impl Message for StrainRatios {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "StrainRatios";
     const TYPE: &'static str = "grainlab_msgs/msg/StrainRatios";

@@ -1,5 +1,6 @@
 // Generated from msg/Stress.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::grainlab_msgs::SymmetricTensor;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -72,6 +73,7 @@ impl Stress {
 }
 
 impl Message for Stress {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Stress";
     const TYPE: &'static str = "grainlab_msgs/msg/Stress";

@@ -1,5 +1,6 @@
 // Generated from msg/StressDecomposition.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::grainlab_msgs::StressForceFabric;
 use crate::generated::grainlab_msgs::SubNetwork;
 use crate::generated::grainlab_msgs::SymmetricTensor;
@@ -22,6 +23,7 @@ pub struct StressDecomposition {
 }
 
 impl Message for StressDecomposition {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "StressDecomposition";
     const TYPE: &'static str = "grainlab_msgs/msg/StressDecomposition";

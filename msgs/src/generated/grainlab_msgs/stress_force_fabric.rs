@@ -1,5 +1,6 @@
 // Generated from msg/StressForceFabric.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::grainlab_msgs::SymmetricTensor;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -18,6 +19,7 @@ pub struct StressForceFabric {
 }
 
 impl Message for StressForceFabric {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "StressForceFabric";
     const TYPE: &'static str = "grainlab_msgs/msg/StressForceFabric";

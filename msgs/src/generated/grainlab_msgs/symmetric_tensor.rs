@@ -1,5 +1,6 @@
 // Generated from msg/SymmetricTensor.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +22,7 @@ pub struct SymmetricTensor {
 }
 
 impl Message for SymmetricTensor {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "SymmetricTensor";
     const TYPE: &'static str = "grainlab_msgs/msg/SymmetricTensor";

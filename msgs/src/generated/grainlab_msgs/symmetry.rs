@@ -1,5 +1,6 @@
 // Generated from msg/Symmetry.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Vector3;
 use crate::generated::grainlab_msgs::TransverseIsotropy;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -48,6 +49,7 @@ impl Symmetry {
 }
 
 impl Message for Symmetry {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Symmetry";
     const TYPE: &'static str = "grainlab_msgs/msg/Symmetry";

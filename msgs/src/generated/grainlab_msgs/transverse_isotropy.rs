@@ -1,5 +1,6 @@
 // Generated from msg/TransverseIsotropy.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,7 @@ pub struct TransverseIsotropy {
 }
 
 impl Message for TransverseIsotropy {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "TransverseIsotropy";
     const TYPE: &'static str = "grainlab_msgs/msg/TransverseIsotropy";

@@ -1,5 +1,6 @@
 // Generated from msg/WaveSpeed.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Vector3;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,7 @@ impl WaveSpeed {
 }
 
 impl Message for WaveSpeed {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "WaveSpeed";
     const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeed";

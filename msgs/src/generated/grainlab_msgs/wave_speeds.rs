@@ -1,5 +1,6 @@
 // Generated from msg/WaveSpeeds.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Vector3;
 use crate::generated::grainlab_msgs::WaveSpeed;
 use crate::generated::std_msgs::Header;
@@ -56,6 +57,7 @@ pub struct WaveSpeeds {
 }
 
 impl Message for WaveSpeeds {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "WaveSpeeds";
     const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeeds";

@@ -1,5 +1,6 @@
 // Generated from msg/Waveform.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::Vector3;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -37,6 +38,7 @@ pub struct Waveform {
 }
 
 impl Message for Waveform {
+    codec!();
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Waveform";
     const TYPE: &'static str = "grainlab_msgs/msg/Waveform";

@@ -1,5 +1,6 @@
 // Generated from std/rcl_interfaces/msg/Log.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::builtin_interfaces::Time;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,7 @@ impl Log {
 }
 
 impl Message for Log {
+    codec!();
     const PACKAGE: &'static str = "rcl_interfaces";
     const NAME: &'static str = "Log";
     const TYPE: &'static str = "rcl_interfaces/msg/Log";

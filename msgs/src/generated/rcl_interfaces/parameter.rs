@@ -1,5 +1,6 @@
 // Generated from std/rcl_interfaces/msg/Parameter.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::rcl_interfaces::ParameterValue;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,7 @@ pub struct Parameter {
 }
 
 impl Message for Parameter {
+    codec!();
     const PACKAGE: &'static str = "rcl_interfaces";
     const NAME: &'static str = "Parameter";
     const TYPE: &'static str = "rcl_interfaces/msg/Parameter";

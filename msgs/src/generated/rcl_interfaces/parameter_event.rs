@@ -1,5 +1,6 @@
 // Generated from std/rcl_interfaces/msg/ParameterEvent.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::builtin_interfaces::Time;
 use crate::generated::rcl_interfaces::Parameter;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -21,6 +22,7 @@ pub struct ParameterEvent {
 }
 
 impl Message for ParameterEvent {
+    codec!();
     const PACKAGE: &'static str = "rcl_interfaces";
     const NAME: &'static str = "ParameterEvent";
     const TYPE: &'static str = "rcl_interfaces/msg/ParameterEvent";

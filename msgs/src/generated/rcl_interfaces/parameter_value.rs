@@ -1,5 +1,6 @@
 // Generated from std/rcl_interfaces/msg/ParameterValue.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +30,7 @@ pub struct ParameterValue {
 }
 
 impl Message for ParameterValue {
+    codec!();
     const PACKAGE: &'static str = "rcl_interfaces";
     const NAME: &'static str = "ParameterValue";
     const TYPE: &'static str = "rcl_interfaces/msg/ParameterValue";

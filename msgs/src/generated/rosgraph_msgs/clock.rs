@@ -1,5 +1,6 @@
 // Generated from std/rosgraph_msgs/msg/Clock.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::builtin_interfaces::Time;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,7 @@ pub struct Clock {
 }
 
 impl Message for Clock {
+    codec!();
     const PACKAGE: &'static str = "rosgraph_msgs";
     const NAME: &'static str = "Clock";
     const TYPE: &'static str = "rosgraph_msgs/msg/Clock";

@@ -1,5 +1,6 @@
 // Generated from std/sensor_msgs/msg/CompressedImage.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,7 @@ pub struct CompressedImage {
 }
 
 impl Message for CompressedImage {
+    codec!();
     const PACKAGE: &'static str = "sensor_msgs";
     const NAME: &'static str = "CompressedImage";
     const TYPE: &'static str = "sensor_msgs/msg/CompressedImage";

@@ -1,5 +1,6 @@
 // Generated from std/sensor_msgs/msg/PointCloud2.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::sensor_msgs::PointField;
 use crate::generated::std_msgs::Header;
 use crate::message::{FieldInfo, Message, definition, fields};
@@ -29,6 +30,7 @@ pub struct PointCloud2 {
 }
 
 impl Message for PointCloud2 {
+    codec!();
     const PACKAGE: &'static str = "sensor_msgs";
     const NAME: &'static str = "PointCloud2";
     const TYPE: &'static str = "sensor_msgs/msg/PointCloud2";

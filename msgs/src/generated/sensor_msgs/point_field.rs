@@ -1,5 +1,6 @@
 // Generated from std/sensor_msgs/msg/PointField.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +44,7 @@ impl PointField {
 }
 
 impl Message for PointField {
+    codec!();
     const PACKAGE: &'static str = "sensor_msgs";
     const NAME: &'static str = "PointField";
     const TYPE: &'static str = "sensor_msgs/msg/PointField";

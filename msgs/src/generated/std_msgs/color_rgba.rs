@@ -1,5 +1,6 @@
 // Generated from std/std_msgs/msg/ColorRGBA.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +18,7 @@ pub struct ColorRGBA {
 }
 
 impl Message for ColorRGBA {
+    codec!();
     const PACKAGE: &'static str = "std_msgs";
     const NAME: &'static str = "ColorRGBA";
     const TYPE: &'static str = "std_msgs/msg/ColorRGBA";

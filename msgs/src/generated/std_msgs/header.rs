@@ -1,5 +1,6 @@
 // Generated from std/std_msgs/msg/Header.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::builtin_interfaces::Time;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,7 @@ pub struct Header {
 }
 
 impl Message for Header {
+    codec!();
     const PACKAGE: &'static str = "std_msgs";
     const NAME: &'static str = "Header";
     const TYPE: &'static str = "std_msgs/msg/Header";

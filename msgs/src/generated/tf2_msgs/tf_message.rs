@@ -1,5 +1,6 @@
 // Generated from std/tf2_msgs/msg/TFMessage.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::geometry_msgs::TransformStamped;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,7 @@ pub struct TFMessage {
 }
 
 impl Message for TFMessage {
+    codec!();
     const PACKAGE: &'static str = "tf2_msgs";
     const NAME: &'static str = "TFMessage";
     const TYPE: &'static str = "tf2_msgs/msg/TFMessage";

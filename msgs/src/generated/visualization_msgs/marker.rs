@@ -1,5 +1,6 @@
 // Generated from std/visualization_msgs/msg/Marker.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::builtin_interfaces::Duration;
 use crate::generated::geometry_msgs::Point;
 use crate::generated::geometry_msgs::Pose;
@@ -109,6 +110,7 @@ impl Marker {
 }
 
 impl Message for Marker {
+    codec!();
     const PACKAGE: &'static str = "visualization_msgs";
     const NAME: &'static str = "Marker";
     const TYPE: &'static str = "visualization_msgs/msg/Marker";

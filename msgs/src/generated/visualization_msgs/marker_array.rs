@@ -1,5 +1,6 @@
 // Generated from std/visualization_msgs/msg/MarkerArray.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::generated::visualization_msgs::Marker;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,7 @@ pub struct MarkerArray {
 }
 
 impl Message for MarkerArray {
+    codec!();
     const PACKAGE: &'static str = "visualization_msgs";
     const NAME: &'static str = "MarkerArray";
     const TYPE: &'static str = "visualization_msgs/msg/MarkerArray";

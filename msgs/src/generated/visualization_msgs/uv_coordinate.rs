@@ -1,5 +1,6 @@
 // Generated from std/visualization_msgs/msg/UVCoordinate.msg by examples/generate; not edited by hand.
 
+use crate::cdr::codec;
 use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,7 @@ pub struct UVCoordinate {
 }
 
 impl Message for UVCoordinate {
+    codec!();
     const PACKAGE: &'static str = "visualization_msgs";
     const NAME: &'static str = "UVCoordinate";
     const TYPE: &'static str = "visualization_msgs/msg/UVCoordinate";

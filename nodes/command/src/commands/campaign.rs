@@ -78,7 +78,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             let campaign = Campaign::read(file)?;
             let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));
             let (folder, _lock) = begin(&campaign, &root, args.options.processes)?;
-            let exit = args.options.run(&campaign, &folder)?;
+            let exit = run_members(args.options, &campaign, &folder)?;
             if args.options.engine == Engine::Print || exit == Exit::Interrupted {
                 return Ok(exit);
             }
@@ -93,11 +93,22 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 pub(crate) fn begin(campaign: &Campaign, root: &Path, processes: bool) -> Result<(Folder, Lock), Failure> {
     let (folder, lock) = Folder::create(root)?;
     for member in &campaign.members {
-        launch::check(campaign, member, !processes, &folder.run(member))
-            .map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
+        let launch = launch::Args::of_member(campaign, member, processes, folder.run(member));
+        launch.check().map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
     }
     folder.plan(campaign)?;
     Ok((folder, lock))
+}
+
+/// Runs the members that are not finished.
+pub(crate) fn run_members(options: Options, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
+    options.run(campaign, folder, &|member| {
+        let launch = launch::Args::of_member(campaign, member, options.processes, folder.run(member));
+        launch::run(&launch).unwrap_or_else(|failure| {
+            grainlab_console::say!("grainlab: {failure}");
+            failure.exit
+        })
+    })
 }
 
 fn status(place: &Place) -> Result<Exit, Failure> {

@@ -151,27 +151,31 @@ fn whole_path(word: &str, file: Option<&Path>) -> String {
     whole.map_or_else(|| word.to_owned(), |path| path.to_string_lossy().into_owned())
 }
 
-/// Refuses a member of a campaign that could not begin, or whose directory has another run.
 #[cfg(feature = "studio")]
-pub(crate) fn check(
-    campaign: &Campaign,
-    member: &Member,
-    one_process: bool,
-    directory: &Path,
-) -> Result<(), Failure> {
-    let args = Args {
-        words: std::iter::once(&campaign.launch).chain(&campaign.arguments).cloned().collect(),
-        scene: Some(member.scene.clone()),
-        set: member.sets(),
-        seed: Some(member.seed),
-        record: if campaign.record_all { Record::All } else { Record::Results },
-        one_process,
-        ..Args::default()
-    };
-    let (scene, order) = planned(&args)?;
-    match grainlab_recordings::run_state(directory) {
-        grainlab_recordings::RunState::Absent => Ok(()),
-        _ => directory::refuse_another(directory, &scene, &order),
+impl Args {
+    /// The launch of a member of a campaign, in this directory.
+    pub(crate) fn of_member(campaign: &Campaign, member: &Member, processes: bool, run: PathBuf) -> Self {
+        Self {
+            words: std::iter::once(&campaign.launch).chain(&campaign.arguments).cloned().collect(),
+            scene: Some(member.scene.clone()),
+            set: member.sets(),
+            seed: Some(member.seed),
+            run: Some(run),
+            record: if campaign.record_all { Record::All } else { Record::Results },
+            no_report: !campaign.report,
+            one_process: !processes,
+            ..Self::default()
+        }
+    }
+
+    /// Refuses a launch that could not begin, or whose directory has another run.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        let (scene, order) = planned(self)?;
+        let directory = self.run.as_deref().unwrap_or(Path::new(RUNS));
+        match grainlab_recordings::run_state(directory) {
+            grainlab_recordings::RunState::Absent => Ok(()),
+            _ => directory::refuse_another(directory, &scene, &order),
+        }
     }
 }
 

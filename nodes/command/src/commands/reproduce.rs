@@ -64,7 +64,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let root =
         args.out.clone().unwrap_or_else(|| PathBuf::from(format!("recordings/campaigns/paper-{grains}")));
     let (folder, _lock) = campaign::begin(&campaign, &root, args.options.processes)?;
-    let exit = args.options.run(&campaign, &folder)?;
+    let exit = campaign::run_members(args.options, &campaign, &folder)?;
     if args.options.engine == Engine::Print || exit == Exit::Interrupted {
         return Ok(exit);
     }

@@ -47,8 +47,7 @@ impl Component {
     }
 
     /// Steps the node if it is due; false if it is not, or has ended.
-    fn step(&mut self) -> bool {
-        let now = self.bus.now();
+    fn step(&mut self, now: Duration) -> bool {
         if self.exit.is_some() || (self.due > now && !self.bus.has_data()) {
             return false;
         }
@@ -121,9 +120,9 @@ pub fn step_all(hub: &Hub, components: &mut [Component]) {
         components.iter_mut().for_each(|c| c.due = Duration::ZERO);
     }
     // Every node is stepped, also after the first that was.
-    let stepped = components.iter_mut().fold(false, |any, component| component.step() | any);
+    let now = hub.now();
+    let stepped = components.iter_mut().fold(false, |any, component| component.step(now) | any);
     if !stepped {
-        let now = hub.now();
         let due = components.iter().filter(|c| c.exit.is_none()).map(|c| c.due).min();
         hub.wait(due.map_or(Duration::MAX, |due| due.saturating_sub(now)));
     }

@@ -44,7 +44,11 @@ pub(crate) struct Housekeeping {
 }
 
 impl Housekeeping {
-    pub(crate) fn new(bus: &mut dyn Bus, node_name: &str, logger: Option<&'static Logger>) -> Result<Self, BusError> {
+    pub(crate) fn new(
+        bus: &mut dyn Bus,
+        node_name: &str,
+        logger: Option<&'static Logger>,
+    ) -> Result<Self, BusError> {
         let diagnostics = Publisher::advertise(bus, &topics::DIAGNOSTICS)?;
         let diagnostics_writer = bus.published().last().map(|p| p.writer);
         Ok(Self {

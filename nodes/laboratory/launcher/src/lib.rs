@@ -33,9 +33,9 @@ mod time_limit;
 mod watch;
 
 pub use child::Run;
+pub use followed::{Outline, Received};
 pub use nodes::{NodeKind, Viewer};
+pub use one_process::{check_one_process, run_in_one_process};
 pub use plan::{BUILT_IN, LaunchFile, NodePlan};
 pub use recorded_speeds::RecordedSpeeds;
-pub use followed::{Outline, Received};
-pub use one_process::{check_one_process, run_in_one_process};
 pub use supervisor::{Supervised, Supervisor};

@@ -89,8 +89,7 @@ impl OneProcess {
             let Some((node, names, parameters)) = plan.parsed().map_err(Failure::usage)? else { continue };
             let (ros, _) = RosArgs::parse(&plan.arguments[2..]).map_err(Failure::usage)?;
             let name = names.fully_qualified();
-            let logger =
-                Logger::of_node(&name, &ros, open_log(logs, &plan.name).map_err(Failure::at(logs))?);
+            let logger = Logger::of_node(&name, &ros, open_log(logs, &plan.name).map_err(Failure::at(logs))?);
             let bus = self.hub.bus_as(names, Identity::member_of(run, child.member));
             let slot = ResultSlot::default();
             child.last_pid = std::process::id();

@@ -1,6 +1,7 @@
 //! Engines that run the members of a campaign.
 
 mod cluster;
+mod copied;
 mod limits;
 mod local;
 mod options;
@@ -15,12 +16,16 @@ use crate::progress::Progress;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::Exit;
 
+/// Begins, continues or keeps the run of a member, in this process.
+pub(crate) type Launch<'a> = &'a dyn Fn(&Member) -> Exit;
+
 impl Options {
-    /// Runs the members that are not finished; the caller holds the lock of the folder. The exit is 0 if all are.
+    /// Runs the members that are not finished, those on this machine by `launch`; the caller holds the lock of the folder. The exit
+    /// is 0 if all are.
     ///
     /// # Errors
     /// A folder in use, a scheduler that cannot be reached, a folder that cannot be written.
-    pub fn run(self, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
+    pub fn run(self, campaign: &Campaign, folder: &Folder, launch: Launch) -> Result<Exit, Failure> {
         if self.engine == Engine::Print {
             print_script(campaign, folder, self)?;
             return Ok(Exit::Done);
@@ -41,7 +46,7 @@ impl Options {
             _ if pending.is_empty() => false,
             Engine::Slurm => cluster::run(&cluster::SLURM, campaign, folder, self, &mut progress)?,
             Engine::Hq => cluster::run(&cluster::HYPER_QUEUE, campaign, folder, self, &mut progress)?,
-            _ => local::run(campaign, folder, self, pending, &mut progress)?,
+            _ => local::run(campaign, folder, self, launch, pending, &mut progress)?,
         };
         progress.end();
         let exit = report(campaign, folder);

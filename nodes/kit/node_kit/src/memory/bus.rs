@@ -53,8 +53,8 @@ impl MemoryBus {
     /// True if a sample can be taken now.
     pub fn has_data(&self) -> bool {
         let state = self.state.borrow();
-        let now = state.time.now();
-        self.readers.iter().any(|r| state.readers[*r].has_data(now))
+        let horizon = state.time.horizon();
+        self.readers.iter().any(|r| state.readers[*r].has_data(horizon))
     }
 
     /// Present writers of a topic, sorted, of those that count.
@@ -123,8 +123,8 @@ impl Bus for MemoryBus {
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
         let reader = *self.readers.get(subscription.0).ok_or(BusError::Handle("take"))?;
         let mut state = self.state.borrow_mut();
-        let now = state.time.now();
-        while let Some(sample) = state.readers[reader].take(now) {
+        let horizon = state.time.horizon();
+        while let Some(sample) = state.readers[reader].take(horizon) {
             let (taken, _) = self.admission.takes(sample.info.writer, &state.readers[reader].topic);
             if taken {
                 state.readers[reader].taken += 1;

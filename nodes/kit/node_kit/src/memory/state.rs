@@ -1,9 +1,9 @@
 //! The state of a network in memory: time, writers and readers.
 
 use super::faults::{Dice, Faults};
+use super::time::Time;
 use crate::admission::Participant;
 use crate::demand::Demand;
-use super::time::Time;
 use crate::sample::{Sample, SampleId, SampleInfo};
 use grainlab_msgs::{Guid, Qos, Topic};
 use std::collections::{BTreeMap, VecDeque};
@@ -90,7 +90,7 @@ impl MemoryState {
     }
 
     pub(super) fn publish(&mut self, writer: usize, body: &[u8], about: Option<SampleId>) -> i64 {
-        let (now, received) = (self.time.now(), self.time.wall_nanos());
+        let (now, received) = (self.time.sent(), self.time.wall_nanos());
         let writer = &mut self.writers[writer];
         writer.count += 1;
         let info = SampleInfo {
@@ -127,7 +127,9 @@ impl Reader {
         let writer = sample.info.writer;
         let behind = self.queue.iter().filter(|(_, s)| s.info.writer == writer).map(|(due, _)| *due).max();
         let due = if reliable { behind.map_or(due, |b| b.max(due)) } else { due };
-        sample.info.received = time.wall_at(due);
+        if let Some(received) = time.wall_at(due) {
+            sample.info.received = received;
+        }
         let place = self.queue.partition_point(|(other, _)| *other <= due);
         self.queue.insert(place, (due, sample));
         while self.queue.len() > self.demand.depth as usize {

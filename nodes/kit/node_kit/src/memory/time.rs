@@ -29,6 +29,22 @@ impl Time {
         }
     }
 
+    /// Time from which a sample is in transit; in real time it arrives at once.
+    pub(super) fn sent(&self) -> Duration {
+        match self {
+            Self::Virtual { now, .. } => *now,
+            Self::Real { .. } => Duration::ZERO,
+        }
+    }
+
+    /// Samples due until then have arrived: in real time all, which saves a look at the clock for each.
+    pub(super) fn horizon(&self) -> Duration {
+        match self {
+            Self::Virtual { now, .. } => *now,
+            Self::Real { .. } => Duration::MAX,
+        }
+    }
+
     /// Advances virtual time; real time does so by itself.
     pub(super) fn advance_to(&mut self, time: Duration) {
         if let Self::Virtual { now, .. } = self {
@@ -46,12 +62,9 @@ impl Time {
         }
     }
 
-    /// Stamp of an arrival at `due`, ns since 1970.
-    pub(super) fn wall_at(&self, due: Duration) -> u64 {
-        match self {
-            Self::Virtual { .. } => EPOCH_NANOS + due.as_nanos() as u64,
-            Self::Real { .. } => self.wall_nanos(),
-        }
+    /// Stamp of an arrival at `due`, ns since 1970; in real time that of the sample.
+    pub(super) fn wall_at(&self, due: Duration) -> Option<u64> {
+        matches!(self, Self::Virtual { .. }).then_some(EPOCH_NANOS + due.as_nanos() as u64)
     }
 
     pub(super) fn alarm(&self) -> Option<&Arc<Alarm>> {

@@ -1,17 +1,17 @@
 //! Members on this machine, some at a time.
 
+use super::Launch;
+use super::copied::Copied;
 use super::limits::{Reached, reached, send};
 use super::options::Options;
 use crate::campaign::Campaign;
-use crate::command::command;
 use crate::folder::{Folder, MemberState};
+use crate::member::Member;
 use crate::progress::Progress;
 use grainlab_console::{Failure, Signals};
 use grainlab_msgs::Exit;
 use std::collections::VecDeque;
 use std::fs::OpenOptions;
-use std::os::unix::process::CommandExt;
-use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Period of the checks of the processes.
@@ -27,7 +27,7 @@ struct Task {
 /// A running member.
 struct Job {
     task: Task,
-    process: Child,
+    process: Copied,
     began: Instant,
     /// The limit that it reached.
     reached: Option<Reached>,
@@ -38,6 +38,7 @@ pub(super) fn run(
     campaign: &Campaign,
     folder: &Folder,
     options: Options,
+    launch: Launch,
     pending: Vec<usize>,
     progress: &mut Progress,
 ) -> Result<bool, Failure> {
@@ -58,17 +59,19 @@ pub(super) fn run(
             if task.tries > 0 && task.tries >= options.retries {
                 folder.remove(&campaign.members[task.member])?;
             }
-            let process = start(campaign, folder, task.member, options.processes)?;
+            let process = start(folder, &campaign.members[task.member], launch)?;
             running.push(Job { task, process, began: Instant::now(), reached: None });
             progress.running(running.len());
         }
         let mut n = 0;
         while n < running.len() {
             let job = &mut running[n];
-            if job.process.try_wait().map_err(Failure::failed)?.is_none() {
+            if !job.process.has_ended().map_err(Failure::failed)? {
                 let reached = reached(options, job.process.id(), job.began);
                 // Once for each signal: a second interrupt would end it without its state.
-                if let Some(new) = reached.filter(|r| job.reached.as_ref().is_none_or(|o| o.signal != r.signal)) {
+                if let Some(new) =
+                    reached.filter(|r| job.reached.as_ref().is_none_or(|o| o.signal != r.signal))
+                {
                     send(new.signal, job.process.id());
                     job.reached = Some(new);
                 }
@@ -101,25 +104,14 @@ pub(super) fn run(
 }
 
 /// Starts the run of a member; its output is appended to its log.
-fn start(campaign: &Campaign, folder: &Folder, n: usize, processes: bool) -> Result<Child, Failure> {
-    let member = &campaign.members[n];
-    let words = command(campaign, folder, member, processes)?;
+fn start(folder: &Folder, member: &Member, launch: Launch) -> Result<Copied, Failure> {
     let path = folder.logs().join(format!("{}.log", member.name));
     let failed = Failure::at(&path);
     let log = OpenOptions::new().create(true).append(true).open(&path).map_err(&failed)?;
-    let mut command = Command::new(&words[0]);
-    command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(&failed)?).stderr(log);
-    // Each run finds a free domain.
-    command.env_remove("ROS_DOMAIN_ID");
-    // A group of its own: Ctrl-C reaches the campaign, which passes it on.
-    command.process_group(0);
-    // SAFETY: prctl takes integers, accesses no memory, and may be called between fork and exec.
-    unsafe {
-        command.pre_exec(|| {
-            // A campaign that is killed ends its runs.
-            libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM);
-            Ok(())
-        });
-    }
-    command.spawn().map_err(failed)
+    Copied::start(&log, || {
+        // SAFETY: the copy has one thread. Each run finds a free domain.
+        unsafe { std::env::remove_var("ROS_DOMAIN_ID") };
+        launch(member).code()
+    })
+    .map_err(failed)
 }
