@@ -28,7 +28,8 @@ interrupted ones; the results are the same to the last byte.
 
 Examples:
   grainlab campaign friction.toml
-  grainlab campaign friction.toml --engine slurm
+  grainlab campaign friction.toml --engine slurm --partition short --time 2:00:00 --chunk 10 --sbatch-option=--mem=2G
+  grainlab campaign friction.toml --engine print --time 2:00:00 > job.sh    # for sbatch; afterwards the first line gathers
   grainlab campaign status recordings/campaigns/friction
   grainlab campaign gather recordings/campaigns/friction";
 
@@ -76,7 +77,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         (None, Some(file)) => {
             let campaign = Campaign::read(file)?;
             let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));
-            let (folder, _lock) = begin(&campaign, &root)?;
+            let (folder, _lock) = begin(&campaign, &root, &args.options)?;
             let exit = args.options.run(&campaign, &folder)?;
             if args.options.engine == Engine::Print || exit == Exit::Interrupted {
                 return Ok(exit);
@@ -87,17 +88,23 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
 }
 
-/// The folder of a campaign, locked. Reads every scene and compares it with the runs that are there, so that a fault ends the
-/// campaign before it begins.
-pub(crate) fn begin(campaign: &Campaign, root: &Path) -> Result<(Folder, Lock), Failure> {
-    let (folder, lock) = Folder::create(root)?;
+/// The folder of a campaign, locked; without a lock it was only named, and nothing written. Reads every scene and compares it with
+/// the runs that are there, so that a fault ends the campaign before it begins.
+pub(crate) fn begin(
+    campaign: &Campaign,
+    root: &Path,
+    options: &Options,
+) -> Result<(Folder, Option<Lock>), Failure> {
+    options.check()?;
+    let lock = if options.engine == Engine::Print { None } else { Some(Folder::create(root)?.1) };
+    let folder = Folder::at(root)?;
     let words: Vec<String> = std::iter::once(&campaign.launch).chain(&campaign.arguments).cloned().collect();
     for member in &campaign.members {
         let of = (member.scene.as_str(), member.sets(), member.seed);
         launch::check(words.clone(), of, &folder.run(member))
             .map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
     }
-    folder.plan(campaign)?;
+    lock.iter().try_for_each(|_| folder.plan(campaign))?;
     Ok((folder, lock))
 }
 

@@ -63,7 +63,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let campaign = Campaign::parse(&campaign_text(size), Path::new(""))?;
     let root =
         args.out.clone().unwrap_or_else(|| PathBuf::from(format!("recordings/campaigns/paper-{grains}")));
-    let (folder, _lock) = campaign::begin(&campaign, &root)?;
+    let (folder, _lock) = campaign::begin(&campaign, &root, &args.options)?;
     let exit = args.options.run(&campaign, &folder)?;
     if args.options.engine == Engine::Print || exit == Exit::Interrupted {
         return Ok(exit);
