@@ -11,9 +11,7 @@ use std::slice::Chunks;
 pub(super) fn tasks(members: &[usize], wished: Option<u32>, most: usize) -> Chunks<'_, usize> {
     let (wished, needed) = (wished.map_or(1, |n| n as usize), members.len().div_ceil(most));
     if needed > wished {
-        say!(
-            "grainlab: an array has at most {most} tasks here: each runs {needed} members, one after another"
-        );
+        say!("grainlab: an array has at most {most} tasks here: each runs {needed} members in turn");
     }
     members.chunks(wished.max(needed))
 }

@@ -40,11 +40,8 @@ fn ask(action: &str, campaign: &Campaign, folder: &Folder) -> Result<String, Fai
         return Ok(String::from_utf8_lossy(&stdout).trim().to_owned());
     }
     let said = String::from_utf8_lossy(&stderr);
-    Err(Failure::failed(format!(
-        "{}: an array of this campaign may still be queued or running: try again when squeue answers, or submit another one \
-         by --submit-again",
-        said.trim()
-    )))
+    let advice = "try again when squeue answers, or submit another one by --submit-again";
+    Err(Failure::failed(format!("{}: an array may still be queued or running: {advice}", said.trim())))
 }
 
 fn is_on_path(program: &str) -> bool {
@@ -78,8 +75,7 @@ pub(super) fn run(
             job if job.is_empty() => submission(campaign, folder, options, &open)?,
             job => {
                 say!(
-                    "grainlab: job {job} of this campaign is queued or running: nothing is submitted before it ends \
-                     (`scancel {job}` ends it)"
+                    "grainlab: job {job} of this campaign is queued or running: nothing is submitted before it ends"
                 );
                 slurm("wait", campaign, folder)
             }
