@@ -176,6 +176,49 @@ fn a_campaign_through_slurm_gives_the_same_bytes() {
 }
 
 #[test]
+fn a_campaign_whose_array_is_queued_is_not_submitted_again() {
+    let lab = Lab::new();
+    let file = tiny(&lab, "[1, 2, 3]", "").to_string_lossy().into_owned();
+    let fakes = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/fake_slurm");
+    let path = format!("{fakes}:{}", std::env::var("PATH").unwrap());
+    let words = ["campaign", &file, "--out", "c", "--engine", "slurm", "--time=9"];
+    let start = || Process::start(lab.command(&words).env("PATH", &path));
+    let [submitted, queued, down] = ["submitted", "queued", "down"].map(|name| lab.folder().join(name));
+    let first = start();
+    until("an array is submitted", || queued.exists());
+    first.signal(libc::SIGINT);
+    let first = first.ended(LIMIT);
+    assert_eq!(first.code, Some(130), "{}", first.stderr);
+    assert!(first.stderr.contains("at most 2 tasks here: each runs 2 members"), "{}", first.stderr);
+    std::fs::write(&down, "").unwrap();
+    let refused = start().ended(LIMIT);
+    assert_eq!(refused.code, Some(1), "{}", refused.stderr);
+    assert!(refused.stderr.contains("may still be queued or running"), "{}", refused.stderr);
+    std::fs::remove_file(down).unwrap();
+    let second = start();
+    for task in ["1", "2"] {
+        let mut sh = Command::new("sh");
+        assert!(
+            sh.arg(lab.folder().join("c/tasks.sh"))
+                .env("SLURM_ARRAY_TASK_ID", task)
+                .status()
+                .unwrap()
+                .success()
+        );
+    }
+    std::fs::remove_file(queued).unwrap();
+    let second = second.ended(LIMIT);
+    assert_eq!(second.code, Some(0), "{}", second.stderr);
+    assert!(second.stderr.contains("job 7 of this campaign is queued"), "{}", second.stderr);
+    let submitted = std::fs::read_to_string(submitted).unwrap();
+    assert!(
+        submitted
+            .starts_with("--parsable --array=1-2 --job-name=grainlab-tiny --ntasks=1 --time=9 --output=")
+    );
+    assert_eq!(submitted.lines().count(), 1, "{submitted}");
+}
+
+#[test]
 fn a_campaign_through_hyperqueue_gives_the_same_bytes() {
     let Some(python) = python::with("hyperqueue") else { return };
     let lab = Lab::new();
@@ -199,4 +242,5 @@ fn the_script_of_a_campaign_has_a_command_for_each_member() {
         "{}",
         lines[3]
     );
+    assert!(!lab.folder().join("c").exists());
 }

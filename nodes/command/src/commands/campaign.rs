@@ -29,7 +29,8 @@ interrupted ones; the results are the same to the last byte.
 
 Examples:
   grainlab campaign friction.toml
-  grainlab campaign friction.toml --engine slurm
+  grainlab campaign friction.toml --engine slurm --partition short --time 2:00:00 --chunk 10 --sbatch-option=--mem=2G
+  grainlab campaign friction.toml --engine print --time 2:00:00 > job.sh    # for sbatch; afterwards the first line gathers
   grainlab campaign status recordings/campaigns/friction
   grainlab campaign gather recordings/campaigns/friction";
 
@@ -75,10 +76,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             gather::run(&campaign, &folder)
         }
         (None, Some(file)) => {
-            let campaign = Campaign::read(file)?;
+            let mut campaign = Campaign::read(file)?;
             let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));
-            let (folder, _lock) = begin(&campaign, &root, args.options.processes)?;
-            let exit = run_members(args.options, &campaign, &folder)?;
+            campaign.processes = args.options.processes;
+            let (folder, _lock) = begin(&campaign, &root, &args.options)?;
+            let exit = run_members(&args.options, &campaign, &folder)?;
             if args.options.engine == Engine::Print || exit == Exit::Interrupted {
                 return Ok(exit);
             }
@@ -88,22 +90,28 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
 }
 
-/// The folder of a campaign, locked. Reads every scene and compares it with the runs that are there, so that a fault ends the
-/// campaign before it begins.
-pub(crate) fn begin(campaign: &Campaign, root: &Path, processes: bool) -> Result<(Folder, Lock), Failure> {
-    let (folder, lock) = Folder::create(root)?;
+/// The folder of a campaign, locked; without a lock it was only named, and nothing written. Reads every scene and compares it with
+/// the runs that are there, so that a fault ends the campaign before it begins.
+pub(crate) fn begin(
+    campaign: &Campaign,
+    root: &Path,
+    options: &Options,
+) -> Result<(Folder, Option<Lock>), Failure> {
+    options.check()?;
+    let lock = if options.engine == Engine::Print { None } else { Some(Folder::create(root)?.1) };
+    let folder = Folder::at(root)?;
     for member in &campaign.members {
-        let launch = launch::Args::of_member(campaign, member, processes, folder.run(member));
+        let launch = launch::Args::of_member(campaign, member, folder.run(member));
         launch.check().map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
     }
-    folder.plan(campaign)?;
+    lock.iter().try_for_each(|_| folder.plan(campaign))?;
     Ok((folder, lock))
 }
 
 /// Runs the members that are not finished.
-pub(crate) fn run_members(options: Options, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
+pub(crate) fn run_members(options: &Options, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
     options.run(campaign, folder, &|member| {
-        let launch = launch::Args::of_member(campaign, member, options.processes, folder.run(member));
+        let launch = launch::Args::of_member(campaign, member, folder.run(member));
         launch::run(&launch).unwrap_or_else(|failure| {
             grainlab_console::say!("grainlab: {failure}");
             failure.exit

@@ -154,7 +154,7 @@ fn whole_path(word: &str, file: Option<&Path>) -> String {
 #[cfg(feature = "studio")]
 impl Args {
     /// The launch of a member of a campaign, in this directory.
-    pub(crate) fn of_member(campaign: &Campaign, member: &Member, processes: bool, run: PathBuf) -> Self {
+    pub(crate) fn of_member(campaign: &Campaign, member: &Member, run: PathBuf) -> Self {
         Self {
             words: std::iter::once(&campaign.launch).chain(&campaign.arguments).cloned().collect(),
             scene: Some(member.scene.clone()),
@@ -163,7 +163,7 @@ impl Args {
             run: Some(run),
             record: if campaign.record_all { Record::All } else { Record::Results },
             no_report: !campaign.report,
-            one_process: !processes,
+            one_process: !campaign.processes,
             ..Self::default()
         }
     }

@@ -60,11 +60,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let grains = args.grains.unwrap_or(if args.quick { QUICK } else { 2000 });
     let size = Size { grains, seeds: args.seeds, first_seed: args.first_seed };
-    let campaign = Campaign::parse(&campaign_text(size), Path::new(""))?;
+    let mut campaign = Campaign::parse(&campaign_text(size), Path::new(""))?;
     let root =
         args.out.clone().unwrap_or_else(|| PathBuf::from(format!("recordings/campaigns/paper-{grains}")));
-    let (folder, _lock) = campaign::begin(&campaign, &root, args.options.processes)?;
-    let exit = campaign::run_members(args.options, &campaign, &folder)?;
+    campaign.processes = args.options.processes;
+    let (folder, _lock) = campaign::begin(&campaign, &root, &args.options)?;
+    let exit = campaign::run_members(&args.options, &campaign, &folder)?;
     if args.options.engine == Engine::Print || exit == Exit::Interrupted {
         return Ok(exit);
     }

@@ -26,6 +26,9 @@ pub struct Campaign {
     pub launch: String,
     /// Values for its arguments, as `NAME:=VALUE`.
     pub arguments: Vec<String>,
+    /// The nodes of a run are processes.
+    #[serde(default)]
+    pub processes: bool,
     /// Every message is recorded, not only packings and results.
     #[serde(default)]
     pub record_all: bool,
@@ -99,6 +102,7 @@ impl Campaign {
                 .iter()
                 .map(|(name, value)| format!("{name}:={}", plain(value)))
                 .collect(),
+            processes: false,
             record_all: file.record == Record::All,
             report: file.report,
             members,

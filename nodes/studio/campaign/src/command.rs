@@ -6,13 +6,8 @@ use crate::member::Member;
 use grainlab_console::Failure;
 use grainlab_results::brief::quoted;
 
-/// Program and arguments that begin, continue or keep the run of a member, in one process or as `processes`.
-pub(crate) fn command(
-    campaign: &Campaign,
-    folder: &Folder,
-    member: &Member,
-    processes: bool,
-) -> Result<Vec<String>, Failure> {
+/// Program and arguments that begin, continue or keep the run of a member, in one process or several.
+pub(crate) fn command(campaign: &Campaign, folder: &Folder, member: &Member) -> Result<Vec<String>, Failure> {
     let program = std::env::current_exe().map_err(|e| Failure::failed(format!("own path: {e}")))?;
     let mut words = vec![program.to_string_lossy().into_owned(), "launch".into(), campaign.launch.clone()];
     words.extend(campaign.arguments.iter().cloned());
@@ -22,7 +17,7 @@ pub(crate) fn command(
     }
     let record = if campaign.record_all { "all" } else { "results" };
     words.extend(["--record".into(), record.into()]);
-    let flags = [("--one-process", !processes), ("--no-report", !campaign.report)];
+    let flags = [("--one-process", !campaign.processes), ("--no-report", !campaign.report)];
     words.extend(flags.into_iter().filter(|(_, given)| *given).map(|(flag, _)| flag.to_owned()));
     words.extend(["--run".into(), folder.run(member).to_string_lossy().into_owned()]);
     Ok(words)
@@ -45,7 +40,7 @@ mod tests {
             "name = 'x'\nscenes = ['s1']\nseeds = [7]\nset = { description = \"it's\" }\nlaunch = 'acoustic'";
         let campaign = Campaign::parse(text, Path::new("")).unwrap();
         let folder = Folder::create(root.path()).unwrap().0;
-        let line = line(&command(&campaign, &folder, &campaign.members[0], false).unwrap());
+        let line = line(&command(&campaign, &folder, &campaign.members[0]).unwrap());
         let end = format!(
             " launch acoustic --scene s1 --seed 7 --set 'description=it'\\''s' --record results --one-process --no-report --run {}/members/s1-7",
             folder.root().display()

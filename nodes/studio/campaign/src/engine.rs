@@ -1,5 +1,6 @@
 //! Engines that run the members of a campaign.
 
+mod array;
 mod cluster;
 mod copied;
 mod limits;
@@ -25,9 +26,9 @@ impl Options {
     ///
     /// # Errors
     /// A folder in use, a scheduler that cannot be reached, a folder that cannot be written.
-    pub fn run(self, campaign: &Campaign, folder: &Folder, launch: Launch) -> Result<Exit, Failure> {
+    pub fn run(&self, campaign: &Campaign, folder: &Folder, launch: Launch) -> Result<Exit, Failure> {
         if self.engine == Engine::Print {
-            print_script(campaign, folder, self)?;
+            grainlab_console::print(&self.script(campaign, folder)?)?;
             return Ok(Exit::Done);
         }
         if self.redo_failed {
@@ -44,13 +45,30 @@ impl Options {
         let mut progress = Progress::new(campaign.members.len(), finished, failed);
         let interrupted = match self.engine {
             _ if pending.is_empty() => false,
-            Engine::Slurm => cluster::run(&cluster::SLURM, campaign, folder, self, &mut progress)?,
-            Engine::Hq => cluster::run(&cluster::HYPER_QUEUE, campaign, folder, self, &mut progress)?,
+            Engine::Slurm | Engine::Hq => cluster::run(campaign, folder, self, &mut progress)?,
             _ => local::run(campaign, folder, self, launch, pending, &mut progress)?,
         };
         progress.end();
         let exit = report(campaign, folder);
         Ok(if interrupted { Exit::Interrupted } else { exit })
+    }
+
+    /// The commands of the members as a script: for sbatch, if an option of it was given.
+    fn script(&self, campaign: &Campaign, folder: &Folder) -> Result<String, Failure> {
+        if self.chunk.is_some() || !self.sbatch().is_empty() {
+            return cluster::script(campaign, folder, self);
+        }
+        let mut script = format!(
+            "#!/bin/sh\n# Campaign {}: {}, in any order. Each line can be repeated: a finished run is left as it is, an\n\
+             # interrupted one is continued.\nunset ROS_DOMAIN_ID\n",
+            campaign.name,
+            grainlab_console::count(campaign.members.len(), "run")
+        );
+        for member in &campaign.members {
+            script += &line(&command(campaign, folder, member)?);
+            script.push('\n');
+        }
+        Ok(script)
     }
 }
 
@@ -76,19 +94,4 @@ fn report(campaign: &Campaign, folder: &Folder) -> Exit {
         );
     }
     exit
-}
-
-/// Prints the commands of the members as a script.
-fn print_script(campaign: &Campaign, folder: &Folder, options: Options) -> Result<(), Failure> {
-    let mut script = format!(
-        "#!/bin/sh\n# Campaign {}: {}, in any order. Each line can be repeated: a finished run is left as it is, an\n\
-         # interrupted one is continued.\nunset ROS_DOMAIN_ID\n",
-        campaign.name,
-        grainlab_console::count(campaign.members.len(), "run")
-    );
-    for member in &campaign.members {
-        script += &line(&command(campaign, folder, member, options.processes)?);
-        script.push('\n');
-    }
-    grainlab_console::print(&script)
 }

@@ -34,6 +34,12 @@ impl Folder {
         Path::new("recordings/campaigns").join(&campaign.name)
     }
 
+    /// The folder at this path, which need not be there.
+    pub fn at(root: &Path) -> Result<Self, Failure> {
+        let root = root.canonicalize().or_else(|_| std::path::absolute(root)).map_err(Failure::at(root))?;
+        Ok(Self { root })
+    }
+
     /// Creates the folder, or finds it, for this process alone as long as the lock is held.
     pub fn create(root: &Path) -> Result<(Self, Lock), Failure> {
         let failed = |e: io::Error| Failure::failed(format!("the folder {}: {e}", root.display()));

@@ -1,88 +1,48 @@
 //! Members as an array of tasks of a scheduler.
 
-use super::options::Options;
+use super::array;
+use super::options::{Engine, Options, RETRIES};
 use crate::campaign::Campaign;
-use crate::command::{command, line};
 use crate::folder::{Folder, MemberState};
 use crate::progress::Progress;
-use grainlab_console::{Failure, Signals};
+use grainlab_console::{Failure, Signals, say};
 use std::collections::BTreeSet;
 use std::fs::File;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Output, Stdio};
+use std::slice::Chunks;
 use std::time::{Duration, Instant};
 
 /// Period of the checks of the members.
 const POLL_PERIOD: Duration = Duration::from_millis(500);
 
-/// A scheduler of jobs.
-pub(super) struct Scheduler {
-    name: &'static str,
-    /// The number of a task, in a shell.
-    task: &'static str,
-    /// Program and arguments that submit an array and wait for its end.
-    submit: fn(&Array<'_>) -> Result<Vec<String>, Failure>,
-    /// Advice where it is missing.
-    advice: &'static str,
+/// Number of a task of Slurm, in a shell.
+const SLURM_TASK: &str = "$SLURM_ARRAY_TASK_ID";
+
+/// Advice where the client of Slurm fails.
+const SLURM_ADVICE: &str = "is sbatch on the PATH, and does the controller answer `sinfo`?";
+
+/// Advice where HyperQueue fails.
+const HQ_ADVICE: &str = "is hq on the PATH, with a server and a worker, or is the Python package hyperqueue installed (GRAINLAB_PYTHON names \
+                         another Python)?";
+
+/// The client of Slurm for this action.
+fn slurm(action: &str, campaign: &Campaign, folder: &Folder) -> Vec<String> {
+    let jobs = folder.root().join("slurm.jobs").to_string_lossy().into_owned();
+    ["sh", "-c", include_str!("slurm.sh"), action, &jobs, &job_name(campaign)].map(str::to_owned).into()
 }
 
-/// Tasks 1 to n of a campaign.
-struct Array<'a> {
-    tasks: usize,
-    folder: &'a Folder,
-    /// Name of the job.
-    name: String,
-    /// Folder of the logs.
-    logs: String,
-    /// The script of a task.
-    script: String,
+/// Answer of the client of Slurm.
+fn ask(action: &str, campaign: &Campaign, folder: &Folder) -> Result<String, Failure> {
+    let words = slurm(action, campaign, folder);
+    let output = Command::new(&words[0]).args(&words[1..]).stdin(Stdio::null()).output();
+    let Output { status, stdout, stderr } = output.map_err(Failure::failed)?;
+    if status.success() {
+        return Ok(String::from_utf8_lossy(&stdout).trim().to_owned());
+    }
+    let said = String::from_utf8_lossy(&stderr);
+    let advice = "try again when squeue answers, or submit another one by --submit-again";
+    Err(Failure::failed(format!("{}: an array may still be queued or running: {advice}", said.trim())))
 }
-
-/// The scheduler Slurm.
-pub(super) const SLURM: Scheduler = Scheduler {
-    name: "Slurm",
-    task: "$SLURM_ARRAY_TASK_ID",
-    submit: |array| {
-        Ok(vec![
-            "sbatch".into(),
-            "--wait".into(),
-            format!("--array=1-{}", array.tasks),
-            format!("--job-name={}", array.name),
-            format!("--output={}/slurm-%A-%a.log", array.logs),
-            "--ntasks=1".into(),
-            array.script.clone(),
-        ])
-    },
-    advice: "is sbatch on the PATH, and does the controller answer `sinfo`?",
-};
-
-/// HyperQueue: the program hq, or without it the Python package.
-pub(super) const HYPER_QUEUE: Scheduler = Scheduler {
-    name: "HyperQueue",
-    task: "${GRAINLAB_TASK:-$HQ_TASK_ID}",
-    submit: |array| {
-        let Array { tasks, folder, name, logs, script } = array;
-        if is_on_path("hq") {
-            let log = format!("{logs}/hq-%{{JOB_ID}}-%{{TASK_ID}}.log");
-            return Ok(vec![
-                "hq".into(),
-                "submit".into(),
-                "--wait".into(),
-                format!("--array=1-{tasks}"),
-                format!("--name={name}"),
-                format!("--stdout={log}"),
-                format!("--stderr={log}"),
-                "sh".into(),
-                script.clone(),
-            ]);
-        }
-        let python = std::env::var("GRAINLAB_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-        let client = folder.write("hq.py", include_str!("hq.py"))?;
-        let client = client.to_string_lossy().into_owned();
-        Ok(vec![python, client, tasks.to_string(), script.clone(), logs.clone()])
-    },
-    advice: "is hq on the PATH, with a server and a worker, or is the Python package hyperqueue installed (GRAINLAB_PYTHON \
-             names another Python)?",
-};
 
 fn is_on_path(program: &str) -> bool {
     let path = std::env::var_os("PATH");
@@ -92,22 +52,40 @@ fn is_on_path(program: &str) -> bool {
 /// Runs the members that are not finished; true if a signal ended the wait. An array is submitted again for those that
 /// were interrupted.
 pub(super) fn run(
-    scheduler: &Scheduler,
     campaign: &Campaign,
     folder: &Folder,
-    options: Options,
+    options: &Options,
     progress: &mut Progress,
 ) -> Result<bool, Failure> {
     let signals = Signals::install().map_err(Failure::failed)?;
-    for tries in 0..=options.retries {
+    let is_slurm = options.engine == Engine::Slurm;
+    let (name, advice) = if is_slurm { ("Slurm", SLURM_ADVICE) } else { ("HyperQueue", HQ_ADVICE) };
+    let asks = is_slurm && !options.submit_again;
+    let mut queued = if asks { ask("queued", campaign, folder)? } else { String::new() };
+    let retries = options.retries.unwrap_or(RETRIES);
+    for tries in 0..=retries {
         let open = folder.pending(campaign);
         if open.is_empty() {
             break;
         }
-        if tries > 0 && tries == options.retries {
+        if tries > 0 && tries == retries {
             open.iter().try_for_each(|n| folder.remove(&campaign.members[*n]))?;
         }
-        let mut process = submit(scheduler, campaign, folder, &open, options.processes)?;
+        let words = match std::mem::take(&mut queued) {
+            job if job.is_empty() => submission(campaign, folder, options, &open)?,
+            job => {
+                say!(
+                    "grainlab: job {job} of this campaign is queued or running: nothing is submitted before it ends"
+                );
+                slurm("wait", campaign, folder)
+            }
+        };
+        let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}: {advice}", words[0]));
+        let path = folder.logs().join("scheduler.log");
+        let log = File::create(&path).map_err(failed)?;
+        let mut command = Command::new(&words[0]);
+        command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(failed)?).stderr(log);
+        let mut process = command.spawn().map_err(failed)?;
         let (began, mut done) = (Instant::now(), BTreeSet::new());
         let status = loop {
             let ended = process.try_wait().map_err(Failure::failed)?;
@@ -126,56 +104,80 @@ pub(super) fn run(
                 break status;
             }
             if signals.requested() {
-                let name = scheduler.name;
-                grainlab_console::say!(
-                    "grainlab: the tasks stay with {name}; the same command continues the campaign"
-                );
+                say!("grainlab: the tasks stay with {name}; the same command continues the campaign");
                 return Ok(true);
             }
             std::thread::sleep(POLL_PERIOD);
         };
         // A scheduler that refuses the array starts none of its tasks.
         let untouched = |n: &usize| folder.state(&campaign.members[*n]) == MemberState::Waiting;
-        if !status.success() && open.iter().all(untouched) {
-            let Scheduler { name, advice, .. } = scheduler;
-            let log = folder.logs().join("scheduler.log");
-            let said = std::fs::read_to_string(log).unwrap_or_default();
+        if open.iter().all(untouched) || (is_slurm && !status.success()) {
+            let said = std::fs::read_to_string(path).unwrap_or_default();
             let last = said.lines().rfind(|l| !l.trim().is_empty()).unwrap_or_default();
-            return Err(Failure::failed(format!("{name} ended with {status}: {last}: {advice}")));
+            return Err(Failure::failed(format!(
+                "{name} did not run the members that are left: {last}: {advice}"
+            )));
         }
     }
     folder.pending(campaign).iter().try_for_each(|n| folder.give_up(&campaign.members[*n]))?;
     Ok(false)
 }
 
-/// Submits an array of these members.
-fn submit(
-    scheduler: &Scheduler,
+/// Name of the job.
+fn job_name(campaign: &Campaign) -> String {
+    format!("grainlab-{}", campaign.name)
+}
+
+/// A script for sbatch with all members.
+pub(super) fn script(campaign: &Campaign, folder: &Folder, options: &Options) -> Result<String, Failure> {
+    let all: Vec<usize> = (0..campaign.members.len()).collect();
+    let (tasks, words) = plan(campaign, folder, options, &all)?;
+    array::script(campaign, folder, tasks, SLURM_TASK, &words)
+}
+
+/// Tasks of these members, and for Slurm the options of sbatch.
+fn plan<'a>(
     campaign: &Campaign,
     folder: &Folder,
+    options: &Options,
+    members: &'a [usize],
+) -> Result<(Chunks<'a, usize>, Vec<String>), Failure> {
+    // Without arrays, a limit below 1, sbatch says so.
+    let most = ask("limit", campaign, folder)?.parse().unwrap_or(1).max(1);
+    let tasks = array::tasks(members, options.chunk, most);
+    let at_a_time = options.jobs.map_or_else(String::new, |n| format!("%{n}"));
+    let array = format!("--array=1-{}{at_a_time}", tasks.len());
+    let words = [array, format!("--job-name={}", job_name(campaign)), "--ntasks=1".into()].into_iter();
+    Ok((tasks, words.chain(options.sbatch()).collect()))
+}
+
+/// The command that submits an array of these members and waits for its end.
+fn submission(
+    campaign: &Campaign,
+    folder: &Folder,
+    options: &Options,
     members: &[usize],
-    processes: bool,
-) -> Result<Child, Failure> {
-    let task = scheduler.task;
-    let mut script = format!(
-        "#!/bin/sh\n# One member of the campaign {} for each task.\nunset ROS_DOMAIN_ID\ncase \"{task}\" in\n",
-        campaign.name
-    );
-    for (n, member) in members.iter().map(|m| &campaign.members[*m]).enumerate() {
-        script += &format!("{}) exec {} ;;\n", n + 1, line(&command(campaign, folder, member, processes)?));
-    }
-    script += &format!("*) echo \"task {task} is not of this campaign\" >&2; exit 2 ;;\nesac\n");
-    let array = Array {
-        tasks: members.len(),
-        folder,
-        name: format!("grainlab-{}", campaign.name),
-        logs: folder.logs().to_string_lossy().into_owned(),
-        script: folder.write("tasks.sh", script)?.to_string_lossy().into_owned(),
+) -> Result<Vec<String>, Failure> {
+    let logs = folder.logs().to_string_lossy().into_owned();
+    let write = |tasks, task| {
+        let path = folder.write("tasks.sh", array::script(campaign, folder, tasks, task, &[])?)?;
+        Ok::<_, Failure>(path.to_string_lossy().into_owned())
     };
-    let words = (scheduler.submit)(&array)?;
-    let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}: {}", words[0], scheduler.advice));
-    let log = File::create(folder.logs().join("scheduler.log")).map_err(failed)?;
-    let mut command = Command::new(&words[0]);
-    command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(failed)?).stderr(log);
-    command.spawn().map_err(failed)
+    if options.engine == Engine::Slurm {
+        let (tasks, words) = plan(campaign, folder, options, members)?;
+        let last = [format!("--output={logs}/slurm-%A-%a.log"), write(tasks, SLURM_TASK)?];
+        return Ok([slurm("submit", campaign, folder), words, last.into()].concat());
+    }
+    let tasks = array::tasks(members, options.chunk, usize::MAX);
+    let (count, script) = (tasks.len(), write(tasks, "${GRAINLAB_TASK:-$HQ_TASK_ID}")?);
+    if is_on_path("hq") {
+        let log = format!("{logs}/hq-%{{JOB_ID}}-%{{TASK_ID}}.log");
+        let (array, name) = (format!("--array=1-{count}"), format!("--name={}", job_name(campaign)));
+        let [stdout, stderr] = [format!("--stdout={log}"), format!("--stderr={log}")];
+        let words = ["hq", "submit", "--wait", &array, &name, &stdout, &stderr, "sh", &script];
+        return Ok(words.map(str::to_owned).into());
+    }
+    let python = std::env::var("GRAINLAB_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let client = folder.write("hq.py", include_str!("hq.py"))?.to_string_lossy().into_owned();
+    Ok(vec![python, client, count.to_string(), script, logs])
 }

@@ -20,7 +20,7 @@ pub(super) struct Reached {
 }
 
 /// The limit that the member with this process id, begun at `began`, has reached.
-pub(super) fn reached(options: Options, pid: u32, began: Instant) -> Option<Reached> {
+pub(super) fn reached(options: &Options, pid: u32, began: Instant) -> Option<Reached> {
     let time = options.member_time.map(u64::from).filter(|t| began.elapsed() >= Duration::from_secs(*t));
     if let Some(seconds) = time {
         let late = began.elapsed() >= Duration::from_secs(seconds) + SAVES_WITHIN;

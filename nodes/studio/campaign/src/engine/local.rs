@@ -3,7 +3,7 @@
 use super::Launch;
 use super::copied::Copied;
 use super::limits::{Reached, reached, send};
-use super::options::Options;
+use super::options::{Options, RETRIES};
 use crate::campaign::Campaign;
 use crate::folder::{Folder, MemberState};
 use crate::member::Member;
@@ -37,17 +37,17 @@ struct Job {
 pub(super) fn run(
     campaign: &Campaign,
     folder: &Folder,
-    options: Options,
+    options: &Options,
     launch: Launch,
     pending: Vec<usize>,
     progress: &mut Progress,
 ) -> Result<bool, Failure> {
     let signals = Signals::install().map_err(Failure::failed)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let jobs = options.jobs.map_or(cores + 1, usize::from);
+    let jobs = options.jobs.map_or(cores + usize::from(options.processes), usize::from);
     let mut waiting: VecDeque<Task> = pending.into_iter().map(|member| Task { member, tries: 0 }).collect();
     let mut running: Vec<Job> = Vec::new();
-    let mut told = false;
+    let (retries, mut told) = (options.retries.unwrap_or(RETRIES), false);
     while !running.is_empty() || (!waiting.is_empty() && !signals.requested()) {
         if signals.requested() && !told {
             told = true;
@@ -56,7 +56,7 @@ pub(super) fn run(
         }
         while !signals.requested() && running.len() < jobs {
             let Some(task) = waiting.pop_front() else { break };
-            if task.tries > 0 && task.tries >= options.retries {
+            if task.tries > 0 && task.tries >= retries {
                 folder.remove(&campaign.members[task.member])?;
             }
             let process = start(folder, &campaign.members[task.member], launch)?;
@@ -87,7 +87,7 @@ pub(super) fn run(
                 MemberState::Finished => progress.finished(&member.name, began.elapsed()),
                 MemberState::Failed(_) => progress.failed(&member.name),
                 _ if signals.requested() => {}
-                _ if task.tries < options.retries => {
+                _ if task.tries < retries => {
                     progress.again(&member.name);
                     waiting.push_front(Task { tries: task.tries + 1, ..task });
                 }
