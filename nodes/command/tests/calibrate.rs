@@ -74,6 +74,7 @@ fn packings_that_determine_no_constants_are_refused_with_the_reason() {
         ("few", head(3), 4, &["no calibration", "isotropic packings"][..]),
         ("torn", torn, 2, &["line 3: phi is not known", "1 rows are not valid packings"]),
         ("empty", head(1), 2, &["no packing below the header"]),
+        ("narrow", whole.replace(",phi,", ",_phi,"), 2, &["the header: no column phi"]),
         ("foreign", whole.replace("mu2", "friction"), 2, &["no column mu2 to group by"]),
     ] {
         let path = folder.path().join(name).to_string_lossy().into_owned();
@@ -88,9 +89,33 @@ fn packings_that_determine_no_constants_are_refused_with_the_reason() {
 }
 
 #[test]
-fn tables_of_isotropic_and_anisotropic_packings_that_are_exchanged_are_refused() {
-    let [isotropic, anisotropic] = ["anisotropic", "isotropic"].map(ensemble);
-    let ended = grainlab(&["calibrate", "--isotropic", &isotropic, "--anisotropic", &anisotropic]);
-    let err = text(&ended.stderr);
-    assert!(ended.status.code() == Some(2) && err.contains("are not isotropic"), "{err}");
+fn tables_of_a_campaign_are_taken_as_they_are_and_exchanged_ones_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let [isotropic, anisotropic] = ["isotropic", "anisotropic"].map(|name| {
+        let path = folder.path().join(name).to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(ensemble(name)).unwrap();
+        let gathered = text.lines().enumerate().map(|(line, row)| {
+            let [scene, friction, seed, _] = &row.splitn(4, ',').collect::<Vec<_>>()[..] else {
+                panic!("{row}")
+            };
+            let member = format!("{scene}-friction={friction}-{seed}");
+            let row = row.replace("preparation,mu2", "scene,set.friction");
+            if line == 0 { format!("member,{row}\n") } else { format!("{member},{row}\n") }
+        });
+        std::fs::write(&path, gathered.collect::<String>()).unwrap();
+        path
+    });
+    for (files, code, words) in [
+        (
+            [&isotropic, &anisotropic],
+            0,
+            &["; alpha = ", "24 packings (144 states)", "96 packings (384 states)"][..],
+        ),
+        ([&anisotropic, &isotropic], 2, &["it is not isotropic", "anisotropic, line "]),
+    ] {
+        let ended = grainlab(&["calibrate", "--isotropic", files[0], "--anisotropic", files[1]]);
+        let err = text(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(code), "{err}");
+        assert!(words.iter().all(|word| err.contains(word)), "{err}");
+    }
 }

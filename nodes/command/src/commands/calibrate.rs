@@ -4,10 +4,10 @@
 
 mod packings;
 
-use grainlab_calibration::learn;
+use grainlab_calibration::{check, learn};
 use grainlab_console::{Failure, print, say, write_whole};
+use grainlab_emt::CalibrationError;
 use grainlab_node_kit::Exit;
-use packings::Naming;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -16,16 +16,19 @@ Examples:
     grainlab campaign nodes/scenes/campaigns/isotropic.toml
     grainlab campaign nodes/scenes/campaigns/anisotropic.toml
     C=recordings/campaigns
-    grainlab calibrate --isotropic $C/isotropic/states.csv --anisotropic $C/anisotropic/states.csv \\
-      --preparation scene --packing scene,set.friction,seed --out mine.toml
+    grainlab calibrate --isotropic $C/isotropic/states.csv --anisotropic $C/anisotropic/states.csv --out mine.toml
     grainlab invert --table states.csv --calibration mine.toml
 
 With --other, the laws of the model relaxed are also learned from packings of other recipes, materials, stresses and sizes.
 
-Tables have the columns of `grainlab analyze --format csv`: pressure_pa, phi, grains, k, z, eps, eps_stiffness, all six
-moduli (g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa, or the stiffness), and, if known, g_total g_elastic g_contact,
-axial_q_over_p and size_spread (else 0: isotropic stress, equal grains);
-and columns that identify the preparation of each packing and the packing.";
+Tables are those of `grainlab campaign gather`, or have the columns of `grainlab analyze --format csv`: pressure_pa, phi, grains,
+k, z, eps, eps_stiffness, all six moduli (g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa, or the stiffness), and, if known,
+g_total g_elastic g_contact, axial_q_over_p and size_spread (else 0: isotropic stress, equal grains); and columns that identify the preparation of each packing and the packing.
+
+Refused are: a packing given twice; isotropic packings with |eps| above 2.5 standard deviations of chance, 1.12/sqrt(contacts), or a
+mean eps above 3 standard errors; anisotropic ones with eps that varies no more than that of the isotropic ones; fewer packings than
+constants; and a slope of Eqs. 21 and 22 whose 95 % interval contains 0. States of one packing count as one. Where no |q/p| is
+above 1e-5, and a settled servo leaves up to 5e-6, the laws are without q/p.";
 
 /// Packings to learn from.
 #[derive(Debug, clap::Args)]
@@ -41,12 +44,13 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.csv", requires = "anisotropic")]
     other: Option<PathBuf>,
     /// Columns that identify the recipe of a packing: the laws are tested on each recipe with those learned from
-    /// the others
-    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation")]
-    preparation: Vec<String>,
-    /// Columns that identify the packing: states of one packing at several pressures are not independent
-    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation,mu2,seed")]
-    packing: Vec<String>,
+    /// the others [default: scene with a column member, else preparation]
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
+    preparation: Option<Vec<String>>,
+    /// Columns that identify the packing: states of one packing at several pressures are not independent [default: member, else
+    /// preparation,mu2,seed]
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
+    packing: Option<Vec<String>>,
     /// Name of the calibration, reported with every estimate [default: the name of the output file]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
@@ -57,19 +61,44 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let naming = Naming { preparation: &args.preparation, packing: &args.packing };
-    let isotropic = packings::read(&args.isotropic, &naming)?;
-    packings::check_isotropic(&isotropic)
-        .map_err(|e| Failure::usage(format!("{}: {e}", args.isotropic.display())))?;
-    let read = |path: &Option<PathBuf>| path.as_ref().map(|path| packings::read(path, &naming)).transpose();
-    let anisotropic = read(&args.anisotropic)?.unwrap_or_default();
-    let other = read(&args.other)?.unwrap_or_default();
+    let split = |names: &str| names.split(',').map(str::to_owned).collect::<Vec<_>>();
+    let named = |recipe: &str, packing: &str| {
+        let recipe = args.preparation.clone().unwrap_or_else(|| split(recipe));
+        [recipe, args.packing.clone().unwrap_or_else(|| split(packing))].concat()
+    };
+    let (gathered, stored) = (named("scene", "member"), named("preparation", "preparation,mu2,seed"));
+    let recipe = args.preparation.as_ref().map_or(1, Vec::len);
+    let read = |path: &PathBuf| packings::read(path, recipe, &[&gathered, &stored]);
+    let isotropic = read(&args.isotropic)?;
+    let anisotropic = args.anisotropic.as_ref().map(read).transpose()?.unwrap_or_default();
+    let other = args.other.as_ref().map(read).transpose()?.unwrap_or_default();
     let file_name = args.out.as_ref().and_then(|path| path.file_stem()).map(|n| n.to_string_lossy());
     let file_name = file_name.filter(|n| n != "-").map_or_else(|| "unnamed".to_owned(), |n| n.into_owned());
     let name = args.name.clone().unwrap_or(file_name);
-    let invalid = |e| Failure::new(Exit::PhysicsInvalid, format!("no calibration: {e}"));
+    let exit = |e: &_| match e {
+        CalibrationError::Packing { .. } => Exit::Usage,
+        _ => Exit::PhysicsInvalid,
+    };
+    let invalid = |e| Failure::new(exit(&e), format!("no calibration: {e}"));
+    check(&isotropic, &anisotropic, &other).map_err(invalid)?;
     let calibration = learn(&name, &isotropic, &anisotropic, &other).map_err(invalid)?;
     let toml = calibration.to_toml().map_err(Failure::failed)?;
+    let mut files = packings::counted(&args.isotropic, &isotropic);
+    let (values, covariance) = (calibration.isotropic().constants(), calibration.isotropic().covariance);
+    let text = |i: usize| {
+        let stddev = covariance.map_or(f64::NAN, |c| c[i][i].sqrt());
+        format!("; {} = {:.4} +- {stddev:.4}", ["alpha", "beta", "rho", "zeta"][i], values[i])
+    };
+    say!("grainlab: Eqs. 21 and 22 from {files}{}", (0..4).map(text).collect::<String>());
+    for (path, samples) in [(&args.anisotropic, &anisotropic), (&args.other, &other)] {
+        files +=
+            &path.iter().map(|path| format!("; {}", packings::counted(path, samples))).collect::<String>();
+    }
+    if let Some(network) = &calibration.network {
+        let none = network.dilatation.by_stress_ratio == [0.0; 3];
+        let note = if none { "; without q/p, because none is above 1e-5" } else { "" };
+        say!("grainlab: relaxed, of {} recipes, from {files}{note}", network.recipes);
+    }
     match &args.out {
         Some(path) if path.as_os_str() != "-" => {
             write_whole(path, toml).map_err(Failure::at(path))?;

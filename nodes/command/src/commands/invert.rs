@@ -248,7 +248,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             ("--density-sigma", args.density_sigma != 0.0),
         ];
         refuse(&of_one_state, "is of one state: in a --table it is a column, or of no use")?;
-        let rows = Rows::open(path, &args.by, defaults)?;
+        let rows = Rows::open(path, &[&args.by], defaults)?;
         if args.judge {
             return judge::run(rows, &args.by, &cases, plot_file(args), args.format);
         }

@@ -1,6 +1,7 @@
 //! From packings to the constants of the models of effective medium theory.
 //!
 //! - `sample`: a packing to learn from
+//! - `requirements`: properties that packings need
 //! - `isotropic`: Eqs. 21 and 22
 //! - `relaxation`: the laws of relaxed networks, and the scatter of packings about them
 //! - `discrepancy`: the errors of the models on the packings
@@ -10,9 +11,11 @@ mod discrepancy;
 mod isotropic;
 mod regression;
 mod relaxation;
+mod requirements;
 mod sample;
 mod student;
 
+pub use requirements::{check, packings};
 pub use sample::CalibrationSample;
 
 use discrepancy::discrepancies;

@@ -45,9 +45,10 @@ pub(crate) struct Determined<const N: usize> {
 const INDEPENDENT: f64 = 1e-5;
 
 /// As [`linear`], but a column that is zero or a combination of those before it gets the coefficient 0: packings of one
-/// material do not determine how the material acts.
+/// material do not determine how the material acts. The rows are of this many independent packings.
 pub(crate) fn determined<const N: usize>(
     rows: &[([f64; N], f64, f64)],
+    packings: usize,
     what: &'static str,
 ) -> Result<Determined<N>, CalibrationError> {
     let column = |j: usize| DVector::from_fn(rows.len(), |i, _| rows[i].0[j] * rows[i].2);
@@ -70,15 +71,15 @@ pub(crate) fn determined<const N: usize>(
         }
     }
     let n = kept.len();
-    if rows.len() <= n || n == 0 {
-        return Err(CalibrationError::Packings { what, found: rows.len(), needed: n + 1 });
+    if packings <= n || n == 0 {
+        return Err(CalibrationError::Packings { what, found: packings, needed: n + 1 });
     }
     let y = DVector::from_fn(rows.len(), |i, _| rows[i].1 * rows[i].2);
     let q = DMatrix::from_columns(&basis);
     let x = DMatrix::from_columns(&kept.iter().map(|j| column(*j)).collect::<Vec<_>>());
     // x = q r with r upper triangular.
     let (projected, r) = (q.transpose() * &y, q.transpose() * &x);
-    let singular = CalibrationError::Packings { what, found: rows.len(), needed: n + 1 };
+    let singular = CalibrationError::Packings { what, found: packings, needed: n + 1 };
     let solution = r.solve_upper_triangular(&projected).ok_or(singular)?;
     let mut coefficients = [0.0; N];
     kept.iter().zip(solution.iter()).for_each(|(j, value)| coefficients[*j] = *value);
@@ -123,11 +124,11 @@ mod tests {
     fn columns_that_the_points_do_not_determine_get_no_coefficient() {
         let points: Vec<_> =
             (0..6).map(|i| ([1.0, 3.0, f64::from(i), 0.0], 2.0 - 0.5 * f64::from(i), 1.0)).collect();
-        let fit = determined(&points, "points").unwrap();
+        let fit = determined(&points, 6, "points").unwrap();
         let [level, same, slope, zero] = fit.coefficients;
         assert!((level - 2.0).abs() < 1e-12 && (slope + 0.5).abs() < 1e-12 && fit.squares < 1e-24);
         assert_eq!((same, zero), (0.0, 0.0));
-        assert!(determined(&points[..2], "points").is_err());
+        assert!(determined(&points, 2, "points").is_err(), "two coefficients from two packings");
     }
 
     #[test]

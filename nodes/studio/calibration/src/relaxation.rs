@@ -1,6 +1,7 @@
 //! The laws of relaxed networks, and the scatter of packings about them.
 
 use crate::regression::{determined, minimum};
+use crate::requirements::packings;
 use crate::sample::{CalibrationSample, bounds};
 use crate::student::student;
 use grainlab_emt::{
@@ -17,6 +18,9 @@ const HIGHEST_ONSET: f64 = ISOSTATIC + 0.05;
 
 /// Repetitions of the fit of the scatter and of its growth, each with the other fixed; the third changes nothing.
 const REPETITIONS: usize = 4;
+
+/// |q/p| below which a stress counts as isotropic: a servo that has settled leaves up to 5e-6 (`tests/golden/ensembles`).
+const SETTLED: f64 = 1e-5;
 
 /// One packing in the units of the laws, with its weight in the fits.
 struct Reduced<'a> {
@@ -84,25 +88,32 @@ fn reduced(sample: &CalibrationSample) -> Option<Reduced<'_>> {
     Some(Reduced { sample, invariants, state, weight: RelaxationCalibration::excess(sample.z) })
 }
 
-/// The laws alone; all other constants are zero.
+/// The laws alone; all other constants are zero. Where no stress ratio exceeds what a settled servo leaves, the laws are
+/// without it.
 fn fitted(rows: &[&Reduced<'_>]) -> Result<RelaxationCalibration, CalibrationError> {
     const WHAT: &str = "packings";
+    let packings = packings(rows.iter().map(|r| r.sample));
+    let isotropic = rows.iter().all(|r| r.state.stress_ratio.abs() < SETTLED);
     let lowest = rows.iter().map(|r| r.sample.z).fold(f64::INFINITY, f64::min);
     let law = |value: fn(&Invariants) -> f64| {
         let at = |onset: f64| {
             let point = |r: &&Reduced<'_>| {
                 (ScalingLaw::terms(r.sample.z, onset, &r.state), value(&r.invariants), r.weight)
             };
-            determined(&rows.iter().map(point).collect::<Vec<_>>(), WHAT)
+            determined(&rows.iter().map(point).collect::<Vec<_>>(), packings, WHAT)
         };
         let highest = HIGHEST_ONSET.min(lowest - 0.05);
         let onset = minimum(2.0, highest, |onset| at(onset).map_or(f64::INFINITY, |fit| fit.squares));
         Ok(ScalingLaw { coefficients: at(onset)?.coefficients, onset })
     };
     let deviator = |value: fn(&Reduced<'_>) -> f64| {
-        let point =
-            |r: &&Reduced<'_>| (DeviatorLaw::terms(r.sample.z, r.sample.eps, &r.state), value(r), r.weight);
-        Ok(DeviatorLaw::new(determined(&rows.iter().map(point).collect::<Vec<_>>(), WHAT)?.coefficients))
+        let point = |r: &&Reduced<'_>| {
+            let stress_ratio = if isotropic { 0.0 } else { r.state.stress_ratio };
+            let state = NetworkState { stress_ratio, ..r.state };
+            (DeviatorLaw::terms(r.sample.z, r.sample.eps, &state), value(r), r.weight)
+        };
+        let points: Vec<_> = rows.iter().map(point).collect();
+        Ok(DeviatorLaw::new(determined(&points, packings, WHAT)?.coefficients))
     };
     let rattlers: Vec<_> =
         rows.iter().map(|r| (RattlerLaw::terms(r.sample.z, &r.state), r.sample.k, 1.0)).collect();
@@ -113,7 +124,7 @@ fn fitted(rows: &[&Reduced<'_>]) -> Result<RelaxationCalibration, CalibrationErr
         voigt: deviator(|r| r.invariants.voigt)?,
         harmonic: deviator(|r| r.invariants.harmonic)?,
         eps_stiffness: deviator(|r| r.sample.eps_stiffness)?,
-        rattlers: RattlerLaw(determined(&rattlers, WHAT)?.coefficients),
+        rattlers: RattlerLaw(determined(&rattlers, packings, WHAT)?.coefficients),
         scatter: [[0.0; SCATTERED]; SCATTERED],
         scatter_by_state: [[0.0; 2]; GROUPS.len()],
         eps_spread: [0.0; 2],
@@ -145,6 +156,7 @@ fn scatter(
     residuals: &[(&Reduced<'_>, [f64; SCATTERED])],
 ) -> Result<(Scatter, [[f64; 2]; GROUPS.len()]), CalibrationError> {
     let mut by_state = [[0.0; 2]; GROUPS.len()];
+    let packings = packings(residuals.iter().map(|(row, _)| row.sample));
     let mut covariance = Scatter::zeros();
     for _ in 0..REPETITIONS {
         covariance = Scatter::zeros();
@@ -171,7 +183,7 @@ fn scatter(
                     ([1.0, row.state.size_variance, row.state.ln_pressure], square.ln(), 1.0)
                 })
                 .collect();
-            let [_, by_sizes, by_pressure] = determined(&points, "packings")?.coefficients;
+            let [_, by_sizes, by_pressure] = determined(&points, packings, "packings")?.coefficients;
             *growth = [by_sizes, by_pressure];
         }
     }

@@ -24,6 +24,8 @@ pub struct CalibrationSample {
     pub preparation: String,
     /// Name of the packing: states of the same packing at several pressures share it.
     pub packing: String,
+    /// File and line that it is from, for messages.
+    pub place: String,
     /// Number of grains.
     pub grains: u32,
     /// Material of the grains.
@@ -66,7 +68,7 @@ impl CalibrationSample {
 
     /// Refuses what no packing is, as an inversion would, and moduli or a pressure in another unit.
     pub fn check(&self) -> Result<(), CalibrationError> {
-        let fault = |fault: String| Err(CalibrationError::Packing { packing: self.packing.clone(), fault });
+        let fault = |fault: String| Err(self.fault(fault));
         if !self.is_finite() {
             return fault("every number must be finite, and all moduli known and positive".to_owned());
         }
@@ -113,6 +115,11 @@ impl CalibrationSample {
             ));
         }
         Ok(())
+    }
+
+    /// The error of a packing with this fault.
+    pub(crate) fn fault(&self, fault: String) -> CalibrationError {
+        CalibrationError::Packing { packing: format!("{} ({})", self.packing, self.place), fault }
     }
 
     /// Ratio p/E*, dimensionless.

@@ -2,31 +2,30 @@
 
 use crate::commands::invert::{BadRow, Row, Rows, State};
 use grainlab_calibration::CalibrationSample;
-use grainlab_console::{Failure, say};
+use grainlab_console::{Failure, count, say};
 use grainlab_core::Material;
 use grainlab_core::contact::SpringLaw;
 use grainlab_emt::{Conditions, Modulus};
 use std::path::Path;
 
-/// Largest median of |eps| of isotropic packings, and what chance makes of it over the root of the number of grains: .27 in
-/// those of the built-in calibration.
-const ISOTROPIC: f64 = 0.03;
-const CHANCE: f64 = 0.7;
-
-/// The columns that identify packings.
-pub(super) struct Naming<'a> {
-    pub(super) preparation: &'a [String],
-    pub(super) packing: &'a [String],
-}
+/// Columns without which a row is no packing to learn from.
+const NEEDED: &str = "g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa phi grains k z eps eps_stiffness";
 
 /// Every packing of a table. An invalid row is reported, and the calibration is refused, because it would not
-/// include that row.
-pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSample>, Failure> {
-    let by = [naming.preparation, naming.packing].concat();
-    let mut rows = Rows::open(path, &by, State::default())?;
+/// include that row. The first `recipe` columns of each `by` identify the preparation, those after them the packing.
+pub(super) fn read(path: &Path, recipe: usize, by: &[&[String]]) -> Result<Vec<CalibrationSample>, Failure> {
+    let mut rows = Rows::open(path, by, State::default())?;
+    let (name, missing) = (rows.name(), rows.columns.missing(NEEDED).join(", "));
+    if !missing.is_empty() {
+        return Err(Failure::usage(format!(
+            "{name}: the header: no column {missing}, which `grainlab analyze` prints"
+        )));
+    }
     let (mut samples, mut bad) = (Vec::new(), 0);
     let work = |number: u64, row: Result<Row, BadRow>| match row {
-        Ok(row) => sample(&row, naming.preparation.len()).map_err(|fault| format!("line {number}: {fault}")),
+        Ok(row) => sample(&row, recipe, format!("{}, line {number}", path.display()))
+            .and_then(|sample| sample.check().map(|()| sample).map_err(|e| e.to_string()))
+            .map_err(|fault| format!("line {number}: {fault}")),
         Err(row) => Err(format!("line {number}: {}", row.fault)),
     };
     while let Some(piece) = rows.next(work)? {
@@ -50,26 +49,14 @@ pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSa
     Ok(samples)
 }
 
-/// Refuses packings most of which are anisotropic: the laws of isotropic ones are fitted to them.
-pub(super) fn check_isotropic(samples: &[CalibrationSample]) -> Result<(), String> {
-    let median = |of: fn(&CalibrationSample) -> f64| {
-        let mut values: Vec<f64> = samples.iter().map(of).collect();
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
-    };
-    let (eps, grains) = (median(|s| s.eps.abs()), median(|s| f64::from(s.grains)));
-    let limit = ISOTROPIC.max(CHANCE / grains.sqrt());
-    if eps <= limit {
-        return Ok(());
-    }
-    Err(format!(
-        "these packings are not isotropic: the median of |eps| is {eps:.3}, and at most {limit:.3} is expected; are the tables of \
-         --isotropic and --anisotropic exchanged?"
-    ))
+/// Numbers of packings and states of a file.
+pub(super) fn counted(path: &Path, samples: &[CalibrationSample]) -> String {
+    let states = count(samples.len(), "state");
+    format!("{} ({states}) of {}", count(grainlab_calibration::packings(samples), "packing"), path.display())
 }
 
 /// The first `preparation` cells grouped by identify the preparation, those after them the packing.
-fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
+fn sample(row: &Row, preparation: usize, place: String) -> Result<CalibrationSample, String> {
     let State { moduli, truth, conditions, grains, grain_shear_modulus, poisson, .. } = &row.state;
     let Conditions { pressure, solid_fraction, stress_ratio, size_spread, contact_law, smooth, .. } =
         conditions;
@@ -100,6 +87,7 @@ fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
     Ok(CalibrationSample {
         preparation: preparation.join(" "),
         packing: packing.join(" "),
+        place,
         grains: need(*grains, "grains")? as u32,
         material: Material {
             shear_modulus: grain_shear_modulus.unwrap_or(Material::GLASS.shear_modulus),

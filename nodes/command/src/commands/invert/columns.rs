@@ -52,11 +52,13 @@ pub(crate) struct BadRow {
 }
 
 impl Columns {
-    /// From a header line; rows are grouped by the columns named in `by`.
-    pub(crate) fn of_header(line: &[u8], by: &[String], defaults: State) -> Result<Self, String> {
+    /// From a header line; rows are grouped by the columns of the first group of `by` that is there, else of the last.
+    pub(crate) fn of_header(line: &[u8], by: &[&[String]], defaults: State) -> Result<Self, String> {
         let names = cells(line).map_err(|fault| format!("the header: {fault}"))?;
         let names: Vec<String> = names.iter().map(str::to_owned).collect();
 
+        let by = by.iter().find(|by| by.iter().all(|name| names.contains(name))).or(by.last());
+        let by = by.copied().unwrap_or_default();
         let find = |name: &str| -> Result<Option<usize>, String> {
             let mut at = names.iter().enumerate().filter(|(_, n)| *n == name).map(|(i, _)| i);
             match (at.next(), at.next()) {
@@ -121,6 +123,16 @@ impl Columns {
             defaults,
             names,
         })
+    }
+
+    /// Those of these inputs, separated by spaces, that no column contains.
+    pub(crate) fn missing<'a>(&self, keys: &'a str) -> Vec<&'a str> {
+        let is_there = |key: &&str| {
+            let key = key.trim_start_matches("ti_");
+            let of_stiffness = self.stiffness.is_some() && key.ends_with("_pa");
+            of_stiffness || self.inputs.iter().any(|(input, ..)| input.key == key)
+        };
+        keys.split(' ').filter(|key| !is_there(key)).collect()
     }
 
     /// True if a column contains the truth of an estimate.

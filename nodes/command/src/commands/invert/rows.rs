@@ -87,7 +87,7 @@ pub(crate) struct Rows {
 
 impl Rows {
     /// Opens a table; `-` is the standard input.
-    pub(crate) fn open(path: &Path, by: &[String], defaults: State) -> Result<Self, Failure> {
+    pub(crate) fn open(path: &Path, by: &[&[String]], defaults: State) -> Result<Self, Failure> {
         let mut lines = Lines::open(path)?;
         while let Some(line) = lines.line()? {
             // Some spreadsheets begin their files with a byte order mark.

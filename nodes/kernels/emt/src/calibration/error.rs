@@ -24,7 +24,10 @@ pub enum CalibrationError {
         /// Fault, and what to do.
         fault: String,
     },
-    /// The packings do not determine the constants.
+    /// The packings are enough, and do not determine a constant.
+    #[error("{0}")]
+    Undetermined(String),
+    /// The packings are too few for the constants.
     #[error("{found} {what}, {needed} or more are needed: prepare more packings, or more different ones")]
     Packings {
         /// The kind of data of which there are too few.

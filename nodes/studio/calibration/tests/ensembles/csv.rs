@@ -44,6 +44,7 @@ pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
         CalibrationSample {
             packing: format!("{preparation} {} {}", t.cell(row, "mu2"), t.cell(row, "seed")),
             preparation,
+            place: name.to_owned(),
             grains: number("grains") as u32,
             material: Material {
                 shear_modulus: number("grain_shear_modulus_pa"),

@@ -1,7 +1,7 @@
 //! The inversion of packings of recipes that taught nothing, and of packings outside what was taught.
 
 use crate::csv;
-use grainlab_calibration::{CalibrationSample, learn};
+use grainlab_calibration::{CalibrationSample, check, learn};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{Calibration, EmtError, Relaxed, Status, StrainRatioSource};
 use grainlab_emt::{Estimate, Model};
@@ -244,5 +244,49 @@ fn a_calibration_refuses_what_is_no_packing_and_numbers_in_other_units() {
         assert!(error.contains(expected) && error.contains(&bad.packing), "{expected}: {error}");
         let with_it = [&packings.others[1..], &[bad]].concat();
         assert!(learn("test", &packings.isotropic, &packings.anisotropic, &with_it).is_err(), "{expected}");
+    }
+}
+
+#[test]
+fn packings_that_determine_no_constant_are_refused_with_what_they_lack() {
+    type Set = Vec<CalibrationSample>;
+    let all = Packings::read();
+    let refused = |expected: &str, change: &dyn Fn(&mut [Set; 3])| {
+        let mut sets = [all.isotropic.clone(), all.anisotropic.clone(), Set::new()];
+        change(&mut sets);
+        let [isotropic, anisotropic, others] = &sets;
+        let found = check(isotropic, anisotropic, others)
+            .and_then(|()| learn("test", isotropic, anisotropic, others).map(|_| ()));
+        let error = found.map_or_else(|e| e.to_string(), |()| "learned".to_owned());
+        assert!(error.contains(expected), "{expected}: {error}");
+    };
+    let eps = |eps: f64| move |sets: &mut [Set; 3]| sets[0].iter_mut().for_each(|s| s.eps += eps);
+    refused("learned", &eps(0.0));
+    refused("it is the same as that of isotropic.csv", &|sets| sets[1] = sets[0].clone());
+    refused("it is not isotropic: eps is 0.0", &|sets| sets[0][7].eps = 0.06);
+    refused("the mean of their eps is", &eps(0.018));
+    refused("no slope by eps is determined", &|sets| {
+        sets[1] = sets[0].split_off(72);
+        sets[1].iter_mut().for_each(|s| s.preparation = format!("recipe {}", s.packing));
+    });
+    refused("2 isotropic packings, 3 or more", &|sets| sets[0].truncate(12));
+    for spread in [0.0, 1e-3] {
+        refused("k 4.800 to 4.80", &|sets| {
+            sets[0].iter_mut().enumerate().for_each(|(i, s)| s.k = 4.8 + spread * (i % 5) as f64);
+        });
+    }
+}
+
+#[test]
+fn what_a_servo_leaves_of_the_stress_deviator_teaches_nothing() {
+    let Packings { isotropic, mut anisotropic, .. } = Packings::read();
+    let by_ratio = |anisotropic: &[CalibrationSample]| {
+        let network = learn("test", &isotropic, anisotropic, &[]).unwrap().network.unwrap();
+        [network.dilatation, network.voigt, network.harmonic, network.eps_stiffness]
+            .map(|l| l.by_stress_ratio)
+    };
+    for (scale, learned) in [(1e-8, false), (0.05, true)] {
+        anisotropic.iter_mut().enumerate().for_each(|(i, s)| s.stress_ratio = scale * (i % 7) as f64);
+        assert!(by_ratio(&anisotropic).iter().all(|b| (*b != [0.0; 3]) == learned), "{scale}");
     }
 }
