@@ -47,7 +47,7 @@ keys! {
     DESCRIPTION = text("description", DefaultValue::Text(""), "description in one line");
     SEED = whole("seed", 0, u64::MAX >> 1, DefaultValue::Whole(1), "seed of every random choice");
     FRICTION = number("friction", "", Interval::FROM_ZERO_TO_INFINITY, Words("none"), "friction coefficient of every phase that does not set it, except a gas");
-    PRESSURE = number("pressure", "Pa", Interval::POSITIVE, Words("none"), "stress target of every normal component that a phase controls, all equal before; stresses of until that equal them follow, or must be below 1 % of them");
+    PRESSURE = number("pressure", "Pa", Interval::POSITIVE, Words("none"), "stress at which the path is held: target of every normal component that has one, all equal before; bounds of until that equal them follow, others above 1 % are refused");
 
     START = form("start", "a table with the packing to start from", Words("none: the path begins with a gas"), "[start]: a packing to start from");
     START_PACKING = text("start.packing", Required, "file with the packing, by its path from this file: a recording, CSV, LAMMPS or YADE; excludes [grains] and a gas");

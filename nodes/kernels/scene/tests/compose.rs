@@ -147,7 +147,7 @@ fn phases_within_a_cycle_are_found_by_name_too() {
 
 #[test]
 fn a_component_of_a_servo_is_one_value() {
-    let set = "phase.load.control={ xx = { rate = -1 }, yy = 'held' }";
+    let set = "phase.load.control={xx={rate=-1},yy='held'}";
     let toml = with("demo", set).unwrap().toml;
     let expected = "control = { xx = { rate = -1.0 }, yy = \"held\", zz = { stress = 50000.0 }, ";
     assert!(toml.contains(expected), "{toml}");

@@ -57,15 +57,13 @@ keys! {
 
 fn take<T: Default + DeserializeOwned>(
     table: &mut Table,
-    place: &str,
+    at: &str,
     key: &str,
     form: &str,
 ) -> Result<T, Failure> {
     let Some(value) = table.remove(key) else { return Ok(T::default()) };
-    value
-        .clone()
-        .try_into()
-        .map_err(|_| Failure::usage(format!("{place}{key} is {value}: it must be {form}")))
+    let fault = |_| Failure::usage(format!("{at}{key} is {value}: it must be {form}"));
+    value.clone().try_into().map_err(fault)
 }
 
 fn refuse_unknown(table: &Table, place: &str) -> Result<(), Failure> {

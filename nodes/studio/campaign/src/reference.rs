@@ -29,10 +29,8 @@ mod tests {
             std::fs::write(path, reference()).unwrap();
         }
         let bless = "GRAINLAB_BLESS=1 cargo test --release -p grainlab_campaign page_beside";
-        assert!(
-            std::fs::read_to_string(path).unwrap() == reference(),
-            "{path} is out of date: {bless} writes it"
-        );
+        let page = std::fs::read_to_string(path).unwrap();
+        assert!(page == reference(), "{path} is out of date: {bless} writes it");
     }
 
     #[test]
