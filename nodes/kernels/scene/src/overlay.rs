@@ -113,8 +113,9 @@ fn change_phase(phases: Option<&mut Vec<Value>>, pattern: &str, change: Value, f
                 merge(phase, own, &place, faults);
             });
             for (key, _) in reached.into_iter().filter(|(_, has)| !has) {
-                let known = KEYS.iter().filter_map(|k| k.path.strip_prefix("phase."));
-                let hint = nearest(&key, known).map(|k| hint(&k)).unwrap_or_default();
+                let known: Vec<&str> = KEYS.iter().filter_map(|k| k.path.strip_prefix("phase.")).collect();
+                let meant = nearest(&key, known.iter().copied()).filter(|_| !known.contains(&&*key));
+                let hint = meant.map(|k| hint(&k)).unwrap_or_default();
                 let message = format!("no phase of this pattern has the key{hint}; to add it, name a phase");
                 faults.push(Fault { place: format!("{place}.{key}"), message });
             }
