@@ -9,6 +9,9 @@ use toml::{Table, Value};
 /// Stress over the held one up to which a bound means "none", as in a relaxation, and is not part of the loading.
 const NEGLIGIBLE: f64 = 0.01;
 
+/// The stress targets of normal components.
+const TARGETS: [&str; 3] = [".control.xx.stress", ".control.yy.stress", ".control.zz.stress"];
+
 /// Called with a phase, a key in it, its stress, and the value of the key.
 type Visit<'a> = &'a mut dyn FnMut(&str, &str, f64, &mut Value);
 
@@ -20,11 +23,11 @@ pub(crate) fn apply(scene: &mut Table) -> Vec<Fault> {
     let Some(pressure) = wanted else { return Vec::new() };
     scene.remove(PRESSURE.name());
     let fault = |message| Fault { place: PRESSURE.name().into(), message };
-    let mut none = Vec::new();
-    let phases = scene.get_mut("phase").and_then(Value::as_array_mut).unwrap_or(&mut none);
+    let mut none = Value::Array(Vec::new());
+    let path = scene.get_mut("phase").unwrap_or(&mut none);
     let (mut held, mut found) = (Vec::new(), Vec::new());
-    each(phases, &mut |phase, key, stress, _| {
-        if is_target(key) && !held.contains(&stress) {
+    each("", "", path, &mut |phase, key, stress, _| {
+        if TARGETS.contains(&key) && !held.contains(&stress) {
             held.push(stress);
             found.push(format!("{stress} Pa in {phase}"));
         }
@@ -36,8 +39,8 @@ pub(crate) fn apply(scene: &mut Table) -> Vec<Fault> {
         return vec![fault(message + "; set phase.NAME.control of each phase instead")];
     };
     let (mut faults, named) = (Vec::new(), format!("{}kPa", held / 1e3));
-    each(phases, &mut |phase, key, stress, value| {
-        if is_target(key) || key.starts_with(".until") && stress == held {
+    each("", "", path, &mut |phase, key, stress, value| {
+        if TARGETS.contains(&key) || key.starts_with(".until") && stress == held {
             *value = pressure.into();
             if phase.contains(&named) && pressure != held {
                 faults.push(fault(format!("is not that in the name of phase {phase}: give it another name")));
@@ -52,30 +55,21 @@ pub(crate) fn apply(scene: &mut Table) -> Vec<Fault> {
     faults
 }
 
-fn is_target(key: &str) -> bool {
-    [".control.xx.stress", ".control.yy.stress", ".control.zz.stress"].contains(&key)
-}
-
-/// Visits every stress target and every bound of `until` on a stress, in cycles too.
-fn each(phases: &mut [Value], visit: Visit<'_>) {
-    for phase in phases {
-        let name = phase.as_table().map(|table| name_of(table).to_owned()).unwrap_or_default();
-        below(&name, "", phase, visit);
-    }
-}
-
-fn below(phase: &str, place: &str, value: &mut Value, visit: Visit<'_>) {
+/// Visits every stress target and every bound of `until` on a stress below a place in a phase, in cycles too.
+fn each(phase: &str, place: &str, value: &mut Value, visit: Visit<'_>) {
+    let is_stress = [".stress", ".pressure_", ".deviator_"].iter().any(|part| place.contains(part));
     match value {
-        Value::Array(body) if place == ".phase" => each(body, visit),
+        Value::Array(phases) if matches!(place, "" | ".phase") => {
+            for phase in phases {
+                let name = phase.as_table().map(|table| name_of(table).to_owned()).unwrap_or_default();
+                each(&name, "", phase, visit);
+            }
+        }
         Value::Table(inner) => {
-            inner.iter_mut().for_each(|(key, value)| below(phase, &format!("{place}.{key}"), value, visit));
+            inner.iter_mut().for_each(|(key, value)| each(phase, &format!("{place}.{key}"), value, visit));
         }
         value => {
-            let is_stress = [".stress", ".pressure_", ".deviator_"].iter().any(|part| place.contains(part));
-            as_number(value)
-                .filter(|_| is_stress)
-                .into_iter()
-                .for_each(|stress| visit(phase, place, stress, value));
+            as_number(value).filter(|_| is_stress).into_iter().for_each(|s| visit(phase, place, s, value));
         }
     }
 }

@@ -53,6 +53,9 @@ fn single_runs_and_tables_add_members() {
     assert_eq!(names(&campaign), ["s1-phase.rest.drag=1000-7", "s3-friction=0.2-1", "mine-2"]);
     assert_eq!(campaign.members[2].sets(), ["name=n"]);
     assert_eq!(campaign.members[2].scene, folder.path().join("mine.toml").to_string_lossy());
+    std::fs::write(folder.path().join("runs.csv"), "seed,scene,friction,friction\n1,s3,0.2,0.3\n").unwrap();
+    let error = Campaign::parse(text, folder.path()).unwrap_err().to_string();
+    assert!(error.contains("runs.csv: the column friction occurs twice"), "{error}");
 }
 
 #[test]
@@ -105,12 +108,4 @@ fn faults_are_named() {
         let error = parse(text).unwrap_err();
         assert!(error.contains(named), "{text}: {error}");
     }
-}
-
-#[test]
-fn a_column_of_a_table_that_occurs_twice_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("runs.csv"), "seed,scene,friction,friction\n1,s3,0.2,0.3\n").unwrap();
-    let error = Campaign::parse("name = 'x'\ntable = 'runs.csv'", folder.path()).unwrap_err().to_string();
-    assert!(error.contains("runs.csv: the column friction occurs twice"), "{error}");
 }
