@@ -12,20 +12,14 @@ use std::path::{Path, PathBuf};
 const EXAMPLES: &str = "\
 A campaign file:
   name = \"friction\"
-  scenes = [\"s1\", \"mine.toml\"]             # built in, or files beside this one
+  scenes = [\"demo\", \"mine.toml\"]           # built in, or files beside this one
   seeds = { first = 1, count = 5 }          # or a list
-  set = { grains.count = 500 }              # keys of every scene
   vary = { friction = [0.05, 0.1, 0.3] }    # every combination is run with every seed
-  launch = \"demo\"                           # launch file; arguments = { simd = \"best\" }
-  table = \"runs.csv\"                        # or single runs: columns scene, seed, and keys
-  record = \"all\"                            # every message; without it packings and results; report = true: a page each
-  [[group]]                                 # other scenes, seeds and values
-  scenes = [\"s2\"]
-  seeds = [7]
-  set = { phase.rest.drag = 1e3 }
+  set = { grains.count = 500 }              # keys of every scene
 
-Each member is a folder with a recorded run. Started again, the command leaves finished members as they are and continues
-interrupted ones; the results are the same to the last byte.
+`grainlab campaign keys` describes every key: values in step, groups, tables of runs. Each member is a folder with a
+recorded run. Started again, the command leaves finished members as they are and continues interrupted ones; the results are
+the same to the last byte.
 
 Examples:
   grainlab campaign friction.toml
@@ -56,6 +50,8 @@ enum Command {
     Status(Place),
     /// Write the states of all finished members as states.csv and states.parquet, from their recordings
     Gather(Place),
+    /// Show every key of the file of a campaign, as Markdown
+    Keys,
 }
 
 /// A campaign that began.
@@ -75,6 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             let _lock = folder.lock()?;
             gather::run(&campaign, &folder)
         }
+        (Some(Command::Keys), _) => print(&grainlab_campaign::reference()).map(|()| Exit::Done),
         (None, Some(file)) => {
             let mut campaign = Campaign::read(file)?;
             let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));

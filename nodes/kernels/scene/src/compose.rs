@@ -3,14 +3,15 @@
 //! Tables are merged key by key, every other value replaces that of the base, and `"unset"` removes it. A
 //! path is an array, so `[[phase]]` replaces it whole; `[phase.NAME]` changes the phase of that name,
 //! `remove` leaves phases out and `[[append]]` adds some, in this order. Keys set on a command line are
-//! merged in the same way.
+//! merged in the same way. `pressure` comes last in each layer.
 
 use crate::built_in::built_in;
 use crate::contact;
-use crate::fault::SceneError;
+use crate::fault::{Fault, SceneError};
 use crate::model::{Scene, Start};
 use crate::overlay::overlay;
 use crate::parse::{Resolved, read};
+use crate::pressure;
 use crate::reader::{Reader, as_number};
 use grainlab_core::Packing;
 use grainlab_core::contact::ContactLaw;
@@ -93,9 +94,9 @@ impl Draft {
             |key: &'static str| Some((key, layers.iter().find(|(_, table)| has_key(table, key))?.0.clone()));
         let start_from = FILES.into_iter().filter_map(named).collect();
         let mut table = layers.pop().unwrap_or_default().1;
-        let mut faults = Vec::new();
+        let mut faults = pressure::apply(&mut table);
         for (_, layer) in layers.into_iter().rev() {
-            faults.extend(overlay(&mut table, layer));
+            faults.extend(merge(&mut table, layer));
         }
         SceneError::of(faults).map(|()| Draft { table, start_from, overrides: Vec::new() })
     }
@@ -104,7 +105,7 @@ impl Draft {
     pub fn set(&mut self, keys: Table) -> Result<(), SceneError> {
         named(&keys, "", &mut self.overrides);
         self.start_from.retain(|key, _| !has_key(&keys, key));
-        SceneError::of(overlay(&mut self.table, keys))
+        SceneError::of(merge(&mut self.table, keys))
     }
 
     /// The packing that the scene starts from, if any: to be read and given to [`Draft::resolve_from`]. Paths are relative to the
@@ -173,6 +174,13 @@ impl Draft {
         }
         table
     }
+}
+
+/// Merges a layer; its `pressure` comes last, so that it is that of the phases that there are then.
+fn merge(table: &mut Table, layer: Table) -> Vec<Fault> {
+    let mut faults = overlay(table, layer);
+    faults.extend(pressure::apply(table));
+    faults
 }
 
 /// Adds the keys of a table with their values as `KEY=VALUE`.

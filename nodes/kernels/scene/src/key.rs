@@ -92,9 +92,6 @@ impl fmt::Display for Interval {
         use Bound::{Excluded, Included};
         match (self.low, self.high) {
             (Included(low), Included(high)) => write!(f, "from {low} to {high}"),
-            (Included(low), Excluded(high)) if high.is_finite() => {
-                write!(f, "{low} or more, below {high}")
-            }
             (Excluded(low), Included(high)) => write!(f, "more than {low}, at most {high}"),
             (Excluded(low), Excluded(high)) if low.is_finite() && high.is_finite() => {
                 write!(f, "more than {low}, below {high}")
@@ -112,6 +109,11 @@ impl Key {
     /// Name in its table.
     pub fn name(&self) -> &'static str {
         self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+
+    /// True for a condition that ends a phase; `hold` and `timeout` are none.
+    pub(crate) fn is_condition(&self) -> bool {
+        self.path.starts_with("phase.until.") && !matches!(self.default, DefaultValue::Number(_))
     }
 
     /// The requirement on its value: "a number in m, more than 0".

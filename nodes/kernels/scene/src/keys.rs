@@ -47,6 +47,7 @@ keys! {
     DESCRIPTION = text("description", DefaultValue::Text(""), "description in one line");
     SEED = whole("seed", 0, u64::MAX >> 1, DefaultValue::Whole(1), "seed of every random choice");
     FRICTION = number("friction", "", Interval::FROM_ZERO_TO_INFINITY, Words("none"), "friction coefficient of every phase that does not set it, except a gas");
+    PRESSURE = number("pressure", "Pa", Interval::POSITIVE, Words("none"), "stress at which the path is held: target of every normal component that has one, all equal before; bounds of until that equal them follow, others above 1 % are refused");
 
     START = form("start", "a table with the packing to start from", Words("none: the path begins with a gas"), "[start]: a packing to start from");
     START_PACKING = text("start.packing", Required, "file with the packing, by its path from this file: a recording, CSV, LAMMPS or YADE; excludes [grains] and a gas");
@@ -119,6 +120,9 @@ keys! {
     HOLD = Key { kinds: STEPS, ..number("phase.until.hold", "s", Interval::FROM_ZERO, DefaultValue::Number(0.0), "simulated time for which all conditions must hold; below timeout") };
     TIMEOUT = Key { kinds: STEPS, ..number("phase.until.timeout", "s", Interval::POSITIVE, DefaultValue::Number(1.0), "simulated time after which the phase, and with it the run, has failed") };
 }
+
+/// Keys of a phase with contacts, which an event-driven gas lacks.
+pub(crate) static CONTACT_KEYS: [&Key; 4] = [&PHASE_FRICTION, &DAMPING, &DRAG, &SPIN_DRAG];
 
 /// Every key of the format, in the order of the reference.
 pub static KEYS: LazyLock<Vec<&'static Key>> = LazyLock::new(|| {

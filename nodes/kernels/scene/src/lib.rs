@@ -2,7 +2,7 @@
 //!
 //! - `model`: the scene as a value
 //! - `keys`: every key of the format, with unit, range and default; `reference`: the same as a page
-//! - `compose`: bases and overrides; `assignment`: `KEY=VALUE`
+//! - `compose`: bases and overrides; `pressure`: one for all phases; `assignment`: `KEY=VALUE`
 //! - `parse`, `phases`, `servo`, `until`: a table to [`Scene`], with every fault reported at once
 //! - `canonical`: the scene as text again
 //! - `ends`: phases that cannot end; `notes`: what a reader should know ([`Scene::notes`])
@@ -28,6 +28,7 @@ mod parse;
 mod path;
 mod phase_share;
 mod phases;
+mod pressure;
 mod reader;
 mod record;
 mod reference;

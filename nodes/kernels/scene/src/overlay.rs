@@ -1,8 +1,10 @@
 //! Merging one table over another.
 
 use crate::fault::Fault;
+use crate::keys::{CONTACT_KEYS, KEYS};
 use crate::nearest::{hint, nearest};
 use crate::reader::kind;
+use std::collections::BTreeMap;
 use toml::{Table, Value};
 
 /// Removes a key of the base.
@@ -59,6 +61,34 @@ fn is_component(place: &str) -> bool {
     place.rsplit('.').nth(1) == Some("control")
 }
 
+/// Keeps the keys of a change for which `has` is true.
+fn retain(change: &mut Table, place: &str, has: &mut dyn FnMut(&str, &Value) -> bool) {
+    change.retain(|key, value| match value {
+        Value::Table(inner) if !place.ends_with("control.") => {
+            retain(inner, &format!("{place}{key}."), has);
+            !inner.is_empty()
+        }
+        value => has(&format!("{place}{key}"), value),
+    });
+}
+
+/// True if a phase states a key, or its kind takes it. A condition has no default, so that only a phase that states it has it.
+fn has(phase: &Table, path: &str, value: &Value) -> bool {
+    let (first, rest) = path.split_once('.').unwrap_or((path, ""));
+    let mut rest = rest.split_terminator('.');
+    let is_stated = phase.get(first).and_then(|v| rest.try_fold(v, |v, part| v.get(part))).is_some();
+    if is_stated || value.as_str() == Some(UNSET) {
+        return is_stated;
+    }
+    let word = |key| phase.get(key).and_then(Value::as_str).unwrap_or_default();
+    let is_hard = word("kind") == "gas" && word("method") != "soft";
+    let path = if is_component(path) { "control" } else { path };
+    KEYS.iter().filter(|k| k.path.strip_prefix("phase.") == Some(path)).any(|k| {
+        let is_lacked = k.is_condition() || is_hard && CONTACT_KEYS.iter().any(|c| c.path == k.path);
+        k.kinds.contains(&word("kind")) && !is_lacked
+    })
+}
+
 fn change_phase(phases: Option<&mut Vec<Value>>, pattern: &str, change: Value, faults: &mut Vec<Fault>) {
     let place = format!("phase.{pattern}");
     let Value::Table(change) = change else {
@@ -66,18 +96,35 @@ fn change_phase(phases: Option<&mut Vec<Value>>, pattern: &str, change: Value, f
         faults.push(Fault { place, message });
         return;
     };
-    let (mut found, mut known) = (Vec::new(), Vec::new());
-    if let Some(phases) = phases {
-        known = names(phases);
-        select(phases, pattern, &mut found);
-    }
-    match found.len() {
+    let mut none = Vec::new();
+    let phases = phases.unwrap_or(&mut none);
+    let known = names(phases);
+    match known.iter().filter(|name| matches(pattern, name)).count() {
         0 => faults.push(Fault { place, message: unknown(pattern, &known) }),
-        2.. if !pattern.contains('*') => {
-            let message = format!("{} phases have this name; {pattern}* means all of them", found.len());
+        _ if pattern.contains('*') => {
+            let mut reached: BTreeMap<String, bool> = BTreeMap::new();
+            each(phases, pattern, &mut |phase| {
+                let mut own = change.clone();
+                retain(&mut own, "", &mut |key, value| {
+                    let has = has(phase, key, value);
+                    *reached.entry(key.to_owned()).or_default() |= has;
+                    has
+                });
+                merge(phase, own, &place, faults);
+            });
+            for (key, _) in reached.into_iter().filter(|(_, has)| !has) {
+                let known: Vec<&str> = KEYS.iter().filter_map(|k| k.path.strip_prefix("phase.")).collect();
+                let meant = nearest(&key, known.iter().copied()).filter(|_| !known.contains(&&*key));
+                let hint = meant.map(|k| hint(&k)).unwrap_or_default();
+                let message = format!("no phase of this pattern has the key{hint}; to add it, name a phase");
+                faults.push(Fault { place: format!("{place}.{key}"), message });
+            }
+        }
+        1 => each(phases, pattern, &mut |phase| merge(phase, change.clone(), &place, faults)),
+        found => {
+            let message = format!("{found} phases have this name; {pattern}* means all of them");
             faults.push(Fault { place, message });
         }
-        _ => found.into_iter().for_each(|table| merge(table, change.clone(), &place, faults)),
     }
 }
 
@@ -154,23 +201,20 @@ fn names(phases: &[Value]) -> Vec<String> {
     phases.iter().filter_map(Value::as_table).flat_map(own_and_inner).collect()
 }
 
-/// The phases whose name matches the pattern. A matching cycle is returned without its phases.
-fn select<'a>(phases: &'a mut [Value], pattern: &str, found: &mut Vec<&'a mut Table>) {
+/// Visits the phases whose name matches the pattern, in cycles too.
+fn each(phases: &mut [Value], pattern: &str, visit: &mut dyn FnMut(&mut Table)) {
     for table in phases.iter_mut().filter_map(Value::as_table_mut) {
-        if matches(pattern, name_of(table)) && !(pattern.contains('*') && is_cycle(table)) {
-            found.push(table);
-        } else if let Some(body) = path(table) {
-            select(body, pattern, found);
+        if matches(pattern, name_of(table)) {
+            visit(table);
+        }
+        if let Some(body) = path(table) {
+            each(body, pattern, visit);
         }
     }
 }
 
-fn is_cycle(table: &Table) -> bool {
-    table.get("kind").and_then(Value::as_str) == Some("cycle")
-}
-
 /// The name of a phase; its kind if it has no name.
-fn name_of(table: &Table) -> &str {
+pub(crate) fn name_of(table: &Table) -> &str {
     table.get("name").or(table.get("kind")).and_then(Value::as_str).unwrap_or_default()
 }
 

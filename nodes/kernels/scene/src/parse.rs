@@ -40,6 +40,8 @@ fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
             r.fault(key.name(), "changes a base, and this scene has none");
         }
     }
+    // A number was applied to the phases.
+    r.optional(&keys::PRESSURE);
     let name = r.text(&keys::NAME, None);
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
     if r.has(&keys::NAME) && name.is_empty() || !name.chars().all(plain) {

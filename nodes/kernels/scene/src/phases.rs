@@ -205,20 +205,15 @@ fn friction(r: &mut Reader<'_>, gas: bool, inherited: &mut Inherited<'_>) -> f64
 
 /// An event-driven gas has no contact law.
 fn refuse_contacts(r: &mut Reader<'_>, phase: &Phase) {
-    let contacts = [
-        (&keys::PHASE_FRICTION, phase.friction),
-        (&keys::DAMPING, phase.damping),
-        (&keys::DRAG, phase.drag),
-        (&keys::SPIN_DRAG, phase.spin_drag),
-    ];
-    for (key, value) in contacts {
+    let values = [phase.friction, phase.damping, phase.drag, phase.spin_drag];
+    for (key, value) in keys::CONTACT_KEYS.into_iter().zip(values) {
         if value != 0.0 {
             let message =
                 format!("is {value}, but an event-driven gas is elastic and frictionless; leave it out");
             r.fault(key.name(), message);
         }
     }
-    r.leave_out(&contacts.map(|(key, _)| key));
+    r.leave_out(&keys::CONTACT_KEYS);
     let needs_force = |c: &Condition| {
         let (Condition::AtLeast(measure, _) | Condition::AtMost(measure, _)) = c else { return false };
         matches!(measure, Measure::Pressure | Measure::Deviator | Measure::Stress(_) | Measure::Unbalanced)

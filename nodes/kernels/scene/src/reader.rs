@@ -241,7 +241,7 @@ fn elsewhere(name: &str) -> String {
 }
 
 /// A number that the key takes.
-fn number_of(key: &Key, value: &Value) -> Option<f64> {
+pub(crate) fn number_of(key: &Key, value: &Value) -> Option<f64> {
     as_number(value).filter(|v| match key.domain {
         Domain::Number(range) => range.contains(*v),
         _ => v.is_finite(),

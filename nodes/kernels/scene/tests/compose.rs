@@ -1,6 +1,7 @@
 //! Scenes from a base: the composed scenes, and the faults of invalid ones.
 
-use grainlab_scene::{BUILT_IN, Draft, Scene, SceneError, Source, assignment, built_in};
+use grainlab_core::ComponentControl;
+use grainlab_scene::{BUILT_IN, Draft, Phase, Resolved, Scene, SceneError, Source, assignment, built_in};
 
 /// The scenes as written out, without a base.
 const FLAT_S2: &str = include_str!("../../../../tests/golden/scenes/flat/s2.toml");
@@ -146,9 +147,8 @@ fn phases_within_a_cycle_are_found_by_name_too() {
 
 #[test]
 fn a_component_of_a_servo_is_one_value() {
-    let mut draft = compose(&[], "demo").unwrap();
-    draft.set(assignment("phase.load.control={ xx = { rate = -1 }, yy = 'held' }").unwrap()).unwrap();
-    let toml = draft.resolve().unwrap().toml;
+    let set = "phase.load.control={xx={rate=-1},yy='held'}";
+    let toml = with("demo", set).unwrap().toml;
     let expected = "control = { xx = { rate = -1.0 }, yy = \"held\", zz = { stress = 50000.0 }, ";
     assert!(toml.contains(expected), "{toml}");
 }
@@ -165,10 +165,6 @@ fn a_circle_of_bases_is_named_and_so_is_a_base_that_is_not_there() {
 
 #[test]
 fn an_unknown_key_is_named_with_a_suggestion() {
-    let set = |text: &str| {
-        let mut draft = compose(&[], "s2").unwrap();
-        faults(draft.set(assignment(text).unwrap()).map(|()| draft))
-    };
     for (text, expected) in [
         ("grains.cuont=500", "grains.cuont: unknown key (did you mean count?)"),
         ("count=500", "count: unknown key (did you mean grains.count?)"),
@@ -193,17 +189,71 @@ fn an_unknown_key_is_named_with_a_suggestion() {
         ),
         ("material.poisson_ratio=0.6", "material.poisson_ratio: is 0.6; it must be a number, from 0 to 0.5"),
     ] {
-        let found = set(text);
+        let found = with("s2", text).unwrap_err().to_string();
         assert!(found.contains(expected), "{text}: {found}");
     }
 }
 
 #[test]
 fn a_friction_that_no_phase_takes_is_a_fault() {
-    let mut draft = compose(&[], "demo").unwrap();
-    draft.set(assignment("phase.*.friction=0.3").unwrap()).unwrap();
-    let error = draft.resolve().unwrap_err().to_string();
+    let error = with("demo", "phase.*.friction=0.3").unwrap_err().to_string();
     assert!(error.contains("friction: is taken by no phase"), "{error}");
+}
+
+/// A built-in scene with keys set one after another.
+fn with(name: &str, sets: &str) -> Result<Resolved, SceneError> {
+    let mut draft = compose(&[], name)?;
+    sets.split(' ').try_for_each(|set| draft.set(assignment(set)?))?;
+    draft.resolve()
+}
+
+#[test]
+fn a_star_reaches_every_phase_that_has_the_key_and_no_other() {
+    let phases = |set| with("demo", set).unwrap().scene.phases;
+    let drags: Vec<f64> = phases("phase.*.drag=7").iter().map(|p| p.drag).collect();
+    assert_eq!((drags[0], &drags[1..]), (0.0, &[7.0; 9][..]), "an event-driven gas has no drag");
+    let limits = phases("phase.*.rate_limit=5");
+    assert_eq!(limits.iter().filter(|p| p.kind.rate_limit() == Some(5.0)).count(), 5);
+    let conditions = |phases: Vec<Phase>| phases.iter().map(|p| p.until.all.len()).sum::<usize>();
+    let all = conditions(scene(&[], "demo").phases);
+    assert_eq!(conditions(phases("phase.*.until.unbalanced=1e-2")), all);
+    assert_eq!(conditions(phases("phase.*.until.unbalanced=unset")), all - 3);
+    for (set, hint) in [
+        ("phase.*.darg=1", " (did you mean drag?)"),
+        ("phase.*.until.deviator_above=1", ""),
+        ("phase.*.times=2", ""),
+        ("phase.r*.rate_limit=1", ""),
+    ] {
+        let (found, key) = (with("demo", set).unwrap_err().to_string(), set.split('=').next().unwrap());
+        assert!(found.contains(&format!("{key}: no phase of this pattern has the key{hint};")), "{found}");
+    }
+}
+
+#[test]
+fn a_pressure_is_that_of_every_phase_that_holds_one_and_of_the_bounds_that_equal_it() {
+    let body = |toml: &str| toml.split_once("seed").unwrap().1.to_owned();
+    let pressed = "phase.pure-shear.until.pressure_above=50e3";
+    let own = with("demo", pressed).unwrap().toml;
+    let changed = body(&with("demo", &format!("{pressed} pressure=2e5")).unwrap().toml);
+    assert_eq!(changed, body(&own.replace("50000.0", "200000.0")), "as written out by hand");
+    assert!(changed.contains("pressure_below = 10.0") && changed.contains("pressure_above = 200000.0"));
+    let over = with("demo", "pressure=20e3 phase.load.control.zz.stress=70e3").unwrap().scene;
+    assert_eq!(over.phases[8].controls()[1..3], [20e3, 70e3].map(ComponentControl::Stress));
+    for (sets, expected) in [
+        ("pressure=-1", "pressure: is -1; it must be a number in Pa, more than 0"),
+        (
+            "phase.triax.until.pressure_above=40e3 pressure=2e5",
+            "of 40000 Pa, beside 50000 Pa elsewhere, in phase.triax.until.pressure_above;",
+        ),
+        ("phase.load.control.zz.stress=60e3 pressure=2e5", "50000 Pa in isotropic, 60000 Pa in load;"),
+        ("phase.load.control.xy.stress=10e3 pressure=2e5", "in phase.load.control.xy.stress;"),
+        ("phase.load.name=load-50kPa pressure=2e5", "is not that in the name of phase load-50kPa"),
+        ("remove=['isotropic','extend','triax','load','settle'] pressure=2e5", "the scene has none"),
+        ("pressure=2e5 pressure=unset", "pressure: is unset, but there is none"),
+    ] {
+        let found = with("demo", sets).unwrap_err().to_string();
+        assert!(found.contains(expected), "{sets}: {found}");
+    }
 }
 
 #[test]

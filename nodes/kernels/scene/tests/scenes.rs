@@ -4,7 +4,7 @@ use grainlab_core::contact::{ContactLaw, RollingResistance};
 use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_scene::{
     Condition, Draft, GasMethod, Measure, Observation, PathState, PhaseEnded, PhaseKind, Record, Scene,
-    Sizes, Species,
+    Sizes, Species, assignment,
 };
 
 const GOOD: &str = r#"
@@ -288,10 +288,7 @@ fn a_run_that_starts_from_a_packing_takes_its_grains_and_its_material() {
     assert_eq!((scene.material, scene.start.unwrap().packing.as_str()), (packing.material, "p.csv"));
     let gas = "[[phase]]\nkind = 'gas'\nrate = -1\nuntil = { elapsed = 1e-6 }\n";
     for (text, expected) in [
-        (
-            format!("{head}[grains]\ncount = 2\ndiameter = 1\n{rest}"),
-            "grains: is there, but the grains are those",
-        ),
+        (format!("{head}[grains]\ncount = 2\n{rest}"), "grains: is there, but the grains are those"),
         (format!("{head}[material]\ndensity = 3000\n{rest}"), "material.density: is 3000, but the packing"),
         (format!("{head}{gas}{rest}"), "a path that starts from a packing has no gas phase"),
         (format!("{head}{}", rest.replace("0.1", "0.0")), "has no friction, and the packing"),
@@ -305,14 +302,12 @@ fn a_run_that_starts_from_a_packing_takes_its_grains_and_its_material() {
     let unknown = draft.resolve_from(&packing).unwrap_err().to_string();
     assert!(unknown.contains("start.foo: unknown key"), "{unknown}");
     let mut draft = Draft::of_text(&format!("{head}{rest}")).unwrap();
-    draft.set(grainlab_scene::assignment("start.contact_columns=[\"a\"]").unwrap()).unwrap();
+    draft.set(assignment("start.contact_columns=[\"a\"]").unwrap()).unwrap();
     draft.start_at("/whole/p.csv", None, 5);
     let columns = draft.resolve_from(&packing).unwrap_err().to_string();
     assert!(columns.contains("start.contact_columns: is an array; it must be"), "{columns}");
     let mut draft = Draft::of_text(&format!("{head}contact_forces = 'f.dump'\n{rest}")).unwrap();
-    draft
-        .set(grainlab_scene::assignment("start.contact_columns=[\"a\",\"b\",\"x\",\"y\",\"z\"]").unwrap())
-        .unwrap();
+    draft.set(assignment("start.contact_columns=['a','b','x','y','z']").unwrap()).unwrap();
     let file = draft.start().unwrap();
     let forces = (file.contact_forces.as_deref(), draft.source_of("contact_forces"));
     assert_eq!(forces, (Some("f.dump"), Some("scene")));
@@ -324,8 +319,8 @@ fn a_run_that_starts_from_a_packing_takes_its_grains_and_its_material() {
     assert_eq!(first.scene.start.unwrap().contact_forces.as_deref(), Some("/whole/f.dump"));
     let other =
         Packing { contacts: vec![Contact { normal_force: 2e-4, ..packing.contacts[0] }], ..packing.clone() };
-    let error =
-        Draft::of_text(&format!("{head}{rest}")).unwrap().resolve_from(&other).unwrap_err().to_string();
+    let own = Draft::of_text(&format!("{head}{rest}")).unwrap();
+    let error = own.resolve_from(&other).unwrap_err().to_string();
     assert!(error.contains("start.packing: normal forces of the packing differ by"), "{error}");
     let unread = Scene::parse(&format!("{head}{rest}")).unwrap_err().to_string();
     assert!(unread.contains("start: names a packing, which has not been read"), "{unread}");

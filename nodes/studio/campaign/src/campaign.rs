@@ -1,11 +1,11 @@
 //! The members of a campaign, from its file.
 
-use crate::file::{CampaignFile, Group, Record};
+use crate::file::{CampaignFile, Record};
 use crate::member::{Member, Setting};
 use grainlab_console::Failure;
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -55,43 +55,44 @@ impl Campaign {
 
     /// The campaign of a text, whose paths are relative to `folder`.
     pub fn parse(text: &str, folder: &Path) -> Result<Self, Failure> {
-        let file: CampaignFile =
-            toml::from_str(text).map_err(|e| Failure::usage(e.to_string().trim_end()))?;
-        check_name(&file.name)?;
-        let first = Group {
-            scenes: file.scenes.clone(),
-            seeds: file.seeds.clone(),
-            vary: file.vary.clone(),
-            ..Group::default()
-        };
-        let mut members = product(&first, &file.set, folder)?;
-        for group in &file.group {
-            members.extend(product(group, &file.set, folder)?);
+        let table: Table =
+            text.parse().map_err(|e: toml::de::Error| Failure::usage(e.to_string().trim_end()))?;
+        let file = CampaignFile::read(table, "")?;
+        let common = flat(&file.set);
+        let mut members = product(&file, &common, folder, "")?;
+        for (n, group) in file.group.into_iter().enumerate() {
+            let place = format!("group[{n}].");
+            members.extend(product(&CampaignFile::read(group, &place)?, &common, folder, &place)?);
         }
         if let Some(table) = &file.table {
-            members.extend(table_of(&folder.join(table), &file.set, folder)?);
+            members.extend(table_of(&folder.join(table), &common, folder)?);
         }
-        if members.is_empty() {
-            return Err(Failure::usage("no members: name scenes and seeds, a [[group]], or a table"));
-        }
-        if members.len() > MOST {
-            return Err(Failure::usage(format!("{} members, more than {MOST}", members.len())));
-        }
-        if let Some(long) = members.iter().find(|m| m.name.len() > MAX_NAME_LENGTH) {
-            return Err(Failure::usage(format!(
-                "the name of member {} has {} characters, more than {MAX_NAME_LENGTH}: put its settings into a scene",
-                long.name,
-                long.name.len()
-            )));
-        }
-        if members.iter().any(|m| m.set.iter().any(|s| s.key == "seed")) {
-            return Err(Failure::usage(
-                "seed is no key to set: name it in seeds, or as the seed of a member",
-            ));
-        }
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        let sets_seed = members.iter().any(|m| m.set.iter().any(|s| s.key == "seed"));
+        let long = members.iter().find(|m| m.name.len() > MAX_NAME_LENGTH);
         let mut names = BTreeSet::new();
-        if let Some(twice) = members.iter().find(|m| !names.insert(m.name.as_str())) {
-            return Err(Failure::usage(format!("two members are called {}", twice.name)));
+        let twice = members.iter().find(|m| !names.insert(m.name.as_str()));
+        let fault = match (long.map(|m| &m.name), twice) {
+            _ if file.name.is_empty() || !file.name.chars().all(is_plain) => {
+                format!("name is {:?}: letters, digits, _ and - are allowed", file.name)
+            }
+            _ if members.is_empty() => {
+                "no members: name scenes and seeds, a [[group]], or a table".to_owned()
+            }
+            _ if members.len() > MOST => format!("{} members, more than {MOST}", members.len()),
+            _ if sets_seed => {
+                "seed is no key to set: name it in seeds, or as the seed of a member".to_owned()
+            }
+            (Some(long), _) => {
+                format!(
+                    "the name of member {long} is longer than {MAX_NAME_LENGTH}: put its settings into a scene"
+                )
+            }
+            (_, Some(twice)) => format!("two members are called {}", twice.name),
+            _ => String::new(),
+        };
+        if !fault.is_empty() {
+            return Err(Failure::usage(fault));
         }
         Ok(Self {
             name: file.name,
@@ -111,67 +112,75 @@ impl Campaign {
     }
 }
 
-fn check_name(name: &str) -> Result<(), Failure> {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if !name.is_empty() && name.chars().all(is_plain) {
-        return Ok(());
-    }
-    Err(Failure::usage(format!("name is {name:?}: letters, digits, _ and - are allowed")))
-}
-
 /// The whole path of a file beside the campaign; any other name is that of something built in.
 fn found(name: &str, folder: &Path) -> String {
     let beside: PathBuf = folder.join(name);
     if beside.is_file() { beside.to_string_lossy().into_owned() } else { name.to_owned() }
 }
 
-/// Scenes × values × seeds.
-fn product(group: &Group, common: &Table, folder: &Path) -> Result<Vec<Member>, Failure> {
-    let seeds = group.seeds.as_ref().map(|seeds| seeds.all(MOST + 1)).unwrap_or_default();
-    if group.scenes.is_empty() != seeds.is_empty() {
-        return Err(Failure::usage("scenes and seeds: both are needed, and neither may be empty"));
+/// Scenes × values × seeds of a group, or of the top of the file.
+fn product(file: &CampaignFile, common: &[Setting], folder: &Path, at: &str) -> Result<Vec<Member>, Failure> {
+    let seeds = file.seeds.as_ref().map(|seeds| seeds.all(MOST + 1)).unwrap_or_default();
+    if file.scenes.is_empty() != seeds.is_empty() || file.scenes.is_empty() && !at.is_empty() {
+        let message = format!("{at}scenes and seeds: both are needed, and neither may be empty");
+        return Err(Failure::usage(message));
     }
-    if group.scenes.is_empty()
-        && let Some(key) = flat(&group.vary).first().map(|setting| &setting.key)
-    {
-        return Err(Failure::usage(format!(
-            "vary.{key} has no effect without scenes beside it: name scenes and seeds, or give each row of a table its own values"
-        )));
-    }
-    let mut combinations = vec![flat(&group.set)];
-    for Setting { key, value } in flat(&group.vary) {
-        let values = values(&key, &value)?;
-        let with = |old: &Vec<Setting>, value: &String| {
-            let mut new = old.clone();
-            new.push(Setting { key: key.clone(), value: value.clone() });
-            new
-        };
-        combinations =
-            combinations.iter().flat_map(|old| values.iter().map(move |value| with(old, value))).collect();
+    let mut combinations = vec![if at.is_empty() { Vec::new() } else { flat(&file.set) }];
+    for rows in axes(file, at)? {
+        combinations = combinations
+            .iter()
+            .flat_map(|old| rows.iter().map(move |row| [&old[..], row].concat()))
+            .collect();
         if combinations.len() > MOST {
             return Err(Failure::usage(format!("more than {MOST} combinations of values")));
         }
     }
-    let set = flat(common);
     let mut members = Vec::new();
-    for scene in group.scenes.iter().map(|scene| found(scene, folder)) {
+    for scene in file.scenes.iter().map(|scene| found(scene, folder)) {
         for own in &combinations {
             for seed in &seeds {
-                let all = set.iter().chain(own).cloned().collect();
-                members.push(Member::new(&scene, *seed, all, set.len()));
+                let all = common.iter().chain(own).cloned().collect();
+                members.push(Member::new(&scene, *seed, all, common.len()));
             }
         }
     }
     Ok(members)
 }
 
-/// The values of a key of `vary`.
-fn values(key: &str, text: &str) -> Result<Vec<String>, Failure> {
-    let table: Result<Table, _> = format!("v = {text}").parse();
-    match table.ok().and_then(|mut t| t.remove("v")) {
-        Some(Value::Array(values)) if !values.is_empty() => Ok(values.iter().map(plain).collect()),
-        _ => Err(Failure::usage(format!("vary.{key} is {text}: it takes a list of one value or more"))),
+/// The settings of each row of what varies: each key of `vary` by itself, then each table of `together`.
+fn axes(file: &CampaignFile, at: &str) -> Result<Vec<Vec<Vec<Setting>>>, Failure> {
+    let single = flat(&file.vary).into_iter().map(|s| (format!("{at}vary"), vec![s]));
+    let joint = file.together.iter().enumerate().map(|(n, t)| (format!("{at}together[{n}]"), flat(t)));
+    let (mut axes, mut known) = (Vec::new(), BTreeMap::new());
+    for (table, settings) in single.chain(joint) {
+        let mut rows = Vec::new();
+        for Setting { key, value } in settings {
+            let fault = |why| Err(Failure::usage(format!("{table}.{key} {why}")));
+            if file.scenes.is_empty() {
+                return fault("has no effect without scenes: name scenes and seeds beside it, or add a column to the table".to_owned());
+            }
+            if let Some(other) = known.insert(key.clone(), table.clone()) {
+                return fault(format!("is in {other}, too: name it once"));
+            }
+            let values = format!("v = {value}").parse().map(|mut t: Table| t.remove("v"));
+            let Ok(Some(Value::Array(values))) = values else {
+                return fault(format!("is {value}: it takes a list of one value or more"));
+            };
+            if rows.is_empty() {
+                rows = vec![Vec::new(); values.len()];
+            }
+            if values.is_empty() || rows.len() != values.len() {
+                let (own, other) = (values.len(), rows.len());
+                let why = format!("has {own} values, and another key of its table {other}");
+                return fault(why + ": give each as many, one at least");
+            }
+            for (row, value) in rows.iter_mut().zip(&values) {
+                row.push(Setting { key: key.clone(), value: plain(value) });
+            }
+        }
+        axes.extend(Some(rows).filter(|rows| !rows.is_empty()));
     }
+    Ok(axes)
 }
 
 /// A value for a command line.
@@ -182,60 +191,47 @@ fn plain(value: &Value) -> String {
 /// The keys of nested tables with dots.
 fn flat(table: &Table) -> Vec<Setting> {
     let mut all = Vec::new();
-    for (key, value) in table {
-        // A part with a dot, as in "settle#2.x", needs quotes.
-        let key = if key.contains(['.', '=']) { format!("{key:?}") } else { key.clone() };
-        match value {
-            Value::Table(inner) => {
-                all.extend(flat(inner).into_iter().map(|s| Setting { key: format!("{key}.{}", s.key), ..s }));
-            }
-            value => all.push(Setting { key, value: plain(value) }),
-        }
-    }
+    flatten(table, "", &mut all);
     all
 }
 
+fn flatten(table: &Table, place: &str, all: &mut Vec<Setting>) {
+    for (key, value) in table {
+        // A part with a dot, as in "settle#2.x", needs quotes; at the top such a text is a whole key, as "phase.*.drag".
+        let needs_quotes = !place.is_empty() && key.contains(['.', '=']);
+        let key = if needs_quotes { format!("{place}{key:?}") } else { format!("{place}{key}") };
+        match value {
+            Value::Table(inner) => flatten(inner, &format!("{key}."), all),
+            value => all.push(Setting { key, value: plain(value) }),
+        }
+    }
+}
+
 /// The members in a CSV.
-fn table_of(path: &Path, common: &Table, folder: &Path) -> Result<Vec<Member>, Failure> {
-    let text = input::text(path, input::SETTINGS)
-        .map_err(|e| Failure::failed(format!("table {}: {e}", path.display())))?;
+fn table_of(path: &Path, common: &[Setting], folder: &Path) -> Result<Vec<Member>, Failure> {
+    let fault = |why: String| Failure::usage(format!("table {}: {why}", path.display()));
+    let unread = |e| Failure::failed(format!("table {}: {e}", path.display()));
+    let text = input::text(path, input::SETTINGS).map_err(unread)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let bad = |e: csv::Error| Failure::usage(format!("table {}: {e}", path.display()));
-    let header = reader.headers().map_err(bad)?.clone();
-    if let Some((_, twice)) =
-        header.iter().enumerate().find(|(n, name)| header.iter().take(*n).any(|h| h == *name))
-    {
-        let path = path.display();
-        return Err(Failure::usage(format!(
-            "table {path}: the column {twice} occurs twice: leave one of them"
-        )));
+    let header = reader.headers().map_err(|e| fault(e.to_string()))?.clone();
+    let is_known = |n: usize| header.iter().take(n).any(|name| name == &header[n]);
+    if let Some(twice) = (0..header.len()).find(|n| is_known(*n)) {
+        return Err(fault(format!("the column {} occurs twice: leave one of them", &header[twice])));
     }
     let column = |name: &str| {
-        header
-            .iter()
-            .position(|h| h == name)
-            .ok_or_else(|| Failure::usage(format!("table {} has no column {name}", path.display())))
+        header.iter().position(|h| h == name).ok_or_else(|| fault(format!("it has no column {name}")))
     };
     let (scene, seed) = (column("scene")?, column("seed")?);
     let mut members = Vec::new();
     for (row, record) in reader.records().enumerate() {
-        let record = record.map_err(bad)?;
-        let number = record[seed].parse().map_err(|_| {
-            Failure::usage(format!(
-                "table {}, row {}: seed {:?} is not a number",
-                path.display(),
-                row + 2,
-                &record[seed]
-            ))
-        })?;
-        let own = header
-            .iter()
-            .zip(&record)
-            .enumerate()
-            .filter(|(n, (_, v))| *n != scene && *n != seed && !v.is_empty());
-        let own = own.map(|(_, (key, value))| Setting { key: key.to_owned(), value: value.to_owned() });
-        let set = flat(common).into_iter().chain(own).collect();
-        members.push(Member::new(&found(&record[scene], folder), number, set, flat(common).len()));
+        let record = record.map_err(|e| fault(e.to_string()))?;
+        let unknown = |_| fault(format!("row {}: seed {:?} is not a number", row + 2, &record[seed]));
+        let number = record[seed].parse().map_err(unknown)?;
+        let is_set = |n: &usize| *n != scene && *n != seed && !record[*n].is_empty();
+        let own = (0..header.len()).filter(is_set);
+        let own = own.map(|n| Setting { key: header[n].to_owned(), value: record[n].to_owned() });
+        let set = common.iter().cloned().chain(own).collect();
+        members.push(Member::new(&found(&record[scene], folder), number, set, common.len()));
     }
     Ok(members)
 }

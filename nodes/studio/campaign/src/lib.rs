@@ -1,6 +1,6 @@
 //! Campaigns: many runs, each in a folder of its own.
 //!
-//! - [`Campaign`]: the members, from a file; [`Member`]: one run
+//! - [`Campaign`]: the members, from a file; [`Member`]: one run; [`reference()`]: every key of the file
 //! - [`Folder`]: the folder of every member, and its state
 //! - [`Engine`]: runs the members on this machine or on a cluster, or prints a script that runs them
 //!
@@ -14,8 +14,10 @@ mod file;
 mod folder;
 mod member;
 mod progress;
+mod reference;
 
 pub use campaign::Campaign;
 pub use engine::{Engine, Options};
 pub use folder::{Folder, MemberState};
 pub use member::{Member, Setting};
+pub use reference::reference;

@@ -36,7 +36,10 @@ impl Member {
     pub(crate) fn new(scene: &str, seed: u64, set: Vec<Setting>, common: usize) -> Self {
         let stem = scene.rsplit('/').next().unwrap_or(scene);
         let stem = stem.strip_suffix(".toml").unwrap_or(stem);
-        let own = set.iter().skip(common).map(|s| format!("-{}={}", s.key, s.value));
+        let own = set.iter().skip(common).map(|s| {
+            let key = s.key.strip_prefix("phase.*.").unwrap_or(&s.key);
+            format!("-{key}={}", s.value.strip_suffix(".0").unwrap_or(&s.value))
+        });
         let name: String = std::iter::once(stem.to_owned()).chain(own).chain([format!("-{seed}")]).collect();
         Self { name: file_name(&name), scene: scene.to_owned(), seed, set }
     }
@@ -69,6 +72,9 @@ mod tests {
         );
         assert_eq!(member.name, "uniaxial-friction=0.05-3");
         assert_eq!(member.sets(), ["grains.count=500", "friction=0.05"]);
+        let member =
+            Member::new("s2", 1, vec![set("phase.*.drag", "1000.0"), set("phase.settle-*.x", "1")], 0);
+        assert_eq!(member.name, "s2-drag=1000-phase.settle-_.x=1-1");
         assert_eq!(Member::new("..", 1, vec![set("a", "x/../y")], 0).name, "_..-a=x_.._y-1");
     }
 }

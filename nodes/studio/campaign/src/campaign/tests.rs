@@ -50,9 +50,28 @@ fn single_runs_and_tables_add_members() {
     std::fs::write(folder.path().join("mine.toml"), "base = 's1'").unwrap();
     let text = "name = 'x'\ntable = 'runs.csv'\nset = { name = 'n' }\n[[group]]\nscenes = ['s1']\nseeds = [7]\nset = { phase.rest.drag = 1e3 }";
     let campaign = Campaign::parse(text, folder.path()).unwrap();
-    assert_eq!(names(&campaign), ["s1-phase.rest.drag=1000.0-7", "s3-friction=0.2-1", "mine-2"]);
+    assert_eq!(names(&campaign), ["s1-phase.rest.drag=1000-7", "s3-friction=0.2-1", "mine-2"]);
     assert_eq!(campaign.members[2].sets(), ["name=n"]);
     assert_eq!(campaign.members[2].scene, folder.path().join("mine.toml").to_string_lossy());
+    std::fs::write(folder.path().join("runs.csv"), "seed,scene,friction,friction\n1,s3,0.2,0.3\n").unwrap();
+    let error = Campaign::parse(text, folder.path()).unwrap_err().to_string();
+    assert!(error.contains("runs.csv: the column friction occurs twice"), "{error}");
+}
+
+#[test]
+fn keys_of_one_table_vary_in_step_and_are_combined_with_the_others() {
+    let campaign = parse(
+        "name = 'x'\nscenes = ['s1']\nseeds = [1]\nvary = { friction = [0.1, 0.2] }\n\
+         [[together]]\npressure = [50e3, 1e5]\n'phase.*.drag' = [1, 2]\n[[group]]\nscenes = ['s2']\nseeds = [1]\n\
+         [[group.together]]\nphase.'*'.drag = [3]\nphase.'a.b'.drag = [4]",
+    )
+    .unwrap();
+    let rows = ["drag=1-pressure=50000", "drag=2-pressure=100000"];
+    let each = ["0.1", "0.2"].map(|mu| rows.map(|row| format!("s1-friction={mu}-{row}-1"))).concat();
+    assert_eq!(names(&campaign)[..4], each);
+    assert_eq!(names(&campaign)[4], "s2-drag=3-phase._a.b_.drag=4-1");
+    assert_eq!(campaign.members[0].sets(), ["friction=0.1", "phase.*.drag=1", "pressure=50000.0"]);
+    assert_eq!(campaign.members[4].sets(), ["phase.*.drag=3", "phase.\"a.b\".drag=4"]);
 }
 
 #[test]
@@ -65,7 +84,23 @@ fn faults_are_named() {
         ("name = 'x'\nscenes = ['s1']\nseeds = [1]\nset = { seed = 2 }", "seed is no key to set"),
         ("name = 'x'\nscenes = ['s1']\nseeds = [1, 1]", "two members are called s1-1"),
         ("name = 'x'\nscenes = ['s1']\nseeds = [1]\nvary = { friction = 0.1 }", "vary.friction is 0.1"),
-        ("name = 'x'\nscenes = ['s1']\nseed = [1]", "unknown field `seed`"),
+        ("name = 'x'\nscenes = ['s1']\nseed = [1]", "seed: unknown key; known here: name, description"),
+        ("name = 'x'\nscenes = 's1'", "scenes is \"s1\": it must be a list of texts"),
+        ("name = 'x'\nscenes = ['s1']\nseeds = { first = 1, count = 2, step = 2 }", "seeds is {"),
+        (
+            "name = 'x'\n[[group]]\nseeds = [1]\nscene = ['s1']",
+            "group[0].scene: unknown key; known here: scenes,",
+        ),
+        ("name = 'x'\n[[group]]\nset = { friction = 1 }", "group[0].scenes and seeds: both are needed"),
+        (
+            "name = 'x'\nscenes = ['s1']\nseeds = [1]\n[[together]]\npressure = [1, 2]\nfriction = [1]",
+            "together[0].pressure has 2 values, and another key of its table 1:",
+        ),
+        (
+            "name = 'x'\n[[group]]\nscenes = ['s1']\nseeds = [1]\nvary = { friction = [1] }\n[[group.together]]\nfriction = [2]",
+            "group[0].together[0].friction is in group[0].vary, too",
+        ),
+        ("name = 'x'\nscenes = ['s1']\nseeds = [1]\nvary = { friction = [] }", "vary.friction has 0 values"),
         ("name = 'x'\ntable = 'lost.csv'", "lost.csv"),
         ("name = 'x'\ntable = 'runs.csv'\nvary = { friction = [0.1, 0.2] }", "vary.friction has no effect"),
         ("name = 'x'\nscenes = ['s1']\nseeds = { first = 1, count = 200000 }", "more than 100000"),
@@ -73,12 +108,4 @@ fn faults_are_named() {
         let error = parse(text).unwrap_err();
         assert!(error.contains(named), "{text}: {error}");
     }
-}
-
-#[test]
-fn a_column_of_a_table_that_occurs_twice_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("runs.csv"), "seed,scene,friction,friction\n1,s3,0.2,0.3\n").unwrap();
-    let error = Campaign::parse("name = 'x'\ntable = 'runs.csv'", folder.path()).unwrap_err().to_string();
-    assert!(error.contains("runs.csv: the column friction occurs twice"), "{error}");
 }
