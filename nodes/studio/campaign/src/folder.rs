@@ -4,7 +4,8 @@ use crate::campaign::Campaign;
 use crate::member::Member;
 use grainlab_console::{Failure, json, write_whole};
 use grainlab_msgs::Exit;
-use grainlab_recordings::{Lock, RunState, input, run_state};
+use grainlab_recordings::{AtWork, Lock, RunEnd, RunState, input, run_end, run_state};
+use serde::Serialize;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -14,12 +15,45 @@ use std::time::Duration;
 pub enum MemberState {
     /// It has not begun.
     Waiting,
-    /// It began and is not finished: it can be continued.
+    /// A process is at work on it.
+    Running,
+    /// It began on another host, whose processes cannot be seen from here.
+    Unknown,
+    /// It began, is not finished, and no process is at work on it: it can be continued.
     Interrupted,
     /// It ended with this exit code, and would end so again.
     Failed(u8),
     /// The run is finished, and the recording whole.
     Finished,
+}
+
+/// How far a member came, and why not further.
+#[derive(Clone, Debug, Serialize)]
+pub struct Standing {
+    /// Name of the member.
+    pub name: String,
+    /// Its state in one word.
+    pub state: &'static str,
+    /// Why it is not finished, or what runs it.
+    pub reason: Option<String>,
+    /// Wall time, s: so far, or of its last process.
+    pub seconds: Option<f64>,
+}
+
+impl Standing {
+    /// The words for states.
+    const STATES: [&str; 6] = ["finished", "running", "waiting", "interrupted", "failed", "unknown"];
+
+    /// Number of members in each state, without states that have none.
+    pub fn counts(all: &[Self]) -> Vec<(&'static str, usize)> {
+        let count = |state| (state, all.iter().filter(|s| s.state == state).count());
+        Self::STATES.into_iter().map(count).filter(|(_, n)| *n > 0).collect()
+    }
+
+    /// [`Standing::counts`] in words.
+    pub fn words(all: &[Self]) -> String {
+        Self::counts(all).iter().map(|(state, n)| format!("{n} {state}")).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// The folder of a campaign.
@@ -39,16 +73,16 @@ impl Folder {
         let failed = |e: io::Error| Failure::failed(format!("the folder {}: {e}", root.display()));
         std::fs::create_dir_all(root).map_err(failed)?;
         let folder = Self { root: root.canonicalize().map_err(failed)? };
-        let lock = folder.lock()?;
+        let lock = Lock::take(&folder.root, TIME_LIMIT)?;
         for part in [folder.members(), folder.logs()] {
             std::fs::create_dir_all(part).map_err(failed)?;
         }
         Ok((folder, lock))
     }
 
-    /// For this process alone, as long as the lock is held.
-    pub fn lock(&self) -> Result<Lock, Failure> {
-        Lock::take(&self.root, TIME_LIMIT)
+    /// For this process alone to write the tables, as long as the lock is held. The campaign may go on.
+    pub fn lock_tables(&self) -> Result<Lock, Failure> {
+        Lock::take(&self.logs(), TIME_TO_GATHER)
     }
 
     /// Writes what its members are.
@@ -91,24 +125,73 @@ impl Folder {
 
     /// Progress of a member.
     pub fn state(&self, member: &Member) -> MemberState {
+        self.look(member).0
+    }
+
+    fn look(&self, member: &Member) -> (MemberState, AtWork) {
+        let run = self.run(member);
+        // Before its end is looked for: a run that ends meanwhile is not taken for a killed one.
+        let at_work = Lock::at_work(&run);
         let given_up = std::fs::read_to_string(self.given_up(member)).ok();
         if let Some(code) = given_up.and_then(|text| text.trim().parse().ok()) {
-            return MemberState::Failed(code);
+            return (MemberState::Failed(code), at_work);
         }
-        match run_state(&self.run(member)) {
-            RunState::Absent => MemberState::Waiting,
-            RunState::Ended(0) if has_recording(&self.run(member)) => MemberState::Finished,
-            RunState::Ended(code) if will_end_so_again(code) => MemberState::Failed(code),
-            RunState::Begun | RunState::Ended(_) => MemberState::Interrupted,
-        }
+        let state = match (run_state(&run), &at_work) {
+            (RunState::Ended(0), _) if has_recording(&run) => MemberState::Finished,
+            (RunState::Ended(code), _) if will_end_so_again(code) => MemberState::Failed(code),
+            (_, AtWork::Holder(_)) => MemberState::Running,
+            (_, AtWork::Elsewhere(_)) => MemberState::Unknown,
+            (RunState::Absent, _) => MemberState::Waiting,
+            _ => MemberState::Interrupted,
+        };
+        (state, at_work)
+    }
+
+    /// Progress of a member, with its reason and its time.
+    pub fn standing(&self, member: &Member) -> Standing {
+        let run = self.run(member);
+        let (state, at_work) = self.look(member);
+        let end = run_end(&run);
+        let took = end.as_ref().and_then(|end| end.wall_seconds);
+        let began = || run.join(Lock::FILE).metadata()?.modified();
+        let (state, reason, seconds) = match (state, at_work) {
+            (MemberState::Finished, _) => ("finished", None, took),
+            (MemberState::Running, AtWork::Holder(who)) => {
+                let elapsed = began().ok().and_then(|t| t.elapsed().ok());
+                ("running", Some(who), elapsed.map(|t| t.as_secs_f64()))
+            }
+            (MemberState::Unknown, AtWork::Elsewhere(who)) => (
+                "unknown",
+                Some(format!("begun by {who}, and only there it is seen whether that runs")),
+                None,
+            ),
+            (MemberState::Waiting, _) => ("waiting", self.last_line(member), None),
+            (state, _) => {
+                let name = if state == MemberState::Interrupted { "interrupted" } else { "failed" };
+                let killed = || "its process ended without a result".to_owned();
+                (name, Some(end.as_ref().map_or_else(killed, RunEnd::reason)), took)
+            }
+        };
+        Standing { name: member.name.clone(), state, reason, seconds }
+    }
+
+    /// The end of the log of a member that was tried, and left no run.
+    fn last_line(&self, member: &Member) -> Option<String> {
+        let log = std::fs::read_to_string(self.log(member)).ok()?;
+        log.lines().rfind(|line| !line.trim().is_empty()).map(|line| format!("did not begin: {line}"))
     }
 
     /// Numbers of the members that can still be run.
     pub(crate) fn pending(&self, campaign: &Campaign) -> Vec<usize> {
         let can_run = |n: &usize| {
-            matches!(self.state(&campaign.members[*n]), MemberState::Waiting | MemberState::Interrupted)
+            !matches!(self.state(&campaign.members[*n]), MemberState::Finished | MemberState::Failed(_))
         };
         (0..campaign.members.len()).filter(can_run).collect()
+    }
+
+    /// The output of a member on this machine.
+    pub(crate) fn log(&self, member: &Member) -> PathBuf {
+        self.logs().join(format!("{}.log", member.name))
     }
 
     /// The file that says with which exit code a member was given up.
@@ -144,6 +227,9 @@ impl Folder {
 /// Time for another process that works in the folder to end.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
 
+/// Time for another process to write the tables.
+const TIME_TO_GATHER: Duration = Duration::from_secs(600);
+
 /// True if there is a file of a recording.
 fn has_recording(run: &Path) -> bool {
     let is_recording =
@@ -166,7 +252,7 @@ mod tests {
     #[test]
     fn a_campaign_is_read_back_from_its_folder_with_the_states_of_its_members() {
         let root = tempfile::tempdir().unwrap();
-        let text = "name = 'x'\nscenes = ['s1']\nseeds = [1, 2, 3, 4]";
+        let text = "name = 'x'\nscenes = ['s1']\nseeds = [1, 2, 3, 4, 5]";
         let campaign = Campaign::parse(text, root.path()).unwrap();
         let (folder, _lock) = Folder::create(root.path()).unwrap();
         folder.plan(&campaign).unwrap();
@@ -178,10 +264,16 @@ mod tests {
         }
         let (again, known) = Folder::open(root.path()).unwrap();
         assert_eq!(known, campaign);
-        let states: Vec<MemberState> = known.members.iter().map(|m| again.state(m)).collect();
-        let expected =
-            [MemberState::Finished, MemberState::Failed(4), MemberState::Interrupted, MemberState::Waiting];
-        assert_eq!(states, expected);
+        let killed = folder.run(&known.members[4]);
+        std::fs::create_dir_all(&killed).unwrap();
+        std::fs::write(killed.join("launch.json"), "{}").unwrap();
+        let at_work = Lock::take(&killed, Duration::ZERO).unwrap();
+        let standings = || known.members.iter().map(|m| again.standing(m)).collect::<Vec<_>>();
+        assert_eq!(standings()[4].state, "running");
+        drop(at_work);
+        let expected = ["finished", "failed", "interrupted", "waiting", "interrupted"];
+        assert_eq!(standings().iter().map(|s| s.state).collect::<Vec<_>>(), expected);
+        assert_eq!(standings()[4].reason.as_deref(), Some("its process ended without a result"));
         std::fs::remove_file(folder.run(&known.members[0]).join("x_0.mcap")).unwrap();
         assert_eq!(again.state(&known.members[0]), MemberState::Interrupted, "without its recording");
         again.remove(&known.members[0]).unwrap();

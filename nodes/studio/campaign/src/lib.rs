@@ -17,5 +17,5 @@ mod progress;
 
 pub use campaign::Campaign;
 pub use engine::{Engine, Options};
-pub use folder::{Folder, MemberState};
+pub use folder::{Folder, MemberState, Standing};
 pub use member::{Member, Setting};

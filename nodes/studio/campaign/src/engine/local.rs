@@ -91,7 +91,7 @@ pub(super) fn run(
 fn start(campaign: &Campaign, folder: &Folder, n: usize) -> Result<Child, Failure> {
     let member = &campaign.members[n];
     let words = command(campaign, folder, member)?;
-    let path = folder.logs().join(format!("{}.log", member.name));
+    let path = folder.log(member);
     let failed = Failure::at(&path);
     let log = OpenOptions::new().create(true).append(true).open(&path).map_err(&failed)?;
     let mut command = Command::new(&words[0]);
