@@ -149,30 +149,27 @@ impl Folder {
 
     /// Progress of a member, with its reason and its time.
     pub fn standing(&self, member: &Member) -> Standing {
-        let run = self.run(member);
+        let (name, run) = (member.name.clone(), self.run(member));
         let (state, at_work) = self.look(member);
         let end = run_end(&run);
-        let took = end.as_ref().and_then(|end| end.wall_seconds);
-        let began = || run.join(Lock::FILE).metadata()?.modified();
-        let (state, reason, seconds) = match (state, at_work) {
-            (MemberState::Finished, _) => ("finished", None, took),
-            (MemberState::Running, AtWork::Holder(who)) => {
-                let elapsed = began().ok().and_then(|t| t.elapsed().ok());
-                ("running", Some(who), elapsed.map(|t| t.as_secs_f64()))
+        let killed = || "its process ended without a result".to_owned();
+        let ended = |state| (state, Some(end.as_ref().map_or_else(killed, RunEnd::reason)));
+        let (state, reason) = match (state, at_work) {
+            (MemberState::Finished, _) => ("finished", None),
+            (MemberState::Waiting, _) => ("waiting", self.last_line(member)),
+            (MemberState::Failed(_), _) => ended("failed"),
+            (_, AtWork::Holder(who)) => ("running", Some(who)),
+            (_, AtWork::Elsewhere(who)) => {
+                ("unknown", Some(format!("begun by {who}, and only there it is seen whether that runs")))
             }
-            (MemberState::Unknown, AtWork::Elsewhere(who)) => (
-                "unknown",
-                Some(format!("begun by {who}, and only there it is seen whether that runs")),
-                None,
-            ),
-            (MemberState::Waiting, _) => ("waiting", self.last_line(member), None),
-            (state, _) => {
-                let name = if state == MemberState::Interrupted { "interrupted" } else { "failed" };
-                let killed = || "its process ended without a result".to_owned();
-                (name, Some(end.as_ref().map_or_else(killed, RunEnd::reason)), took)
-            }
+            _ => ended("interrupted"),
         };
-        Standing { name: member.name.clone(), state, reason, seconds }
+        let began = || run.join(Lock::FILE).metadata()?.modified();
+        let seconds = match state {
+            "running" => began().ok().and_then(|t| t.elapsed().ok()).map(|t| t.as_secs_f64()),
+            _ => end.as_ref().and_then(|end| end.wall_seconds),
+        };
+        Standing { name, state, reason, seconds }
     }
 
     /// The end of the log of a member that was tried, and left no run.
@@ -268,12 +265,11 @@ mod tests {
         std::fs::create_dir_all(&killed).unwrap();
         std::fs::write(killed.join("launch.json"), "{}").unwrap();
         let at_work = Lock::take(&killed, Duration::ZERO).unwrap();
-        let standings = || known.members.iter().map(|m| again.standing(m)).collect::<Vec<_>>();
-        assert_eq!(standings()[4].state, "running");
+        assert_eq!(again.standing(&known.members[4]).state, "running");
         drop(at_work);
-        let expected = ["finished", "failed", "interrupted", "waiting", "interrupted"];
-        assert_eq!(standings().iter().map(|s| s.state).collect::<Vec<_>>(), expected);
-        assert_eq!(standings()[4].reason.as_deref(), Some("its process ended without a result"));
+        let standings: Vec<Standing> = known.members.iter().map(|m| again.standing(m)).collect();
+        assert_eq!(Standing::words(&standings), "1 finished, 1 waiting, 2 interrupted, 1 failed");
+        assert_eq!(standings[4].reason.as_deref(), Some("its process ended without a result"));
         std::fs::remove_file(folder.run(&known.members[0]).join("x_0.mcap")).unwrap();
         assert_eq!(again.state(&known.members[0]), MemberState::Interrupted, "without its recording");
         again.remove(&known.members[0]).unwrap();

@@ -9,6 +9,9 @@ use std::collections::BTreeSet;
 /// Ratio of the ends from which an axis is logarithmic.
 const DECADE: f64 = 10.0;
 
+/// Most curves: what a legend has room for.
+const CURVES: usize = 20;
+
 /// Most letters of the legend of a small plot, and those that the symbol of a curve takes.
 const LEGEND: usize = 52;
 const SYMBOL: usize = 5;
@@ -23,10 +26,11 @@ pub(crate) fn figures(all: &[Quantities<'_>]) -> Option<Html> {
     let whole: Vec<&Quantities<'_>> = all.iter().filter(|(run, _)| is_whole(run)).collect();
     let mut settings = differing(&whole.iter().map(|(run, _)| *run).collect::<Vec<_>>());
     settings.sort_by_key(|s| std::cmp::Reverse(s.numbers().map_or(0, |_| s.different())));
-    let Some(x) = settings.first()?.numbers().filter(|_| settings.len() <= 2) else {
+    let is_drawn = settings.len() <= 2 && settings.get(1).is_none_or(|s| s.different() <= CURVES);
+    let Some(x) = settings.first()?.numbers().filter(|_| is_drawn) else {
         let names: Vec<&str> = settings.iter().map(|s| s.name.as_str()).collect();
         return Some(paragraph(format!(
-            "There are figures of runs that differ in one or two settings, of which one is a number. These differ in: {}.",
+            "There are figures of runs that differ in one setting or two, of which one is a number and the other has few values. These differ in: {}.",
             names.join(", ")
         )));
     };

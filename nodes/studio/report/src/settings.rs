@@ -45,12 +45,11 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
         }
         let new = Setting { name: name.clone(), values };
         let known = found.entry(firsts(&new.values)).or_insert_with(|| new.clone());
-        let last = |name: &str| name.rsplit('.').next().unwrap_or(name).to_owned();
-        if known.name != new.name && last(&known.name) == last(&new.name) {
-            known.name = last(&new.name);
-        }
-        if known.numbers().is_none() && new.numbers().is_some() {
-            *known = new;
+        if known.name != new.name {
+            let last = name.rsplit('.').next().unwrap_or(name);
+            if known.name.ends_with(last) {
+                known.name = last.to_owned();
+            }
         }
     }
     let mut settings: Vec<Setting> = found.into_values().collect();
@@ -91,20 +90,16 @@ fn flatten(value: &Value, path: String, found: &mut BTreeMap<String, String>) {
 mod tests {
     use super::*;
 
-    fn runs(texts: &[&str]) -> Vec<Run> {
-        texts.iter().map(|text| Run { scene_text: (*text).to_owned(), ..Run::default() }).collect()
-    }
-
     #[test]
     fn keys_that_change_together_are_one_setting_and_a_seed_is_none() {
-        let text = |seed: u32, mu: &str, grains: u32| {
-            format!(
-                "name = 'x'\nseed = {seed}\ngrains.count = {grains}\n[[phase]]\nname = 'a'\nfriction = {mu}\n[[phase]]\nname = 'b'\nfriction = {mu}\nrate = [0, 1]"
-            )
+        let run = |seed: u32, mu: f64, grains: u32| {
+            let phases = "phase = [{name = 'a', friction = MU}, {name = 'b', friction = MU, rate = [0, 1]}]";
+            let scene_text =
+                format!("seed = {seed}\ngrains.count = {grains}\n{phases}").replace("MU", &mu.to_string());
+            Run { scene_text, ..Run::default() }
         };
-        let texts = [text(1, "0.1", 80), text(2, "0.1", 80), text(1, "0.3", 90), text(2, "0.1", 90)];
-        let runs = runs(&texts.each_ref().map(String::as_str));
-        let found = differing(&runs.iter().collect::<Vec<_>>());
+        let runs = [run(1, 0.1, 80), run(2, 0.1, 80), run(1, 0.3, 90), run(2, 0.1, 90)];
+        let found = differing(&runs.each_ref());
         let names: Vec<(&str, usize)> = found.iter().map(|s| (s.name.as_str(), s.different())).collect();
         assert_eq!(names, [("friction", 2), ("grains.count", 2)]);
         assert_eq!(found[0].numbers(), Some(vec![0.1, 0.1, 0.3, 0.1]));

@@ -193,12 +193,11 @@ mod tests {
 
     #[test]
     fn a_setting_is_a_number_where_every_value_is_one_and_keeps_its_text_elsewhere() {
-        let of = |values: &[&str]| typed(values.iter().map(|v| Some((*v).to_owned())).collect());
-        assert_eq!(of(&["1_000", "20"]), [Cell::Count(1000), Cell::Count(20)]);
-        assert_eq!(of(&["0.1", "3", "-1e2"]), [0.1, 3.0, -100.0].map(Cell::Number));
-        assert_eq!(of(&["true"]), [Cell::Flag(true)]);
+        let of = |values: &str| typed(values.split(' ').map(|v| Some(v.to_owned())).collect());
+        assert_eq!(of("1_000 20"), [1000, 20].map(Cell::Count));
+        assert_eq!(of("0.1 3 -1e2"), [0.1, 3.0, -100.0].map(Cell::Number));
         // An infinite number would be an empty cell.
-        assert_eq!(of(&["0.1", "inf"]), ["0.1", "inf"].map(|text| Cell::Text(text.to_owned())));
-        assert_eq!(typed(vec![None, Some("2".into())]), [Cell::Unknown, Cell::Count(2)]);
+        assert_eq!(of("0.1 inf"), ["0.1", "inf"].map(|text| Cell::Text(text.to_owned())));
+        assert_eq!(typed(vec![None, Some("true".into())]), [Cell::Unknown, Cell::Flag(true)]);
     }
 }

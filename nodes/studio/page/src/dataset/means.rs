@@ -68,10 +68,9 @@ mod tests {
     #[test]
     fn rows_alike_have_a_mean_with_its_standard_error_of_what_is_known() {
         let mut t = Dataset::new(["name", "seed", "mu", "z", "g"].map(str::to_owned));
-        for (seed, mu, z, g) in
-            [(1, 0.1, 4.0, Cell::Unknown), (2, 0.1, 6.0, Cell::Number(2.0)), (1, 0.3, 5.0, Cell::Number(1.5))]
-        {
-            t.row([Cell::Text("x".into()), Cell::Count(seed), Cell::Number(mu), Cell::Number(z), g]);
+        for (seed, mu, z, g) in [(1, 0.1, 4.0, f64::NAN), (2, 0.1, 6.0, 2.0), (1, 0.3, 5.0, 1.5)] {
+            let numbers = [mu, z, g].map(Cell::Number);
+            t.row([Cell::Text("x".into()), Cell::Count(seed)].into_iter().chain(numbers));
         }
         let expected =
             "mu,n,z_mean,z_standard_error,g_mean,g_standard_error,g_n\n0.1,2,5,1,2,,1\n0.3,1,5,,1.5,,1\n";
