@@ -27,12 +27,12 @@ pub enum MemberState {
     Finished,
 }
 
-/// How far a member came, and why not further.
+/// State of a member, and the reason why it is not finished.
 #[derive(Clone, Debug, Serialize)]
 pub struct Standing {
     /// Name of the member.
     pub name: String,
-    /// Its state in one word.
+    /// State in one word.
     pub state: &'static str,
     /// Why it is not finished, or what runs it.
     pub reason: Option<String>,
