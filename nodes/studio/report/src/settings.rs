@@ -92,13 +92,14 @@ mod tests {
 
     #[test]
     fn keys_that_change_together_are_one_setting_and_a_seed_is_none() {
-        let run = |seed: u32, mu: f64, grains: u32| {
+        let of = |seed: u32, mu: f64, grains: u32| {
             let phases = "phase = [{name = 'a', friction = MU}, {name = 'b', friction = MU, rate = [0, 1]}]";
-            let scene_text =
-                format!("seed = {seed}\ngrains.count = {grains}\n{phases}").replace("MU", &mu.to_string());
-            Run { scene_text, ..Run::default() }
+            let text = format!("seed = {seed}\ngrains.count = {grains}\n{phases}");
+            let mut run = Run::default();
+            run.scene_text = text.replace("MU", &mu.to_string());
+            run
         };
-        let runs = [run(1, 0.1, 80), run(2, 0.1, 80), run(1, 0.3, 90), run(2, 0.1, 90)];
+        let runs = [of(1, 0.1, 80), of(2, 0.1, 80), of(1, 0.3, 90), of(2, 0.1, 90)];
         let found = differing(&runs.each_ref());
         let names: Vec<(&str, usize)> = found.iter().map(|s| (s.name.as_str(), s.different())).collect();
         assert_eq!(names, [("friction", 2), ("grains.count", 2)]);
