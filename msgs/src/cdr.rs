@@ -7,6 +7,8 @@ use byteorder::{BigEndian, LittleEndian};
 const LITTLE_ENDIAN: [u8; 2] = [0, 1];
 const BIG_ENDIAN: [u8; 2] = [0, 0];
 const HEADER: usize = 4;
+/// Bytes that most messages fit into, so that their vector does not grow.
+const USUAL: usize = 512;
 /// RTPS pads a payload to four bytes.
 const PADDING: usize = 3;
 
@@ -38,7 +40,8 @@ pub(crate) use codec;
 
 /// Encodes a message.
 pub(crate) fn encode<T: Message>(message: &T) -> Vec<u8> {
-    let mut bytes = vec![LITTLE_ENDIAN[0], LITTLE_ENDIAN[1], 0, 0];
+    let mut bytes = Vec::with_capacity(USUAL);
+    bytes.extend([LITTLE_ENDIAN[0], LITTLE_ENDIAN[1], 0, 0]);
     // The encoder counts alignment from its start, which is byte 4. It fails on sequences of unknown length
     // and on writers that fail; generated types have no such sequences and a vector never fails.
     cdr_encoding::to_writer::<T, LittleEndian, _>(&mut bytes, message)

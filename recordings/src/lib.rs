@@ -22,6 +22,7 @@ mod compression;
 pub mod copy;
 mod definitions;
 mod failures;
+mod host;
 pub mod import;
 pub mod input;
 mod ledger;
@@ -42,8 +43,9 @@ mod writer;
 
 pub use compression::Compression;
 pub use definitions::Definitions;
+pub use host::host_name;
 pub use ledger::{Ledger, TopicTally, WriterTally, merge};
-pub use lock::Lock;
+pub use lock::{AtWork, Lock};
 pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 pub use new_path::NewPath;
 pub use one_run::{OneRun, RunSign, SeveralRuns};
@@ -54,6 +56,6 @@ pub use reader::{
     TopicInfo, Warning, WarningKind,
 };
 pub use recover::{RecoveredFile, Recovery, recover};
-pub use run_state::{RunState, end_reason, run_state};
+pub use run_state::{RunEnd, RunState, run_end, run_state};
 pub use topic_names::TopicNames;
 pub use writer::{Finished, Incoming, Outcome, RunWriter, TopicSpec, WriterOptions};

@@ -14,29 +14,37 @@ pub enum RunState {
     Ended(u8),
 }
 
-/// The part of `summary.json` that is read.
-#[derive(Deserialize)]
-struct Summary {
+/// End of a run, by its `summary.json`.
+#[derive(Clone, Debug, Deserialize)]
+pub struct RunEnd {
     exit: u8,
     #[serde(default)]
     warnings: Vec<String>,
+    /// Wall time of the last launcher, s.
+    pub wall_seconds: Option<f64>,
+}
+
+impl RunEnd {
+    /// Exit code, and the reason in one line, if the summary has one.
+    pub fn reason(&self) -> String {
+        let why = self.warnings.first().map_or_else(String::new, |w| format!(": {w}"));
+        format!("exit code {}{why}", self.exit)
+    }
 }
 
 /// The state of the run in this directory. The launcher writes `launch.json` before the run, and `summary.json` after it,
 /// each at once.
 pub fn run_state(directory: &Path) -> RunState {
-    let summary = std::fs::read(directory.join("summary.json"));
-    match summary.ok().and_then(|text| serde_json::from_slice::<Summary>(&text).ok()) {
-        Some(summary) => RunState::Ended(summary.exit),
+    match run_end(directory) {
+        Some(end) => RunState::Ended(end.exit),
         None if directory.join("launch.json").exists() => RunState::Begun,
         None => RunState::Absent,
     }
 }
 
-/// Why the run in this directory ended as it did, in one line; `None` if its summary has no reason.
-pub fn end_reason(directory: &Path) -> Option<String> {
-    let summary = std::fs::read(directory.join("summary.json")).ok()?;
-    serde_json::from_slice::<Summary>(&summary).ok()?.warnings.into_iter().next()
+/// The end of the run in this directory; `None` if it was not reported.
+pub fn run_end(directory: &Path) -> Option<RunEnd> {
+    serde_json::from_slice(&std::fs::read(directory.join("summary.json")).ok()?).ok()
 }
 
 #[cfg(test)]
@@ -56,8 +64,8 @@ mod tests {
         assert_eq!(run_state(folder.path()), RunState::Begun);
         write("summary.json", "{\"scene\": \"s1\", \"exit\": 3}");
         assert_eq!(run_state(folder.path()), RunState::Ended(3));
-        assert_eq!(end_reason(folder.path()), None);
+        assert_eq!(run_end(folder.path()).unwrap().reason(), "exit code 3");
         write("summary.json", "{\"exit\": 4, \"warnings\": [\"phase 2 did not end\"]}");
-        assert_eq!(end_reason(folder.path()).as_deref(), Some("phase 2 did not end"));
+        assert_eq!(run_end(folder.path()).unwrap().reason(), "exit code 4: phase 2 did not end");
     }
 }

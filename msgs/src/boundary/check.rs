@@ -7,7 +7,7 @@ use crate::std_msgs::Header;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::StrainRatios;
 use grainlab_core::{Mat3, Material, SymTensor, Vec3};
-use std::fmt::Display;
+use std::fmt::{self, Display};
 
 /// Frame of every header.
 const FRAME: &str = "cell";
@@ -19,30 +19,41 @@ pub(super) struct Check(pub(super) &'static str);
 type Checked<T> = Result<T, BoundaryError>;
 
 impl Check {
-    pub(super) fn refused(self, field: &str, found: impl Display, must: impl Display) -> BoundaryError {
+    pub(super) fn refused(
+        self,
+        field: impl Display,
+        found: impl Display,
+        must: impl Display,
+    ) -> BoundaryError {
         BoundaryError(format!("{}.{field} = {found} is refused: it must {must}", self.0))
     }
 
-    pub(super) fn that(self, good: bool, field: &str, value: f64, requirement: &'static str) -> Checked<f64> {
+    pub(super) fn that(
+        self,
+        good: bool,
+        field: impl Display,
+        value: f64,
+        requirement: &'static str,
+    ) -> Checked<f64> {
         if good {
             return Ok(value);
         }
         Err(self.refused(field, format_args!("{value:?}"), format_args!("be {requirement}")))
     }
 
-    pub(super) fn finite(self, field: &str, value: f64) -> Checked<f64> {
+    pub(super) fn finite(self, field: impl Display, value: f64) -> Checked<f64> {
         self.that(value.is_finite(), field, value, "finite")
     }
 
-    pub(super) fn positive(self, field: &str, value: f64) -> Checked<f64> {
+    pub(super) fn positive(self, field: impl Display, value: f64) -> Checked<f64> {
         self.that(value.is_finite() && value > 0.0, field, value, "finite and more than 0")
     }
 
-    pub(super) fn not_negative(self, field: &str, value: f64) -> Checked<f64> {
+    pub(super) fn not_negative(self, field: impl Display, value: f64) -> Checked<f64> {
         self.that(value.is_finite() && value >= 0.0, field, value, "finite and 0 or more")
     }
 
-    pub(super) fn share(self, field: &str, value: f64) -> Checked<f64> {
+    pub(super) fn share(self, field: impl Display, value: f64) -> Checked<f64> {
         self.that((0.0..=1.0).contains(&value), field, value, "between 0 and 1")
     }
 
@@ -109,7 +120,7 @@ impl Check {
     }
 
     /// A code that is not one of the constants of the message.
-    pub(super) fn code(self, field: &str, value: u8, allowed: &'static str) -> BoundaryError {
+    pub(super) fn code(self, field: impl Display, value: u8, allowed: &'static str) -> BoundaryError {
         self.refused(field, value, format_args!("be one of {allowed}"))
     }
 
@@ -137,14 +148,14 @@ impl Check {
 
     pub(super) fn all_finite(self, field: &str, values: &[f64]) -> Checked<()> {
         match values.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-            Some((index, value)) => self.finite(&format!("{field}[{index}]"), *value).map(drop),
+            Some((index, value)) => self.finite(format_args!("{field}[{index}]"), *value).map(drop),
             None => Ok(()),
         }
     }
 
     pub(super) fn six(self, field: &str, values: &[f64; 6]) -> Checked<[f64; 6]> {
         match (0..6).find(|i| !values[*i].is_finite()) {
-            Some(i) => self.finite(&component(field, i), values[i]).map(|_| *values),
+            Some(i) => self.finite(Component(field, i), values[i]).map(|_| *values),
             None => Ok(*values),
         }
     }
@@ -152,7 +163,7 @@ impl Check {
     pub(super) fn tensor(self, field: &str, t: &SymmetricTensor) -> Checked<SymTensor> {
         let values = [t.xx, t.yy, t.zz, t.yz, t.xz, t.xy];
         if let Some(i) = (0..6).find(|i| !values[*i].is_finite()) {
-            self.finite(&format!("{field}.{}", SymTensor::COMPONENTS[i]), values[i])?;
+            self.finite(format_args!("{field}.{}", SymTensor::COMPONENTS[i]), values[i])?;
         }
         Ok(SymTensor::from_voigt(values))
     }
@@ -164,14 +175,14 @@ impl Check {
             return Ok(None);
         }
         let norm = vector.norm();
-        self.that((norm - 1.0).abs() < 1e-6, &format!("|{field}|"), norm, "1, or 0 if unknown")?;
+        self.that((norm - 1.0).abs() < 1e-6, format_args!("|{field}|"), norm, "1, or 0 if unknown")?;
         Ok(Some(vector))
     }
 
     /// A unit vector.
     pub(super) fn unit(self, field: &str, v: &Vector3) -> Checked<Vec3> {
         let known = self.direction(field, v)?;
-        self.that(known.is_some(), &format!("|{field}|"), 0.0, "1").map(|_| known.unwrap_or_default())
+        self.that(known.is_some(), format_args!("|{field}|"), 0.0, "1").map(|_| known.unwrap_or_default())
     }
 
     /// The field `strain_ratios` of a message.
@@ -207,7 +218,7 @@ impl Check {
         let side = ENTRIES.isqrt();
         let variance = |i: usize| c[(side + 1) * i];
         for i in 0..side {
-            self.not_negative(&format!("{field}[{}]", (side + 1) * i), variance(i))?;
+            self.not_negative(format_args!("{field}[{}]", (side + 1) * i), variance(i))?;
             for j in 0..i {
                 let (lower, upper) = (c[side * i + j], c[side * j + i]);
                 let bound = (variance(i) * variance(j)).sqrt();
@@ -234,8 +245,13 @@ impl Check {
 }
 
 /// Name of a component: `rate[2] (zz)`.
-pub(super) fn component(field: &str, index: usize) -> String {
-    format!("{field}[{index}] ({})", SymTensor::COMPONENTS[index])
+/// Name of a component of an array, written only in errors.
+pub(super) struct Component<'a>(pub(super) &'a str, pub(super) usize);
+
+impl Display for Component<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}[{}] ({})", self.0, self.1, SymTensor::COMPONENTS[self.1])
+    }
 }
 
 pub(super) fn header(stamp: crate::builtin_interfaces::Time) -> Header {

@@ -1,6 +1,6 @@
 //! `Stress`: one request of the lockstep.
 
-use super::check::{Check, component, header, tensor_message};
+use super::check::{Check, Component, header, tensor_message};
 use super::error::BoundaryError;
 use crate::msg::Stress;
 use crate::{simulated_seconds, stamp};
@@ -16,14 +16,14 @@ impl TryFrom<&Stress> for ServoRequest {
         CHECK.header(&m.header)?;
         let mut controls = [ComponentControl::Held; 6];
         for (i, control) in controls.iter_mut().enumerate() {
-            let setpoint = CHECK.finite(&component("setpoint", i), m.setpoint[i])?;
+            let setpoint = CHECK.finite(Component("setpoint", i), m.setpoint[i])?;
             *control = match m.mode[i] {
                 Stress::MODE_HELD => ComponentControl::Held,
                 Stress::MODE_STRESS => ComponentControl::Stress(setpoint),
                 Stress::MODE_STRAIN_RATE => ComponentControl::StrainRate(setpoint),
                 other => {
                     let allowed = "0 (held), 1 (stress), 2 (strain rate)";
-                    return Err(CHECK.code(&component("mode", i), other, allowed));
+                    return Err(CHECK.code(Component("mode", i), other, allowed));
                 }
             };
         }

@@ -7,6 +7,7 @@ use super::files;
 use super::stored_file::{FileCount, StoredFile};
 use crate::ledger::{TopicTally, merge};
 use crate::metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
+use chrono::{DateTime, SecondsFormat};
 use grainlab_console::Failure;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -118,6 +119,12 @@ impl Recording {
     /// First and last log time, ns since 1970; `None` without messages.
     pub fn time_range(&self) -> Option<(u64, u64)> {
         self.files.iter().filter_map(OpenFile::bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+
+    /// Date and time of its first message, in UTC; `None` without messages.
+    pub fn begun(&self) -> Option<String> {
+        let first = DateTime::from_timestamp_nanos(i64::try_from(self.time_range()?.0).ok()?);
+        Some(first.to_rfc3339_opts(SecondsFormat::Secs, true))
     }
 
     /// The files stored in the recording, in order.

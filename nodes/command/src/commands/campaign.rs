@@ -1,10 +1,11 @@
 //! `grainlab campaign`: many runs, their progress, and their states in one table.
 
 pub(crate) mod gather;
+mod status;
 
 use super::launch;
-use grainlab_campaign::{Campaign, Engine, Folder, MemberState, Options};
-use grainlab_console::{Failure, Table, print, worse};
+use grainlab_campaign::{Campaign, Engine, Folder, Options};
+use grainlab_console::{Failure, Format, worse};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Lock;
 use std::path::{Path, PathBuf};
@@ -28,6 +29,19 @@ Examples:
   grainlab campaign status recordings/campaigns/friction
   grainlab campaign gather recordings/campaigns/friction";
 
+const STATUS: &str = "\
+States: waiting, running, finished, failed, interrupted (its process ended without a result: the campaign continues it), unknown (begun
+on another host, whose processes cannot be seen from here). Seconds are those of the last process of a member. The time left follows
+from the mean of the finished members, at as many at a time as run now.";
+
+const GATHER: &str = "\
+states.csv, states.parquet: a row for each member and state.
+groups.csv, groups.parquet: a row for each scene, values set and phase: n, and KEY_mean and KEY_standard_error over the seeds (empty
+for one seed). KEY_n is there if KEY is not known in every state of a group: its mean is over the others.
+
+The same campaign gives the same bytes of CSV. states.parquet also has grainlab_version, host and begun (UTC) of each member. Settings are
+numbers where every value is one, else text. The exit code is 3 while members are missing.";
+
 /// A campaign to run.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -46,9 +60,17 @@ pub(crate) struct Args {
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
-    /// Count the members by how far they came, and name those that are not finished
-    Status(Place),
-    /// Write the states of all finished members as states.csv and states.parquet, from their recordings
+    /// Count the members by state, also while they run, with the time left and the reason of each failure
+    #[command(after_help = STATUS)]
+    Status {
+        #[command(flatten)]
+        place: Place,
+        /// Format of the result; JSON and CSV have every member
+        #[arg(long, value_enum, default_value_t)]
+        format: Format,
+    },
+    /// Write the states of all finished members, and their means over seeds, as CSV and Parquet, also while others run
+    #[command(after_help = GATHER)]
     Gather(Place),
     /// Show every key of the file of a campaign, as Markdown
     Keys,
@@ -65,13 +87,15 @@ struct Place {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     match (&args.command, &args.file) {
-        (Some(Command::Status(place)), _) => status(place),
+        (Some(Command::Status { place, format }), _) => {
+            let (folder, campaign) = Folder::open(&place.folder)?;
+            status::run(&campaign, &folder, *format)
+        }
         (Some(Command::Gather(place)), _) => {
             let (folder, campaign) = Folder::open(&place.folder)?;
-            let _lock = folder.lock()?;
             gather::run(&campaign, &folder)
         }
-        (Some(Command::Keys), _) => print(&grainlab_campaign::reference()).map(|()| Exit::Done),
+        (Some(Command::Keys), _) => grainlab_console::print(&grainlab_campaign::reference()).map(|()| Exit::Done),
         (None, Some(file)) => {
             let mut campaign = Campaign::read(file)?;
             let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));
@@ -114,34 +138,4 @@ pub(crate) fn run_members(options: &Options, campaign: &Campaign, folder: &Folde
             failure.exit
         })
     })
-}
-
-fn status(place: &Place) -> Result<Exit, Failure> {
-    let (folder, campaign) = Folder::open(&place.folder)?;
-    let states: Vec<MemberState> = campaign.members.iter().map(|m| folder.state(m)).collect();
-    let count = |is: fn(&MemberState) -> bool| states.iter().filter(|s| is(s)).count();
-    let [finished, interrupted, waiting] = [
-        count(|s| *s == MemberState::Finished),
-        count(|s| *s == MemberState::Interrupted),
-        count(|s| *s == MemberState::Waiting),
-    ];
-    let failed = states.len() - finished - interrupted - waiting;
-    print(&format!(
-        "{}: {}: {finished} finished, {interrupted} begun, {waiting} waiting, {failed} failed\n",
-        campaign.name,
-        grainlab_console::count(states.len(), "member")
-    ))?;
-    let mut table = Table::new(["member", "state", "directory"]);
-    for (member, state) in campaign.members.iter().zip(&states) {
-        let state = match state {
-            MemberState::Finished | MemberState::Waiting => continue,
-            MemberState::Interrupted => "begun".to_owned(),
-            MemberState::Failed(code) => format!("failed, exit code {code}"),
-        };
-        table.row([member.name.clone(), state, folder.run(member).display().to_string()]);
-    }
-    if failed + interrupted > 0 {
-        print(&table.text())?;
-    }
-    Ok(Exit::Done)
 }

@@ -10,7 +10,10 @@ Examples:
   grainlab report recordings/runs/demo-1-1                 the page of a run: report.html in its folder
   grainlab report recordings/runs/demo-1-1 -o demo.html
   grainlab report recordings/runs/*                        a page for each, and runs.html with one row per run
-  grainlab report recordings/campaigns/friction/members/*";
+  grainlab report recordings/campaigns/friction/members/*  also with figures over the settings in which runs differ
+
+Runs that differ in one setting or two, of which one is a number, have figures: each quantity over the setting with most values, as mean with
+standard error over seeds, and a curve for each value of the other one. Keys that change together are one setting.";
 
 /// Page of many runs, beside the present folder's other files.
 const OVERVIEW: &str = "runs.html";

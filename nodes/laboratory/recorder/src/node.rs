@@ -15,7 +15,7 @@ use grainlab_node_kit::{
     Bus, Demand, Exit, Health, Next, Node, NodeError, Published, Report, Sample, Source, Stranger,
 };
 use grainlab_recordings::strangers::{self, Authors, StrangerView};
-use grainlab_recordings::{Finished, Incoming, Outcome, Recording, RunWriter, TopicSpec};
+use grainlab_recordings::{Finished, Incoming, Outcome, Recording, RunWriter, TopicSpec, host_name};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -129,6 +129,7 @@ impl Recorder {
         }
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
         writer.set_metadata("transport", bus.transport());
+        writer.set_metadata("host", &host_name());
         for channel in channels.iter().filter(|c| !c.topic.reproducible) {
             writer.ledger_mut().count_from_first(&channel.name);
         }

@@ -11,7 +11,7 @@ pub use options::{Engine, Options};
 
 use crate::campaign::Campaign;
 use crate::command::{command, line};
-use crate::folder::{Folder, MemberState};
+use crate::folder::{Folder, MemberState, Standing};
 use crate::member::Member;
 use crate::progress::Progress;
 use grainlab_console::{Failure, worse};
@@ -76,22 +76,17 @@ impl Options {
 fn report(campaign: &Campaign, folder: &Folder) -> Exit {
     let mut exit = Exit::Done;
     for member in &campaign.members {
-        let (why, code) = match folder.state(member) {
+        let code = match folder.state(member) {
             MemberState::Finished => continue,
             MemberState::Failed(code) => {
-                let of = Exit::ALL.into_iter().find(|e| e.code() == code).unwrap_or(Exit::Failure);
-                let reason = folder.reason(member).map_or_else(String::new, |r| format!(": {r}"));
-                (format!("failed with exit code {code}{reason}"), of)
+                Exit::ALL.into_iter().find(|e| e.code() == code).unwrap_or(Exit::Failure)
             }
-            MemberState::Waiting => ("did not begin".to_owned(), Exit::Failure),
-            MemberState::Interrupted => ("is not finished".to_owned(), Exit::Failure),
+            _ => Exit::Failure,
         };
         exit = worse(exit, code);
-        grainlab_console::say!(
-            "grainlab: {} {why} ({})",
-            member.name,
-            folder.logs().join(format!("{}.log", member.name)).display()
-        );
+        let Standing { name, state, reason, .. } = folder.standing(member);
+        let reason = reason.map_or_else(String::new, |r| format!(": {r}"));
+        grainlab_console::say!("grainlab: {name} {state}{reason} ({})", folder.log(member).display());
     }
     exit
 }

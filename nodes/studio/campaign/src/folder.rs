@@ -4,7 +4,8 @@ use crate::campaign::Campaign;
 use crate::member::Member;
 use grainlab_console::{Failure, json, write_whole};
 use grainlab_msgs::Exit;
-use grainlab_recordings::{Lock, RunState, end_reason, input, run_state};
+use grainlab_recordings::{AtWork, Lock, RunEnd, RunState, input, run_end, run_state};
+use serde::Serialize;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -14,12 +15,45 @@ use std::time::Duration;
 pub enum MemberState {
     /// It has not begun.
     Waiting,
-    /// It began and is not finished: it can be continued.
+    /// A process is at work on it.
+    Running,
+    /// It began on another host, whose processes cannot be seen from here.
+    Unknown,
+    /// It began, is not finished, and no process is at work on it: it can be continued.
     Interrupted,
     /// It ended with this exit code, and would end so again.
     Failed(u8),
     /// The run is finished, and the recording whole.
     Finished,
+}
+
+/// State of a member, and the reason why it is not finished.
+#[derive(Clone, Debug, Serialize)]
+pub struct Standing {
+    /// Name of the member.
+    pub name: String,
+    /// State in one word.
+    pub state: &'static str,
+    /// Why it is not finished, or what runs it.
+    pub reason: Option<String>,
+    /// Wall time, s: so far, or of its last process.
+    pub seconds: Option<f64>,
+}
+
+impl Standing {
+    /// The words for states.
+    const STATES: [&str; 6] = ["finished", "running", "waiting", "interrupted", "failed", "unknown"];
+
+    /// Number of members in each state, without states that have none.
+    pub fn counts(all: &[Self]) -> Vec<(&'static str, usize)> {
+        let count = |state| (state, all.iter().filter(|s| s.state == state).count());
+        Self::STATES.into_iter().map(count).filter(|(_, n)| *n > 0).collect()
+    }
+
+    /// [`Standing::counts`] in words.
+    pub fn words(all: &[Self]) -> String {
+        Self::counts(all).iter().map(|(state, n)| format!("{n} {state}")).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// The folder of a campaign.
@@ -45,16 +79,16 @@ impl Folder {
         let failed = |e: io::Error| Failure::failed(format!("the folder {}: {e}", root.display()));
         std::fs::create_dir_all(root).map_err(failed)?;
         let folder = Self { root: root.canonicalize().map_err(failed)? };
-        let lock = folder.lock()?;
+        let lock = Lock::take(&folder.root, TIME_LIMIT)?;
         for part in [folder.members(), folder.logs()] {
             std::fs::create_dir_all(part).map_err(failed)?;
         }
         Ok((folder, lock))
     }
 
-    /// For this process alone, as long as the lock is held.
-    pub fn lock(&self) -> Result<Lock, Failure> {
-        Lock::take(&self.root, TIME_LIMIT)
+    /// For this process alone to write the tables, as long as the lock is held. The campaign may go on.
+    pub fn lock_tables(&self) -> Result<Lock, Failure> {
+        Lock::take(&self.logs(), TIME_TO_GATHER)
     }
 
     /// Writes what its members are.
@@ -97,24 +131,73 @@ impl Folder {
 
     /// Progress of a member.
     pub fn state(&self, member: &Member) -> MemberState {
+        self.look(member).0
+    }
+
+    fn look(&self, member: &Member) -> (MemberState, AtWork) {
+        let run = self.run(member);
+        // Before its end is looked for: a run that ends meanwhile is not taken for a killed one.
+        let at_work = Lock::at_work(&run);
         let given_up = std::fs::read_to_string(self.given_up(member)).ok();
         if let Some(code) = given_up.and_then(|text| text.lines().next()?.trim().parse().ok()) {
-            return MemberState::Failed(code);
+            return (MemberState::Failed(code), at_work);
         }
-        match run_state(&self.run(member)) {
-            RunState::Absent => MemberState::Waiting,
-            RunState::Ended(0) if has_recording(&self.run(member)) => MemberState::Finished,
-            RunState::Ended(code) if will_end_so_again(code) => MemberState::Failed(code),
-            RunState::Begun | RunState::Ended(_) => MemberState::Interrupted,
-        }
+        let state = match (run_state(&run), &at_work) {
+            (RunState::Ended(0), _) if has_recording(&run) => MemberState::Finished,
+            (RunState::Ended(code), _) if will_end_so_again(code) => MemberState::Failed(code),
+            (_, AtWork::Holder(_)) => MemberState::Running,
+            (_, AtWork::Elsewhere(_)) => MemberState::Unknown,
+            (RunState::Absent, _) => MemberState::Waiting,
+            _ => MemberState::Interrupted,
+        };
+        (state, at_work)
+    }
+
+    /// Progress of a member, with its reason and its time.
+    pub fn standing(&self, member: &Member) -> Standing {
+        let (name, run) = (member.name.clone(), self.run(member));
+        let (state, at_work) = self.look(member);
+        let end = run_end(&run);
+        let killed = || "its process ended without a result".to_owned();
+        let ended = |state| (state, Some(end.as_ref().map_or_else(killed, RunEnd::reason)));
+        let (state, reason) = match (state, at_work) {
+            (MemberState::Finished, _) => ("finished", None),
+            (MemberState::Waiting, _) => ("waiting", self.last_line(member)),
+            (MemberState::Failed(_), _) => match self.limit(member) {
+                None => ended("failed"),
+                limit => ("failed", limit),
+            },
+            (_, AtWork::Holder(who)) => ("running", Some(who)),
+            (_, AtWork::Elsewhere(who)) => {
+                ("unknown", Some(format!("begun by {who}, and only there it is seen whether that runs")))
+            }
+            _ => ended("interrupted"),
+        };
+        let began = || run.join(Lock::FILE).metadata()?.modified();
+        let seconds = match state {
+            "running" => began().ok().and_then(|t| t.elapsed().ok()).map(|t| t.as_secs_f64()),
+            _ => end.as_ref().and_then(|end| end.wall_seconds),
+        };
+        Standing { name, state, reason, seconds }
+    }
+
+    /// The end of the log of a member that was tried, and left no run.
+    fn last_line(&self, member: &Member) -> Option<String> {
+        let log = std::fs::read_to_string(self.log(member)).ok()?;
+        log.lines().rfind(|line| !line.trim().is_empty()).map(|line| format!("did not begin: {line}"))
     }
 
     /// Numbers of the members that can still be run.
     pub(crate) fn pending(&self, campaign: &Campaign) -> Vec<usize> {
         let can_run = |n: &usize| {
-            matches!(self.state(&campaign.members[*n]), MemberState::Waiting | MemberState::Interrupted)
+            !matches!(self.state(&campaign.members[*n]), MemberState::Finished | MemberState::Failed(_))
         };
         (0..campaign.members.len()).filter(can_run).collect()
+    }
+
+    /// The output of a member on this machine.
+    pub(crate) fn log(&self, member: &Member) -> PathBuf {
+        self.logs().join(format!("{}.log", member.name))
     }
 
     /// The file with the exit code of a member that was given up, and the limit that it reached.
@@ -138,11 +221,6 @@ impl Folder {
     fn limit(&self, member: &Member) -> Option<String> {
         let text = std::fs::read_to_string(self.given_up(member)).ok()?;
         text.lines().nth(1).filter(|line| !line.is_empty()).map(str::to_owned)
-    }
-
-    /// Why a member failed, if that is known.
-    pub fn reason(&self, member: &Member) -> Option<String> {
-        self.limit(member).or_else(|| end_reason(&self.run(member)))
     }
 
     /// Lets a failed member begin anew, or continue from where it reached a limit.
@@ -177,6 +255,9 @@ impl Folder {
 /// Time for another process that works in the folder to end.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
 
+/// Time for another process to write the tables.
+const TIME_TO_GATHER: Duration = Duration::from_secs(600);
+
 /// True if there is a file of a recording.
 fn has_recording(run: &Path) -> bool {
     let is_recording =
@@ -199,7 +280,7 @@ mod tests {
     #[test]
     fn a_campaign_is_read_back_from_its_folder_with_the_states_of_its_members() {
         let root = tempfile::tempdir().unwrap();
-        let text = "name = 'x'\nscenes = ['s1']\nseeds = [1, 2, 3, 4]";
+        let text = "name = 'x'\nscenes = ['s1']\nseeds = [1, 2, 3, 4, 5]";
         let campaign = Campaign::parse(text, root.path()).unwrap();
         let (folder, _lock) = Folder::create(root.path()).unwrap();
         folder.plan(&campaign).unwrap();
@@ -211,10 +292,15 @@ mod tests {
         }
         let (again, known) = Folder::open(root.path()).unwrap();
         assert_eq!(known, campaign);
-        let states: Vec<MemberState> = known.members.iter().map(|m| again.state(m)).collect();
-        let expected =
-            [MemberState::Finished, MemberState::Failed(4), MemberState::Interrupted, MemberState::Waiting];
-        assert_eq!(states, expected);
+        let killed = folder.run(&known.members[4]);
+        std::fs::create_dir_all(&killed).unwrap();
+        std::fs::write(killed.join("launch.json"), "{}").unwrap();
+        let at_work = Lock::take(&killed, Duration::ZERO).unwrap();
+        assert_eq!(again.standing(&known.members[4]).state, "running");
+        drop(at_work);
+        let standings: Vec<Standing> = known.members.iter().map(|m| again.standing(m)).collect();
+        assert_eq!(Standing::words(&standings), "1 finished, 1 waiting, 2 interrupted, 1 failed");
+        assert_eq!(standings[4].reason.as_deref(), Some("its process ended without a result"));
         std::fs::remove_file(folder.run(&known.members[0]).join("x_0.mcap")).unwrap();
         assert_eq!(again.state(&known.members[0]), MemberState::Interrupted, "without its recording");
         again.remove(&known.members[0]).unwrap();
@@ -222,7 +308,7 @@ mod tests {
         assert_eq!(again.state(&known.members[0]), MemberState::Waiting);
         folder.fail(&known.members[2], 1, "ended at the limit").unwrap();
         assert_eq!(again.state(&known.members[2]), MemberState::Failed(1));
-        assert_eq!(again.reason(&known.members[2]).as_deref(), Some("ended at the limit"));
+        assert_eq!(again.standing(&known.members[2]).reason.as_deref(), Some("ended at the limit"));
         again.redo(&known.members[2]).unwrap();
         assert_eq!(again.state(&known.members[2]), MemberState::Interrupted, "it continues");
         assert!(Folder::open(&root.path().join("logs")).unwrap_err().to_string().contains("not the folder"));

@@ -18,6 +18,6 @@ mod reference;
 
 pub use campaign::Campaign;
 pub use engine::{Engine, Options};
-pub use folder::{Folder, MemberState};
+pub use folder::{Folder, MemberState, Standing};
 pub use member::{Member, Setting};
 pub use reference::reference;

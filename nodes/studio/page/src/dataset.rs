@@ -1,5 +1,6 @@
 //! A table of typed columns, as CSV and as Parquet.
 
+mod means;
 mod parquet;
 
 use grainlab_console::{Cell, CsvText, Failure};
@@ -22,6 +23,15 @@ impl Dataset {
         let mut row: Vec<Cell> = cells.into_iter().collect();
         row.resize(self.names.len(), Cell::Unknown);
         self.rows.push(row);
+    }
+
+    /// Adds columns, with their cells row by row; cells beyond the columns are left out.
+    pub fn extend(&mut self, names: Vec<String>, cells: impl IntoIterator<Item = Vec<Cell>>) {
+        self.names.extend(names);
+        for (row, more) in self.rows.iter_mut().zip(cells) {
+            row.extend(more);
+            row.resize(self.names.len(), Cell::Unknown);
+        }
     }
 
     /// Number of rows.

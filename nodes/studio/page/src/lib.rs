@@ -4,13 +4,14 @@
 //! - [`Html`], [`html!`]: markup, from texts and templates; [`table`], [`figure`], [`card`] and others: elements of pages
 //! - [`fixed`], [`signed`], [`six_digits`]: numbers for readers
 //! - [`plot`]: plots as SVG
-//! - [`Dataset`]: typed columns, as CSV and Parquet
+//! - [`Dataset`]: typed columns, as CSV and Parquet; [`Mean`]: a mean with its standard error
 
 #[macro_use]
 mod markup;
 
 mod dataset;
 mod elements;
+mod mean;
 mod page;
 pub mod plot;
 
@@ -22,6 +23,7 @@ pub use elements::{
 pub use markup::Html;
 #[doc(hidden)]
 pub use markup::rendered;
+pub use mean::Mean;
 #[doc(hidden)]
 pub use minijinja;
 pub use page::{Page, Section};

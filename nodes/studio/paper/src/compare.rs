@@ -1,8 +1,8 @@
 //! Numbers of packings compared with those of the paper.
 
-use crate::mean::Mean;
 use crate::quantity::{Printed, Quantity};
 use crate::sample::States;
+use grainlab_page::Mean;
 
 /// One quantity of one state.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,12 +1,12 @@
 //! The models judged on the simulated packings, whose microstructure was counted.
 
-use crate::mean::Mean;
 use crate::sample::{Observed, States};
 use crate::tables::PAPER;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
     Calibration, Conditions, Measured, Model, Observation, StrainRatio, StrainRatioSource, models,
 };
+use grainlab_page::Mean;
 
 /// A model with its constants and its γ/Δ.
 #[derive(Clone, Copy, Debug)]

@@ -11,14 +11,13 @@ pub mod claims;
 mod compare;
 mod distance;
 pub mod inversion;
-mod mean;
 mod quantity;
 mod sample;
 mod tables;
 
 pub use compare::{Comparison, compare};
 pub use distance::{DISTANCE, distance};
-pub use mean::Mean;
+pub use grainlab_page::Mean;
 pub use quantity::{Printed, Quantity};
 pub use sample::{Observed, States};
 pub use tables::{PAPER, PRESSURE, PRESSURES, REFERENCE_SOLID_FRACTION, SAMPLES, Sample, State};

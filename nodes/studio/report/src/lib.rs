@@ -3,7 +3,8 @@
 //! - [`Run`]: what a report is made of, from the files of a run; `timeline`, `phased`, `decimated`: against time, in one pass
 //!   over the recording; `summary_file`: how the run ended
 //! - `page`: the page of a run; `against_time`, `structure`, `moduli`, `inferred`, `waves`, `energy`, `health`: its sections
-//! - [`overview`]: the page of many runs; `outliers`: values far from those of runs alike
+//! - [`overview`]: the page of many runs; `outliers`: values far from those of runs alike; `settings`, `over_settings`: in which
+//!   settings they differ, and their quantities over these
 //! - [`Timeline`], [`curves`], [`STYLE`], [`SCRIPT`]: what the page of a running laboratory has in common with a report
 //! - [`write_report`]: the file
 
@@ -15,9 +16,11 @@ mod inferred;
 mod many;
 mod moduli;
 mod outliers;
+mod over_settings;
 mod page;
 mod phased;
 mod run;
+mod settings;
 mod structure;
 mod summary_file;
 mod timeline;

@@ -1,6 +1,7 @@
 //! The page of many runs: one row per run, sortable, with outliers marked.
 
 use crate::outliers::Outliers;
+use crate::over_settings::{Quantities, figures};
 use crate::page::STYLE;
 use crate::run::{Run, recommended};
 use grainlab_console::{CsvText, count};
@@ -117,10 +118,17 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         data => data("text/csv", "runs-data", &csv.finish())
     );
     let title = format!("{} of {}", count(runs.len(), "run"), count(by_scene.len(), "scene"));
+    let compared = |run| {
+        let all = numbers(run).into_iter().filter(|(name, ..)| is_compared(name));
+        (run, all.map(|(name, _, value)| (name, value)).collect())
+    };
+    let compared: Vec<Quantities<'_>> = runs.iter().map(|(run, _)| compared(run)).collect();
+    let mut sections = vec![Section { id: "runs", title: "Runs", content }];
+    sections.extend(figures(&compared).map(|content| Section { id: "settings", title: "Settings", content }));
     let page = Page {
         heading: heading("grainlab", &title, ""),
         title,
-        sections: vec![Section { id: "runs", title: "Runs", content }],
+        sections,
         styles: vec![STYLE],
         has_bar: true,
         ..Page::default()

@@ -1,12 +1,12 @@
 //! The states of a campaign in one table, from the recordings alone.
 
-use grainlab_campaign::{Campaign, Folder, Member, MemberState};
+use grainlab_campaign::{Campaign, Folder, Member, Standing};
 use grainlab_console::{Cell, Failure, count, print};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use grainlab_page::Dataset;
-use grainlab_recordings::{Recording, scenes};
+use grainlab_recordings::{METADATA_RECORD, Recording, scenes};
 use grainlab_results::quantities::{columns, typed_cells};
 use grainlab_results::read_back::{self, InvertedPacking};
 use grainlab_results::{Inference, ORIGIN};
@@ -14,46 +14,59 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+/// Columns that differ from run to run of the same campaign.
+const OF_RUN: [&str; 3] = ["grainlab_version", "host", "begun"];
+
 /// The state of a member at the end of a phase.
 pub(crate) struct State<'a> {
     pub(crate) member: &'a Member,
     /// Name of the phase; empty if it is not known.
     pub(crate) phase: String,
     pub(crate) found: InvertedPacking,
+    /// Cells of [`OF_RUN`].
+    of_run: [Cell; 3],
 }
 
-/// Writes the states of all finished members beside them. The exit is 3 if a member is missing.
+/// Writes the tables beside the members. The exit is 3 if a member is missing.
 pub(super) fn run(campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
+    let _lock = folder.lock_tables()?;
     let (states, exit) = states(campaign, folder)?;
-    let [csv, parquet] = write(campaign, folder, &states)?;
-    print(&format!("{}: {}, {}\n", count(states.len(), "state"), csv.display(), parquet.display()))?;
+    print(&write(campaign, folder, &states)?)?;
     Ok(exit)
 }
 
-/// Writes the table; the paths of its files.
-pub(crate) fn write(
-    campaign: &Campaign,
-    folder: &Folder,
-    states: &[State<'_>],
-) -> Result<[PathBuf; 2], Failure> {
-    let table = table(campaign, states);
-    Ok([folder.write("states.csv", table.csv())?, folder.write("states.parquet", table.parquet()?)?])
+/// Writes the tables; a line for each, with the paths of its files.
+pub(crate) fn write(campaign: &Campaign, folder: &Folder, states: &[State<'_>]) -> Result<String, Failure> {
+    let (mut table, keys) = table(campaign, states);
+    let by: Vec<&str> = keys.iter().map(String::as_str).collect();
+    let groups = table.means(&by, &["seed"]);
+    let csv = folder.write("states.csv", table.csv())?;
+    table.extend(OF_RUN.map(str::to_owned).into(), states.iter().map(|s| s.of_run.to_vec()));
+    let states = [csv, folder.write("states.parquet", table.parquet()?)?];
+    let means =
+        [folder.write("groups.csv", groups.csv())?, folder.write("groups.parquet", groups.parquet()?)?];
+    let line = |n: usize, name: &str, [csv, parquet]: [PathBuf; 2]| {
+        format!("{}: {}, {}\n", count(n, name), csv.display(), parquet.display())
+    };
+    Ok(line(table.len(), "state", states) + &line(groups.len(), "group", means))
 }
 
 /// The states of all finished members, in their order, and 3 if a member is missing.
 pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec<State<'a>>, Exit), Failure> {
-    let (finished, missing): (Vec<&Member>, Vec<&Member>) =
-        campaign.members.iter().partition(|m| folder.state(m) == MemberState::Finished);
+    let all = campaign.members.iter().map(|member| (member, folder.standing(member)));
+    let (finished, missing): (Vec<_>, Vec<_>) = all.partition(|(_, standing)| standing.state == "finished");
     if !missing.is_empty() {
-        let members = campaign.members.len();
+        let standings: Vec<Standing> = missing.iter().map(|(_, standing)| standing.clone()).collect();
         grainlab_console::say!(
-            "grainlab: {} of {members} members are not finished and not in the table: `grainlab campaign status {}`",
+            "grainlab: {} of {} are not in the tables: {}: `grainlab campaign status {}`",
             missing.len(),
+            count(campaign.members.len(), "member"),
+            Standing::words(&standings),
             folder.root().display()
         );
     }
     let found: Vec<Result<Vec<State<'a>>, String>> =
-        finished.into_par_iter().map(|member| of_member(member, &folder.run(member))).collect();
+        finished.into_par_iter().map(|(member, _)| of_member(member, &folder.run(member))).collect();
     let mut exit = if missing.is_empty() { Exit::Done } else { Exit::DataLoss };
     let mut states = Vec::new();
     for member in found {
@@ -89,17 +102,28 @@ fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Vec<State<'a>>, Strin
         let phase = found.packing.position.and_then(|p| p.phase.checked_sub(1));
         phase.and_then(|n| scene.phases.get(n)).map_or_else(String::new, |p| p.name.clone())
     };
-    Ok(back.states.into_iter().map(|found| State { member, phase: name(&found), found }).collect())
+    let metadata = recording.metadata(METADATA_RECORD).unwrap_or_default();
+    let cell = |text: Option<String>| text.map_or(Cell::Unknown, Cell::Text);
+    let stored = |key: &str| cell(metadata.get(key).cloned());
+    let of_run = [stored("grainlab"), stored("host"), cell(recording.begun())];
+    let state = |found| State { member, phase: name(&found), found, of_run: of_run.clone() };
+    Ok(back.states.into_iter().map(state).collect())
 }
 
-/// Member, what was set in it, phase, every quantity of the packing, and what each model inferred from its data.
-fn table(campaign: &Campaign, states: &[State<'_>]) -> Dataset {
+/// Member, what was set in it, phase, every quantity of the packing, and what each model inferred from its data; and the
+/// columns in which states of several seeds agree.
+fn table(campaign: &Campaign, states: &[State<'_>]) -> (Dataset, Vec<String>) {
     let mut keys: Vec<&str> = Vec::new();
     for set in campaign.members.iter().flat_map(|m| &m.set) {
         if !keys.contains(&set.key.as_str()) {
             keys.push(&set.key);
         }
     }
+    let value = |state: &State<'_>, key: &str| {
+        state.member.set.iter().rfind(|s| s.key == key).map(|s| s.value.clone())
+    };
+    let settings = keys.iter().map(|key| typed(states.iter().map(|s| value(s, key)).collect()));
+    let settings: Vec<Vec<Cell>> = settings.collect();
     // The source is the member, and a recording has no time of a measurement.
     let origin = || ORIGIN.iter().filter(|q| !["source", "seconds"].contains(&q.key));
     let inferred: Vec<BTreeMap<String, Cell>> = states.iter().map(|s| inferred(&s.found.results)).collect();
@@ -107,22 +131,36 @@ fn table(campaign: &Campaign, states: &[State<'_>]) -> Dataset {
     names.sort();
     names.dedup();
     let head = ["member", "scene", "seed"].map(str::to_owned).into_iter();
-    let head = head.chain(keys.iter().map(|key| format!("set.{key}"))).chain(["phase_name".to_owned()]);
+    let keys: Vec<String> = keys.iter().map(|key| format!("set.{key}")).collect();
+    let head = head.chain(keys.iter().cloned()).chain(["phase_name".to_owned()]);
     let mut table = Dataset::new(
         head.chain(columns(origin())).chain(columns(QUANTITIES)).chain(names.iter().map(|n| (*n).clone())),
     );
-    for (state, inferred) in states.iter().zip(&inferred) {
+    for (n, (state, inferred)) in states.iter().zip(&inferred).enumerate() {
         let member = state.member;
         let text = |text: &str| Cell::Text(text.to_owned());
-        let value = |key: &&str| member.set.iter().rfind(|s| s.key == **key).map(|s| text(&s.value));
         let head = [text(&member.name), text(&member.scene), Cell::Count(member.seed)].into_iter();
-        let settings = keys.iter().map(|key| value(key).unwrap_or_default());
+        let settings = settings.iter().map(|values| values[n].clone());
         let packing = &state.found.packing;
         let measured = typed_cells(origin(), packing).chain(typed_cells(QUANTITIES, &packing.report));
         let models = names.iter().map(|name| inferred.get(*name).cloned().unwrap_or_default());
         table.row(head.chain(settings).chain([text(&state.phase)]).chain(measured).chain(models));
     }
-    table
+    let alike = ["scene", "phase_name", "phase"].map(str::to_owned).into_iter().chain(keys);
+    (table, alike.collect())
+}
+
+/// The values of a setting: numbers if all are, else text.
+fn typed(values: Vec<Option<String>>) -> Vec<Cell> {
+    let plain = |text: &str| text.replace('_', "");
+    let count = |text: &str| plain(text).parse().ok().map(Cell::Count);
+    let number = |text: &str| plain(text).parse().ok().filter(|v: &f64| v.is_finite()).map(Cell::Number);
+    let flag = |text: &str| text.parse().ok().map(Cell::Flag);
+    let as_one = |of: &dyn Fn(&str) -> Option<Cell>| -> Option<Vec<Cell>> {
+        values.iter().map(|value| value.as_deref().map_or(Some(Cell::Unknown), of)).collect()
+    };
+    let found = as_one(&count).or_else(|| as_one(&number)).or_else(|| as_one(&flag));
+    found.unwrap_or_else(|| values.into_iter().map(|v| v.map_or(Cell::Unknown, Cell::Text)).collect())
 }
 
 /// Estimates of each model: `MODEL.k`, its standard deviation `MODEL.k_stddev`, …, `MODEL.status`. Data other than the report of the packing and
@@ -147,4 +185,19 @@ fn inferred(results: &[Inference]) -> BTreeMap<String, Cell> {
         cells.insert(format!("{prefix}.status"), Cell::Text(r.status.to_owned()));
     }
     cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_setting_is_a_number_where_every_value_is_one_and_keeps_its_text_elsewhere() {
+        let of = |values: &str| typed(values.split(' ').map(|v| Some(v.to_owned())).collect());
+        assert_eq!(of("1_000 20"), [1000, 20].map(Cell::Count));
+        assert_eq!(of("0.1 3 -1e2"), [0.1, 3.0, -100.0].map(Cell::Number));
+        // An infinite number would be an empty cell.
+        assert_eq!(of("0.1 inf"), ["0.1", "inf"].map(|text| Cell::Text(text.to_owned())));
+        assert_eq!(typed(vec![None, Some("true".into())]), [Cell::Unknown, Cell::Flag(true)]);
+    }
 }

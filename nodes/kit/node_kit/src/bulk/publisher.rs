@@ -99,6 +99,9 @@ impl BulkPublisher {
 
     /// Receives credits and sends parts. Returns true if nothing is in transit to any reader. Never waits.
     pub fn advance(&mut self, bus: &mut dyn Bus) -> Result<bool, BusError> {
+        if self.sender.is_idle() {
+            return Ok(true);
+        }
         let (now, wall) = (bus.now(), bus.wall_nanos());
         while let Some((credit, info)) = self.credits.take_valid(bus)? {
             // The credit may have been queued while the node computed.

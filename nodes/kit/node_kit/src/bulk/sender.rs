@@ -80,6 +80,11 @@ impl Sender {
         }
     }
 
+    /// True if there is no body to send: credits may wait for the next one.
+    pub(super) fn is_idle(&self) -> bool {
+        self.shape.is_none()
+    }
+
     /// Drops the body: a newer message was sent as one sample.
     pub(super) fn retire(&mut self) {
         (self.bytes, self.shape) = (Vec::new(), None);

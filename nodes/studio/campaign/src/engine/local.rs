@@ -105,7 +105,7 @@ pub(super) fn run(
 
 /// Starts the run of a member; its output is appended to its log.
 fn start(folder: &Folder, member: &Member, launch: Launch) -> Result<Copied, Failure> {
-    let path = folder.logs().join(format!("{}.log", member.name));
+    let path = folder.log(member);
     let failed = Failure::at(&path);
     let log = OpenOptions::new().create(true).append(true).open(&path).map_err(&failed)?;
     Copied::start(&log, || {

@@ -1,0 +1,109 @@
+//! Settings in which the scenes of runs differ.
+
+use crate::run::Run;
+use std::collections::{BTreeMap, BTreeSet};
+use toml::{Table, Value};
+
+/// Keys of a scene that change nothing in it but the random numbers.
+const NO_SETTINGS: [&str; 3] = ["name", "description", "seed"];
+
+/// A setting with its value in each run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Setting {
+    /// Key of the scene; of several that change together, the last part that they share.
+    pub(crate) name: String,
+    pub(crate) values: Vec<String>,
+}
+
+impl Setting {
+    /// The values, if all are numbers.
+    pub(crate) fn numbers(&self) -> Option<Vec<f64>> {
+        self.values.iter().map(|v| v.parse().ok().filter(|v: &f64| v.is_finite())).collect()
+    }
+
+    /// Number of different values.
+    pub(crate) fn different(&self) -> usize {
+        self.values.iter().collect::<BTreeSet<_>>().len()
+    }
+}
+
+/// The settings in which the runs differ. Keys that change together, as the friction of several phases, are one setting, and
+/// all that differs between scenes alone is the setting `scene`.
+pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
+    let scenes: Vec<String> = runs.iter().map(|run| run.scene_name()).collect();
+    let tables: Vec<BTreeMap<String, String>> = runs.iter().map(|run| keys(&run.scene_text)).collect();
+    let names: BTreeSet<&String> = tables.iter().flat_map(BTreeMap::keys).collect();
+    let mut found: BTreeMap<Vec<usize>, Setting> = BTreeMap::new();
+    let firsts = |values: &[String]| -> Vec<usize> {
+        values.iter().map(|v| values.iter().position(|w| w == v).unwrap_or(0)).collect()
+    };
+    let of_scene = firsts(&scenes);
+    for name in names {
+        let values: Vec<String> = tables.iter().map(|t| t.get(name).cloned().unwrap_or_default()).collect();
+        if values.iter().zip(&of_scene).all(|(v, first)| *v == values[*first]) {
+            continue;
+        }
+        let new = Setting { name: name.clone(), values };
+        let known = found.entry(firsts(&new.values)).or_insert_with(|| new.clone());
+        if known.name != new.name {
+            let last = name.rsplit('.').next().unwrap_or(name);
+            if known.name.ends_with(last) {
+                known.name = last.to_owned();
+            }
+        }
+    }
+    let mut settings: Vec<Setting> = found.into_values().collect();
+    if of_scene.iter().any(|first| *first > 0) {
+        settings.push(Setting { name: "scene".to_owned(), values: scenes });
+    }
+    settings
+}
+
+/// The keys of a scene with dots, phases by their names.
+fn keys(text: &str) -> BTreeMap<String, String> {
+    let mut table: Table = text.parse().unwrap_or_default();
+    NO_SETTINGS.iter().for_each(|key| _ = table.remove(*key));
+    let mut found = BTreeMap::new();
+    flatten(&Value::Table(table), String::new(), &mut found);
+    found
+}
+
+fn flatten(value: &Value, path: String, found: &mut BTreeMap<String, String>) {
+    let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+    match value {
+        Value::Table(table) => table.iter().for_each(|(key, value)| flatten(value, below(key), found)),
+        Value::Array(all) => {
+            for (n, value) in all.iter().enumerate() {
+                let name = value.get("name").and_then(Value::as_str);
+                flatten(value, below(&name.map_or_else(|| (n + 1).to_string(), str::to_owned)), found);
+            }
+        }
+        // Phases of one name are told apart together.
+        value => {
+            *found.entry(path).or_default() +=
+                &value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_that_change_together_are_one_setting_and_a_seed_is_none() {
+        let of = |seed: u32, mu: f64, grains: u32| {
+            let phases = "phase = [{name = 'a', friction = MU}, {name = 'b', friction = MU, rate = [0, 1]}]";
+            let text = format!("seed = {seed}\ngrains.count = {grains}\n{phases}");
+            let mut run = Run::default();
+            run.scene_text = text.replace("MU", &mu.to_string());
+            run
+        };
+        let runs = [of(1, 0.1, 80), of(2, 0.1, 80), of(1, 0.3, 90), of(2, 0.1, 90)];
+        let found = differing(&runs.each_ref());
+        let names: Vec<(&str, usize)> = found.iter().map(|s| (s.name.as_str(), s.different())).collect();
+        assert_eq!(names, [("friction", 2), ("grains.count", 2)]);
+        assert_eq!(found[0].numbers(), Some(vec![0.1, 0.1, 0.3, 0.1]));
+        assert!(differing(&[&runs[0], &runs[1]]).is_empty());
+    }
+}
