@@ -95,13 +95,15 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             let (folder, campaign) = Folder::open(&place.folder)?;
             gather::run(&campaign, &folder)
         }
-        (Some(Command::Keys), _) => grainlab_console::print(&grainlab_campaign::reference()).map(|()| Exit::Done),
+        (Some(Command::Keys), _) => {
+            grainlab_console::print(&grainlab_campaign::reference()).map(|()| Exit::Done)
+        }
         (None, Some(file)) => {
             let mut campaign = Campaign::read(file)?;
             let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));
             campaign.processes = args.options.processes;
             let (folder, _lock) = begin(&campaign, &root, &args.options)?;
-            let exit = run_members(&args.options, &campaign, &folder)?;
+            let exit = args.options.run(&campaign, &folder)?;
             if args.options.engine == Engine::Print || exit == Exit::Interrupted {
                 return Ok(exit);
             }
@@ -121,21 +123,10 @@ pub(crate) fn begin(
     options.check()?;
     let lock = if options.engine == Engine::Print { None } else { Some(Folder::create(root)?.1) };
     let folder = Folder::at(root)?;
-    for member in &campaign.members {
+    for (n, member) in campaign.members.iter().enumerate() {
         let launch = launch::Args::of_member(campaign, member, folder.run(member));
-        launch.check().map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
+        launch.check(n > 0).map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
     }
     lock.iter().try_for_each(|_| folder.plan(campaign))?;
     Ok((folder, lock))
-}
-
-/// Runs the members that are not finished.
-pub(crate) fn run_members(options: &Options, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
-    options.run(campaign, folder, &|member| {
-        let launch = launch::Args::of_member(campaign, member, folder.run(member));
-        launch::run(&launch).unwrap_or_else(|failure| {
-            grainlab_console::say!("grainlab: {failure}");
-            failure.exit
-        })
-    })
 }

@@ -168,14 +168,16 @@ impl Args {
         }
     }
 
-    /// Refuses a launch that could not begin, or whose directory has another run.
-    pub(crate) fn check(&self) -> Result<(), Failure> {
-        let (scene, order) = planned(self)?;
+    /// Refuses a launch that could not begin, or whose directory has another run. With `same_nodes` as another launch that was
+    /// checked, the scene alone is read.
+    pub(crate) fn check(&self, same_nodes: bool) -> Result<(), Failure> {
         let directory = self.run.as_deref().unwrap_or(Path::new(RUNS));
-        match grainlab_recordings::run_state(directory) {
-            grainlab_recordings::RunState::Absent => Ok(()),
-            _ => directory::refuse_another(directory, &scene, &order),
+        let is_new = grainlab_recordings::run_state(directory) == grainlab_recordings::RunState::Absent;
+        if let (true, true, Some(scene)) = (is_new, same_nodes, &self.scene) {
+            return scenes::load(scene, &self.set, self.seed).map(drop);
         }
+        let (scene, order) = planned(self)?;
+        if is_new { Ok(()) } else { directory::refuse_another(directory, &scene, &order) }
     }
 }
 

@@ -65,7 +65,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         args.out.clone().unwrap_or_else(|| PathBuf::from(format!("recordings/campaigns/paper-{grains}")));
     campaign.processes = args.options.processes;
     let (folder, _lock) = campaign::begin(&campaign, &root, &args.options)?;
-    let exit = campaign::run_members(&args.options, &campaign, &folder)?;
+    let exit = args.options.run(&campaign, &folder)?;
     if args.options.engine == Engine::Print || exit == Exit::Interrupted {
         return Ok(exit);
     }

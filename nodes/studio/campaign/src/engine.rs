@@ -2,7 +2,6 @@
 
 mod array;
 mod cluster;
-mod copied;
 mod limits;
 mod local;
 mod options;
@@ -17,16 +16,12 @@ use crate::progress::Progress;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::Exit;
 
-/// Begins, continues or keeps the run of a member, in this process.
-pub(crate) type Launch<'a> = &'a dyn Fn(&Member) -> Exit;
-
 impl Options {
-    /// Runs the members that are not finished, those on this machine by `launch`; the caller holds the lock of the folder. The exit
-    /// is 0 if all are.
+    /// Runs the members that are not finished; the caller holds the lock of the folder. The exit is 0 if all are.
     ///
     /// # Errors
     /// A folder in use, a scheduler that cannot be reached, a folder that cannot be written.
-    pub fn run(&self, campaign: &Campaign, folder: &Folder, launch: Launch) -> Result<Exit, Failure> {
+    pub fn run(&self, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
         if self.engine == Engine::Print {
             grainlab_console::print(&self.script(campaign, folder)?)?;
             return Ok(Exit::Done);
@@ -46,7 +41,7 @@ impl Options {
         let interrupted = match self.engine {
             _ if pending.is_empty() => false,
             Engine::Slurm | Engine::Hq => cluster::run(campaign, folder, self, &mut progress)?,
-            _ => local::run(campaign, folder, self, launch, pending, &mut progress)?,
+            _ => local::run(campaign, folder, self, pending, &mut progress)?,
         };
         progress.end();
         let exit = report(campaign, folder);

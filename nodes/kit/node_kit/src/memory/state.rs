@@ -100,10 +100,12 @@ impl MemoryState {
             received,
             about,
         };
-        let mut body = body.to_vec();
         // RTPS pads a sample to four bytes: the same bytes are recorded from every bus.
-        body.resize(body.len().next_multiple_of(4), 0);
-        let sample = Sample { body, info };
+        let length = body.len().next_multiple_of(4);
+        let mut padded = Vec::with_capacity(length);
+        padded.extend_from_slice(body);
+        padded.resize(length, 0);
+        let sample = Sample { body: padded, info };
         if writer.qos.transient_local {
             writer.latched.push_back(sample.clone());
             while writer.latched.len() > writer.qos.depth as usize {

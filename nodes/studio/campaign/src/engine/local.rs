@@ -1,10 +1,9 @@
 //! Members on this machine, some at a time.
 
-use super::Launch;
-use super::copied::Copied;
 use super::limits::{Reached, reached, send};
 use super::options::{Options, RETRIES};
 use crate::campaign::Campaign;
+use crate::command::command;
 use crate::folder::{Folder, MemberState};
 use crate::member::Member;
 use crate::progress::Progress;
@@ -12,6 +11,8 @@ use grainlab_console::{Failure, Signals};
 use grainlab_msgs::Exit;
 use std::collections::VecDeque;
 use std::fs::OpenOptions;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Period of the checks of the processes.
@@ -27,7 +28,7 @@ struct Task {
 /// A running member.
 struct Job {
     task: Task,
-    process: Copied,
+    process: Child,
     began: Instant,
     /// The limit that it reached.
     reached: Option<Reached>,
@@ -38,7 +39,6 @@ pub(super) fn run(
     campaign: &Campaign,
     folder: &Folder,
     options: &Options,
-    launch: Launch,
     pending: Vec<usize>,
     progress: &mut Progress,
 ) -> Result<bool, Failure> {
@@ -59,14 +59,14 @@ pub(super) fn run(
             if task.tries > 0 && task.tries >= retries {
                 folder.remove(&campaign.members[task.member])?;
             }
-            let process = start(folder, &campaign.members[task.member], launch)?;
+            let process = start(campaign, folder, &campaign.members[task.member])?;
             running.push(Job { task, process, began: Instant::now(), reached: None });
             progress.running(running.len());
         }
         let mut n = 0;
         while n < running.len() {
             let job = &mut running[n];
-            if !job.process.has_ended().map_err(Failure::failed)? {
+            if job.process.try_wait().map_err(Failure::failed)?.is_none() {
                 let reached = reached(options, job.process.id(), job.began);
                 // Once for each signal: a second interrupt would end it without its state.
                 if let Some(new) =
@@ -104,14 +104,24 @@ pub(super) fn run(
 }
 
 /// Starts the run of a member; its output is appended to its log.
-fn start(folder: &Folder, member: &Member, launch: Launch) -> Result<Copied, Failure> {
+fn start(campaign: &Campaign, folder: &Folder, member: &Member) -> Result<Child, Failure> {
+    let words = command(campaign, folder, member)?;
     let path = folder.log(member);
     let failed = Failure::at(&path);
     let log = OpenOptions::new().create(true).append(true).open(&path).map_err(&failed)?;
-    Copied::start(&log, || {
-        // SAFETY: the copy has one thread. Each run finds a free domain.
-        unsafe { std::env::remove_var("ROS_DOMAIN_ID") };
-        launch(member).code()
-    })
-    .map_err(failed)
+    let mut command = Command::new(&words[0]);
+    command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(&failed)?).stderr(log);
+    // Each run finds a free domain.
+    command.env_remove("ROS_DOMAIN_ID");
+    // A group of its own: Ctrl-C reaches the campaign, which passes it on.
+    command.process_group(0);
+    // SAFETY: prctl takes integers, accesses no memory, and may be called between fork and exec.
+    unsafe {
+        command.pre_exec(|| {
+            // A campaign that is killed ends its runs.
+            libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM);
+            Ok(())
+        });
+    }
+    command.spawn().map_err(failed)
 }
