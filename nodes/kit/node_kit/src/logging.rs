@@ -26,7 +26,7 @@ static OF_PROCESS: Logger = Logger {
         name: String::new(),
         level: LevelFilter::Off,
         logger_levels: Vec::new(),
-        sink: Sink::None,
+        to: Destination::None,
         rosout: false,
         queue: VecDeque::new(),
         dropped: 0,
@@ -41,7 +41,7 @@ thread_local! {
 }
 
 /// Destination of the lines, besides `/rosout`.
-enum Sink {
+enum Destination {
     None,
     Stderr { colour: bool },
     File(File),
@@ -52,7 +52,7 @@ struct LogSettings {
     name: String,
     level: LevelFilter,
     logger_levels: Vec<(String, LevelFilter)>,
-    sink: Sink,
+    to: Destination,
     rosout: bool,
     queue: VecDeque<Log>,
     /// Number of lines that the full queue dropped since it was last taken.
@@ -69,11 +69,11 @@ impl Logger {
     /// node name. A logger of other code that was installed before keeps stderr.
     pub fn install(node: &str, args: &RosArgs) -> &'static Logger {
         let colour = colour_wanted(|name| std::env::var(name).ok(), std::io::stderr().is_terminal());
-        let settings = LogSettings::of(node, args, Sink::Stderr { colour });
+        let settings = LogSettings::of(node, args, Destination::Stderr { colour });
         log::set_max_level(settings.most());
         *OF_PROCESS.lock() = settings;
         if !is_set() {
-            OF_PROCESS.lock().sink = Sink::None;
+            OF_PROCESS.lock().to = Destination::None;
         }
         &OF_PROCESS
     }
@@ -81,7 +81,7 @@ impl Logger {
     /// The logger of one of several nodes in this process, into `file`; see [`Logger::enter`].
     pub fn of_node(node: &str, args: &RosArgs, file: File) -> &'static Logger {
         is_set();
-        let settings = LogSettings::of(node, args, Sink::File(file));
+        let settings = LogSettings::of(node, args, Destination::File(file));
         log::set_max_level(log::max_level().max(settings.most()));
         Box::leak(Box::new(Logger { settings: Mutex::new(settings) }))
     }
@@ -138,13 +138,13 @@ fn is_set() -> bool {
 }
 
 impl LogSettings {
-    fn of(node: &str, args: &RosArgs, sink: Sink) -> Self {
+    fn of(node: &str, args: &RosArgs, to: Destination) -> Self {
         Self {
             // ROS 2 writes namespaces with dots in logger names.
             name: node.trim_start_matches('/').replace('/', "."),
             level: args.log_level,
             logger_levels: args.logger_levels.clone(),
-            sink: if args.stderr { sink } else { Sink::None },
+            to: if args.stderr { to } else { Destination::None },
             rosout: args.rosout,
             queue: VecDeque::new(),
             dropped: 0,
@@ -195,14 +195,14 @@ impl log::Log for Router {
         // Stamped under the lock, so that the lines of all threads are queued in the order of their stamps.
         let stamp = wall_stamp(wall_nanos());
         let line = || format!("[{name}] [{}.{:09}] [{}]: {text}", stamp.sec, stamp.nanosec, settings.name);
-        match &settings.sink {
-            Sink::None => {}
-            Sink::Stderr { colour: true } if !paint.is_empty() => {
+        match &settings.to {
+            Destination::None => {}
+            Destination::Stderr { colour: true } if !paint.is_empty() => {
                 write_above_live_line(&format!("{paint}{}\x1b[0m\n", line()));
             }
-            Sink::Stderr { .. } => write_above_live_line(&(line() + "\n")),
+            Destination::Stderr { .. } => write_above_live_line(&(line() + "\n")),
             // A full disk ends the recording, which says so; the log cannot.
-            Sink::File(file) => _ = (&*file).write_all((line() + "\n").as_bytes()),
+            Destination::File(file) => _ = (&*file).write_all((line() + "\n").as_bytes()),
         }
         if settings.rosout && !PUBLISHES.get() {
             if settings.queue.len() >= BACKLOG {
@@ -234,7 +234,7 @@ mod tests {
             name: "n".into(),
             level,
             logger_levels: logger_levels.iter().map(|(n, l)| ((*n).into(), *l)).collect(),
-            sink: Sink::None,
+            to: Destination::None,
             rosout: true,
             queue: VecDeque::new(),
             dropped: 0,

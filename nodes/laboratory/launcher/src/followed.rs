@@ -46,7 +46,7 @@ pub(super) enum Verdict {
     Pending(Option<Deadline>),
 }
 
-/// What is known of a run.
+/// Knowledge of a run.
 pub(super) struct Followed {
     pub(super) progress: Progress,
     pub(super) outline: Outline,

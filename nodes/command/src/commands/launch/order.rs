@@ -35,7 +35,7 @@ pub(super) struct Order {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Record {
-    /// Every message
+    /// All messages of a run
     #[default]
     All,
     /// Packings, what was measured of them and inferred from it, and the states of the run; not the lockstep and the log
