@@ -11,16 +11,8 @@ use grainlab_recordings::Lock;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
-A campaign file:
-  name = \"friction\"
-  scenes = [\"demo\", \"mine.toml\"]           # built in, or files beside this one
-  seeds = { first = 1, count = 5 }          # or a list
-  vary = { friction = [0.05, 0.1, 0.3] }    # every combination is run with every seed
-  set = { grains.count = 500 }              # keys of every scene
-
-`grainlab campaign keys` describes every key: values in step, groups, tables of runs. Each member is a folder with a
-recorded run. Started again, the command leaves finished members as they are and continues interrupted ones; the results are
-the same to the last byte.
+`grainlab campaign keys` has a file of a campaign, and describes every key. Each member is a folder with a recorded run.
+Started again, the command leaves finished members as they are and continues interrupted ones, to the same bytes.
 
 Examples:
   grainlab campaign friction.toml

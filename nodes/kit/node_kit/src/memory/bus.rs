@@ -53,8 +53,8 @@ impl MemoryBus {
     /// True if a sample can be taken now.
     pub fn has_data(&self) -> bool {
         let state = self.state.borrow();
-        let horizon = state.time.horizon();
-        self.readers.iter().any(|r| state.readers[*r].has_data(horizon))
+        let now = state.time.transit;
+        self.readers.iter().any(|r| state.readers[*r].has_data(now))
     }
 
     /// Present writers of a topic, sorted, of those that count.
@@ -123,8 +123,8 @@ impl Bus for MemoryBus {
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
         let reader = *self.readers.get(subscription.0).ok_or(BusError::Handle("take"))?;
         let mut state = self.state.borrow_mut();
-        let horizon = state.time.horizon();
-        while let Some(sample) = state.readers[reader].take(horizon) {
+        let now = state.time.transit;
+        while let Some(sample) = state.readers[reader].take(now) {
             let (taken, _) = self.admission.takes(sample.info.writer, &state.readers[reader].topic);
             if taken {
                 state.readers[reader].taken += 1;

@@ -12,7 +12,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A network in memory. Cloning gives another handle to the same one.
 #[derive(Clone, Debug)]
@@ -23,12 +23,12 @@ pub struct Hub {
 impl Hub {
     /// An empty network at virtual time zero. The faults follow from the seed.
     pub fn new(seed: u64) -> Self {
-        Self::with(seed, Time::Virtual { now: Duration::ZERO, wall_offset: 0 })
+        Self::with(seed, Time::default())
     }
 
     /// An empty network with the clocks of this host. Computations end early once `stop` is true.
     pub fn real_time(stop: Arc<AtomicBool>) -> Self {
-        Self::with(0, Time::Real { start: Instant::now(), alarm: Arc::new(Alarm::new(stop)) })
+        Self::with(0, Time::real(Alarm::new(stop)))
     }
 
     fn with(seed: u64, time: Time) -> Self {
@@ -76,9 +76,7 @@ impl Hub {
 
     /// Sets the wall clock of virtual time forward or back; the monotonic time does not change.
     pub fn set_wall_clock(&self, forward_nanos: i64) {
-        if let Time::Virtual { wall_offset, .. } = &mut self.state.borrow_mut().time {
-            *wall_offset += forward_nanos;
-        }
+        self.state.borrow_mut().time.wall_offset += forward_nanos;
     }
 
     /// Time of the next arrival of a sample in transit, if any.

@@ -64,7 +64,7 @@ impl MemoryState {
 
     /// Time of the next arrival of a sample in transit, if any.
     pub(super) fn next_arrival(&self) -> Option<Duration> {
-        let now = self.time.now();
+        let now = self.time.transit;
         let next = |r: &Reader| r.queue.iter().map(|(due, _)| *due).find(|due| *due > now);
         self.readers.iter().filter(|r| r.alive).filter_map(next).min()
     }
@@ -80,7 +80,7 @@ impl MemoryState {
     pub(super) fn add_reader(&mut self, participant: Participant, topic: String, demand: Demand) -> usize {
         let mut queue = VecDeque::new();
         if demand.reliable {
-            let now = self.time.now();
+            let now = self.time.transit;
             for writer in self.writers.iter().filter(|w| w.alive && w.topic == topic) {
                 queue.extend(writer.latched.iter().map(|sample| (now, sample.clone())));
             }
@@ -90,7 +90,7 @@ impl MemoryState {
     }
 
     pub(super) fn publish(&mut self, writer: usize, body: &[u8], about: Option<SampleId>) -> i64 {
-        let (now, received) = (self.time.sent(), self.time.wall_nanos());
+        let (now, received) = (self.time.transit, self.time.wall_nanos());
         let writer = &mut self.writers[writer];
         writer.count += 1;
         let info = SampleInfo {
