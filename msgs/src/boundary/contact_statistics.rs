@@ -70,5 +70,5 @@ pub(super) fn every_contact(
 ) -> Result<(), BoundaryError> {
     let sum: u64 = counts.iter().map(|c| u64::from(*c)).sum();
     let requirement = "the number of contacts";
-    check.that(sum == u64::from(contacts), &format!("sum of {field}"), sum as f64, requirement).map(drop)
+    check.that(sum == u64::from(contacts), format_args!("sum of {field}"), sum as f64, requirement).map(drop)
 }

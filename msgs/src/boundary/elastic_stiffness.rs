@@ -36,7 +36,7 @@ pub(super) fn elastic_stiffness(m: &msg::ElasticStiffness) -> Result<ElasticStif
         Ok::<_, BoundaryError>(Stiffness::from_row_major(values))
     };
     for (i, stddev) in m.stddev.iter().enumerate() {
-        CHECK.not_negative(&format!("stddev[{i}]"), *stddev)?;
+        CHECK.not_negative(format_args!("stddev[{i}]"), *stddev)?;
     }
     let method = StiffnessMethod::ALL.into_iter().find(|method| code(*method) == m.method);
     let read = ElasticStiffness {
@@ -70,7 +70,7 @@ fn consistent(s: &ElasticStiffness) -> Result<(), BoundaryError> {
     for at in 0..36 {
         let across = c[6 * (at % 6) + at / 6];
         let symmetric = (c[at] - across).abs() <= slack;
-        CHECK.that(symmetric, &format!("stiffness[{at}]"), c[at], "that of the transposed entry")?;
+        CHECK.that(symmetric, format_args!("stiffness[{at}]"), c[at], "that of the transposed entry")?;
     }
     let requirement = "at least the bulk modulus of the relaxed stiffness";
     CHECK.that(affine + slack >= bulk, "affine (bulk modulus)", affine, requirement)?;

@@ -206,7 +206,7 @@ fn standard_deviations(
     let checked: Option<[f64; N * N]> = CHECK.covariance(field, values)?;
     for (at, value) in values.iter().enumerate() {
         let both = known[at / N] && known[at % N];
-        CHECK.that(both || *value == 0.0, &format!("{field}[{at}]"), *value, NOTHING)?;
+        CHECK.that(both || *value == 0.0, format_args!("{field}[{at}]"), *value, NOTHING)?;
     }
     Ok(Quantities::of(|q| {
         let variance = checked.filter(|_| known[q as usize])?[(N + 1) * q as usize];
@@ -219,7 +219,12 @@ fn part_is_at_most_the_whole(m: &Estimate) -> Result<(), BoundaryError> {
         let whole = m.covariance.get(at).copied().unwrap_or_default();
         let part = m.covariance_model[at];
         let fits = part <= whole * (1.0 + 1e-9);
-        CHECK.that(fits, &format!("covariance_model[{at}]"), part, "at most the same entry of covariance")?;
+        CHECK.that(
+            fits,
+            format_args!("covariance_model[{at}]"),
+            part,
+            "at most the same entry of covariance",
+        )?;
     }
     Ok(())
 }
@@ -266,7 +271,7 @@ fn information(m: &Estimate, known: &[bool; N]) -> Result<(), BoundaryError> {
     for (i, shares) in m.information.chunks_exact(DATA.len()).enumerate() {
         let start = DATA.len() * i;
         let Some(j) = shares.iter().position(|s| *s != 0.0) else { continue };
-        CHECK.that(known[i], &format!("information[{}]", start + j), shares[j], NOTHING)?;
+        CHECK.that(known[i], format_args!("information[{}]", start + j), shares[j], NOTHING)?;
         // Contributions of correlated data may be large and cancel, so that rounding affects the sum.
         let slack = 1e-6 * shares.iter().map(|s| s.abs()).sum::<f64>();
         let (sum, name) =

@@ -90,21 +90,21 @@ fn orientation(m: &msg::OrientationHistogram, contacts: u32) -> Result<Orientati
     every_contact(CHECK, "orientation.contacts", &m.contacts, contacts)?;
     for (field, means) in [("overlap", &m.overlap), ("sqrt_overlap", &m.sqrt_overlap)] {
         for (index, mean) in means.iter().enumerate() {
-            CHECK.not_negative(&format!("orientation.{field}[{index}]"), *mean)?;
+            CHECK.not_negative(format_args!("orientation.{field}[{index}]"), *mean)?;
         }
     }
     let contact_fit = CHECK.optional("orientation.contact_fit", &m.contact_fit, |field, fit| {
         let requirement = "between -1/2 and 1, where no contact density is negative";
         let eps = fit.eps;
         Ok(OrientationFit {
-            eps: CHECK.that((-0.5..=1.0).contains(&eps), &format!("{field}.eps"), eps, requirement)?,
-            eps_stddev: CHECK.not_negative(&format!("{field}.eps_stddev"), fit.eps_stddev)?,
-            chi2_per_dof: CHECK.not_negative(&format!("{field}.chi2_per_dof"), fit.chi2_per_dof)?,
+            eps: CHECK.that((-0.5..=1.0).contains(&eps), format_args!("{field}.eps"), eps, requirement)?,
+            eps_stddev: CHECK.not_negative(format_args!("{field}.eps_stddev"), fit.eps_stddev)?,
+            chi2_per_dof: CHECK.not_negative(format_args!("{field}.chi2_per_dof"), fit.chi2_per_dof)?,
         })
     })?;
     let overlap_fit = CHECK.optional("orientation.overlap_fit", &m.overlap_fit, |field, fit| {
         Ok(OverlapAnisotropyFit {
-            g: CHECK.finite(&format!("{field}.g"), fit.g)?,
+            g: CHECK.finite(format_args!("{field}.g"), fit.g)?,
             g_stddev: CHECK.optional_not_negative(&format!("{field}.g_stddev"), &fit.g_stddev)?,
         })
     })?;

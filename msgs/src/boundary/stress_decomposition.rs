@@ -56,7 +56,7 @@ fn network(name: &str, m: &msg::SubNetwork) -> Result<SubNetwork, BoundaryError>
     Ok(SubNetwork {
         contacts: m.contacts,
         fabric: CHECK.tensor(&field("fabric"), &m.fabric)?,
-        contact_anisotropy: CHECK.finite(&field("contact_anisotropy"), m.contact_anisotropy)?,
+        contact_anisotropy: CHECK.finite(field("contact_anisotropy"), m.contact_anisotropy)?,
         stress: CHECK.tensor(&field("stress"), &m.stress)?,
     })
 }

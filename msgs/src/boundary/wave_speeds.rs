@@ -170,11 +170,11 @@ fn speed(index: usize, s: &msg::WaveSpeed) -> Result<MeasuredWave, BoundaryError
         wave: WaveSpeed {
             direction: CHECK.unit(&name("direction"), &s.direction)?,
             polarization: CHECK.unit(&name("polarization"), &s.polarization)?,
-            speed: CHECK.positive(&name("speed"), s.speed)?,
+            speed: CHECK.positive(name("speed"), s.speed)?,
             stddev: CHECK.known(&name("speed_stddev"), s.speed_stddev)?,
         },
         frequency: CHECK.known(&name("frequency"), s.frequency)?,
-        strain_amplitude: CHECK.not_negative(&name("strain_amplitude"), s.strain_amplitude)?,
+        strain_amplitude: CHECK.not_negative(name("strain_amplitude"), s.strain_amplitude)?,
     })
 }
 

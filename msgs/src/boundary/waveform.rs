@@ -27,10 +27,10 @@ impl Waveform {
         CHECK.length("sample", samples, samples / channels * channels, "as many in each channel")?;
         CHECK.length("sample", samples, samples.max(channels), "at least one in each channel")?;
         for (i, distance) in self.distance.iter().enumerate() {
-            CHECK.not_negative(&format!("distance[{i}]"), *distance)?;
+            CHECK.not_negative(format_args!("distance[{i}]"), *distance)?;
         }
         if let Some((i, sample)) = self.sample.iter().enumerate().find(|(_, s)| !s.is_finite()) {
-            CHECK.finite(&format!("sample[{i}]"), f64::from(*sample))?;
+            CHECK.finite(format_args!("sample[{i}]"), f64::from(*sample))?;
         }
         method(CHECK, "method", self.method)?;
         CHECK.unit("direction", &self.direction)?;

@@ -110,12 +110,16 @@ fn a_killed_member_is_continued_and_a_failed_one_costs_nothing_else() {
 fn a_member_at_its_limit_of_memory_or_time_fails_and_harms_no_other() {
     let lab = Lab::new();
     let scene = golden("scenes/endless.toml");
-    let cases =
-        [("--member-memory", "120", 200_000, "over the limit of 120 MiB"), ("--member-time", "3", 100, "3 seconds")];
+    let cases = [
+        ("--member-memory", "120", 200_000, "over the limit of 120 MiB"),
+        ("--member-time", "3", 100, "3 seconds"),
+    ];
     for (flag, limit, grains, reason) in cases {
-        let group = format!("[[group]]\nscenes = [{scene:?}]\nseeds = [9]\nset = {{ grains.count = {grains} }}");
+        let group =
+            format!("[[group]]\nscenes = [{scene:?}]\nseeds = [9]\nset = {{ grains.count = {grains} }}");
         let file = tiny(&lab, "[1, 2]", &group);
-        let ended = lab.start(&["campaign", &file.to_string_lossy(), "--out", "limited", flag, limit]).ended(LIMIT);
+        let ended =
+            lab.start(&["campaign", &file.to_string_lossy(), "--out", "limited", flag, limit]).ended(LIMIT);
         assert_eq!(ended.code, Some(1), "{}{}", ended.stdout, ended.stderr);
         let status = lab.run(&["campaign", "status", "limited"]);
         assert!(status.stdout.contains("3 members: 2 finished, 1 failed"), "{}", status.stdout);
