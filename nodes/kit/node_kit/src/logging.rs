@@ -78,7 +78,7 @@ impl Logger {
         &OF_PROCESS
     }
 
-    /// The logger of one of several nodes in this process, into `file`; see [`Logger::enter`].
+    /// The logger of one of several nodes in this process, into `file`.
     pub fn of_node(node: &str, args: &RosArgs, file: File) -> &'static Logger {
         is_set();
         let settings = LogSettings::of(node, args, Destination::File(file));

@@ -126,6 +126,7 @@ impl Columns {
     }
 
     /// Those of these inputs, separated by spaces, that no column contains.
+    #[cfg(feature = "studio")]
     pub(crate) fn missing<'a>(&self, keys: &'a str) -> Vec<&'a str> {
         let is_there = |key: &&str| {
             let key = key.trim_start_matches("ti_");

@@ -11,5 +11,6 @@ pub(super) struct Output {
     /// The run is continued: its times are those of the last part.
     pub(super) resumed: bool,
     /// Write the page of the run.
+    #[cfg_attr(not(feature = "studio"), expect(dead_code, reason = "the studio writes pages"))]
     pub(super) report: bool,
 }
