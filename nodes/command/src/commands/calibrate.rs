@@ -47,8 +47,8 @@ pub(crate) struct Args {
     /// the others [default: scene with a column member, else preparation]
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
     preparation: Option<Vec<String>>,
-    /// Columns that identify the packing: states of one packing at several pressures are not independent [default: member, else
-    /// preparation,mu2,seed]
+    /// Columns that identify the packing: states of one packing at several pressures are not independent [default: member
+    /// without its pressure, else preparation,mu2,seed]
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
     packing: Option<Vec<String>>,
     /// Name of the calibration, reported with every estimate [default: the name of the output file]

@@ -38,7 +38,7 @@ impl Member {
         let stem = stem.strip_suffix(".toml").unwrap_or(stem);
         let own = set.iter().skip(common).map(|s| {
             let key = s.key.strip_prefix("phase.*.").unwrap_or(&s.key);
-            format!("-{key}={}", s.value.strip_suffix(".0").unwrap_or(&s.value))
+            format!("-{key}={}", plain(&s.value))
         });
         let name: String = std::iter::once(stem.to_owned()).chain(own).chain([format!("-{seed}")]).collect();
         Self { name: file_name(&name), scene: scene.to_owned(), seed, set }
@@ -48,6 +48,12 @@ impl Member {
     pub fn sets(&self) -> Vec<String> {
         self.set.iter().map(ToString::to_string).collect()
     }
+}
+
+/// One text for each number, so that two spellings of it give one name.
+fn plain(value: &str) -> String {
+    let number = value.parse::<f64>().ok().filter(|x| *x == 0.0 || (1e-6..1e15).contains(&x.abs()));
+    number.map_or_else(|| value.to_owned(), |x| x.to_string())
 }
 
 /// Other characters than letters, digits and some marks become `_`.
@@ -75,6 +81,11 @@ mod tests {
         let member =
             Member::new("s2", 1, vec![set("phase.*.drag", "1000.0"), set("phase.settle-*.x", "1")], 0);
         assert_eq!(member.name, "s2-drag=1000-phase.settle-_.x=1-1");
+        let named = |value| Member::new("s", 1, vec![set("pressure", value)], 0).name;
+        assert_eq!(
+            ["5e4", "50000.0", "50_000"].map(named),
+            ["50000", "50000", "50_000"].map(|p| format!("s-pressure={p}-1"))
+        );
         assert_eq!(Member::new("..", 1, vec![set("a", "x/../y")], 0).name, "_..-a=x_.._y-1");
     }
 }

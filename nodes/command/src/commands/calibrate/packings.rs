@@ -55,6 +55,13 @@ pub(super) fn counted(path: &Path, samples: &[CalibrationSample]) -> String {
     format!("{} ({states}) of {}", count(grainlab_calibration::packings(samples), "packing"), path.display())
 }
 
+/// Name of a member of a campaign without its pressure: one seed gives almost the same packing at each.
+fn without_pressure(member: &str) -> String {
+    let Some((before, after)) = member.split_once("-pressure=") else { return member.to_owned() };
+    let rest = after.find('-').map_or("", |end| &after[end..]);
+    format!("{before}{rest}")
+}
+
 /// The first `preparation` cells grouped by identify the preparation, those after them the packing.
 fn sample(row: &Row, preparation: usize, place: String) -> Result<CalibrationSample, String> {
     let State { moduli, truth, conditions, grains, grain_shear_modulus, poisson, .. } = &row.state;
@@ -86,7 +93,7 @@ fn sample(row: &Row, preparation: usize, place: String) -> Result<CalibrationSam
     let (preparation, packing) = row.group.split_at(preparation);
     Ok(CalibrationSample {
         preparation: preparation.join(" "),
-        packing: packing.join(" "),
+        packing: without_pressure(&packing.join(" ")),
         place,
         grains: need(*grains, "grains")? as u32,
         material: Material {

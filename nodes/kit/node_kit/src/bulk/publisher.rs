@@ -99,15 +99,16 @@ impl BulkPublisher {
 
     /// Receives credits and sends parts. Returns true if nothing is in transit to any reader. Never waits.
     pub fn advance(&mut self, bus: &mut dyn Bus) -> Result<bool, BusError> {
-        if self.sender.is_idle() {
-            return Ok(true);
-        }
-        let (now, wall) = (bus.now(), bus.wall_nanos());
         while let Some((credit, info)) = self.credits.take_valid(bus)? {
+            let (now, wall) = (bus.now(), bus.wall_nanos());
             // The credit may have been queued while the node computed.
             let age = Duration::from_nanos(wall.saturating_sub(info.received));
             self.sender.receive(now.saturating_sub(age), info.writer, info.sequence, &credit);
         }
+        if self.sender.is_idle() {
+            return Ok(true);
+        }
+        let now = bus.now();
         if now >= self.next_look {
             self.next_look = now + POLL_PERIOD;
             self.present = bus.foreign_writers(&self.credit_topic);

@@ -80,7 +80,7 @@ impl Sender {
         }
     }
 
-    /// True if there is no body to send: credits may wait for the next one.
+    /// True if there is no body to send.
     pub(super) fn is_idle(&self) -> bool {
         self.shape.is_none()
     }
