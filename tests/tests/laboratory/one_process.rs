@@ -26,7 +26,7 @@ fn assert_same(one: &Path, many: &Path) {
 fn slow(lab: &Lab) -> String {
     let text = std::fs::read_to_string(golden("scenes/tiny.toml")).unwrap();
     let path = lab.folder().join("slow.toml");
-    std::fs::write(&path, text.replace("count = 80", "count = 400").replace("rate = -60.0", "rate = -0.6"))
+    std::fs::write(&path, text.replace("count = 80", "count = 200").replace("rate = -60.0", "rate = -0.6"))
         .unwrap();
     path.to_string_lossy().into_owned()
 }
