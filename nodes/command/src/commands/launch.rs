@@ -67,8 +67,8 @@ pub(crate) struct Args {
     /// seed; the result is the same to the last byte as without the interruption
     #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "set", "seed", "out", "run"])]
     resume: Option<PathBuf>,
-    /// Run all nodes in this process, without DDS: the same bytes in less time. The run is not on the bus: `grainlab topic`, a
-    /// live page and other programs do not see it, and a node that fails ends it
+    /// Run all nodes in this process, without DDS, to the same bytes in less time. Tools and other programs cannot see such a run,
+    /// and the run ends if a node fails
     #[arg(long, conflicts_with = "resume")]
     one_process: bool,
     /// Messages to record

@@ -111,7 +111,7 @@ impl Key {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
-    /// True for a condition that ends a phase; `hold` and `timeout` are none.
+    /// True for a condition that ends a phase. `hold` and `timeout` are not conditions.
     pub(crate) fn is_condition(&self) -> bool {
         self.path.starts_with("phase.until.") && !matches!(self.default, DefaultValue::Number(_))
     }

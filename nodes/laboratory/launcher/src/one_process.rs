@@ -9,7 +9,7 @@ use super::followed::{Followed, Outline, Verdict};
 use super::pending_results::ResultState;
 use super::plan::{NodePlan, PlanError};
 use super::recorded_speeds::RecordedSpeeds;
-use super::supervisor::{POLL_PERIOD, Supervised};
+use super::supervisor::{BEGINS_WITHIN, POLL_PERIOD, Supervised};
 use super::time_limit::TimeLimit;
 use super::watch::{LAUNCHER, RunSubscriptions};
 use crate::agreement::names_of_run;
@@ -18,10 +18,7 @@ use grainlab_console::{Failure, Signals, worse};
 use grainlab_node_kit::{Component, Exit, Hub, Identity, Logger, MemoryBus, RosArgs, RunId, step_all};
 use grainlab_recorder::ResultSlot;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
-
-/// Time before a message about a run that has not begun.
-const BEGINS_WITHIN: Duration = Duration::from_secs(10);
+use std::time::Instant;
 
 /// Refuses a launch file that starts third-party programs, which are processes of their own.
 ///

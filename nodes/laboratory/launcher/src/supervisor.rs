@@ -34,7 +34,7 @@ const CATCHES_UP_WITHIN: Duration = Duration::from_secs(6);
 pub(super) const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 
 /// Time before a message about a run that has not begun.
-const BEGINS_WITHIN: Duration = Duration::from_secs(10);
+pub(super) const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 
 /// The recorder, whose end is the end of the record.
 const RECORDER: NodeKind = NodeKind::Recorder;

@@ -6,8 +6,8 @@ use crate::sample::{CalibrationSample, bounds};
 use crate::student::student;
 use grainlab_emt::{CalibrationError, HALF_WIDTH, Invariants, IsotropicCalibration};
 
-/// Fits Eqs. 21 and 22 by relative residuals, and refuses a slope whose 95 % interval contains 0. States of one packing at several pressures are not independent: the
-/// covariance counts packings, not states.
+/// Fits Eqs. 21 and 22 by relative residuals, and refuses a slope whose 95 % interval contains 0. States of one packing at several
+/// pressures are not independent: the covariance counts packings, not states.
 pub(crate) fn of_isotropic(samples: &[CalibrationSample]) -> Result<IsotropicCalibration, CalibrationError> {
     let packings = packings(samples);
     // Each equation has two constants, and its scatter.
