@@ -37,6 +37,7 @@ impl Lock {
         let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", path.display()));
         let mut file = OpenOptions::new().create(true).append(true).open(&path).map_err(|e| failed(&e))?;
         let until = Instant::now() + patience;
+        let mut told = patience.is_zero();
         loop {
             match file.try_lock() {
                 Ok(()) => {
@@ -45,13 +46,20 @@ impl Lock {
                     let _ = file.write_all(holder(&host_name()).as_bytes());
                     return Ok(Self { file });
                 }
-                Err(TryLockError::WouldBlock) if Instant::now() < until => std::thread::sleep(POLL_PERIOD),
                 Err(TryLockError::WouldBlock) => {
                     let who = std::fs::read_to_string(&path).unwrap_or_default();
                     let who = if who.is_empty() { "another process" } else { &who };
-                    return Err(failed(&format!(
-                        "{who} is at work in this directory: wait for it, or end it"
-                    )));
+                    let at_work = format!("{who} is at work in this directory");
+                    if Instant::now() >= until {
+                        return Err(failed(&format!("{at_work}: wait for it, or end it")));
+                    }
+                    if !std::mem::replace(&mut told, true) {
+                        let (path, s) = (path.display(), patience.as_secs());
+                        grainlab_console::say!(
+                            "grainlab: {path}: {at_work}: waiting at most {s} s for its end"
+                        );
+                    }
+                    std::thread::sleep(POLL_PERIOD);
                 }
                 Err(TryLockError::Error(error)) => return Err(failed(&error)),
             }

@@ -31,8 +31,8 @@ states.csv, states.parquet: a row for each member and state.
 groups.csv, groups.parquet: a row for each scene, values set and phase: n, and KEY_mean and KEY_standard_error over the seeds (empty
 for one seed). KEY_n is there if KEY is not known in every state of a group: its mean is over the others.
 
-The same campaign gives the same bytes of CSV. states.parquet also has grainlab_version, host and begun (UTC) of each member. Settings are
-numbers where every value is one, else text. The exit code is 3 while members are missing.";
+The same campaign gives the same bytes of CSV. states.parquet also has grainlab_version, commit, host and begun (UTC) of each member.
+Settings are numbers where every value is one, else text. The exit code is 3 while members are missing.";
 
 /// A campaign to run.
 #[derive(Debug, clap::Args)]

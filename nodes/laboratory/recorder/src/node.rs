@@ -128,6 +128,9 @@ impl Recorder {
             writer.set_metadata("seed", &scene.scene.seed.to_string());
         }
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
+        if let Some(commit) = option_env!("GRAINLAB_COMMIT") {
+            writer.set_metadata("commit", commit);
+        }
         writer.set_metadata("transport", bus.transport());
         writer.set_metadata("host", &host_name());
         for channel in channels.iter().filter(|c| !c.topic.reproducible) {

@@ -88,7 +88,10 @@ impl Campaign {
                     "the name of member {long} is longer than {MAX_NAME_LENGTH}: put its settings into a scene"
                 )
             }
-            (_, Some(twice)) => format!("two members are called {}", twice.name),
+            (_, Some(twice)) => format!(
+                "two members are called {}: name each combination of scene, values and seed once",
+                twice.name
+            ),
             _ => String::new(),
         };
         if !fault.is_empty() {

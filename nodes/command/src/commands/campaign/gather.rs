@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Columns that differ from run to run of the same campaign.
-const OF_RUN: [&str; 3] = ["grainlab_version", "host", "begun"];
+const OF_RUN: [&str; 4] = ["grainlab_version", "commit", "host", "begun"];
 
 /// The state of a member at the end of a phase.
 pub(crate) struct State<'a> {
@@ -24,7 +24,7 @@ pub(crate) struct State<'a> {
     pub(crate) phase: String,
     pub(crate) found: InvertedPacking,
     /// Cells of [`OF_RUN`].
-    of_run: [Cell; 3],
+    of_run: [Cell; 4],
 }
 
 /// Writes the tables beside the members. The exit is 3 if a member is missing.
@@ -105,7 +105,7 @@ fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Vec<State<'a>>, Strin
     let metadata = recording.metadata(METADATA_RECORD).unwrap_or_default();
     let cell = |text: Option<String>| text.map_or(Cell::Unknown, Cell::Text);
     let stored = |key: &str| cell(metadata.get(key).cloned());
-    let of_run = [stored("grainlab"), stored("host"), cell(recording.begun())];
+    let of_run = [stored("grainlab"), stored("commit"), stored("host"), cell(recording.begun())];
     let state = |found| State { member, phase: name(&found), found, of_run: of_run.clone() };
     Ok(back.states.into_iter().map(state).collect())
 }

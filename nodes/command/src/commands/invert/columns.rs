@@ -16,7 +16,8 @@ const SAME: f64 = 1e-3;
 const LONGEST: usize = 1 << 20;
 
 /// Columns that describe a row, and set no number of its state.
-const LABELS: [&str; 7] = ["contact_law", "smooth", "axis_found", "friction", "sample", "source", "step"];
+const LABELS: [&str; 8] =
+    ["contact_law", "smooth", "axis_found", "friction", "sample", "source", "member", "step"];
 
 /// Positions of the inputs in a row. Other columns are ignored.
 pub(crate) struct Columns {
@@ -56,7 +57,9 @@ impl Columns {
     pub(crate) fn of_header(line: &[u8], by: &[&[String]], defaults: State) -> Result<Self, String> {
         let names = cells(line).map_err(|fault| format!("the header: {fault}"))?;
         let names: Vec<String> = names.iter().map(str::to_owned).collect();
-
+        if names.iter().any(|name| name == "pressure_pa_mean") {
+            return Err("the rows are means over seeds (groups.csv): use states.csv beside it".to_owned());
+        }
         let by = by.iter().find(|by| by.iter().all(|name| names.contains(name))).or(by.last());
         let by = by.copied().unwrap_or_default();
         let find = |name: &str| -> Result<Option<usize>, String> {
@@ -170,12 +173,12 @@ impl Columns {
 
     fn sample(&self, cells: &StringRecord) -> Option<String> {
         let label = |name| self.label(cells, name);
-        // One recording may contain many packings.
+        // One recording may contain many packings, as may a member of a campaign.
         let of_source = |source: &str| match label("step") {
             Some(step) => format!("{source} step {step}"),
             None => source.to_owned(),
         };
-        label("sample").map(str::to_owned).or_else(|| label("source").map(of_source))
+        label("sample").map(str::to_owned).or_else(|| label("source").or(label("member")).map(of_source))
     }
 
     fn state(&self, cells: &StringRecord) -> Result<State, String> {

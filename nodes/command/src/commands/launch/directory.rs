@@ -51,13 +51,23 @@ pub(super) fn given(directory: &Path, scene: &SceneText, order: &Order) -> Resul
 /// Refuses a directory with a run of another scene, seed or launch file, or with other arguments.
 pub(super) fn refuse_another(directory: &Path, scene: &SceneText, order: &Order) -> Result<(), Failure> {
     let known = std::fs::read_to_string(directory.join("scene.toml")).unwrap_or_default();
-    if known == scene.text && Order::read(directory)?.contains(order) {
+    let differs = if known != scene.text {
+        format!("another scene ({})", first_difference(&known, &scene.text))
+    } else if !Order::read(directory)?.contains(order) {
+        "another seed, launch file or arguments, or fewer recorded messages".to_owned()
+    } else {
         return Ok(());
-    }
+    };
+    let directory = directory.display();
     Err(Failure::usage(format!(
-        "{}: the run there has another scene, seed, launch file or arguments, or fewer recorded messages: use another directory, or remove it",
-        directory.display()
+        "{directory}: the run there has {differs}: use another directory, or remove it"
     )))
+}
+
+fn first_difference(there: &str, here: &str) -> String {
+    let line = |text: &str, n| text.lines().nth(n).unwrap_or_default().trim().to_owned();
+    let n = there.lines().zip(here.lines()).take_while(|(there, here)| there == here).count();
+    format!("line {}: `{}`, not `{}`", n + 1, line(there, n), line(here, n))
 }
 
 /// Writes a copy of the scene: later edits of the file affect neither the run nor a restart.
