@@ -3,26 +3,9 @@
 use super::check::Check;
 use super::error::BoundaryError;
 use crate::msg::Estimate;
-use grainlab_core::results::InferredQuantity;
+use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity};
 use serde::{Serialize, Serializer};
 use std::ops::Index;
-
-/// The data, in the order of every row of `information`.
-pub const DATA: [&str; 13] = [
-    "G12",
-    "G13",
-    "Theta",
-    "C11",
-    "C33",
-    "C13",
-    "pressure",
-    "gamma/Delta",
-    "solid fraction",
-    "q/p",
-    "size spread",
-    "grain shear modulus",
-    "grain Poisson ratio",
-];
 
 /// The result of one model: checked, if it is from a message. As JSON it has the stable keys of `results[]`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -268,14 +251,16 @@ fn condition_number(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
 
 fn information(m: &Estimate, known: &[bool; N]) -> Result<(), BoundaryError> {
     CHECK.all_finite("information", &m.information)?;
-    for (i, shares) in m.information.chunks_exact(DATA.len()).enumerate() {
-        let start = DATA.len() * i;
+    for (i, shares) in m.information.chunks_exact(INFERENCE_INPUTS.len()).enumerate() {
+        let start = INFERENCE_INPUTS.len() * i;
         let Some(j) = shares.iter().position(|s| *s != 0.0) else { continue };
         CHECK.that(known[i], format_args!("information[{}]", start + j), shares[j], NOTHING)?;
         // Contributions of correlated data may be large and cancel, so that rounding affects the sum.
         let slack = 1e-6 * shares.iter().map(|s| s.abs()).sum::<f64>();
-        let (sum, name) =
-            (shares.iter().sum::<f64>(), format!("sum of information[{start}..{}]", start + DATA.len()));
+        let (sum, name) = (
+            shares.iter().sum::<f64>(),
+            format!("sum of information[{start}..{}]", start + INFERENCE_INPUTS.len()),
+        );
         CHECK.that((sum - 1.0).abs() <= slack, &name, sum, "1, or the row all 0 if unknown")?;
     }
     Ok(())

@@ -23,7 +23,7 @@ mod waveform;
 
 pub use check::vector_message;
 pub use error::BoundaryError;
-pub use estimate::{DATA, Interval, ModelResult, Quantities};
+pub use estimate::{Interval, ModelResult, Quantities};
 pub use moduli::ModuliReading;
 pub use packing::{packing_header, packing_message};
 pub use packing_report::packing_report_message;

@@ -1,6 +1,6 @@
 use super::refuses;
 use grainlab_core::results::InferredQuantity;
-use grainlab_msgs::boundary::{DATA, Interval, ModelResult, Quantities};
+use grainlab_msgs::boundary::{Interval, ModelResult, Quantities};
 use grainlab_msgs::msg::{Estimate, Microstructure};
 use grainlab_msgs::{from_cdr, to_cdr};
 
@@ -33,7 +33,7 @@ fn estimate() -> Estimate {
     }
     (e.covariance[1], e.covariance[5]) = (0.004, 0.004);
     // ε: contributions of G12 and G13, reduced by their correlation.
-    let of_eps = 3 * DATA.len();
+    let of_eps = 3 * grainlab_core::results::INFERENCE_INPUTS.len();
     (e.information[of_eps], e.information[of_eps + 1], e.information[of_eps + 2]) = (0.75, 0.5, -0.25);
     e
 }

@@ -5,12 +5,14 @@ mod check;
 mod export;
 mod info;
 mod record;
+mod recorded;
 mod recover;
 
 use clap::Subcommand;
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 use grainlab_recorder::play;
+use recorded::Recorded;
 
 /// Commands for recordings.
 #[derive(Debug, Subcommand)]
@@ -20,9 +22,11 @@ pub(crate) enum BagCommand {
     /// Publish the messages of a recording.
     Play(play::Args),
     /// Show the content of a recording.
-    Info(info::Args),
+    #[command(after_help = info::EXAMPLES)]
+    Info(Recorded),
     /// Read every record of a recording and list all faults.
-    Check(check::Args),
+    #[command(after_help = check::EXAMPLES)]
+    Check(Recorded),
     /// Write the packings of a recording as LAMMPS dump or CSV files.
     #[cfg(feature = "studio")]
     Export(export::Args),

@@ -4,9 +4,9 @@ use crate::calibration::{Calibration, NetworkState, Outside};
 use crate::conditions::{Conditions, StrainRatioSource};
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Modulus};
-use crate::observation::{INPUT_NAMES, Observation};
+use crate::observation::Observation;
 use crate::warning::Warning;
-use grainlab_core::results::{InferredQuantity, Microstructure};
+use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity, Microstructure};
 
 /// Coordination number of a close packing of equal spheres, the largest possible.
 const CLOSE_PACKING: f64 = 12.0;
@@ -148,7 +148,7 @@ fn state_errors(conditions: &Conditions, calibration: &Calibration) -> [(&'stati
     let stddevs = conditions.stddevs(calibration.material());
     // E* = G/(1 − ν).
     let of_poisson = stddevs[6] / (1.0 - grains.poisson_ratio);
-    let named = |at: usize| INPUT_NAMES[MODULI + at];
+    let named = |at: usize| INFERENCE_INPUTS[MODULI + at];
     [(named(0), stddevs[0]), (named(5), stddevs[5]), ("factor 1 - nu of the grains", of_poisson)]
 }
 

@@ -162,7 +162,7 @@ impl Conditions {
         Self { pressure: Measured::exact(pressure), ..Self::default() }
     }
 
-    /// Standard deviations of the inputs of the state, in the order of the last of [`crate::INPUT_NAMES`]: relative ones of the
+    /// Standard deviations of the inputs of the state, in the order of the last of [`grainlab_core::results::INFERENCE_INPUTS`]: relative ones of the
     /// pressure, the solid fraction and the shear modulus of the grains. `material` is that of the calibration.
     pub(crate) fn stddevs(&self, material: &Material) -> [f64; STATE_INPUTS] {
         let grains = self.material.as_ref().unwrap_or(material);

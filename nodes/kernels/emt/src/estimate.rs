@@ -7,13 +7,13 @@ use crate::domain::{Domain, outside_fitted};
 use crate::error::EmtError;
 use crate::moduli::MODULI;
 use crate::normal;
-use crate::observation::{INPUT_NAMES, INPUTS, InputCovariance, Observation};
+use crate::observation::{INPUTS, InputCovariance, Observation};
 use crate::point_estimate::{Jacobian, Misfit, PointEstimate};
 use crate::prior::Prior;
 use crate::prior_conflict;
 use crate::update::{Updated, updated};
 use crate::warning::Warning;
-use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
+use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{SMatrix, SVector};
 
 /// Level of the intervals of an [`Estimate`].
@@ -196,7 +196,7 @@ impl Estimate {
             self.structure.get(quantity).filter(|_| total[(i, i)] > 0.0)?;
             let share = |j: usize| self.jacobian[(i, j)].powi(2) * inputs[(j, j)] / total[(i, i)];
             let widest = (MODULI..INPUTS).max_by(|a, b| share(*a).total_cmp(&share(*b)))?;
-            Some((INPUT_NAMES[widest], quantity, share(widest)))
+            Some((INFERENCE_INPUTS[widest], quantity, share(widest)))
         };
         let all = InferredQuantity::ALL.into_iter().filter_map(of);
         all.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|(_, _, share)| *share > 0.0)
@@ -226,7 +226,7 @@ impl Estimate {
     }
 
     /// Contribution of each input to the variance of a quantity from the errors of the data, as fractions of it, in the
-    /// order of [`crate::INPUT_NAMES`]. Correlated errors divide their covariance equally, so that a fraction may be
+    /// order of [`INFERENCE_INPUTS`]. Correlated errors divide their covariance equally, so that a fraction may be
     /// negative. Where the errors are not known, all inputs are given the same relative error. `None` if the quantity
     /// is undetermined.
     pub fn information(&self, quantity: InferredQuantity) -> Option<[f64; INPUTS]> {

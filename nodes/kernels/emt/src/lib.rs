@@ -88,7 +88,7 @@ pub use models::relaxed::Relaxed;
 pub use moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 pub use moments::Moments;
 pub use normal::HALF_WIDTH;
-pub use observation::{INPUT_NAMES, INPUTS, Observation};
+pub use observation::{INPUTS, Observation};
 pub use point_estimate::{Jacobian, Misfit, PointEstimate};
 pub use posterior::{
     Check, Draw, Draws, Evidence, ModulusCheck, Posterior, PosteriorSettings, RankHistogram, SimulatedRanks,

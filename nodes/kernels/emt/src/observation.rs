@@ -11,23 +11,6 @@ use nalgebra::{SMatrix, SymmetricEigen};
 /// the sizes, and the shear modulus and Poisson ratio of the grains.
 pub const INPUTS: usize = MODULI + STATE_INPUTS;
 
-/// Names of the inputs, in the order of the columns of a Jacobian.
-pub const INPUT_NAMES: [&str; INPUTS] = [
-    "G12",
-    "G13",
-    "Theta",
-    "C11",
-    "C33",
-    "C13",
-    "pressure",
-    "gamma/Delta",
-    "solid fraction",
-    "q/p",
-    "size spread",
-    "grain shear modulus",
-    "grain Poisson ratio",
-];
-
 /// Standard deviation over the largest modulus beyond which a modulus counts as unknown: it determines nothing, and numbers of
 /// such different size lose their digits.
 pub(crate) const UNKNOWN_ERROR: f64 = 1e3;

@@ -6,7 +6,7 @@ use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCov
 use nalgebra::SMatrix;
 
 /// Change of each quantity per relative change of each input (for γ/Δ: per absolute change). Rows in the order of
-/// [`InferredQuantity::ALL`], columns in the order of [`crate::INPUT_NAMES`].
+/// [`InferredQuantity::ALL`], columns in the order of [`grainlab_core::results::INFERENCE_INPUTS`].
 pub type Jacobian = SMatrix<f64, { InferredQuantity::COUNT }, INPUTS>;
 
 /// A point estimate, with the data on its error that depend on the model.

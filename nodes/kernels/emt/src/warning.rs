@@ -78,7 +78,7 @@ pub enum Warning {
     /// An input of the state contributes most of the variance of a quantity.
     #[error("{input} widens most: {:.0} % of the variance of {quantity} is due to it", 100.0 * share)]
     WidenedMost {
-        /// Name of the input, one of [`crate::INPUT_NAMES`].
+        /// Name of the input, one of [`grainlab_core::results::INFERENCE_INPUTS`].
         input: &'static str,
         /// The quantity that it widens most.
         quantity: InferredQuantity,
@@ -181,7 +181,7 @@ pub enum Warning {
         "the {input} is known to {:.0} % only: intervals from linear error propagation are too narrow", 100.0 * relative
     )]
     StateErrorLarge {
-        /// Name of the input, one of [`crate::INPUT_NAMES`].
+        /// Name of the input, one of [`grainlab_core::results::INFERENCE_INPUTS`].
         input: &'static str,
         /// Relative standard deviation of it.
         relative: f64,

@@ -1,54 +1,16 @@
 //! The analyzer node on the bus in memory, with a packing of known properties.
 
+use grainlab_core::Material;
 use grainlab_core::results::PackingReport;
-use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
 use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg::{self, ElasticStiffness, Packing};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publisher, RosArgs, Subscription};
+use lattice::{DIAMETER, OVERLAP, lattice};
 
-const DIAMETER: f64 = 2e-4;
-const OVERLAP: f64 = 2e-8;
-
-/// One grain per cell touching its own images: a simple cubic lattice, or grains apart if `overlap` is not
-/// positive.
-fn lattice(overlap: f64) -> grainlab_core::Packing {
-    let cell = Cell::cube(DIAMETER - overlap).unwrap();
-    let contact = |axis: usize| {
-        let (mut image, mut normal) = ([0; 3], Vec3::zeros());
-        (image[axis], normal[axis]) = (1, 1.0);
-        let normal_force = Material::GLASS.normal_force(DIAMETER / 4.0, overlap);
-        Contact {
-            i: 0,
-            j: 0,
-            image,
-            overlap,
-            normal,
-            normal_force,
-            tangential_force: Vec3::zeros(),
-            rolling_force: Vec3::zeros(),
-        }
-    };
-    grainlab_core::Packing {
-        step: 12,
-        time: 0.5,
-        cell,
-        deformation: Mat3::identity(),
-        ids: vec![0],
-        radii: vec![DIAMETER / 2.0],
-        positions: vec![Vec3::zeros()],
-        velocities: vec![Vec3::zeros()],
-        spins: vec![Vec3::zeros()],
-        contacts: if overlap > 0.0 { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
-        material: Material::GLASS,
-        law: Default::default(),
-        friction: 0.3,
-        time_step: 1e-8,
-    }
-    .validated()
-    .unwrap()
-}
+#[path = "../../acoustic_probe/tests/probe/lattice.rs"]
+mod lattice;
 
 fn message(overlap: f64) -> Packing {
     packing_message(&lattice(overlap), "lattice", vec![1, 2, 3])

@@ -160,54 +160,22 @@ fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
 }
 
 #[cfg(test)]
+#[path = "../../acoustic_probe/tests/probe/lattice.rs"]
+mod lattice;
+
+#[cfg(test)]
 mod tests {
+    use super::lattice::{OVERLAP, lattice};
     use super::*;
     use grainlab_core::contact::RollingResistance;
-    use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
     use grainlab_micromechanics::{Settings, analyze};
-
-    /// A simple cubic lattice of one grain, at rest.
-    fn lattice() -> Packing {
-        let overlap = 2e-4 - (2e-4 - 1e-7);
-        let contact = |axis: usize| {
-            let (mut image, mut normal) = ([0; 3], Vec3::zeros());
-            (image[axis], normal[axis]) = (1, 1.0);
-            let normal_force = Material::GLASS.normal_force(5e-5, overlap);
-            Contact {
-                i: 0,
-                j: 0,
-                image,
-                overlap,
-                normal,
-                normal_force,
-                tangential_force: Vec3::zeros(),
-                rolling_force: Vec3::zeros(),
-            }
-        };
-        Packing {
-            step: 0,
-            time: 0.0,
-            cell: Cell::cube(2e-4 - 1e-7).unwrap(),
-            deformation: Mat3::identity(),
-            ids: vec![5],
-            radii: vec![1e-4],
-            positions: vec![Vec3::zeros()],
-            velocities: vec![Vec3::zeros()],
-            spins: vec![Vec3::zeros()],
-            contacts: [2, 1, 0].map(contact).to_vec(),
-            material: Material::GLASS,
-            law: Default::default(),
-            friction: 0.3,
-            time_step: 0.0,
-        }
-    }
 
     fn report(packing: &Packing) -> PackingReport {
         analyze(packing, &Settings::default()).unwrap().report
     }
 
     fn warnings(change: impl FnOnce(&mut Packing)) -> String {
-        let mut packing = lattice();
+        let mut packing = lattice(OVERLAP);
         change(&mut packing);
         state_warnings(&packing, &report(&packing), None, &[]).join("; ")
     }
@@ -224,7 +192,7 @@ mod tests {
         for text in [smooth, open] {
             assert!(text.contains("some strain of the cell meets no resistance"), "{text}");
         }
-        assert!(!yields(&report(&lattice())));
+        assert!(!yields(&report(&lattice(OVERLAP))));
     }
 
     #[test]
@@ -233,7 +201,7 @@ mod tests {
             warnings(|p| _ = p.contacts.pop()).contains("1 contact overlaps by position but is not listed")
         );
         let pulls = warnings(|p| p.contacts[1].normal_force *= -1.0);
-        assert!(pulls.contains("1 contact pulls") && pulls.contains("grains 5 and 5"), "{pulls}");
+        assert!(pulls.contains("1 contact pulls") && pulls.contains("grains 0 and 0"), "{pulls}");
     }
 
     #[test]
@@ -252,7 +220,7 @@ mod tests {
 
     #[test]
     fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_reported() {
-        let packing = lattice();
+        let packing = lattice(OVERLAP);
         let mut report = report(&packing);
         assert_eq!(report.unbalanced_force_ratio, Some(0.0));
         let Ok(stiffness) = &mut report.elasticity else { panic!("a lattice is stiff") };

@@ -1,17 +1,16 @@
 //! `grainlab bag cat`.
 
 use crate::decoders::Decoders;
-use crate::opened::{losses, open};
-use crate::selection::Topics;
-use crate::times::Interval;
+use crate::excerpt::Excerpt;
+use crate::opened::losses;
 use clap::ValueEnum;
 use grainlab_any_message::Shown;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::Exit;
-use grainlab_recordings::{Message, Selection};
+use grainlab_recordings::Message;
 use serde::Serialize;
 use std::io::{self, BufWriter, ErrorKind, Write};
-use std::path::PathBuf;
+use std::slice::from_ref;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -26,13 +25,8 @@ complete without --max-array. Exit 3 if a part could not be read or decoded.";
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Run directory or MCAP file
-    #[arg(value_name = "PATH")]
-    path: PathBuf,
     #[command(flatten)]
-    topics: Topics,
-    #[command(flatten)]
-    interval: Interval,
+    excerpt: Excerpt,
     /// Print at most this many messages
     #[arg(short = 'n', long, value_name = "N")]
     count: Option<usize>,
@@ -59,13 +53,8 @@ enum Format {
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or stdout fails.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let recordings = open(std::slice::from_ref(&args.path))?;
-    args.topics.check(&recordings)?;
-    let (start, end) = args.interval.of(&recordings)?;
-    let [recording] = &recordings[..] else { return Ok(Exit::Done) };
-    let wanted = recording.channels().into_iter().filter(|c| args.topics.take(c));
-    let topics = Some(wanted.map(|c| c.topic.clone()).collect());
-    let messages = recording.messages(&Selection { topics, start, end }).map_err(Failure::failed)?;
+    let (recording, selection) = args.excerpt.open()?;
+    let messages = recording.messages(&selection).map_err(Failure::failed)?;
     let mut decoders = Decoders::default();
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
     let mut printed = 0;
@@ -90,7 +79,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(exit) = ended(out.flush())? {
         return Ok(exit);
     }
-    Ok(worse(losses(&recordings), decoders.losses()))
+    Ok(worse(losses(from_ref(&recording)), decoders.losses()))
 }
 
 /// The exit if stdout is closed (`| head`), which is not an error.

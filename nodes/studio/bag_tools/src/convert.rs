@@ -1,15 +1,15 @@
 //! `grainlab bag convert`.
 
-use crate::opened::{losses, open};
+use crate::excerpt::Excerpt;
+use crate::opened::losses;
 use crate::output::{Form, Job};
-use crate::selection::Topics;
 use crate::tables::{TableFormat, Tables, failed};
-use crate::times::Interval;
 use clap::ValueEnum;
 use grainlab_console::{Failure, print, worse};
 use grainlab_msgs::Exit;
-use grainlab_recordings::{NewPath, Selection};
+use grainlab_recordings::NewPath;
 use std::path::PathBuf;
+use std::slice::from_ref;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -28,9 +28,8 @@ and /packing/markers (visualization_msgs/MarkerArray in the namespaces grains, c
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Run directory or MCAP file
-    #[arg(value_name = "PATH")]
-    path: PathBuf,
+    #[command(flatten)]
+    excerpt: Excerpt,
     /// New folder; for mcap a new recording: a directory, or one file if the name ends with .mcap
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -40,10 +39,6 @@ pub struct Args {
     /// Write a recording with pictures of the packings, for viewers that do not read packings
     #[arg(long)]
     pictures: bool,
-    #[command(flatten)]
-    topics: Topics,
-    #[command(flatten)]
-    interval: Interval,
     /// Longest array that is written as columns
     #[arg(long, value_name = "N", default_value_t = 36)]
     array_columns: usize,
@@ -69,13 +64,13 @@ enum Format {
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or the output cannot be written.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let paths = std::slice::from_ref(&args.path);
     let format = match args.format {
         Some(Format::Parquet) => TableFormat::Parquet,
         Some(Format::Csv) => TableFormat::Csv,
         Some(Format::Json) => TableFormat::Json,
         Some(Format::Mcap) | None => {
-            let (topics, interval, pictures) = (&args.topics, &args.interval, args.pictures);
+            let Excerpt { path, topics, interval } = &args.excerpt;
+            let (paths, pictures) = (from_ref(path), args.pictures);
             return Job { operation: "convert", paths, topics, interval, latched: true, pictures }
                 .write(&args.output, &args.form);
         }
@@ -84,19 +79,13 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::usage("--pictures are added to recordings: leave --format out, or choose mcap"));
     }
     args.form.refuse_given()?;
-    let recordings = open(paths)?;
-    args.topics.check(&recordings)?;
-    let (start, end) = args.interval.of(&recordings)?;
-    let [recording] = &recordings[..] else { return Ok(Exit::Done) };
-    let wanted = recording.channels().into_iter().filter(|c| args.topics.take(c));
-    let topics = Some(wanted.map(|c| c.topic.clone()).collect());
-    let selection = Selection { topics, start, end };
+    let (recording, selection) = args.excerpt.open()?;
     let new = NewPath::begin(&args.output).map_err(Failure::usage)?;
     std::fs::create_dir(new.partial()).map_err(|e| failed(&args.output, &e))?;
     let mut tables = Tables::new(&args.output, new.partial(), format, args.array_columns);
-    let messages = tables.convert(recording, &selection)?;
+    let messages = tables.convert(&recording, &selection)?;
     let (files, decoders) = tables.finish()?;
     new.finish().map_err(|e| failed(&args.output, &e))?;
     print(&format!("{}: {messages} messages in {files} files\n", args.output.display()))?;
-    Ok(worse(losses(&recordings), decoders.losses()))
+    Ok(worse(losses(from_ref(&recording)), decoders.losses()))
 }

@@ -1,5 +1,6 @@
 //! `grainlab bag cut`, `merge`, `filter` and `compress`: recordings made from others.
 
+use crate::excerpt::Excerpt;
 use crate::output::{Job, Output};
 use crate::selection::Topics;
 use crate::times::Interval;
@@ -49,13 +50,8 @@ pub enum Copies {
     /// Write an interval of time as a new recording.
     #[command(after_help = CUT)]
     Cut {
-        /// Run directory or MCAP file
-        #[arg(value_name = "PATH")]
-        path: PathBuf,
         #[command(flatten)]
-        interval: Interval,
-        #[command(flatten)]
-        topics: Topics,
+        excerpt: Excerpt,
         /// Leave out latched messages from before the start
         #[arg(long)]
         no_latched: bool,
@@ -78,13 +74,8 @@ pub enum Copies {
     /// Write some topics as a new recording.
     #[command(after_help = FILTER)]
     Filter {
-        /// Run directory or MCAP file
-        #[arg(value_name = "PATH")]
-        path: PathBuf,
         #[command(flatten)]
-        topics: Topics,
-        #[command(flatten)]
-        interval: Interval,
+        excerpt: Excerpt,
         #[command(flatten)]
         output: Output,
     },
@@ -106,16 +97,16 @@ pub enum Copies {
 pub(crate) fn run(command: &Copies) -> Result<Exit, Failure> {
     let (all, always) = (Topics::default(), Interval::default());
     let (operation, paths, topics, interval, latched, output) = match command {
-        Copies::Cut { interval, .. } if !interval.is_set() => {
+        Copies::Cut { excerpt, .. } if !excerpt.interval.is_set() => {
             return Err(Failure::usage("a cut needs --start, --end, --start-offset or --duration"));
         }
-        Copies::Cut { path, interval, topics, no_latched, output } => {
+        Copies::Cut { excerpt: Excerpt { path, topics, interval }, no_latched, output } => {
             ("cut", from_ref(path), topics, interval, !no_latched, output)
         }
         Copies::Merge { paths, topics, interval, output } => {
             ("merge", &paths[..], topics, interval, true, output)
         }
-        Copies::Filter { path, topics, interval, output } => {
+        Copies::Filter { excerpt: Excerpt { path, topics, interval }, output } => {
             ("filter", from_ref(path), topics, interval, true, output)
         }
         Copies::Compress { path, output } => ("compress", from_ref(path), &all, &always, true, output),

@@ -8,6 +8,7 @@ mod cat;
 mod convert;
 mod copies;
 mod decoders;
+mod excerpt;
 mod opened;
 mod output;
 mod selection;

@@ -1,12 +1,12 @@
 //! The recording that a command writes.
 
-use crate::opened::{losses, open};
+use crate::opened::losses;
 use crate::selection::Topics;
 use crate::times::Interval;
 use grainlab_console::{Failure, count, print, say, worse};
 use grainlab_msgs::Exit;
-use grainlab_recordings::Compression;
 use grainlab_recordings::copy::{self, CopyOptions, Preset, Select};
+use grainlab_recordings::{Compression, Recording};
 use std::path::{Path, PathBuf};
 
 /// Output of a copy, and its options.
@@ -93,7 +93,8 @@ impl Job<'_> {
     /// Copies to `output` with the options of `form`, and prints what was written.
     pub(crate) fn write(&self, output: &Path, form: &Form) -> Result<Exit, Failure> {
         let options = CopyOptions { pictures: self.pictures, ..form.options(self.operation)? };
-        let recordings = open(self.paths)?;
+        let opened = |path| Recording::open(path).map_err(Failure::failed);
+        let recordings = self.paths.iter().map(|path| opened(path)).collect::<Result<Vec<_>, _>>()?;
         self.topics.check(&recordings)?;
         let (start, end) = self.interval.of(&recordings)?;
         let select = Select { topic: &|c| self.topics.take(c), start, end, latched: self.latched };

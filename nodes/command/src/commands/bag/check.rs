@@ -1,12 +1,12 @@
 //! `grainlab bag check`.
 
+use super::recorded::Recorded;
 use grainlab_console::{Failure, Format, Table, count, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::{Check, Recording, SeveralRuns, strangers};
 use serde::Serialize;
-use std::path::PathBuf;
 
-const EXAMPLES: &str = "\
+pub(super) const EXAMPLES: &str = "\
 Examples:
   grainlab bag check recordings/runs/demo-1-1
   grainlab bag check run.mcap --format json
@@ -16,19 +16,7 @@ of files, the recorder's ledger against the messages, what its recorder noted as
 of types against those of this program. Exit 0 without faults, else 3; a definition that is read by the names of its fields is no fault, nor are several runs in one recording, nor a
 ledger that is absent because another program, or a copy, wrote the file: then losses cannot be judged.";
 
-/// Arguments of `grainlab bag check`.
-#[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
-pub(crate) struct Args {
-    /// Run directory or MCAP file
-    #[arg(value_name = "PATH")]
-    path: PathBuf,
-    /// Format of the result
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
-}
-
-pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
     let recording = Recording::open(&args.path).map_err(Failure::failed)?;
     let check = recording.check();
     let view = View {

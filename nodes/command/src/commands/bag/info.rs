@@ -1,5 +1,6 @@
 //! `grainlab bag info`.
 
+use super::recorded::Recorded;
 use grainlab_console::{Failure, Format, Table};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::strangers::{self, StrangerView};
@@ -7,19 +8,9 @@ use grainlab_recordings::{Info, METADATA_RECORD, Recording, SeveralRuns};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Arguments of `grainlab bag info`.
-#[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  grainlab bag info recordings/runs/demo-1-1 --format json")]
-pub(crate) struct Args {
-    /// Run directory or MCAP file
-    #[arg(value_name = "PATH")]
-    path: PathBuf,
-    /// Format of the result
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
-}
+pub(super) const EXAMPLES: &str = "Example:\n  grainlab bag info recordings/runs/demo-1-1 --format json";
 
-pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
     let recording = Recording::open(&args.path).map_err(Failure::failed)?;
     let view = View {
         info: recording.info(),

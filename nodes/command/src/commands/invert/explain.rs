@@ -2,8 +2,8 @@
 
 use super::case::Case;
 use grainlab_console::{Table, fixed};
-use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
-use grainlab_emt::{EmtError, Estimate, INPUT_NAMES};
+use grainlab_core::results::{INFERENCE_INPUTS, InferredQuantity, MicrostructureCovariance};
+use grainlab_emt::{EmtError, Estimate};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -50,7 +50,7 @@ fn of_estimate(estimate: &Estimate, case: &Case) -> Vec<Explained> {
             sigma_data: part(estimate.data_covariance),
             sigma_model: part(estimate.model_covariance),
             sigma_prior: part(estimate.prior_covariance),
-            information: INPUT_NAMES.into_iter().zip(shares).filter(|(_, s)| *s != 0.0).collect(),
+            information: INFERENCE_INPUTS.into_iter().zip(shares).filter(|(_, s)| *s != 0.0).collect(),
             condition_number,
         }
     };
@@ -60,7 +60,7 @@ fn of_estimate(estimate: &Estimate, case: &Case) -> Vec<Explained> {
 /// As a text table with a column for each contributing input.
 pub(super) fn people(explained: &[Explained]) -> String {
     let has_a_say = |name: &&&str| explained.iter().any(|e| e.information.contains_key(**name));
-    let inputs: Vec<&str> = INPUT_NAMES.iter().filter(has_a_say).copied().collect();
+    let inputs: Vec<&str> = INFERENCE_INPUTS.iter().filter(has_a_say).copied().collect();
     let columns = ["model", "inferred", "value", "sigma", "from data", "from model", "from prior"];
     let mut t = Table::new(columns.into_iter().chain(inputs.iter().copied()).chain(["condition"]));
     for e in explained {

@@ -5,6 +5,23 @@ use super::fabric::Fabric;
 use nalgebra::SMatrix;
 use std::fmt;
 
+/// Names of the inputs of an inversion, in the order of their shares in an estimate.
+pub const INFERENCE_INPUTS: [&str; 13] = [
+    "G12",
+    "G13",
+    "Theta",
+    "C11",
+    "C33",
+    "C13",
+    "pressure",
+    "gamma/Delta",
+    "solid fraction",
+    "q/p",
+    "size spread",
+    "grain shear modulus",
+    "grain Poisson ratio",
+];
+
 /// A covariance of the quantities, in the order of [`InferredQuantity::ALL`]; rows and columns of undetermined
 /// quantities are zero.
 pub type MicrostructureCovariance = SMatrix<f64, { InferredQuantity::COUNT }, { InferredQuantity::COUNT }>;

@@ -30,7 +30,7 @@ pub use fabric::{
     Fabric, FourthOrderFabric, ORIENTATION_BINS, OrientationFit, OrientationHistogram, OverlapAnisotropyFit,
     PrincipalAxis, contact_anisotropy,
 };
-pub use microstructure::{InferredQuantity, Microstructure, MicrostructureCovariance};
+pub use microstructure::{INFERENCE_INPUTS, InferredQuantity, Microstructure, MicrostructureCovariance};
 pub use packing_report::PackingReport;
 pub use quantities::QUANTITIES;
 pub use spring_notes::SpringNote;

@@ -1,4 +1,5 @@
-use crate::sample::{DIAMETER, OVERLAP, lattice, measurement, message};
+use crate::lattice::{DIAMETER, OVERLAP, lattice};
+use crate::sample::{measurement, message};
 use grainlab_acoustic_probe::{AcousticProbe, DECLINED_STEP, MeasureError, Settings, measure, messages};
 use grainlab_core::Material;
 use grainlab_core::results::NotJammed;

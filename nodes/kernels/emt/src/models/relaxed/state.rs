@@ -38,7 +38,7 @@ pub(super) struct State {
 /// An input of the state, and the states next to it.
 #[derive(Clone, Debug)]
 pub(super) struct UncertainInput {
-    /// Index in [`crate::INPUT_NAMES`].
+    /// Index in [`grainlab_core::results::INFERENCE_INPUTS`].
     pub(super) at: usize,
     /// Variance, of the kind of [`Conditions::stddevs`].
     pub(super) variance: f64,
