@@ -119,13 +119,13 @@ fn the_uncertainty_is_that_of_the_model_and_of_the_data_else_of_the_parameter() 
 #[test]
 fn an_estimate_has_the_contribution_of_each_datum() {
     let e = corrected(&s1(), &with_error(0.01));
-    let row = |n: usize| &e.information[n * INPUTS.len()..(n + 1) * INPUTS.len()];
+    let row = |n: usize| &e.information[n * INPUTS..(n + 1) * INPUTS];
     let of_eps = row(3);
     // ε follows only from G13/G12: half of the variance from each.
     assert!((of_eps[0] - 0.5).abs() < 1e-6 && (of_eps[1] - 0.5).abs() < 1e-6, "{of_eps:?}");
     let of_k_hat = row(1);
     assert!(of_k_hat[2] > 0.3 && (of_k_hat.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{of_k_hat:?}");
-    assert_eq!(row(2), [0.0; INPUTS.len()], "nothing is known of z");
+    assert_eq!(row(2), [0.0; INPUTS], "nothing is known of z");
     assert!(e.condition_number[0] > 1.0 && e.degrees_of_freedom == 0 && e.chi_square == 0.0);
 }
 
