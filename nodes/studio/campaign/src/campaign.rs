@@ -76,18 +76,10 @@ impl Campaign {
             _ if file.name.is_empty() || !file.name.chars().all(is_plain) => {
                 format!("name is {:?}: letters, digits, _ and - are allowed", file.name)
             }
-            _ if members.is_empty() => {
-                "no members: name scenes and seeds, a [[group]], or a table".to_owned()
-            }
+            _ if members.is_empty() => "no members: name scenes and seeds, a [[group]], or a table".into(),
             _ if members.len() > MOST => format!("{} members, more than {MOST}", members.len()),
-            _ if sets_seed => {
-                "seed is no key to set: name it in seeds, or as the seed of a member".to_owned()
-            }
-            (Some(long), _) => {
-                format!(
-                    "the name of member {long} is longer than {MAX_NAME_LENGTH}: put its settings into a scene"
-                )
-            }
+            _ if sets_seed => "seed is no key to set: name it in seeds, or as the seed of a member".into(),
+            (Some(long), _) => format!("member {long}: longer than {MAX_NAME_LENGTH}: set this in a scene"),
             (_, Some(twice)) => format!(
                 "two members are called {}: name each combination of scene, values and seed once",
                 twice.name

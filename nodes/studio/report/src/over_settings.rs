@@ -83,11 +83,11 @@ pub(crate) fn figures(all: &[Quantities<'_>]) -> Option<Html> {
     let has_value = |(q, _): &(usize, _)| whole.iter().any(|(_, values)| values[*q].1.is_some());
     let drawn: Html = quantities.filter(has_value).map(draw).collect();
     let curves = if by.is_some() { format!(", with a curve for each {by_name}") } else { String::new() };
-    let left_out = match all.len() - kept.len() {
-        0 => String::new(),
-        n => format!(" Left out: {}, not complete or repeated.", grainlab_console::count(n, "run")),
-    };
-    let about = format!("Mean and standard error over seeds, over {along}{curves}.{left_out}");
+    let mut about = format!("Mean and standard error over seeds, over {along}{curves}.");
+    if all.len() > kept.len() {
+        let runs = grainlab_console::count(all.len() - kept.len(), "run");
+        about += &format!(" Left out: {runs}, not complete or repeated.");
+    }
     let drawn = if is_small { grid(drawn) } else { drawn };
     Some(html!("{{ about }}{{ drawn }}", about => paragraph(about), drawn))
 }

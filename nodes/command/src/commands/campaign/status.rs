@@ -28,9 +28,7 @@ pub(super) fn run(campaign: &Campaign, folder: &Folder, format: Format) -> Resul
         let process = match process {
             Some(who) => format!("{who} runs the campaign\n"),
             None if is_over => String::new(),
-            None => {
-                "no process of this host runs the campaign: the command that began it continues it\n".into()
-            }
+            None => "no process of this host runs it: the command that began it continues it\n".into(),
         };
         let (all, words) = (count(members.len(), "member"), Standing::words(&members));
         format!("{name}: {all}: {words}{left}\n{process}") + &rows(&members)

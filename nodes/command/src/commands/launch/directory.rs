@@ -52,7 +52,9 @@ pub(super) fn given(directory: &Path, scene: &SceneText, order: &Order) -> Resul
 pub(super) fn refuse_another(directory: &Path, scene: &SceneText, order: &Order) -> Result<(), Failure> {
     let known = std::fs::read_to_string(directory.join("scene.toml")).unwrap_or_default();
     let differs = if known != scene.text {
-        format!("another scene ({})", first_difference(&known, &scene.text))
+        let first = known.lines().zip(scene.text.lines()).take_while(|(there, here)| there == here).count();
+        let line = |text: &str| text.lines().nth(first).unwrap_or_default().trim().to_owned();
+        format!("another scene (line {}: `{}`, not `{}`)", first + 1, line(&known), line(&scene.text))
     } else if !Order::read(directory)?.contains(order) {
         "another seed, launch file or arguments, or fewer recorded messages".to_owned()
     } else {
@@ -62,12 +64,6 @@ pub(super) fn refuse_another(directory: &Path, scene: &SceneText, order: &Order)
     Err(Failure::usage(format!(
         "{directory}: the run there has {differs}: use another directory, or remove it"
     )))
-}
-
-fn first_difference(there: &str, here: &str) -> String {
-    let line = |text: &str, n| text.lines().nth(n).unwrap_or_default().trim().to_owned();
-    let n = there.lines().zip(here.lines()).take_while(|(there, here)| there == here).count();
-    format!("line {}: `{}`, not `{}`", n + 1, line(there, n), line(here, n))
 }
 
 /// Writes a copy of the scene: later edits of the file affect neither the run nor a restart.
