@@ -5,6 +5,9 @@ use super::figure::Scale;
 /// Margin beyond the outermost values, fraction of the range.
 const MARGIN: f64 = 0.03;
 
+/// Relative difference up to which values are alike: their digits would fill the axis.
+const ALIKE: f64 = 1e-5;
+
 /// Least ratio of an end of a logarithmic axis to the outermost value.
 const LEAST_FACTOR: f64 = 1.25;
 
@@ -46,7 +49,8 @@ impl Range {
             (None, Scale::Linear) => (0.0, 1.0),
             (None, Scale::Log) => (0.5, 2.0),
             (Some((low, high)), Scale::Linear) => {
-                let margin = if high > low { MARGIN * (high - low) } else { high.abs().max(1.0) * MARGIN };
+                let (span, size) = (high - low, low.abs().max(high.abs()));
+                let margin = MARGIN * if span > ALIKE * size { span } else { size.max(1.0) };
                 (low - margin, high + margin)
             }
             (Some((low, high)), Scale::Log) => {
@@ -165,6 +169,7 @@ mod tests {
         assert_eq!(texts(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(texts(-30.0, 100.0), ["0", "50", "100"]);
         assert!(texts(5.0, 5.0).len() > 2, "a single value has an axis, too");
+        assert_eq!(texts(49.9999993, 50.0000002), ["49", "50", "51"], "values alike");
     }
 
     #[test]
