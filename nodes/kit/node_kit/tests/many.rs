@@ -35,3 +35,40 @@ fn two_dozen_nodes_of_one_host_find_each_other() {
     }
     println!("{NODES} nodes opened in {:.1?}, all matched {:.1?} later", begin - opened, begin.elapsed());
 }
+
+/// Many readers are made on a topic with many writers while other participants come. Discovery then sends more notifications
+/// than their queue holds.
+#[test]
+fn readers_are_made_while_other_participants_come() {
+    let claimed = FreeDomain::take().expect("a free DDS domain");
+    let network = claimed.network();
+    let open = |name: &str| DdsBus::open(network, Names::new(name).unwrap()).unwrap();
+    let ended = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+    let peers = std::thread::spawn({
+        let ended = ended.clone();
+        move || {
+            while !ended.load(std::sync::atomic::Ordering::Relaxed) {
+                drop(
+                    (0..4)
+                        .map(|i| DdsBus::open(network, Names::new(&format!("peer_{i}")).unwrap()))
+                        .collect::<Vec<_>>(),
+                );
+            }
+        }
+    });
+    let (done, made) = std::sync::mpsc::channel();
+    let mut bus = open("busy");
+    std::thread::spawn(move || {
+        for _ in 0..100 {
+            bus.advertise(&topics::RUN_STATE).unwrap();
+        }
+        for _ in 0..200 {
+            bus.subscribe(&topics::RUN_STATE, Demand::reliable(10)).unwrap();
+        }
+        done.send(()).unwrap();
+    });
+    let result = made.recv_timeout(TIME_LIMIT);
+    ended.store(true, std::sync::atomic::Ordering::Relaxed);
+    assert!(result.is_ok(), "a deadlock");
+    peers.join().unwrap();
+}

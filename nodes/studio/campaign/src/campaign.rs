@@ -81,7 +81,7 @@ impl Campaign {
             _ if sets_seed => "seed is no key to set: name it in seeds, or as the seed of a member".into(),
             (Some(long), _) => format!("member {long}: longer than {MAX_NAME_LENGTH}: set this in a scene"),
             (_, Some(twice)) => format!(
-                "two members are called {}: name each combination of scene, values and seed once",
+                "two members are called {}: name each combination once, and give scenes different file names",
                 twice.name
             ),
             _ => String::new(),
@@ -158,16 +158,19 @@ fn axes(file: &CampaignFile, at: &str) -> Result<Vec<Vec<Vec<Setting>>>, Failure
                 return fault(format!("is in {other}, too: name it once"));
             }
             let values = format!("v = {value}").parse().map(|mut t: Table| t.remove("v"));
-            let Ok(Some(Value::Array(values))) = values else {
+            let Some(values) =
+                values.ok().flatten().and_then(|v| v.as_array().filter(|v| !v.is_empty()).cloned())
+            else {
                 return fault(format!("is {value}: it takes a list of one value or more"));
             };
             if rows.is_empty() {
                 rows = vec![Vec::new(); values.len()];
             }
-            if values.is_empty() || rows.len() != values.len() {
+            if rows.len() != values.len() {
                 let (own, other) = (values.len(), rows.len());
-                let why = format!("has {own} values, and another key of its table {other}");
-                return fault(why + ": give each as many, one at least");
+                return fault(format!(
+                    "has {own} values, and another key of its table {other}: give each as many"
+                ));
             }
             for (row, value) in rows.iter_mut().zip(&values) {
                 row.push(Setting { key: key.clone(), value: plain(value) });

@@ -6,6 +6,7 @@ use grainlab_console::{Failure, json, write_whole};
 use grainlab_msgs::Exit;
 use grainlab_recordings::{AtWork, Lock, RunEnd, RunState, input, run_end, run_state};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -91,8 +92,15 @@ impl Folder {
         Lock::take(&self.logs(), TIME_TO_GATHER)
     }
 
-    /// Writes what its members are.
+    /// Writes what its members are; refuses the folder of another campaign.
     pub fn plan(&self, campaign: &Campaign) -> Result<(), Failure> {
+        if let Some((_, known)) = Self::open(&self.root).ok().filter(|(_, known)| known.name != campaign.name)
+        {
+            let (root, name) = (self.root.display(), known.name);
+            return Err(Failure::usage(format!(
+                "{root}: the campaign {name} is there: choose another folder"
+            )));
+        }
         self.write("campaign.toml", &campaign.text)?;
         self.write(CAMPAIGN, &json(campaign)?).map(|_| ())
     }
@@ -127,6 +135,13 @@ impl Folder {
     /// The directory of the run of a member.
     pub fn run(&self, member: &Member) -> PathBuf {
         self.members().join(&member.name)
+    }
+
+    /// Number of runs of members that are not in the campaign: an earlier file had them.
+    pub fn others(&self, campaign: &Campaign) -> usize {
+        let names: BTreeSet<&str> = campaign.members.iter().map(|m| m.name.as_str()).collect();
+        let runs = std::fs::read_dir(self.members()).into_iter().flatten().flatten();
+        runs.filter(|run| run.file_name().to_str().is_some_and(|name| !names.contains(name))).count()
     }
 
     /// Progress of a member.
@@ -312,5 +327,9 @@ mod tests {
         again.redo(&known.members[2]).unwrap();
         assert_eq!(again.state(&known.members[2]), MemberState::Interrupted, "it continues");
         assert!(Folder::open(&root.path().join("logs")).unwrap_err().to_string().contains("not the folder"));
+        let fewer = Campaign { members: known.members[..2].to_vec(), ..known.clone() };
+        assert_eq!([&known, &fewer].map(|campaign| again.others(campaign)), [0, 2]);
+        let refused = folder.plan(&Campaign { name: "y".into(), ..known }).unwrap_err().to_string();
+        assert!(refused.ends_with("the campaign x is there: choose another folder"), "{refused}");
     }
 }

@@ -4,6 +4,7 @@ use crate::outliers::Outliers;
 use crate::over_settings::{Quantities, figures};
 use crate::page::STYLE;
 use crate::run::{Run, recommended};
+use crate::settings::keys;
 use grainlab_console::{CsvText, count};
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{Cell, Page, Section, data, fixed, heading, html, paragraph, six_digits, table};
@@ -46,17 +47,18 @@ fn is_compared(name: &str) -> bool {
 /// The page of many runs, each with the link to its own report.
 pub fn overview(runs: &[(Run, String)]) -> String {
     let columns = numbers(&Run::default());
-    let mut by_scene: BTreeMap<String, Vec<Vec<Number>>> = BTreeMap::new();
+    let settings = |run: &Run| (run.scene_name(), keys(&run.scene_text));
+    let mut alike: BTreeMap<_, Vec<Vec<Number>>> = BTreeMap::new();
     for (run, _) in runs {
-        by_scene.entry(run.scene_name()).or_default().push(numbers(run));
+        alike.entry(settings(run)).or_default().push(numbers(run));
     }
-    let distributions: BTreeMap<&str, Vec<Option<Outliers>>> = by_scene
+    let distributions: BTreeMap<_, Vec<Option<Outliers>>> = alike
         .iter()
-        .map(|(scene, runs)| {
+        .map(|(settings, runs)| {
             let of = |(n, (name, ..)): (usize, &Number)| {
                 if is_compared(name) { Outliers::of(runs.iter().filter_map(|r| r[n].2)) } else { None }
             };
-            (scene.as_str(), columns.iter().enumerate().map(of).collect())
+            (settings, columns.iter().enumerate().map(of).collect())
         })
         .collect();
     let mut marked = 0;
@@ -80,7 +82,7 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         let mut row =
             vec![Cell::text(linked), Cell::text(&scene), Cell::number(&seed), Cell::classed(&end, class)];
         let mut line = vec![name, scene.clone(), seed, end];
-        for ((name, digits, value), outliers) in numbers(run).iter().zip(&distributions[scene.as_str()]) {
+        for ((name, digits, value), outliers) in numbers(run).iter().zip(&distributions[&settings(run)]) {
             line.push(value.map(six_digits).unwrap_or_default());
             row.push(value.map_or_else(
                 || Cell::number(""),
@@ -107,7 +109,7 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     }
     let about = format!(
         "The last packing of each run; errors are inferred less counted. Marked: {}, more than 3.5 robust standard deviations from the \
-         median of the runs of a scene, of which there must be five. Click a header to sort.",
+         median of the runs of a scene with the same settings, of which there must be five. Click a header to sort.",
         count(marked, "value")
     );
     let content = html!(

@@ -10,7 +10,7 @@ const NO_SETTINGS: [&str; 3] = ["name", "description", "seed"];
 /// A setting with its value in each run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Setting {
-    /// Key of the scene; of several that change together, the last part that they share.
+    /// Key of the scene; of several that change together, the last parts of all.
     pub(crate) name: String,
     pub(crate) values: Vec<String>,
 }
@@ -46,10 +46,9 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
         let new = Setting { name: name.clone(), values };
         let known = found.entry(firsts(&new.values)).or_insert_with(|| new.clone());
         if known.name != new.name {
-            let last = name.rsplit('.').next().unwrap_or(name);
-            if known.name.ends_with(last) {
-                known.name = last.to_owned();
-            }
+            let last = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
+            let parts: BTreeSet<String> = known.name.split(", ").chain([name.as_str()]).map(last).collect();
+            known.name = parts.into_iter().collect::<Vec<_>>().join(", ");
         }
     }
     let mut settings: Vec<Setting> = found.into_values().collect();
@@ -60,7 +59,7 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
 }
 
 /// The keys of a scene with dots, phases by their names.
-fn keys(text: &str) -> BTreeMap<String, String> {
+pub(crate) fn keys(text: &str) -> BTreeMap<String, String> {
     let mut table: Table = text.parse().unwrap_or_default();
     NO_SETTINGS.iter().for_each(|key| _ = table.remove(*key));
     let mut found = BTreeMap::new();
@@ -96,13 +95,13 @@ mod tests {
             let phases = "phase = [{name = 'a', friction = MU}, {name = 'b', friction = MU, rate = [0, 1]}]";
             let text = format!("seed = {seed}\ngrains.count = {grains}\n{phases}");
             let mut run = Run::default();
-            run.scene_text = text.replace("MU", &mu.to_string());
+            run.scene_text = text.replace("MU", &mu.to_string()) + &format!("\nnumerics.skin = {mu}");
             run
         };
         let runs = [of(1, 0.1, 80), of(2, 0.1, 80), of(1, 0.3, 90), of(2, 0.1, 90)];
         let found = differing(&runs.each_ref());
         let names: Vec<(&str, usize)> = found.iter().map(|s| (s.name.as_str(), s.different())).collect();
-        assert_eq!(names, [("friction", 2), ("grains.count", 2)]);
+        assert_eq!(names, [("friction, skin", 2), ("grains.count", 2)]);
         assert_eq!(found[0].numbers(), Some(vec![0.1, 0.1, 0.3, 0.1]));
         assert!(differing(&[&runs[0], &runs[1]]).is_empty());
     }

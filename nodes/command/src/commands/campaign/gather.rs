@@ -65,18 +65,34 @@ pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec
             folder.root().display()
         );
     }
+    let others = folder.others(campaign);
+    if others > 0 {
+        let (runs, root) = (count(others, "run"), folder.root().display());
+        grainlab_console::say!(
+            "grainlab: {runs} in {root} are of no member of its campaign.toml: the tables leave them out"
+        );
+    }
     let found: Vec<Result<Vec<State<'a>>, String>> =
         finished.into_par_iter().map(|(member, _)| of_member(member, &folder.run(member))).collect();
     let mut exit = if missing.is_empty() { Exit::Done } else { Exit::DataLoss };
-    let mut states = Vec::new();
+    let (mut states, mut empty) = (Vec::new(), 0);
     for member in found {
         match member {
-            Ok(found) => states.extend(found),
+            Ok(found) => {
+                empty += usize::from(found.is_empty());
+                states.extend(found);
+            }
             Err(why) => {
                 grainlab_console::say!("grainlab: {why}");
                 exit = Exit::DataLoss;
             }
         }
+    }
+    if empty > 0 {
+        let members = count(empty, "member");
+        grainlab_console::say!(
+            "grainlab: {members} published no packing at the end of a phase: set publish = true in one"
+        );
     }
     Ok((states, exit))
 }

@@ -58,7 +58,7 @@ pub(super) fn run(
         let needed = InferredQuantity::ALL.map(InferredQuantity::name).join(", ");
         return Err(Failure::usage(format!("{}: no column to judge by ({needed})", rows.name())));
     }
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("invalid");
     let mut board = Board::default();
     let mut points = vec![Vec::new(); cases.len()];
     let mut unsolved = Vec::new();

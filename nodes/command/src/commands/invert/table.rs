@@ -16,13 +16,15 @@ const FOR_PEOPLE: usize = 1000;
 pub(super) struct Tally {
     rows: u64,
     bad: u64,
+    /// The word for rows whose exit is not 0.
+    word: &'static str,
     exit: Exit,
     begin: Instant,
 }
 
 impl Tally {
-    pub(super) fn new() -> Self {
-        Self { rows: 0, bad: 0, exit: Exit::Done, begin: Instant::now() }
+    pub(super) fn new(word: &'static str) -> Self {
+        Self { rows: 0, bad: 0, word, exit: Exit::Done, begin: Instant::now() }
     }
 
     /// Counts a row and reports its errors.
@@ -51,9 +53,10 @@ impl Tally {
         }
         let seconds = self.begin.elapsed().as_secs_f64();
         say!(
-            "grainlab: {}, {} bad{left_out}, {seconds:.1} s",
+            "grainlab: {}, {} {}{left_out}, {seconds:.1} s",
             grainlab_console::count(self.rows, "row"),
-            self.bad
+            self.bad,
+            self.word
         );
         Ok(self.exit)
     }
@@ -65,7 +68,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
         Ok(row) => Answer::of(row.state, Some(number), printer.cases),
         Err(bad) => Answer::of_bad_row(bad, number),
     };
-    let mut tally = Tally::new();
+    let mut tally = Tally::new("bad");
     let mut kept = Vec::new();
     // Between two texts, before the first, and without any.
     let (separator, start, nothing) = match format {

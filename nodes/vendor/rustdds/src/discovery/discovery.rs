@@ -1900,49 +1900,54 @@ impl Discovery {
   }
 
   fn add_local_writer(&self, guid: GUID) {
-    // Get writer data from db
-    let db = discovery_db_read(&self.discovery_db);
-    let writer_data = match db.get_local_topic_writer(guid) {
-      Some(d) => d,
-      None => {
+    // Get writer data, and any existing readers on its topic, from db. The lock
+    // must not be held while sending notifications: their queue is bounded, and
+    // the event loop that empties it waits for the same lock.
+    let (writer_data, existing_readers) = {
+      let db = discovery_db_read(&self.discovery_db);
+      let Some(data) = db.get_local_topic_writer(guid).cloned() else {
         warn!("Did not find a local writer {guid:?}");
         return;
-      }
+      };
+      let readers = db.readers_on_topic(data.publication_topic_data.topic_name());
+      let readers: Vec<DiscoveredReaderData> = readers.into_iter().cloned().collect();
+      (data, readers)
     };
 
     // Publish it to SEDP (if needed)
-    self.sedp_publish_single_user_writer(writer_data);
+    self.sedp_publish_single_user_writer(&writer_data);
 
     // Send the ReaderUpdated notification on any existing readers on the writer's
     // topic This will result in matching the endpoints if possible
-    let existing_readers = db.readers_on_topic(writer_data.publication_topic_data.topic_name());
-    for reader in existing_readers {
+    for discovered_reader_data in existing_readers {
       self.send_discovery_notification(DiscoveryNotificationType::ReaderUpdated {
-        discovered_reader_data: reader.clone(),
+        discovered_reader_data,
       });
     }
   }
 
   fn add_local_reader(&self, guid: GUID) {
-    // Get reader data from db
-    let db = discovery_db_read(&self.discovery_db);
-    let reader_data = match db.get_local_topic_reader(guid) {
-      Some(d) => d,
-      None => {
+    // Get reader data, and any existing writers on its topic, from db. The lock is
+    // not held while sending, as in add_local_writer.
+    let (reader_data, existing_writers) = {
+      let db = discovery_db_read(&self.discovery_db);
+      let Some(data) = db.get_local_topic_reader(guid).cloned() else {
         warn!("Did not find a local reader {guid:?}");
         return;
-      }
+      };
+      let writers = db.writers_on_topic(data.subscription_topic_data.topic_name());
+      let writers: Vec<DiscoveredWriterData> = writers.into_iter().cloned().collect();
+      (data, writers)
     };
 
     // Publish it to SEDP (if needed)
-    self.sedp_publish_single_user_reader(reader_data);
+    self.sedp_publish_single_user_reader(&reader_data);
 
     // Send the WriterUpdated notification on any existing writers on the readers's
     // topic This will result in matching the endpoints if possible
-    let existing_writers = db.writers_on_topic(reader_data.subscription_topic_data.topic_name());
-    for writer in existing_writers {
+    for discovered_writer_data in existing_writers {
       self.send_discovery_notification(DiscoveryNotificationType::WriterUpdated {
-        discovered_writer_data: writer.clone(),
+        discovered_writer_data,
       });
     }
   }
