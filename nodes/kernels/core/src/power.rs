@@ -36,9 +36,16 @@ const EXP: [f64; 14] = [
     1.0 / 6_227_020_800.0,
 ];
 
+/// A loop, because a closure would not be compiled for the instruction set of its caller.
 #[inline(always)]
 fn series<L: Lanes, const N: usize>(x: L, coefficients: &[f64; N]) -> L {
-    coefficients.iter().rev().fold(L::splat(0.0), |sum, c| sum.mul_add(x, L::splat(*c)))
+    let mut sum = L::splat(coefficients[N - 1]);
+    let mut k = N - 1;
+    while k > 0 {
+        k -= 1;
+        sum = sum.mul_add(x, L::splat(coefficients[k]));
+    }
+    sum
 }
 
 /// `base`^`exponent` for a positive base and a result below 2^1023, to 1e-14 where its logarithm is below 30. Results below

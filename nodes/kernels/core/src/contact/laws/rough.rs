@@ -61,8 +61,9 @@ const FIRST: f64 = 2.1093188701006973;
 const SECOND: f64 = 24.467023732785822;
 /// Lengths by which each stage starts later than the overlap, in units of S.
 const OFFSETS: [f64; 3] = [0.0, 0.82, 2.06];
-/// Exponents c and b of the force, and that of Hertz.
-const EXPONENTS: [f64; 3] = [2.589795495330664, 1.583009685810189, 1.5];
+/// Exponents c and b of the force.
+const C: f64 = 2.589795495330664;
+const B: f64 = 1.583009685810189;
 /// Stiffness at the end of the first and the second stage, over that of the second: 0.01^(1 − 1/b) and 1.
 const LEVELS: [f64; 3] = [0.18340710185168518, 1.0, 1.0];
 /// Energy beyond F (δ − offset)/(exponent + 1) in each stage, in units of F₁ S.
@@ -87,7 +88,8 @@ impl RoughSprings {
 
     #[inline(always)]
     fn number_at_stage<L: Lanes>(&self, overlap: L, numbers: [f64; 3]) -> L {
-        self.at_stage(overlap, numbers.map(L::splat))
+        let [first, second, third] = numbers;
+        self.at_stage(overlap, [L::splat(first), L::splat(second), L::splat(third)])
     }
 
     /// Overlap less the offset of its stage, m.
@@ -100,10 +102,10 @@ impl RoughSprings {
     #[inline(always)]
     fn softening<L: Lanes>(&self, overlap: L) -> L {
         let s = self.scale;
-        let ends = [FIRST, SECOND - OFFSETS[1]].map(|end| L::splat(1.0 / (end * s).max(f64::MIN_POSITIVE)));
-        let compression = self.compression(overlap);
-        let base = self.at_stage(overlap, [compression * ends[0], compression * ends[1], L::splat(1.0)]);
-        let exponent = self.number_at_stage(overlap, EXPONENTS) - L::splat(1.0);
+        let end = self.number_at_stage(overlap, [FIRST, SECOND - OFFSETS[1], 1.0]) * L::splat(s);
+        let base = self.compression(overlap) / end.max(L::splat(f64::MIN_POSITIVE));
+        let base = L::select(overlap.gt(L::splat(SECOND * s)), L::splat(1.0), base);
+        let exponent = self.number_at_stage(overlap, [C - 1.0, B - 1.0, 0.5]);
         let level = self.number_at_stage(overlap, LEVELS);
         // Hertz's compression, which is that at the end of the second stage up to there.
         let smooth = (overlap - L::splat(OFFSETS[2] * s)).max(L::splat((SECOND - OFFSETS[2]) * s));
@@ -119,13 +121,13 @@ impl ContactSprings for RoughSprings {
 
     #[inline(always)]
     fn normal_force<L: Lanes>(&self, normal_stiffness: L, overlap: L) -> L {
-        let inverse = EXPONENTS.map(|exponent| 1.0 / exponent);
+        let inverse = [1.0 / C, 1.0 / B, 2.0 / 3.0];
         self.number_at_stage(overlap, inverse) * normal_stiffness * self.compression(overlap)
     }
 
     #[inline(always)]
     fn normal_energy<L: Lanes>(&self, normal_force: L, contact_radius: L, overlap: L) -> L {
-        let inverse = EXPONENTS.map(|exponent| 1.0 / (exponent + 1.0));
+        let inverse = [1.0 / (C + 1.0), 1.0 / (B + 1.0), 0.4];
         let present = self.number_at_stage(overlap, inverse) * normal_force * self.compression(overlap);
         // F₁ = S E* √(2 R* S)
         let smooth = L::splat(self.scale) / overlap.max(L::splat(f64::MIN_POSITIVE));
@@ -196,7 +198,7 @@ mod tests {
 
     #[test]
     fn the_numbers_of_the_law_follow_from_continuity() {
-        let ([_, offset, shift], [c, b, _]) = (OFFSETS, EXPONENTS);
+        let ([_, offset, shift], c, b) = (OFFSETS, C, B);
         let (first_force, second_force) = (2f64.sqrt(), 100.0 * 2f64.sqrt());
         let second = (0.75 * second_force).powf(2.0 / 3.0) + shift;
         let exponent = 2.0 * (second - shift).sqrt() * (second - offset) / second_force;
