@@ -48,8 +48,8 @@ fn series<L: Lanes, const N: usize>(x: L, coefficients: &[f64; N]) -> L {
     sum
 }
 
-/// `base`^`exponent` for a positive base and a result below 2^1023, to 1e-14 where its logarithm is below 30. Results below
-/// 2^-1022 are that number, and those of 1 exact. The bits are the same in every width and on every processor, which `powf` does not promise.
+/// `base`^`exponent` for a positive base and a result below 2^1023, to 1e-14 where its logarithm is below 30; at least
+/// 2^-1022, and exact for a base of 1. The bits are the same in every width and on every processor, unlike those of `powf`.
 #[inline(always)]
 pub(crate) fn power<L: Lanes>(base: L, exponent: L) -> L {
     let one = L::splat(1.0);
@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn a_power_is_that_of_the_library() {
         for k in -200..200 {
-            for exponent in [0.5830096858101890, 1.589795495330664, -1.5, 0.0, 1.0] {
+            for exponent in [0.583, 1.5898, -1.5, 0.0, 1.0] {
                 let base = 1.1f64.powi(k);
                 assert!(
                     (power(base, exponent) / base.powf(exponent) - 1.0).abs() < 1e-14,

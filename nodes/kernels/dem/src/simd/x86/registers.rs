@@ -90,7 +90,8 @@ impl Lanes for Avx2 {
     type Mask = __m256d;
 
     arithmetic!(_mm256_set1_pd _mm256_fmadd_pd _mm256_fmsub_pd _mm256_fnmadd_pd _mm256_sqrt_pd _mm256_max_pd
-        _mm256_castpd_si256 _mm256_srli_epi64 _mm256_slli_epi64 _mm256_and_si256 _mm256_or_si256 _mm256_set1_epi64x _mm256_sub_epi64 _mm256_castsi256_pd);
+        _mm256_castpd_si256 _mm256_srli_epi64 _mm256_slli_epi64 _mm256_and_si256 _mm256_or_si256
+        _mm256_set1_epi64x _mm256_sub_epi64 _mm256_castsi256_pd);
 
     #[inline(always)]
     fn gt(self, other: Self) -> __m256d {
@@ -110,7 +111,8 @@ impl Lanes for Avx512 {
     type Mask = __mmask8;
 
     arithmetic!(_mm512_set1_pd _mm512_fmadd_pd _mm512_fmsub_pd _mm512_fnmadd_pd _mm512_sqrt_pd _mm512_max_pd
-        _mm512_castpd_si512 _mm512_srli_epi64 _mm512_slli_epi64 _mm512_and_si512 _mm512_or_si512 _mm512_set1_epi64 _mm512_sub_epi64 _mm512_castsi512_pd);
+        _mm512_castpd_si512 _mm512_srli_epi64 _mm512_slli_epi64 _mm512_and_si512 _mm512_or_si512
+        _mm512_set1_epi64 _mm512_sub_epi64 _mm512_castsi512_pd);
 
     #[inline(always)]
     fn gt(self, other: Self) -> __mmask8 {
