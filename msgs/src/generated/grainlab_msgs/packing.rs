@@ -53,7 +53,7 @@ pub struct Packing {
     pub poisson_ratio: f64,
     /// kg/m3, of the grain
     pub density: f64,
-    /// name, as in scenes: hertz_mindlin, linear
+    /// name, as in scenes: hertz_mindlin, linear, rough
     pub contact_law: String,
     /// those that do not follow from the material, as in scenes; last those of rolling, if any
     pub contact_law_parameters: Vec<f64>,

@@ -10,6 +10,12 @@ use std::ops::{Add, Div, Mul, Sub};
 /// logarithm of the inverse root.
 pub const RSQRT_MAGIC: u64 = 0x5fe6_eb50_c7b5_37a9;
 
+/// Bits of the fraction of a float.
+pub const FRACTION: u64 = (1 << 52) - 1;
+
+/// 2^52: the lowest bits of a float of this size are a whole number.
+pub const WHOLE: f64 = 4_503_599_627_370_496.0;
+
 /// Arithmetic on 64-bit floats, one in each lane.
 pub trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
@@ -29,6 +35,10 @@ pub trait Lanes:
     fn sqrt(self) -> Self;
     /// 1/√x for positive x, to one part in 28: a start for Newton's method. Large and finite where x is zero.
     fn rsqrt_estimate(self) -> Self;
+    /// Exponent e and fraction m from 1 to 2 of a positive number m 2^e. Zero has the exponent −1023.
+    fn split(self) -> (Self, Self);
+    /// 2^n for a whole n from −1022 to 1023.
+    fn power_of_two(self) -> Self;
     /// The larger of two; the second where they do not compare.
     fn max(self, other: Self) -> Self;
     /// Mask of the lanes in which `self` exceeds `other`.
@@ -65,6 +75,15 @@ impl Lanes for f64 {
     #[inline(always)]
     fn rsqrt_estimate(self) -> Self {
         f64::from_bits(RSQRT_MAGIC - (self.to_bits() >> 1))
+    }
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        let bits = self.to_bits();
+        ((bits >> 52) as f64 - 1023.0, f64::from_bits(bits & FRACTION | 1f64.to_bits()))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        f64::from_bits((self + (WHOLE + 1023.0)).to_bits() << 52)
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {

@@ -29,6 +29,7 @@ pub mod instruction_sets;
 pub mod lanes;
 mod material;
 mod packing;
+mod power;
 pub mod quantity;
 mod rattlers;
 pub mod results;

@@ -1,13 +1,16 @@
-//! Time of a step per grain of a compressed packing, ns: to compare two builds on one machine.
+//! Time of a step per grain of a compressed packing, ns: to compare two builds on one machine, or contact laws: `step_speed
+//! rough:1e-8,1`.
 
 use grainlab_core::Material;
+use grainlab_core::contact::ContactLaw;
 use grainlab_dem::{Engine, EngineSettings, TimeStep, gas};
 use std::time::Instant;
 
 const GRAINS: u32 = 2000;
 const RADIUS: f64 = 1e-4;
 
-fn main() {
+fn main() -> Result<(), grainlab_core::contact::UnknownLaw> {
+    let law: ContactLaw = std::env::args().nth(1).map_or(Ok(ContactLaw::default()), |law| law.parse())?;
     for friction in [0.0, 0.3] {
         let settings = EngineSettings {
             friction,
@@ -18,7 +21,8 @@ fn main() {
         };
         let gas = gas::random_sequential_addition(GRAINS, 2.0 * RADIUS, 0.35, 0.1, 7).unwrap();
         let radii = vec![RADIUS; GRAINS as usize];
-        let mut engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, settings).unwrap();
+        let engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, settings).unwrap();
+        let mut engine = engine.with_law(law).unwrap();
         engine.set_velocities(&gas.velocities).unwrap();
         engine.set_rate(&[-900.0, -1100.0, -1000.0, 0.0, 0.0, 0.0]).unwrap();
         engine.sort_spatially();
@@ -40,4 +44,5 @@ fn main() {
             1e9 * best
         );
     }
+    Ok(())
 }

@@ -8,14 +8,17 @@ const RADIUS: f64 = 1e-4;
 
 /// As stiff as glass at some 100 kPa.
 const LINEAR: SpringLaw = SpringLaw::Linear(Linear { normal_stiffness: 2e5, stiffness_ratio: 0.5 });
+const ROUGH: SpringLaw = SpringLaw::EXAMPLES[2];
 const ROLLING: RollingResistance = RollingResistance { stiffness: 5e4, damping: 5e-3, friction: 0.1 };
 
 /// Each law without and with resistance to rolling.
-const LAWS: [ContactLaw; 4] = [
+const LAWS: [ContactLaw; 6] = [
     ContactLaw::of(SpringLaw::HertzMindlin),
     ContactLaw::of(LINEAR),
     ContactLaw::of(SpringLaw::HertzMindlin).with_rolling(ROLLING),
     ContactLaw::of(LINEAR).with_rolling(ROLLING),
+    ContactLaw::of(ROUGH),
+    ContactLaw::of(ROUGH).with_rolling(ROLLING),
 ];
 
 fn settings(friction: f64) -> EngineSettings {
@@ -103,6 +106,11 @@ fn the_balance_of_hertz_mindlin_closes_to_rounding() {
 #[test]
 fn the_balance_of_linear_springs_closes_to_rounding() {
     closes(LAWS[1], 0.3, TangentialLaw::Rescaled);
+}
+
+#[test]
+fn the_balance_of_rough_grains_closes_to_rounding() {
+    closes(LAWS[4], 0.3, TangentialLaw::Rescaled);
 }
 
 #[test]

@@ -154,7 +154,7 @@ pub(crate) static ROLLING_KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
 /// The key of a parameter of a contact law. Its text is `'static`, as that of every key.
 fn law_key(p: &LawParameter, whose: &str) -> Key {
     let path = String::leak(format!("contact.{}", p.key));
-    let range = if p.may_be_zero { Interval::FROM_ZERO } else { Interval::POSITIVE };
+    let range = Interval { low: p.range.0, high: p.range.1 };
     let default = p.default.map_or(Required, DefaultValue::Number);
     number(path, p.unit, range, default, String::leak(format!("{}; {whose}", p.meaning)))
 }

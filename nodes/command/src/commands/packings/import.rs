@@ -39,7 +39,8 @@ pub(crate) struct Args {
     /// Friction coefficient; inf is allowed
     #[arg(long, value_name = "MU")]
     friction: Option<f64>,
-    /// Contact law with its parameters: hertz_mindlin, or linear:KN,RATIO with k_n in N/m and k_t/k_n
+    /// Contact law with its parameters: hertz_mindlin, linear:KN,RATIO with k_n in N/m and k_t/k_n, or rough:SQ,FACTOR with the
+    /// roughness S_q in m and k_t/k_n over that of Mindlin
     #[arg(long, value_name = "LAW")]
     contact_law: Option<ContactLaw>,
     /// Radius of every grain, m

@@ -1,7 +1,8 @@
 //! Parameters of contact laws.
 
-/// A parameter of a contact law, which does not follow from the material. It must be finite and positive, or zero where it
-/// may be.
+use std::ops::{Bound, RangeBounds};
+
+/// A parameter of a contact law, which does not follow from the material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LawParameter {
     /// Key in scenes.
@@ -12,13 +13,18 @@ pub struct LawParameter {
     pub meaning: &'static str,
     /// Value in scenes that do not give it; `None` if they must.
     pub default: Option<f64>,
-    /// True if zero is valid.
-    pub may_be_zero: bool,
+    /// Its lower and upper bound.
+    pub range: (Bound<f64>, Bound<f64>),
 }
 
 impl LawParameter {
+    /// Finite numbers above 0.
+    pub const POSITIVE: (Bound<f64>, Bound<f64>) = (Bound::Excluded(0.0), Bound::Excluded(f64::INFINITY));
+    /// Finite numbers from 0.
+    pub const FROM_ZERO: (Bound<f64>, Bound<f64>) = (Bound::Included(0.0), Bound::Excluded(f64::INFINITY));
+
     /// True if `value` is valid.
     pub fn admits(&self, value: f64) -> bool {
-        value.is_finite() && (value > 0.0 || (self.may_be_zero && value == 0.0))
+        self.range.contains(&value)
     }
 }

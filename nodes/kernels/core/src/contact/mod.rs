@@ -42,7 +42,7 @@ pub enum UnknownLaw {
     /// The parameters are invalid.
     #[error(
         "parameters {found:?} of contact law {law} are invalid; it needs [{springs}], and with resistance to rolling \
-         [{rolling}] after them, each positive and finite (a damping may be 0)"
+         [{rolling}] after them, each positive and finite (a roughness or damping may be 0, a tangential factor is at most 1)"
     )]
     Parameters {
         /// Name of the law.
@@ -175,6 +175,9 @@ mod tests {
         }
         assert!(ContactLaw::new("hooke", &[]).unwrap_err().to_string().contains("hooke"));
         assert!(ContactLaw::new("linear", &[1e4, -1.0]).is_err());
+        assert!(
+            ContactLaw::new("rough", &[0.0, 1.0]).is_ok() && ContactLaw::new("rough", &[1e-9, 1.1]).is_err()
+        );
         // Resistance to rolling may lack a dashpot, but no parameter.
         let undamped = ContactLaw::new("hertz_mindlin", &[1e4, 0.0, 0.1]).unwrap();
         assert_eq!(undamped.rolling, Some(RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 }));

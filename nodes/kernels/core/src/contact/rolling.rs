@@ -39,8 +39,8 @@ impl<S: ContactSprings> ContactSprings for RollingSprings<S> {
     }
 
     #[inline(always)]
-    fn normal_stiffness<L: Lanes>(&self, contact_radius: L) -> L {
-        self.springs.normal_stiffness(contact_radius)
+    fn normal_stiffness<L: Lanes>(&self, contact_radius: L, overlap: L) -> L {
+        self.springs.normal_stiffness(contact_radius, overlap)
     }
 
     #[inline(always)]
@@ -49,13 +49,13 @@ impl<S: ContactSprings> ContactSprings for RollingSprings<S> {
     }
 
     #[inline(always)]
-    fn normal_energy<L: Lanes>(&self, normal_force: L, overlap: L) -> L {
-        self.springs.normal_energy(normal_force, overlap)
+    fn normal_energy<L: Lanes>(&self, normal_force: L, contact_radius: L, overlap: L) -> L {
+        self.springs.normal_energy(normal_force, contact_radius, overlap)
     }
 
     #[inline(always)]
-    fn tangential_stiffness<L: Lanes>(&self, contact_radius: L, factor: f64) -> L {
-        self.springs.tangential_stiffness(contact_radius, factor)
+    fn tangential_stiffness<L: Lanes>(&self, contact_radius: L, overlap: L, factor: f64) -> L {
+        self.springs.tangential_stiffness(contact_radius, overlap, factor)
     }
 
     fn stiffness_ratio(&self) -> f64 {
@@ -68,8 +68,8 @@ impl<S: ContactSprings> ContactSprings for RollingSprings<S> {
     }
 
     #[inline(always)]
-    fn unloading<L: Lanes>(&self, before: L, contact_radius: L) -> L {
-        self.springs.unloading(before, contact_radius)
+    fn unloading<L: Lanes>(&self, before: L, contact_radius: L, overlap: L) -> L {
+        self.springs.unloading(before, contact_radius, overlap)
     }
 
     fn collision_overlap(&self, r_eff: f64, m_eff: f64, speed: f64) -> f64 {

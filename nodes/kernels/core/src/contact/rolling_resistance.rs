@@ -24,21 +24,21 @@ impl RollingResistance {
             unit: "N/m",
             meaning: "rolling stiffness: rolling force over rolling displacement",
             default: None,
-            may_be_zero: false,
+            range: LawParameter::POSITIVE,
         },
         LawParameter {
             key: "rolling_damping",
             unit: "N s/m",
             meaning: "coefficient of the rolling dashpot: rolling force over rolling velocity",
             default: Some(0.0),
-            may_be_zero: true,
+            range: LawParameter::FROM_ZERO,
         },
         LawParameter {
             key: "rolling_friction",
             unit: "",
             meaning: "rolling friction coefficient: largest rolling force over the normal force",
             default: None,
-            may_be_zero: false,
+            range: LawParameter::POSITIVE,
         },
     ];
 

@@ -79,7 +79,7 @@ impl<S: ContactSprings> SpringDashpotSlider<S> {
     /// Elastic normal force, normal force with damping, N, and the coefficient of the dashpot, N s/m.
     #[inline(always)]
     fn normal<L: Lanes>(&self, overlap: L, contact_radius: L, m_eff: L, separation_speed: L) -> (L, L, L) {
-        let k_n = self.springs.normal_stiffness(contact_radius);
+        let k_n = self.springs.normal_stiffness(contact_radius, overlap);
         let elastic = self.springs.normal_force(k_n, overlap);
         if self.damping == 0.0 {
             return (elastic, elastic, L::splat(0.0));
@@ -141,13 +141,14 @@ impl<S: ContactSprings> SpringDashpotSlider<S> {
         dt: f64,
     ) -> HistoryStep<L> {
         let (n, across, mean) = (c.normal, c.across(), c.mean_normal(dt));
-        let unloading = self.springs.unloading(c.contact_radius_before, c.contact_radius);
+        let unloading = self.springs.unloading(c.contact_radius_before, c.contact_radius, c.overlap);
         // Not a branch, which costs more than the quotient.
         let carried = rotate_history(history, c, mean, dt).scale(unloading.max(L::splat(self.kept)));
         // With the mid-step normal: else a pair that spins about an oblique axis would seem to slip.
         let slip = across.sub_cross(c.spin_velocity, mean);
         let slip = slip.sub_scaled(n, slip.dot(n));
-        let elastic = carried.add_scaled(slip, self.springs.tangential_stiffness(c.contact_radius, dt));
+        let stiffness = self.springs.tangential_stiffness(c.contact_radius, c.overlap, dt);
+        let elastic = carried.add_scaled(slip, stiffness);
         HistoryStep { carried, elastic }
     }
 }

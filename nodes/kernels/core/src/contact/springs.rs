@@ -17,17 +17,17 @@ pub trait ContactSprings: Copy + Send + Sync {
         RollingResistance::NONE
     }
 
-    /// Normal stiffness k_n = dF/dδ, N/m, from the contact radius, m.
-    fn normal_stiffness<L: Lanes>(&self, contact_radius: L) -> L;
+    /// Normal stiffness k_n = dF/dδ, N/m, from contact radius and overlap, m.
+    fn normal_stiffness<L: Lanes>(&self, contact_radius: L, overlap: L) -> L;
 
     /// Elastic normal force F, N, from the normal stiffness, N/m, and the overlap, m.
     fn normal_force<L: Lanes>(&self, normal_stiffness: L, overlap: L) -> L;
 
-    /// Energy U of the normal spring, J, with F = dU/dδ, from the elastic normal force, N, and the overlap, m.
-    fn normal_energy<L: Lanes>(&self, normal_force: L, overlap: L) -> L;
+    /// Energy U of the normal spring, J, with F = dU/dδ, from the elastic normal force, N, contact radius and overlap, m.
+    fn normal_energy<L: Lanes>(&self, normal_force: L, contact_radius: L, overlap: L) -> L;
 
-    /// `factor` times the tangential stiffness k_t, N/m, from the contact radius, m.
-    fn tangential_stiffness<L: Lanes>(&self, contact_radius: L, factor: f64) -> L;
+    /// `factor` times the tangential stiffness k_t, N/m, from contact radius and overlap, m.
+    fn tangential_stiffness<L: Lanes>(&self, contact_radius: L, overlap: L, factor: f64) -> L;
 
     /// Ratio of stiffnesses k_t/k_n.
     fn stiffness_ratio(&self) -> f64;
@@ -36,8 +36,8 @@ pub trait ContactSprings: Copy + Send + Sync {
     fn dashpot_ratio(&self) -> f64;
 
     /// k_t over that of the step before, where it fell; 1 where it rose or the contact is new. From the contact radius of the
-    /// step before and the present one, m.
-    fn unloading<L: Lanes>(&self, before: L, contact_radius: L) -> L;
+    /// step before, and the present one with its overlap, m.
+    fn unloading<L: Lanes>(&self, before: L, contact_radius: L, overlap: L) -> L;
 
     /// Largest overlap of an elastic collision, m, from effective radius (m), effective mass (kg) and relative speed (m/s).
     fn collision_overlap(&self, r_eff: f64, m_eff: f64, speed: f64) -> f64;

@@ -10,7 +10,6 @@ use crate::settings::TimeStep;
 use crate::step::integrate::{self, SpeedStats};
 use crate::step::pass::{Pass, PassKind};
 use crate::step::time_step;
-use grainlab_core::effective_radius;
 use grainlab_core::{Mat3, SymTensor, Vec3};
 
 /// Steps between two updates of the time step from the stiffness of the contacts.
@@ -172,9 +171,9 @@ impl Engine {
         let at_grain = self.contacts.touching().filter(|p| p.i as usize == grain || p.j as usize == grain);
         let largest = at_grain.max_by(|a, b| a.history.contact_radius.total_cmp(&b.history.contact_radius));
         let cause = largest.map_or(String::new(), |p| {
-            let (i, j) = (p.i as usize, p.j as usize);
-            let overlap = p.history.contact_radius.powi(2) / effective_radius(s.radius[i], s.radius[j]);
-            format!(", pushed hardest at its contact of grains {} and {}", s.ids[i], s.ids[j])
+            let overlap = p.overlap(&s.radius, p.history.contact_radius);
+            let [first, second] = [p.i, p.j].map(|grain| s.ids[grain as usize]);
+            format!(", pushed hardest at its contact of grains {first} and {second}")
                 + &format!(" with an overlap of {overlap:e} m")
         });
         let speed = s.velocities().nth(grain).map_or(0.0, |v| v.norm());

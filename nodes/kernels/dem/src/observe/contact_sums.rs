@@ -73,7 +73,7 @@ impl<S: ContactSprings, const SIZES: bool> Kernel for SumKernel<'_, S, SIZES> {
                     too_deep |= L::any(g.overlap.gt(smaller * L::splat(2.0 * OVERLAP_LIMIT)));
                     let (_, r_eff, _) = sizes_of::<S, L>(&input, sizes.get(b), lane);
                     let contact_radius = (r_eff * g.overlap).sqrt();
-                    let k_n = input.law.springs.normal_stiffness(contact_radius);
+                    let k_n = input.law.springs.normal_stiffness(contact_radius, g.overlap);
                     let elastic = input.law.springs.normal_force(k_n, g.overlap);
                     let f = g.normal.scale(elastic) - load_vector(&block.history, lane);
                     let f = LaneVec3::select(g.touching, f, LaneVec3::splat(0.0));
@@ -83,7 +83,7 @@ impl<S: ContactSprings, const SIZES: bool> Kernel for SumKernel<'_, S, SIZES> {
                     let square = L::select(g.touching, g.distance * g.distance, zero);
                     let normal = k_n * square;
                     let tangential = if friction {
-                        input.law.springs.tangential_stiffness(contact_radius, 1.0) * square
+                        input.law.springs.tangential_stiffness(contact_radius, g.overlap, 1.0) * square
                     } else {
                         zero
                     };

@@ -61,8 +61,11 @@ impl LawVisitor for ContactWorks<'_> {
                 Vec3::zeros()
             };
             let energies = [
-                springs.normal_energy(f.elastic, c.overlap),
-                tangential_energy(&springs, &p.history.tangential, c.contact_radius),
+                springs.normal_energy(f.elastic, c.contact_radius, c.overlap),
+                tangential_energy(
+                    &p.history.tangential,
+                    springs.tangential_stiffness(c.contact_radius, c.overlap, 1.0),
+                ),
                 rolling_energy(&springs, &p.history.rolling),
             ];
             ContactWork { pair: p, forces: f, rolling_force: rolling, energies, motion: m }
@@ -71,9 +74,9 @@ impl LawVisitor for ContactWorks<'_> {
     }
 }
 
-/// Energy of a tangential spring, J.
-pub(super) fn tangential_energy(springs: &impl ContactSprings, force: &Vec3, contact_radius: f64) -> f64 {
-    0.5 * force.norm_squared() / springs.tangential_stiffness(contact_radius, 1.0)
+/// Energy of a tangential spring of this stiffness (N/m), J.
+pub(super) fn tangential_energy(force: &Vec3, stiffness: f64) -> f64 {
+    0.5 * force.norm_squared() / stiffness
 }
 
 /// Energy of a rolling spring, J.

@@ -13,7 +13,7 @@ use crate::settings::EngineSettings;
 use crate::simd::simd_f64::BLOCK_SIZE;
 use grainlab_core::contact::{ContactSprings, LawVisitor};
 use grainlab_core::stress::Stress;
-use grainlab_core::{Mat3, effective_radius, min_contacts};
+use grainlab_core::{Mat3, min_contacts};
 
 /// Observed state of the present contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +94,7 @@ impl LawVisitor for SumContacts<'_> {
 /// Names the contact with the largest overlap relative to its smaller grain.
 fn overlap_error(state: &State, contacts: &Contacts) -> DemError {
     let radii = |p: &Pair| (state.radius[p.i as usize], state.radius[p.j as usize]);
-    let overlap = |p: &Pair| p.history.contact_radius.powi(2) / effective_radius(radii(p).0, radii(p).1);
+    let overlap = |p: &Pair| p.overlap(&state.radius, p.history.contact_radius);
     let depth = |p: &Pair| overlap(p) / radii(p).0.min(radii(p).1);
     let worst = contacts.touching().max_by(|a, b| depth(a).total_cmp(&depth(b)));
     let (first, second, overlap) =

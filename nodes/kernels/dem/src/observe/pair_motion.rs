@@ -8,11 +8,6 @@ use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
 use grainlab_core::{Mat3, Vec3};
 
-/// Full overlap of a pair with this contact radius, m.
-pub(super) fn overlap(state: &State, p: &Pair, contact_radius: f64) -> f64 {
-    contact_radius * contact_radius / effective_radius(state.radius[p.i as usize], state.radius[p.j as usize])
-}
-
 /// Position and motion of a pair.
 pub(super) struct PairMotion {
     pub(super) contact: ContactKinematics<f64>,
@@ -38,7 +33,7 @@ pub(super) fn kinematics(
     let distance = branch.norm();
     let normal = branch / distance;
     let (r_i, r_j) = (state.radius[i], state.radius[j]);
-    let overlap = overlap(state, p, p.history.contact_radius);
+    let overlap = p.overlap(&state.radius, p.history.contact_radius);
     let levers = [r_i - 0.5 * overlap, r_j - 0.5 * overlap];
     let r_eff = effective_radius(r_i, r_j);
     let (v_i, v_j) = (&state.twist[i].0, &state.twist[j].0);

@@ -2,7 +2,7 @@
 
 use super::contact_works::{rolling_energy, tangential_energy};
 use super::energy::EnergyBalance;
-use super::pair_motion::{kinematics, lanes, overlap, vec3};
+use super::pair_motion::{kinematics, lanes, vec3};
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::types::Pair;
@@ -26,9 +26,12 @@ impl LawVisitor for PathWorks<'_> {
         let law = settings.law(springs);
         let frictional = settings.features() != Features::Frictionless;
         let normal_energy = |p: &Pair, contact_radius: f64| {
-            let force = springs
-                .normal_force(springs.normal_stiffness(contact_radius), overlap(state, p, contact_radius));
-            springs.normal_energy(force, overlap(state, p, contact_radius))
+            let overlap = p.overlap(&state.radius, contact_radius);
+            let force = springs.normal_force(springs.normal_stiffness(contact_radius, overlap), overlap);
+            springs.normal_energy(force, contact_radius, overlap)
+        };
+        let tangential_stiffness = |p: &Pair, contact_radius: f64| {
+            springs.tangential_stiffness(contact_radius, p.overlap(&state.radius, contact_radius), 1.0)
         };
         let mut works = EnergyBalance::default();
         for (pair, before) in contacts.pairs().zip(before) {
@@ -36,7 +39,8 @@ impl LawVisitor for PathWorks<'_> {
             let before = b.history;
             if b.touches() {
                 works.integration -= normal_energy(&p, before.contact_radius);
-                works.history += tangential_energy(&springs, &before.tangential, before.contact_radius);
+                let stiffness = tangential_stiffness(&p, before.contact_radius);
+                works.history += tangential_energy(&before.tangential, stiffness);
                 works.history += rolling_energy(&springs, &before.rolling);
             }
             if !p.touches() {
@@ -49,7 +53,7 @@ impl LawVisitor for PathWorks<'_> {
             let m = kinematics(state, contacts, &state.rate, &p, before.contact_radius);
             let history = lanes(before.tangential);
             let step = law.history_step(&m.contact, history, state.time_step);
-            let k_t = springs.tangential_stiffness(p.history.contact_radius, 1.0);
+            let k_t = tangential_stiffness(&p, p.history.contact_radius);
             let slip = SpringStep::new(step, p.history.tangential, k_t);
             works.history -= slip.carried;
             works.sliding += slip.slider;

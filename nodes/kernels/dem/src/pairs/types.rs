@@ -1,7 +1,7 @@
 //! Pairs of grains as they are stored: eight to a block.
 
 use crate::simd::simd_f64::{BLOCK_SIZE, F64x8};
-use grainlab_core::Vec3;
+use grainlab_core::{Vec3, effective_radius};
 
 /// Row in the table of periodic images of the pairs that only pad a block. It is so far away that they never touch.
 pub(crate) const PADDING: u32 = 0;
@@ -94,6 +94,11 @@ pub(crate) struct PairChunk<'a> {
 impl Pair {
     pub(crate) fn touches(&self) -> bool {
         self.history.contact_radius > 0.0
+    }
+
+    /// Full overlap with this contact radius (m), m, of grains of these radii (m).
+    pub(crate) fn overlap(&self, radii: &[f64], contact_radius: f64) -> f64 {
+        contact_radius * contact_radius / effective_radius(radii[self.i as usize], radii[self.j as usize])
     }
 }
 

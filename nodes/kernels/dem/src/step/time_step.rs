@@ -103,7 +103,8 @@ impl<'a> LawVisitor for CollectSprings<'a> {
         let twice = 2.0 * settings.damping;
         let mut list = Vec::with_capacity(contacts.slots());
         list.extend(contacts.touching().map(|p| {
-            let (k, m) = (springs.normal_stiffness(p.history.contact_radius), &state.inverse_mass);
+            let (contact_radius, m) = (p.history.contact_radius, &state.inverse_mass);
+            let k = springs.normal_stiffness(contact_radius, p.overlap(&state.radius, contact_radius));
             let dashpot = twice * (k / (m[p.i as usize] + m[p.j as usize])).sqrt();
             (p, k, dashpot)
         }));
@@ -290,7 +291,7 @@ impl LawVisitor for CollisionStiffness {
 
     fn visit<S: ContactSprings>(self, springs: S) -> f64 {
         let overlap = springs.collision_overlap(self.r_eff, self.m_eff, self.speed);
-        springs.normal_stiffness((self.r_eff * overlap).sqrt())
+        springs.normal_stiffness((self.r_eff * overlap).sqrt(), overlap)
     }
 }
 

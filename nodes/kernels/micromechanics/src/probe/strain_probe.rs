@@ -120,7 +120,7 @@ fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeEr
     let (mut change, mut force) = (0.0, 0.0);
     for c in &packing.contacts {
         change += settings.amplitude * packing.contact_stiffness(c).0 * packing.branch(c).norm();
-        force += packing.material.normal_force(packing.effective_radius(c), c.overlap);
+        force += packing.law.normal_force(&packing.material, packing.effective_radius(c), c.overlap);
     }
     Ok(change / force)
 }

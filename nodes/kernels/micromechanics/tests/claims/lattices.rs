@@ -1,6 +1,7 @@
 //! Lattices with closed forms, and contacts with own images.
 
 use crate::samples::{packing, turned};
+use grainlab_core::contact::{ContactLaw, Rough, SpringLaw};
 use grainlab_core::{Cell, Mat3, Packing, SymmetryClass, Vec3, symmetry};
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::{Settings, analyze};
@@ -92,6 +93,28 @@ fn fcc_is_exact_with_one_grain_in_a_skewed_primitive_cell() {
     let four = analyze(&fcc(), &Settings::default()).unwrap().report.stiffness().copied().unwrap();
     let one = analyze(&p, &Settings::default()).unwrap().report.stiffness().copied().unwrap();
     assert_equal(&one.tensor.0, &four.tensor.0, "primitive cell");
+}
+
+/// The lattice is affine, so that G and p are those of one contact: G ∝ p^n with n = 1 − 1/c, 1 − 1/b and 1/3 in the stages of
+/// the law.
+#[test]
+fn a_rough_crystal_stiffens_with_the_exponents_of_the_stages_of_its_contacts() {
+    let rough = Rough { roughness: 1e-9, tangential_factor: 0.7 };
+    let state = |overlap: f64| {
+        let mut p = fcc();
+        p.law = ContactLaw::of(SpringLaw::Rough(rough));
+        let force = p.law.normal_force(&p.material, 0.25 * D, overlap);
+        p.contacts.iter_mut().for_each(|c| (c.overlap, c.normal_force) = (overlap, force));
+        let report = analyze(&p, &Settings::default()).unwrap().report;
+        [report.pressure(), report.stiffness().unwrap().tensor.0[(3, 3)]].map(f64::ln)
+    };
+    for (overlap, expected) in
+        [(1e-10, 0.613_869_1), (1e-9, 0.613_869_1), (1e-8, 0.368_291_9), (1e-6, 1.0 / 3.0)]
+    {
+        let [before, after] = [state(overlap), state(1.01 * overlap)];
+        let exponent = (after[1] - before[1]) / (after[0] - before[0]);
+        assert!((exponent - expected).abs() < 1e-5, "{overlap}: {exponent}");
+    }
 }
 
 /// Eight contacts per grain along ⟨111⟩, two grains per cell, V = 4D³/(3√3) each: Σ n_x² = 4/3, Σ n_x⁴ = Σ

@@ -31,7 +31,7 @@ impl HertzMindlin {
 
 impl ContactSprings for HertzMindlin {
     #[inline(always)]
-    fn normal_stiffness<L: Lanes>(&self, contact_radius: L) -> L {
+    fn normal_stiffness<L: Lanes>(&self, contact_radius: L, _: L) -> L {
         L::splat(self.normal) * contact_radius
     }
 
@@ -42,12 +42,12 @@ impl ContactSprings for HertzMindlin {
     }
 
     #[inline(always)]
-    fn normal_energy<L: Lanes>(&self, normal_force: L, overlap: L) -> L {
+    fn normal_energy<L: Lanes>(&self, normal_force: L, _: L, overlap: L) -> L {
         L::splat(0.4) * normal_force * overlap
     }
 
     #[inline(always)]
-    fn tangential_stiffness<L: Lanes>(&self, contact_radius: L, factor: f64) -> L {
+    fn tangential_stiffness<L: Lanes>(&self, contact_radius: L, _: L, factor: f64) -> L {
         L::splat(self.tangential * factor) * contact_radius
     }
 
@@ -61,7 +61,7 @@ impl ContactSprings for HertzMindlin {
     }
 
     #[inline(always)]
-    fn unloading<L: Lanes>(&self, before: L, contact_radius: L) -> L {
+    fn unloading<L: Lanes>(&self, before: L, contact_radius: L, _: L) -> L {
         L::select(before.gt(contact_radius), contact_radius / before, L::splat(1.0))
     }
 

@@ -23,21 +23,21 @@ impl Linear {
             unit: "N/m",
             meaning: "normal stiffness k_n",
             default: None,
-            may_be_zero: false,
+            range: LawParameter::POSITIVE,
         },
         LawParameter {
             key: "stiffness_ratio",
             unit: "",
             meaning: "k_t/k_n",
             default: Some(0.5),
-            may_be_zero: false,
+            range: LawParameter::POSITIVE,
         },
     ];
 }
 
 impl ContactSprings for Linear {
     #[inline(always)]
-    fn normal_stiffness<L: Lanes>(&self, _: L) -> L {
+    fn normal_stiffness<L: Lanes>(&self, _: L, _: L) -> L {
         L::splat(self.normal_stiffness)
     }
 
@@ -47,12 +47,12 @@ impl ContactSprings for Linear {
     }
 
     #[inline(always)]
-    fn normal_energy<L: Lanes>(&self, normal_force: L, overlap: L) -> L {
+    fn normal_energy<L: Lanes>(&self, normal_force: L, _: L, overlap: L) -> L {
         L::splat(0.5) * normal_force * overlap
     }
 
     #[inline(always)]
-    fn tangential_stiffness<L: Lanes>(&self, _: L, factor: f64) -> L {
+    fn tangential_stiffness<L: Lanes>(&self, _: L, _: L, factor: f64) -> L {
         L::splat(self.normal_stiffness * self.stiffness_ratio * factor)
     }
 
@@ -66,7 +66,7 @@ impl ContactSprings for Linear {
     }
 
     #[inline(always)]
-    fn unloading<L: Lanes>(&self, _: L, _: L) -> L {
+    fn unloading<L: Lanes>(&self, _: L, _: L, _: L) -> L {
         L::splat(1.0)
     }
 

@@ -5,12 +5,14 @@
 
 mod hertz_mindlin;
 mod linear;
+mod rough;
 
 pub use hertz_mindlin::HertzMindlin;
 pub use linear::Linear;
+pub use rough::{Rough, RoughSprings};
 
 use crate::contact::law_parameter::LawParameter;
-use crate::contact::springs::LawVisitor;
+use crate::contact::springs::{ContactSprings, LawVisitor};
 use crate::material::Material;
 
 /// The springs of a contact law, with the parameters that do not follow from the material.
@@ -21,21 +23,28 @@ pub enum SpringLaw {
     HertzMindlin,
     /// Springs of constant stiffness.
     Linear(Linear),
+    /// Springs of rough grains: those of Hertz and Mindlin, softer at small overlaps.
+    Rough(Rough),
 }
 
 impl SpringLaw {
     /// Every law of springs, in the order of [`SpringLaw::NAMES`]; parameters are examples.
-    pub const EXAMPLES: [Self; 2] =
-        [Self::HertzMindlin, Self::Linear(Linear { normal_stiffness: 1e4, stiffness_ratio: 0.5 })];
+    pub const EXAMPLES: [Self; 3] = [
+        Self::HertzMindlin,
+        Self::Linear(Linear { normal_stiffness: 1e4, stiffness_ratio: 0.5 }),
+        Self::Rough(Rough { roughness: 5e-9, tangential_factor: 0.8 }),
+    ];
 
     /// Names, as in scenes and messages.
-    pub const NAMES: [&'static str; 2] = [Self::EXAMPLES[0].name(), Self::EXAMPLES[1].name()];
+    pub const NAMES: [&'static str; 3] =
+        [Self::EXAMPLES[0].name(), Self::EXAMPLES[1].name(), Self::EXAMPLES[2].name()];
 
     /// Name, as in scenes and messages.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::HertzMindlin => "hertz_mindlin",
             Self::Linear(_) => "linear",
+            Self::Rough(_) => "rough",
         }
     }
 
@@ -44,6 +53,7 @@ impl SpringLaw {
         match self {
             Self::HertzMindlin => &[],
             Self::Linear(_) => &Linear::PARAMETERS,
+            Self::Rough(_) => &Rough::PARAMETERS,
         }
     }
 
@@ -52,6 +62,7 @@ impl SpringLaw {
         match self {
             Self::HertzMindlin => Vec::new(),
             Self::Linear(l) => vec![l.normal_stiffness, l.stiffness_ratio],
+            Self::Rough(r) => vec![r.roughness, r.tangential_factor],
         }
     }
 
@@ -63,6 +74,9 @@ impl SpringLaw {
             (Self::Linear(_), &[normal_stiffness, stiffness_ratio]) => {
                 Some(Self::Linear(Linear { normal_stiffness, stiffness_ratio }))
             }
+            (Self::Rough(_), &[roughness, tangential_factor]) => {
+                Some(Self::Rough(Rough { roughness, tangential_factor }))
+            }
             _ => None,
         }
     }
@@ -72,6 +86,7 @@ impl SpringLaw {
         match self {
             Self::HertzMindlin => visitor.visit(HertzMindlin::new(material)),
             Self::Linear(springs) => visitor.visit(*springs),
+            Self::Rough(rough) => visitor.visit(rough.springs(material)),
         }
     }
 
@@ -80,6 +95,10 @@ impl SpringLaw {
         match self {
             Self::HertzMindlin => material.normal_force(r_eff, overlap),
             Self::Linear(l) => l.normal_stiffness * overlap,
+            Self::Rough(r) => {
+                let k_n = self.stiffnesses(material, r_eff, overlap).0;
+                r.springs(material).normal_force(k_n, overlap)
+            }
         }
     }
 
@@ -90,6 +109,11 @@ impl SpringLaw {
                 (material.normal_stiffness(r_eff, overlap), material.tangential_stiffness(r_eff, overlap))
             }
             Self::Linear(l) => (l.normal_stiffness, l.normal_stiffness * l.stiffness_ratio),
+            Self::Rough(r) => {
+                let (springs, contact_radius) = (r.springs(material), (r_eff * overlap).sqrt());
+                let k_t = springs.tangential_stiffness(contact_radius, overlap, 1.0);
+                (springs.normal_stiffness(contact_radius, overlap), k_t)
+            }
         }
     }
 }

@@ -4,7 +4,7 @@
 //! entered only through the functions of `mod.rs`, which ask the processor for its features first.
 
 use crate::simd::simd_f64::SimdRow;
-use grainlab_core::lanes::{Lanes, RSQRT_MAGIC};
+use grainlab_core::lanes::{FRACTION, Lanes, RSQRT_MAGIC, WHOLE};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -38,7 +38,7 @@ operators!(Avx512, Add add _mm512_add_pd, Sub sub _mm512_sub_pd, Mul mul _mm512_
 /// The methods that both widths write in the same way.
 macro_rules! arithmetic {
     ($splat:ident $fmadd:ident $fmsub:ident $fnmadd:ident $sqrt:ident $max:ident
-        $bits:ident $shift:ident $integer:ident $sub:ident $float:ident) => {
+        $bits:ident $shift:ident $left:ident $and:ident $or:ident $integer:ident $sub:ident $float:ident) => {
         #[inline(always)]
         fn splat(value: f64) -> Self {
             Self(unsafe { $splat(value) })
@@ -70,6 +70,19 @@ macro_rules! arithmetic {
                 Self($float($sub($integer(RSQRT_MAGIC as i64), half)))
             }
         }
+        #[inline(always)]
+        fn split(self) -> (Self, Self) {
+            unsafe {
+                let bits = $bits(self.0);
+                let exponent = Self($float($or($shift::<52>(bits), $integer(WHOLE.to_bits() as i64))));
+                let fraction = $or($and(bits, $integer(FRACTION as i64)), $integer(1f64.to_bits() as i64));
+                (exponent - Self::splat(WHOLE + 1023.0), Self($float(fraction)))
+            }
+        }
+        #[inline(always)]
+        fn power_of_two(self) -> Self {
+            Self(unsafe { $float($left::<52>($bits((self + Self::splat(WHOLE + 1023.0)).0))) })
+        }
     };
 }
 
@@ -77,7 +90,8 @@ impl Lanes for Avx2 {
     type Mask = __m256d;
 
     arithmetic!(_mm256_set1_pd _mm256_fmadd_pd _mm256_fmsub_pd _mm256_fnmadd_pd _mm256_sqrt_pd _mm256_max_pd
-        _mm256_castpd_si256 _mm256_srli_epi64 _mm256_set1_epi64x _mm256_sub_epi64 _mm256_castsi256_pd);
+        _mm256_castpd_si256 _mm256_srli_epi64 _mm256_slli_epi64 _mm256_and_si256 _mm256_or_si256
+        _mm256_set1_epi64x _mm256_sub_epi64 _mm256_castsi256_pd);
 
     #[inline(always)]
     fn gt(self, other: Self) -> __m256d {
@@ -97,7 +111,8 @@ impl Lanes for Avx512 {
     type Mask = __mmask8;
 
     arithmetic!(_mm512_set1_pd _mm512_fmadd_pd _mm512_fmsub_pd _mm512_fnmadd_pd _mm512_sqrt_pd _mm512_max_pd
-        _mm512_castpd_si512 _mm512_srli_epi64 _mm512_set1_epi64 _mm512_sub_epi64 _mm512_castsi512_pd);
+        _mm512_castpd_si512 _mm512_srli_epi64 _mm512_slli_epi64 _mm512_and_si512 _mm512_or_si512
+        _mm512_set1_epi64 _mm512_sub_epi64 _mm512_castsi512_pd);
 
     #[inline(always)]
     fn gt(self, other: Self) -> __mmask8 {
