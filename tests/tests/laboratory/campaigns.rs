@@ -144,7 +144,7 @@ fn a_directory_keeps_its_finished_run_and_refuses_another_one() {
     assert_eq!(std::fs::read(lab.folder().join("mine/summary.json")).unwrap(), summary);
     let other = launch("2");
     assert_eq!(other.code, Some(2), "{}", other.stderr);
-    assert!(other.stderr.contains("another scene, seed, launch file or arguments"), "{}", other.stderr);
+    assert!(other.stderr.contains("another scene (line 3: `seed = "), "{}", other.stderr);
     // A launcher that was killed after the run, before it reported it.
     std::fs::remove_file(lab.folder().join("mine/summary.json")).unwrap();
     let third = launch("1");

@@ -9,7 +9,7 @@ use grainlab_console::{CsvText, count};
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{Cell, Page, Section, data, fixed, heading, html, paragraph, six_digits, table};
 use grainlab_results::brief::moduli;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A number of a run: header, decimal places, and value.
 type Number = (String, usize, Option<f64>);
@@ -119,7 +119,8 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         table => table("Runs", header, rows),
         data => data("text/csv", "runs-data", &csv.finish())
     );
-    let title = format!("{} of {}", count(runs.len(), "run"), count(by_scene.len(), "scene"));
+    let scenes: BTreeSet<String> = runs.iter().map(|(run, _)| run.scene_name()).collect();
+    let title = format!("{} of {}", count(runs.len(), "run"), count(scenes.len(), "scene"));
     let compared = |run| {
         let all = numbers(run).into_iter().filter(|(name, ..)| is_compared(name));
         (run, all.map(|(name, _, value)| (name, value)).collect())
