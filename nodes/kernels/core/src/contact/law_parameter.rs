@@ -13,7 +13,7 @@ pub struct LawParameter {
     pub meaning: &'static str,
     /// Value in scenes that do not give it; `None` if they must.
     pub default: Option<f64>,
-    /// Its lower and upper bound.
+    /// Lower and upper bound.
     pub range: (Bound<f64>, Bound<f64>),
 }
 
