@@ -89,15 +89,12 @@ impl Campaign {
         if !fault.is_empty() {
             return Err(Failure::usage(fault));
         }
+        let argument = |(name, value): (&String, &Value)| format!("{name}:={}", plain(value));
         Ok(Self {
             name: file.name,
             description: file.description,
             launch: file.launch.map_or_else(|| "demo".to_owned(), |launch| found(&launch, folder)),
-            arguments: file
-                .arguments
-                .iter()
-                .map(|(name, value)| format!("{name}:={}", plain(value)))
-                .collect(),
+            arguments: file.arguments.iter().map(argument).collect(),
             processes: false,
             record_all: file.record == Record::All,
             report: file.report,
@@ -158,11 +155,10 @@ fn axes(file: &CampaignFile, at: &str) -> Result<Vec<Vec<Vec<Setting>>>, Failure
                 return fault(format!("is in {other}, too: name it once"));
             }
             let values = format!("v = {value}").parse().map(|mut t: Table| t.remove("v"));
-            let Some(values) =
-                values.ok().flatten().and_then(|v| v.as_array().filter(|v| !v.is_empty()).cloned())
-            else {
+            let values = values.ok().flatten().and_then(|v| v.as_array().cloned()).unwrap_or_default();
+            if values.is_empty() {
                 return fault(format!("is {value}: it takes a list of one value or more"));
-            };
+            }
             if rows.is_empty() {
                 rows = vec![Vec::new(); values.len()];
             }

@@ -1,8 +1,7 @@
 //! The progress of a campaign, with the time left.
 
 use grainlab_console::duration;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::IsTerminal;
+use indicatif::{ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};
 
 /// Counts of members, as a bar on a terminal and as lines elsewhere.
@@ -14,18 +13,16 @@ pub(crate) struct Progress {
     failed: usize,
     running: usize,
     began: Instant,
-    bar: Option<ProgressBar>,
+    /// Hidden where the standard error is no terminal.
+    bar: ProgressBar,
 }
 
 impl Progress {
     /// A progress of so many members, of which some are finished and some failed before.
     pub(crate) fn new(members: usize, done: usize, failed: usize) -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| {
-            let style = ProgressStyle::with_template("{bar:30} {pos} of {len}{msg}");
-            let bar = ProgressBar::with_draw_target(Some(members as u64), ProgressDrawTarget::stderr());
-            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar
-        });
+        let style = ProgressStyle::with_template("{bar:30} {pos} of {len}{msg}");
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::new(members as u64).with_style(style);
         let before = done + failed;
         let new = Self { members, done, before, failed, running: 0, began: Instant::now(), bar };
         if before > 0 {
@@ -63,34 +60,25 @@ impl Progress {
     }
 
     pub(crate) fn end(&self) {
-        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+        self.bar.finish_and_clear();
     }
 
     fn line(&self, what: &str) {
         self.draw();
-        if self.bar.is_none() {
-            grainlab_console::say!(
-                "grainlab: {} of {}{}: {what}",
-                self.done + self.failed,
-                self.members,
-                self.left()
-            );
+        if self.bar.is_hidden() {
+            let (ended, members, left) = (self.done + self.failed, self.members, self.left());
+            grainlab_console::say!("grainlab: {ended} of {members}{left}: {what}");
         }
     }
 
     fn say(&self, what: &str) {
-        match &self.bar {
-            Some(bar) => bar.suspend(|| grainlab_console::say!("grainlab: {what}")),
-            None => grainlab_console::say!("grainlab: {what}"),
-        }
+        self.bar.suspend(|| grainlab_console::say!("grainlab: {what}"));
     }
 
     fn draw(&self) {
-        if let Some(bar) = &self.bar {
-            bar.set_position((self.done + self.failed) as u64);
-            let failed = if self.failed > 0 { format!(", {} failed", self.failed) } else { String::new() };
-            bar.set_message(format!("{failed}, {} running{}", self.running, self.left()));
-        }
+        self.bar.set_position((self.done + self.failed) as u64);
+        let failed = if self.failed > 0 { format!(", {} failed", self.failed) } else { String::new() };
+        self.bar.set_message(format!("{failed}, {} running{}", self.running, self.left()));
     }
 
     /// The time left at the present pace.

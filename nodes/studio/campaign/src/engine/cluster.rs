@@ -44,11 +44,6 @@ fn ask(action: &str, campaign: &Campaign, folder: &Folder) -> Result<String, Fai
     Err(Failure::failed(format!("{}: an array may still be queued or running: {advice}", said.trim())))
 }
 
-fn is_on_path(program: &str) -> bool {
-    let path = std::env::var_os("PATH");
-    path.is_some_and(|path| std::env::split_paths(&path).any(|d| d.join(program).is_file()))
-}
-
 /// Runs the members that are not finished; true if a signal ended the wait. An array is submitted again for those that
 /// were interrupted.
 pub(super) fn run(
@@ -74,9 +69,7 @@ pub(super) fn run(
         let words = match std::mem::take(&mut queued) {
             job if job.is_empty() => submission(campaign, folder, options, &open)?,
             job => {
-                say!(
-                    "grainlab: job {job} of this campaign is queued or running: nothing is submitted before it ends"
-                );
+                say!("grainlab: job {job} of this campaign is queued or running: waiting for its end");
                 slurm("wait", campaign, folder)
             }
         };
@@ -91,13 +84,12 @@ pub(super) fn run(
             let ended = process.try_wait().map_err(Failure::failed)?;
             for n in &open {
                 let member = &campaign.members[*n];
-                let state = folder.state(member);
-                if !matches!(state, MemberState::Finished | MemberState::Failed(_)) || !done.insert(*n) {
-                    continue;
-                }
-                match state {
-                    MemberState::Finished => progress.finished(&member.name, began.elapsed()),
-                    _ => progress.failed(&member.name),
+                match folder.state(member) {
+                    MemberState::Finished if done.insert(*n) => {
+                        progress.finished(&member.name, began.elapsed())
+                    }
+                    MemberState::Failed(_) if done.insert(*n) => progress.failed(&member.name),
+                    _ => {}
                 }
             }
             if let Some(status) = ended {
@@ -170,7 +162,7 @@ fn submission(
     }
     let tasks = array::tasks(members, options.chunk, usize::MAX);
     let (count, script) = (tasks.len(), write(tasks, "${GRAINLAB_TASK:-$HQ_TASK_ID}")?);
-    if is_on_path("hq") {
+    if Command::new("hq").arg("--version").output().is_ok() {
         let log = format!("{logs}/hq-%{{JOB_ID}}-%{{TASK_ID}}.log");
         let (array, name) = (format!("--array=1-{count}"), format!("--name={}", job_name(campaign)));
         let [stdout, stderr] = [format!("--stdout={log}"), format!("--stderr={log}")];

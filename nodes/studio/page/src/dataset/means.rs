@@ -37,16 +37,9 @@ impl Dataset {
             let mut names = vec![format!("{name}_mean"), format!("{name}_standard_error")];
             names.extend(is_partial.then(|| format!("{name}_n")));
             let number = |v: Option<f64>| v.map_or(Cell::Unknown, Cell::Number);
-            means.extend(
-                names,
-                found.iter().map(|m| {
-                    vec![
-                        number(m.map(|m| m.value)),
-                        number(m.and_then(|m| m.error)),
-                        Cell::Count(count(m) as u64),
-                    ]
-                }),
-            );
+            let [value, error] = [|m: Mean| Some(m.value), |m: Mean| m.error];
+            let of = |m: &Option<Mean>| [number(m.and_then(value)), number(m.and_then(error))].to_vec();
+            means.extend(names, found.iter().map(|m| [of(m), vec![Cell::Count(count(m) as u64)]].concat()));
         }
         means
     }
