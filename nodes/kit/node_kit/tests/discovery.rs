@@ -71,11 +71,13 @@ fn a_full_queue_from_discovery_to_the_event_loop_does_not_hold_up_the_applicatio
         let (announced, discover) = in_discovery.arm();
         let peer = builder().build().unwrap();
         announced.recv().unwrap();
+        let second = reader();
+        // Time for the event loop to tell discovery of the reader.
+        std::thread::sleep(Duration::from_millis(500));
         let (held, go_on) = in_loop.arm();
         from_outside.write(1, None).unwrap();
         held.recv().unwrap();
         discover.send(()).unwrap();
-        let second = reader();
         // Time for discovery to fill the queue.
         std::thread::sleep(Duration::from_millis(500));
         let event_loop = std::thread::spawn(move || {
