@@ -138,33 +138,11 @@ proptest! {
     }
 }
 
-/// Two grains that touch across the boundary of the cell.
+#[path = "../../../nodes/kernels/core/src/packing/pair.rs"]
+mod grains;
+
 fn pair() -> msg::Packing {
-    let packing = Packing {
-        step: 7,
-        time: 0.125,
-        cell: Cell::cube(1.0).unwrap(),
-        deformation: Mat3::identity(),
-        ids: vec![4, 9],
-        radii: vec![0.1, 0.1],
-        positions: vec![Vec3::zeros(), Vec3::new(0.0, 0.0, 0.9)],
-        velocities: vec![Vec3::zeros(); 2],
-        spins: vec![Vec3::zeros(); 2],
-        contacts: vec![Contact {
-            i: 0,
-            j: 1,
-            image: [0, 0, -1],
-            overlap: 0.1,
-            normal: -Vec3::z(),
-            normal_force: 1.0,
-            tangential_force: Vec3::zeros(),
-            rolling_force: Vec3::zeros(),
-        }],
-        material: Material::GLASS,
-        law: Default::default(),
-        friction: 0.1,
-        time_step: 1e-8,
-    };
+    let packing = Packing { step: 7, time: 0.125, ids: vec![4, 9], time_step: 1e-8, ..grains::pair() };
     packing_message(&packing, "pair", vec![1, 2])
 }
 

@@ -71,11 +71,23 @@ fn an_instrument_of_another_vendor_receives_every_digit_of_its_microstructure() 
 fn an_instrument_of_another_vendor_that_a_launch_file_lists_is_of_the_run_and_recorded() {
     let Some(python) = python::with("cyclonedds") else { return };
     let lab = Lab::new();
-    let program = format!("{} {} --json", python.display(), here("../nodes/launch/instrument.py").display());
+    // The run begins when this program, which has its answer, reads packings too.
+    let folder = here("../nodes/launch");
+    let text = format!(
+        "import sys; sys.path.insert(0, {folder:?})\nimport instrument as i\ni.main()\n\
+         kind = i.message('grainlab_msgs/msg/Packing')\np = i.DomainParticipant(i.domain())\n\
+         packings = i.DataReader(p, i.Topic(p, 'rt/packing', kind, qos=i.LATCHED), qos=i.LATCHED)\n\
+         while not packings.take(): i.time.sleep(0.01)\n"
+    );
+    let program = lab.folder().join("listed.py");
+    std::fs::write(&program, text).unwrap();
+    let program = format!("{} {}", python.display(), program.display());
     let listed = format!("- executable:\n    cmd: {program}\n    name: instrument\n    output: screen\n");
     let file = lab.folder().join("plugged.launch.yaml");
-    std::fs::write(&file, include_str!("../../../nodes/launch/demo.launch.yaml").to_owned() + &listed)
-        .unwrap();
+    let demo = include_str!("../../../nodes/launch/demo.launch.yaml");
+    let demo = demo.replace(" min_readers:=2 -p exit", " min_readers:=2 -p min_packing_readers:=3 -p exit");
+    assert!(demo.contains("min_packing_readers"));
+    std::fs::write(&file, demo + &listed).unwrap();
     let scene = golden("scenes/tiny.toml");
     let run = lab.run(&["launch", &file.to_string_lossy(), "--scene", &scene.to_string_lossy()]);
     assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);

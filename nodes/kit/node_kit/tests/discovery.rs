@@ -7,14 +7,14 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-const TIME_LIMIT: Duration = Duration::from_secs(20);
-
 /// More than the queue of notifications from discovery to the event loop holds.
 const WRITERS: usize = 100;
 
+type Ends = (SyncSender<()>, Receiver<()>);
+
 /// A place at which a thread waits, once armed.
 #[derive(Clone)]
-struct Barrier(Arc<Mutex<Option<(SyncSender<()>, Receiver<()>)>>>);
+struct Barrier(Arc<Mutex<Option<Ends>>>);
 
 impl Barrier {
     /// Ends of channels: one says that the thread waits, the other lets it go.
@@ -44,12 +44,11 @@ fn a_full_queue_from_discovery_to_the_event_loop_does_not_hold_up_the_applicatio
     let (done, made) = sync_channel(1);
     std::thread::spawn(move || {
         let [a, b] = [&in_loop, &in_discovery].map(Barrier::clone);
-        let hooked =
+        let held =
             builder().data_filter(move |_, _| (a.pass(), true).1).participant_listener(move |_| b.pass());
-        let (participant, sender, qos) =
-            (hooked.build().unwrap(), builder().build().unwrap(), QosPolicies::default());
-        let topic_of =
-            |p: &DomainParticipant| p.create_topic("t".into(), "u8".into(), &qos, TopicKind::NoKey).unwrap();
+        let (participant, sender) = (held.build().unwrap(), builder().build().unwrap());
+        let (qos, kind) = (QosPolicies::default(), TopicKind::NoKey);
+        let topic_of = |p: &DomainParticipant| p.create_topic("t".into(), "u8".into(), &qos, kind).unwrap();
         let [topic, same] = [&participant, &sender].map(topic_of);
         let publishers = [&participant, &sender].map(|p| p.create_publisher(&qos).unwrap());
         let subscriber = participant.create_subscriber(&qos).unwrap();
@@ -86,9 +85,8 @@ fn a_full_queue_from_discovery_to_the_event_loop_does_not_hold_up_the_applicatio
         });
         let third = reader();
         event_loop.join().unwrap();
-        drop((first, second, third, writers, from_outside));
-        drop((participant, sender, peer));
+        drop((first, second, third, writers, from_outside, participant, sender, peer));
         done.send(()).unwrap();
     });
-    assert!(made.recv_timeout(TIME_LIMIT).is_ok(), "the participant hangs");
+    assert!(made.recv_timeout(Duration::from_secs(20)).is_ok(), "the participant hangs");
 }

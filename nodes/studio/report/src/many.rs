@@ -108,8 +108,8 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         csv.row(line);
     }
     let about = format!(
-        "The last packing of each run; errors are inferred less counted. Marked: {}, more than 3.5 robust standard deviations from the \
-         median of the runs of a scene with the same settings, of which there must be five. Click a header to sort.",
+        "The last packing of each run; errors are inferred less counted. Marked: {}, further from the \
+         median of the runs of a scene with the same settings (six or more) than chance alone has it in one column of a hundred. Click a header to sort.",
         count(marked, "value")
     );
     let content = html!(

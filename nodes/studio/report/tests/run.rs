@@ -1,7 +1,8 @@
 //! Reports of runs that are made here, message by message.
 
 use grainlab_core::{Cell, ComponentControl, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
-use grainlab_msgs::boundary::packing_message;
+use grainlab_micromechanics::{Settings, analyze};
+use grainlab_msgs::boundary::{packing_message, packing_report_message};
 use grainlab_msgs::{Guid, msg, to_cdr, topics};
 use grainlab_recordings::{Incoming, RunWriter, TopicSpec, WriterOptions};
 use grainlab_report::{FILE, Run, overview, write_report};
@@ -61,22 +62,25 @@ fn packing() -> Packing {
 
 /// A recording with stress against time and one packing, in `folder`.
 fn record(folder: &Path) {
-    let topics = [(&topics::STRESS, "/stress"), (&topics::PACKING, "/packing")];
-    let specs = topics.map(|(topic, name)| TopicSpec::of_contract(topic, name));
+    let requests = (0..2 * EXCHANGES).map(|n| ("/stress", n + 1, to_cdr(&request(n))));
+    let packing = to_cdr(&packing_message(&packing(), "made", Vec::new()));
+    record_these(folder, requests.chain([("/packing", 1, packing)]));
+}
+
+fn record_these(folder: &Path, messages: impl Iterator<Item = (&'static str, u64, Vec<u8>)>) {
+    let topics = [&topics::STRESS, &topics::PACKING, &topics::PACKING_REPORT];
+    let specs = topics.map(|topic| TopicSpec::of_contract(topic, &format!("/{}", topic.name)));
     let mut run = RunWriter::create(folder, "r", &specs, WriterOptions::default()).unwrap();
-    let mut write = |topic: &str, number: u64, payload: &[u8]| {
-        let receive_time = 1 + number;
+    for (topic, number, payload) in messages {
         let sample = Incoming {
             guid: Guid([1; 16]),
             sequence: number as i64,
             source_time: None,
-            receive_time,
-            payload,
+            receive_time: 1 + number,
+            payload: &payload,
         };
         run.write(topic, &sample).unwrap();
-    };
-    (0..2 * EXCHANGES).for_each(|n| write("/stress", n + 1, &to_cdr(&request(n))));
-    write("/packing", 1, &to_cdr(&packing_message(&packing(), "made", Vec::new())));
+    }
     run.set_metadata("run", "a0b1");
     run.finish().unwrap();
 }
@@ -229,6 +233,32 @@ fn the_table_of_many_runs_has_a_row_for_each_and_leads_to_their_pages() {
     assert!(page.contains("2 runs of 1 scene") && page.contains("href=\"one/report.html\""));
     // These runs have only a summary.
     assert!(page.contains("two &amp; three</a>") && page.contains("damaged") && !page.contains("complete"));
+}
+
+#[test]
+fn the_table_of_many_runs_marks_what_differs_among_runs_with_the_same_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    // The sixth run differs in its result alone, and the seventh in a setting, too.
+    let runs: Vec<_> = (1..=7)
+        .map(|n| {
+            let run = folder.path().join(n.to_string());
+            std::fs::create_dir(&run).unwrap();
+            let found = Packing { radii: vec![if n >= 6 { 0.5e-3 } else { 1e-3 }; 2], ..packing() };
+            let sent = packing_message(&found, "made", Vec::new());
+            let report = analyze(&found, &Settings::default()).unwrap().report;
+            let report = packing_report_message(sent.header.clone(), &report).unwrap();
+            let messages = [("/packing", 1, to_cdr(&sent)), ("/packing_report", 1, to_cdr(&report))];
+            record_these(&run, messages.into_iter());
+            summarise(&run, 0);
+            let scene = format!("seed = {n}\nnumerics.skin = {}", if n == 7 { 0.2 } else { 0.1 });
+            std::fs::write(run.join("scene.toml"), scene).unwrap();
+            (Run::read(&run), format!("{n}/{FILE}"))
+        })
+        .collect();
+    let page = overview(&runs);
+    let rows = page.split("<tr>").filter(|row| row.contains(FILE));
+    let marked: Vec<usize> = rows.map(|row| row.matches("class=\"n outlier\"").count()).collect();
+    assert_eq!(marked, [0, 0, 0, 0, 0, 1, 0]);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod crystals;
 mod dispersion;
+mod golden_packing;
 mod instrument;
 mod modes;
 mod picks;

@@ -6,6 +6,8 @@ mod directions;
 mod factorised;
 mod forces;
 mod golden;
+#[path = "../../../acoustics/tests/claims/golden_packing.rs"]
+mod golden_packing;
 mod hard;
 mod invariance;
 mod lattices;
