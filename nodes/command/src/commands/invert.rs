@@ -7,7 +7,7 @@
 //! - [`explain`]: contributions of the data to the uncertainty
 //! - [`prior`]: priors; [`drawn`], [`evidence`], [`predictive`]: draws from the posterior, marginal likelihoods, and the data
 //!   against their prediction; [`rank_test`]: ranks of simulated structures
-//! - [`speeds`]: the moduli of measured wave speeds
+//! - [`speed_table`]: measured wave speeds; [`series`]: what they say with an unknown contact; [`speeds`]: the moduli that fit them
 //! - [`judge`]: results against the truth in a table
 //! - [`calibrations`]: by name
 
@@ -25,7 +25,9 @@ mod print;
 mod prior;
 mod rank_test;
 mod rows;
+mod series;
 mod slips;
+mod speed_table;
 mod speeds;
 mod state;
 mod table;
@@ -40,6 +42,9 @@ use grainlab_emt::{Conditions, Measured, Modulus};
 use grainlab_node_kit::Exit;
 use print::Printer;
 pub(super) use rows::Rows;
+use series::Contact;
+use series::inputs::Inputs;
+use speed_table::SpeedLine;
 pub(super) use state::State;
 use std::path::{Path, PathBuf};
 
@@ -47,9 +52,12 @@ const EXAMPLES: &str = "\
 Examples:
   The first state of the paper's Table III (k = 5.73, k_hat = 5.63, eps = 0.016), with 1 % error on each modulus:
     grainlab invert --g12 121.7e6 --g13 127.4e6 --theta 144.4e6 --pressure 50e3 --gamma-over-delta -0.0623 --error 0.01
-  Wave speeds of a laboratory, by angle to the axis in degrees and mode (p, sv, sh), or by direction and polarization:
+  Wave speeds of a laboratory over pressure, of grains whose contacts are not known:
+    printf 'pressure_pa,mode,speed,speed_sigma\n1e5,p,420,4\n1e5,s,255,3\n1e6,p,740,7\n1e6,s,455,5\n4e6,p,,\n' |
+      grainlab invert --speeds - --density 1640 --grain-shear-modulus 44e9 --poisson 0.08 --plot series.html
+  The same of smooth spheres, at one pressure, by angle to the axis in degrees and mode:
     printf 'angle_deg,mode,speed,speed_sigma\n0,p,439,4\n90,p,426,4\n45,p,430,4\n0,sv,268,3\n90,sh,265,3\n' |
-      grainlab invert --speeds - --density 1498 --pressure 50e3 --stress-ratio 0 --size-spread 0
+      grainlab invert --speeds - --contact hertz --density 1498 --pressure 50e3 --stress-ratio 0 --size-spread 0
   Prior knowledge, and draws that ArviZ (arviz.from_json), corner and pandas read:
     grainlab invert --print-prior > prior.toml
     grainlab invert --g12 104.2e6 --g13 112.4e6 --theta 136e6 --pressure 50e3 --stress-ratio 0 --size-spread 0 --error 0.01 \\
@@ -73,6 +81,11 @@ at least one modulus are required; k, z and eps are for --judge:
 {COLUMNS}An invalid row, or one without an estimate of a model, is reported with its line number and has the status unknown in the
 results; the other rows are processed. The exit code is that of the worst row.
 
+A file of --speeds has a row per speed: speed (m/s; empty: predicted), speed_sigma, pressure_pa, density (kg/m3) or grain_density and
+phi, mode (p, s, sv, sh) with direction (along, across or degrees from the axis) or angle_deg, or direction_x to _z and
+polarization_x to _z; and, if known, sample, diameter (m), roughness (root mean square, m), roughness_sigma, frequency (Hz), pressure_sigma_pa and
+density_sigma. Rows of one sample share its contacts and its preparation.
+
 The status is ok, extrapolated (outside the range of the model, or not all of its unknowns), contradictory (the data contradict each
 other or the model) or unknown (no answer); the column reason has the notes of an estimate. The exit code is 4 where the recommended
 answer is contradictory or unknown, or a model refuses the moduli, and 2 where an input is missing or invalid.";
@@ -91,7 +104,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PA", conflicts_with = "table")]
     theta: Option<f64>,
     /// Confining pressure, Pa, positive in compression
-    #[arg(long, value_name = "PA", required_unless_present_any = ["table", "print_prior"], conflicts_with = "table")]
+    #[arg(long, value_name = "PA", required_unless_present_any = ["table", "print_prior", "speeds"], conflicts_with = "table")]
     pressure: Option<f64>,
     /// Standard deviation of the pressure, Pa
     #[arg(long, value_name = "PA", requires = "pressure", default_value_t = 0.0)]
@@ -120,15 +133,18 @@ pub(crate) struct Args {
     /// Standard deviation of the Poisson ratio of the grains
     #[arg(long, value_name = "SIGMA", default_value_t = 0.0)]
     poisson_sigma: f64,
-    /// Wave speeds from a CSV file instead of moduli: angle_deg and mode, or direction_x.. and polarization_x..; speed in
-    /// m/s, speed_sigma; - is the standard input
-    #[arg(long, value_name = "FILE.csv", requires = "density", conflicts_with_all = ["table", "g12", "g13", "theta", "c11", "c33", "c13"])]
+    /// Wave speeds from a CSV file instead of moduli, one per row, at one pressure or many, as described below; - is the
+    /// standard input
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["table", "g12", "g13", "theta", "c11", "c33", "c13"])]
     speeds: Option<PathBuf>,
+    /// Contact law of the grains: free for --speeds, hertz for moduli [default: these]
+    #[arg(long, value_enum, value_name = "LAW")]
+    contact: Option<Contact>,
     /// Density of the mass that moves with the waves, kg/m3
     #[arg(long, value_name = "RHO", requires = "speeds")]
     density: Option<f64>,
     /// Standard deviation of the density, kg/m3
-    #[arg(long, value_name = "SIGMA", requires = "density", default_value_t = 0.0)]
+    #[arg(long, value_name = "SIGMA", default_value_t = 0.0)]
     density_sigma: f64,
     /// Solid fraction of the sample
     #[arg(long, value_name = "PHI", conflicts_with = "table")]
@@ -173,12 +189,13 @@ pub(crate) struct Args {
     /// agree to three digits
     #[arg(long, value_name = "COLUMN", value_delimiter = ',', requires = "judge")]
     by: Vec<String>,
-    /// Plot the contact anisotropy inferred by each model against that of the table, into this file (SVG)
+    /// Plot the contact anisotropy inferred by each model against that of the table (--judge), into this file (SVG); or a page of
+    /// a series of --speeds (HTML)
     #[cfg(feature = "studio")]
-    #[arg(long, value_name = "FILE.svg", requires = "judge")]
+    #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// Priors of k, k_hat, z, eps and eps_stiffness, or of some of them, in the form of --print-prior; a quantity without one has
-    /// that of --print-prior
+    /// that of --print-prior. For --speeds with another contact than hertz that of --print-prior --contact free
     #[arg(long, value_name = "FILE.toml")]
     prior: Option<PathBuf>,
     /// Print the prior of a model (default: relaxed) as a file for --prior, and do nothing else
@@ -229,6 +246,20 @@ fn plot_file(_: &Args) -> Option<&Path> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let of_series =
+        args.contact.unwrap_or(if args.speeds.is_some() { Contact::Free } else { Contact::Hertz });
+    if args.print_prior && of_series != Contact::Hertz {
+        print(&series::prior(args.prior.as_deref())?.to_toml())?;
+        return Ok(Exit::Done);
+    }
+    let speeds = args.speeds.as_deref().map(speed_table::read).transpose()?;
+    if let Some((name, lines)) = &speeds {
+        if of_series != Contact::Hertz || lines.iter().any(|l| l.pressure_pa.is_some()) {
+            return args.series(name, lines, of_series);
+        }
+    } else if of_series != Contact::Hertz {
+        return Err(Failure::usage("--contact other than hertz is for --speeds: give the speeds"));
+    }
     let mut cases = cases(&args.models(), &args.calibration, args.gamma.as_deref())?;
     if let Some(path) = &args.prior {
         prior::apply(path, &mut cases)?;
@@ -255,10 +286,14 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return table::run(rows, &printer, args.format);
     }
     // With an exclusion, the parser of the command line does not enforce a required flag.
-    let of_table =
-        [("--judge", args.judge), ("--by", !args.by.is_empty()), ("--gamma", args.gamma.is_some())];
+    let of_table = [
+        ("--plot", plot_file(args).is_some()),
+        ("--judge", args.judge),
+        ("--by", !args.by.is_empty()),
+        ("--gamma", args.gamma.is_some()),
+    ];
     refuse(&of_table, "is for --table")?;
-    let state = args.state(defaults)?;
+    let state = args.state(defaults, speeds)?;
     if let Some(simulations) = args.rank_test {
         return rank_test::run(&state, &cases, simulations, args.seed, args.format);
     }
@@ -320,7 +355,8 @@ impl Args {
             in_range(flag, Some(stddev), "0 or more and finite", |v| v >= 0.0 && v.is_finite())?;
         }
         in_range("poisson-sigma", Some(self.poisson_sigma), "at most 0.5", |v| v <= 0.5)?;
-        if self.speeds.is_none() && self.table.is_none() && self.density.is_some() {
+        let has_density = self.density.is_some() || self.density_sigma != 0.0;
+        if self.speeds.is_none() && self.table.is_none() && has_density {
             return Err(Failure::usage("--density has no effect without --speeds: moduli are given in Pa"));
         }
         Ok(State {
@@ -337,7 +373,7 @@ impl Args {
     }
 
     /// The state given by the flags.
-    fn state(&self, mut state: State) -> Result<State, Failure> {
+    fn state(&self, mut state: State, speeds: Option<(String, Vec<SpeedLine>)>) -> Result<State, Failure> {
         let pressure = self.pressure.ok_or_else(|| Failure::usage("--pressure is needed, or --table"))?;
         state.conditions.pressure = Measured { value: pressure, stddev: self.pressure_sigma };
         let given = [self.g12, self.g13, self.theta, self.c11, self.c33, self.c13];
@@ -350,9 +386,43 @@ impl Args {
             self.stress_ratio.map(|value| Measured { value, stddev: self.stress_ratio_sigma });
         state.conditions.size_spread = self.size_spread;
         state.grains = self.grains.map(f64::from);
-        if let (Some(path), Some(value)) = (&self.speeds, self.density) {
-            speeds::add(&mut state, path, Measured { value, stddev: self.density_sigma })?;
+        if let Some((name, lines)) = speeds {
+            let value = self.density.ok_or_else(|| Failure::usage("--density is needed with --speeds"))?;
+            speeds::add(&mut state, &name, &lines, Measured { value, stddev: self.density_sigma })?;
         }
         Ok(state)
+    }
+
+    /// Infers the samples of a file of speeds, whose contacts are not known.
+    fn series(&self, name: &str, lines: &[SpeedLine], contact: Contact) -> Result<Exit, Failure> {
+        self.defaults()?;
+        let of_models = [
+            ("--model", !self.model.is_empty()),
+            ("--gamma-over-delta", self.gamma_over_delta.is_some()),
+            ("--stress-ratio", self.stress_ratio.is_some_and(|q| q != 0.0)),
+            ("--draws", self.draws.is_some()),
+            ("--evidence", self.evidence),
+            ("--explain", self.explain),
+            ("--rank-test", self.rank_test.is_some()),
+        ];
+        refuse(
+            &of_models,
+            "is for smooth spheres at one pressure: give --contact hertz, and no column pressure_pa",
+        )?;
+        refuse(&[("--phi", self.phi.is_some())], "is a column of --speeds")?;
+        let inputs = Inputs {
+            pressure: self.pressure,
+            density: self.density,
+            pressure_sigma: self.pressure_sigma,
+            density_sigma: self.density_sigma,
+            grain_shear_modulus: self.grain_shear_modulus,
+            grain_shear_modulus_sigma: self.grain_shear_modulus_sigma,
+            poisson: self.poisson,
+            size_spread: self.size_spread,
+            grains: self.grains,
+            error: self.error,
+        };
+        let prior = series::prior(self.prior.as_deref())?;
+        series::run(name, lines, &inputs, contact, &prior, (self.format, plot_file(self)))
     }
 }

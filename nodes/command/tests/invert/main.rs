@@ -2,6 +2,7 @@
 
 mod judged;
 mod posterior;
+mod series;
 mod single;
 mod tables;
 

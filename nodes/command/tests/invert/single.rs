@@ -96,7 +96,7 @@ fn wave_speeds_give_what_their_moduli_give() {
         table += &format!("{angle},{mode},{speed},{}\n", 0.005 * speed);
     }
     let output = grainlab(
-        &[&state[..], &["--speeds=-", "--density=1500", "--format=json"]].concat(),
+        &[&state[..], &["--speeds=-", "--contact=hertz", "--density=1500", "--format=json"]].concat(),
         table.as_bytes(),
     );
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
@@ -106,8 +106,10 @@ fn wave_speeds_give_what_their_moduli_give() {
         let [moduli, speeds] = [&by_moduli, &by_speeds].map(|a| a["results"][0][key].as_f64().unwrap());
         assert!((moduli - speeds).abs() < 1e-9, "{key}: {moduli} {speeds}");
     }
-    let refused =
-        grainlab(&[&state[..], &["--speeds=-", "--density=1500"]].concat(), b"angle_deg,mode,speed\n0,q,1\n");
+    let refused = grainlab(
+        &[&state[..], &["--speeds=-", "--contact=hertz", "--density=1500"]].concat(),
+        b"angle_deg,mode,speed\n0,q,1\n",
+    );
     assert_eq!(refused.status.code(), Some(2));
     assert!(text(&refused.stderr).contains("line 2: mode"), "{}", text(&refused.stderr));
 }
@@ -122,8 +124,15 @@ fn four_speeds(slip: f64) -> String {
 
 #[test]
 fn speeds_that_contradict_each_other_end_with_4_and_say_so_in_every_form() {
-    let flags =
-        ["invert", "--pressure=50e3", "--stress-ratio=0", "--size-spread=0", "--speeds=-", "--density=1500"];
+    let flags = [
+        "invert",
+        "--pressure=50e3",
+        "--stress-ratio=0",
+        "--size-spread=0",
+        "--speeds=-",
+        "--contact=hertz",
+        "--density=1500",
+    ];
     let run = |slip: f64, more: &[&str]| {
         grainlab(&[&flags[..], &["--model=relaxed"], more].concat(), four_speeds(slip).as_bytes())
     };

@@ -52,6 +52,12 @@ pub enum EmtError {
         /// The possible values.
         range: &'static str,
     },
+    /// An invalid prior of a series.
+    #[error("the prior of the series is invalid: {fault}")]
+    SeriesPrior {
+        /// Fault, with its line or the name of the key.
+        fault: String,
+    },
     /// A structure that no packing has.
     #[error("{quantity} = {value} is outside [{low}, {high}], which contains that of every packing")]
     NoStructure {

@@ -20,6 +20,7 @@
 //! - `likelihood`, `estimate_likelihood`: the probability of moduli, as a model states it
 //! - `posterior`: draws, evidence, predictive checks and ranks
 //! - `prior`, `update`: prior knowledge, and estimates with it
+//! - `series`: speeds of a sample over pressure, whose contacts are not known
 //! - `propagation`: errors to first order
 //! - [`christoffel`], [`WaveModuli`]: moduli from wave speeds
 //!
@@ -64,6 +65,7 @@ mod prior_conflict;
 mod propagation;
 mod random;
 mod registry;
+mod series;
 mod update;
 mod warning;
 mod wave_moduli;
@@ -96,5 +98,9 @@ pub use posterior::{
 };
 pub use prior::{Density, Prior, PriorError};
 pub use registry::{model, models, recommended};
+pub use series::{
+    ContactKind, ContactPrior, Interval, LawEstimate, LeftOut, PreparationPrior, PressureEstimate,
+    RowEstimate, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode, SpeedSeries, infer_series,
+};
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

@@ -6,6 +6,7 @@
 //! - [`overview`]: the page of many runs; `outliers`: values far from those of runs alike; `settings`, `over_settings`: in which
 //!   settings they differ, and their quantities over these
 //! - [`Timeline`], [`curves`], [`STYLE`], [`SCRIPT`]: what the page of a running laboratory has in common with a report
+//! - [`series_page`]: the page of the wave speeds of a sample over pressure
 //! - [`write_report`]: the file
 
 mod against_time;
@@ -20,6 +21,7 @@ mod over_settings;
 mod page;
 mod phased;
 mod run;
+mod series;
 mod settings;
 mod structure;
 mod summary_file;
@@ -31,5 +33,6 @@ pub use against_time::curves;
 pub use many::overview;
 pub use page::{SCRIPT, STYLE};
 pub use run::Run;
+pub use series::{InferredSample, series_page};
 pub use timeline::Timeline;
 pub use write::{FILE, ReportError, write_page, write_report};

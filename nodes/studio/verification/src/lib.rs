@@ -9,6 +9,7 @@
 //! - [`mercury`], [`ondem`]: one contact under prescribed motions
 //! - [`grainlearning`]: what a force curve fixes, and what it does not
 //! - [`smooth_moduli`], [`lammps_packings`], [`uniaxial`]: packings, which the caller reads
+//! - [`laboratory`]: wave speeds of real samples
 //! - [`agnolin_roux`]: packings prepared as published; takes minutes
 //! - [`conformance`]: tests of an engine, ours or that of another crate
 
@@ -19,6 +20,7 @@ mod error;
 mod forced_contact;
 pub mod grainlearning;
 mod hertz;
+pub mod laboratory;
 mod lammps_impacts;
 pub mod lammps_packings;
 pub mod lammps_pairs;

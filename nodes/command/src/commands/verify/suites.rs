@@ -3,8 +3,8 @@
 use super::embedded;
 use grainlab_console::Failure;
 use grainlab_verification::{
-    Row, VerificationError, agnolin_roux, chung_ooi, grainlearning, lammps_packings, lammps_pairs, mercury,
-    ondem, smooth_moduli, uniaxial,
+    Row, VerificationError, agnolin_roux, chung_ooi, grainlearning, laboratory, lammps_packings,
+    lammps_pairs, mercury, ondem, smooth_moduli, uniaxial,
 };
 use rayon::prelude::*;
 
@@ -21,7 +21,7 @@ pub(super) struct Suite {
 }
 
 /// Every suite, in the order of the table.
-pub(super) const SUITES: [Suite; 9] = [
+pub(super) const SUITES: [Suite; 10] = [
     quick(
         lammps_pairs::NAME,
         "two spheres, as LAMMPS's own tests record them",
@@ -43,6 +43,9 @@ pub(super) const SUITES: [Suite; 9] = [
     }),
     quick(uniaxial::NAME, "uniaxial compression step by step compared with LAMMPS", || {
         made(uniaxial::rows(&grainlab_bench::packing::built_in()?, embedded::UNIAXIAL))
+    }),
+    quick(laboratory::NAME, "wave speeds of real samples, each pressure predicted from the others", || {
+        made(laboratory::rows())
     }),
     Suite {
         name: agnolin_roux::NAME,

@@ -64,6 +64,11 @@ impl ScalingLaw {
         let by_ln_z = by_z + by_stiffness_ratio * state.stiffness_ratio + by_pressure * state.ln_pressure;
         by_ln_z / z + by_excess / (z - self.onset)
     }
+
+    /// d ln X/dκ.
+    pub(crate) fn by_stiffness_ratio(&self, z: f64) -> f64 {
+        self.coefficients[4] + self.coefficients[6] * z.ln()
+    }
 }
 
 /// The anisotropy of a network: X = ε (a0 + a1 u + a2 s² + a3 κ + a4 ln p + a5 u ln p + a6 z + a7 u κ) + q/p (b0 + b1 u +

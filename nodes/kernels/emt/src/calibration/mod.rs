@@ -14,6 +14,7 @@ pub use constants::Calibration;
 pub use discrepancy::ModelDiscrepancy;
 pub use error::CalibrationError;
 pub use isotropic::IsotropicCalibration;
+pub(crate) use laws::REFERENCE_STIFFNESS_RATIO;
 pub use laws::{DeviatorLaw, ISOSTATIC, NetworkState, RattlerLaw, ScalingLaw};
 pub(crate) use reach::Outside;
 pub use reach::Reach;

@@ -1,0 +1,136 @@
+//! Wave speeds of samples whose contacts are not known: structure at each pressure, and the contact.
+
+pub(super) mod inputs;
+pub(super) mod print;
+
+use super::speed_table::SpeedLine;
+use grainlab_console::{Failure, Format, say};
+use grainlab_emt::{
+    Calibration, ContactKind, EmtError, Sensitivity, SeriesEstimate, SeriesPrior, SpeedSeries, infer_series,
+};
+use grainlab_node_kit::Exit;
+use inputs::Inputs;
+use serde::Serialize;
+use std::path::Path;
+
+/// The contact law that is assumed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Contact {
+    /// Not known: rough, blunt, linear or smooth, with an unknown level and k_t/k_n.
+    Free,
+    /// Smooth spheres of the given material.
+    Hertz,
+    /// A stiffness that does not depend on the force.
+    Linear,
+    /// Rough spheres (Otsubo et al. 2017).
+    Rough,
+}
+
+impl Contact {
+    /// The prior with this contact.
+    fn of(self, prior: &SeriesPrior) -> SeriesPrior {
+        match self {
+            Self::Free => prior.clone(),
+            Self::Hertz => prior.of_law(ContactKind::Hertz),
+            Self::Linear => prior.of_law(ContactKind::Linear),
+            Self::Rough => prior.of_law(ContactKind::Rough),
+        }
+    }
+
+    /// What the first line of an answer says of it.
+    fn text(self) -> &'static str {
+        match self {
+            Self::Free => {
+                "free (laboratory): the contact law, k_t/k_n and the level of the moduli are inferred"
+            }
+            Self::Hertz => "hertz (ideal): smooth spheres of the given material",
+            Self::Linear => "linear: a stiffness that does not depend on the force",
+            Self::Rough => {
+                "rough: rough spheres; roughness and k_t/k_n are inferred where they are not given"
+            }
+        }
+    }
+}
+
+/// One sample with its answer.
+#[derive(Debug, Serialize)]
+pub(super) struct Sample {
+    pub(super) sample: String,
+    pub(super) contact: &'static str,
+    #[serde(skip)]
+    pub(super) lines: Vec<SpeedLine>,
+    #[serde(skip)]
+    pub(super) series: SpeedSeries,
+    pub(super) estimate: SeriesEstimate,
+    pub(super) sensitivity: Sensitivity,
+    /// What was assumed for want of a column or flag.
+    pub(super) assumed: Vec<String>,
+    /// What the answer does not determine, contradicts or depends on.
+    pub(super) notes: Vec<String>,
+}
+
+/// The prior of a series: the built-in one, or a file.
+pub(super) fn prior(path: Option<&Path>) -> Result<SeriesPrior, Failure> {
+    let Some(path) = path else { return Ok(SeriesPrior::builtin().clone()) };
+    let name = path.display();
+    let text = std::fs::read_to_string(path).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
+    SeriesPrior::parse(&text)
+        .map_err(|e| Failure::usage(format!("{name}: {e}; --print-prior --contact free prints one")))
+}
+
+/// Infers every sample of a file, and prints the answers.
+pub(super) fn run(
+    name: &str,
+    lines: &[SpeedLine],
+    inputs: &Inputs,
+    contact: Contact,
+    prior: &SeriesPrior,
+    (format, plot): (Format, Option<&Path>),
+) -> Result<Exit, Failure> {
+    let network = Calibration::builtin("grainlab").and_then(|c| c.network.as_ref());
+    let network = network.ok_or_else(|| Failure::failed("the built-in calibration has no network"))?;
+    let prior = contact.of(prior);
+    let mut samples: Vec<(String, Vec<SpeedLine>)> = Vec::new();
+    for line in lines {
+        match samples.iter_mut().find(|(sample, _)| *sample == line.sample) {
+            Some((_, of)) => of.push(line.clone()),
+            None => samples.push((line.sample.clone(), vec![line.clone()])),
+        }
+    }
+    let mut found = Vec::new();
+    for (sample, lines) in samples {
+        let usage = |fault: String| Failure::usage(format!("{name}: {fault}"));
+        let (series, assumed) = inputs.series(&lines).map_err(usage)?;
+        let wrong = |e: EmtError| usage(format!("sample {sample:?}: {e}"));
+        let estimate = infer_series(&series, network, &prior).map_err(wrong)?;
+        let sensitivity = Sensitivity::of(&series, network, &prior).map_err(wrong)?;
+        let contact = contact.text();
+        let mut all =
+            Sample { sample, contact, lines, series, estimate, sensitivity, assumed, notes: Vec::new() };
+        all.notes = print::notes(&all, &prior);
+        found.push(all);
+    }
+    format.print(&found, || print::csv(&found), || found.iter().map(print::text).collect())?;
+    if let Some(path) = plot {
+        plotted(&found, path)?;
+    }
+    let contradictory: Vec<&Sample> = found.iter().filter(|s| s.estimate.is_contradictory()).collect();
+    for sample in &contradictory {
+        say!("grainlab: {name}: sample {:?}: contradictory: {}", sample.sample, print::contradiction(sample));
+    }
+    Ok(if contradictory.is_empty() { Exit::Done } else { Exit::PhysicsInvalid })
+}
+
+#[cfg(feature = "studio")]
+fn plotted(samples: &[Sample], path: &Path) -> Result<(), Failure> {
+    let all: Vec<_> =
+        samples.iter().map(|s| (s.sample.as_str(), &s.series, &s.estimate, s.notes.as_slice())).collect();
+    let page = grainlab_report::series_page(&all);
+    grainlab_console::write_whole(path, page.as_bytes())
+        .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
+}
+
+#[cfg(not(feature = "studio"))]
+fn plotted(_: &[Sample], _: &Path) -> Result<(), Failure> {
+    Err(Failure::usage("--plot needs the studio: build with its feature"))
+}

@@ -1,0 +1,152 @@
+//! The speeds of one sample from the rows of a table and the flags, with units checked.
+
+use super::super::speed_table::SpeedLine;
+use grainlab_core::Material;
+use grainlab_emt::{ContactKind, SeriesRow, SpeedSeries, UNKNOWN_SIZE_SPREAD};
+use std::f64::consts::PI;
+
+/// What flags say of all samples of a file.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Inputs {
+    /// Pressure and density of rows without them.
+    pub(crate) pressure: Option<f64>,
+    pub(crate) density: Option<f64>,
+    pub(crate) pressure_sigma: f64,
+    pub(crate) density_sigma: f64,
+    pub(crate) grain_shear_modulus: Option<f64>,
+    pub(crate) grain_shear_modulus_sigma: f64,
+    pub(crate) poisson: Option<f64>,
+    pub(crate) size_spread: Option<f64>,
+    pub(crate) grains: Option<u32>,
+    /// Relative error of speeds without one.
+    pub(crate) error: Option<f64>,
+}
+
+/// Error of a speed that has none.
+const DEFAULT_ERROR: f64 = 0.01;
+
+/// Solid fraction that is not given, and standard deviation of a roughness that has none.
+const PHI: f64 = 0.62;
+const ROUGHNESS_ERROR: f64 = 0.3;
+
+/// Pressures over E* that a sample has.
+const PRESSURES: [f64; 2] = [1e-8, 1e-2];
+
+/// Densities of samples and grains, kg/m³.
+const DENSITIES: [f64; 2] = [200.0, 10_000.0];
+
+impl Inputs {
+    /// The speeds of one sample, and what was assumed of it; or the first fault, with its line and column.
+    pub(super) fn series(&self, lines: &[SpeedLine]) -> Result<(SpeedSeries, Vec<String>), String> {
+        const GRAINS: &str = "--grain-shear-modulus PA and --poisson NU: the material of the grains is needed (glass: 29e9 and 0.2, quartz: 44e9 and 0.08)";
+        let shear_modulus = self.grain_shear_modulus.ok_or(GRAINS)?;
+        let poisson_ratio = self.poisson.ok_or(GRAINS)?;
+        let mut assumed = Vec::new();
+        let mut rows = Vec::new();
+        let (mut without_error, mut dispersed) = (0, 0);
+        let material = Material { shear_modulus, poisson_ratio, density: 2500.0 };
+        for line in lines {
+            let fault = |text: String| format!("line {}: {text}", line.line);
+            let pressure = line.pressure_pa.or(self.pressure);
+            let pressure = pressure
+                .ok_or_else(|| fault("column pressure_pa is empty: give it, or --pressure".to_owned()))?;
+            let share = pressure / material.effective_young();
+            if !(PRESSURES[0]..PRESSURES[1]).contains(&share) {
+                return Err(fault(format!(
+                    "column pressure_pa: {pressure} Pa is {share:.1e} of the grains' E*, from {:e} to {:e} in samples; Pa is expected",
+                    PRESSURES[0], PRESSURES[1]
+                )));
+            }
+            let packed = line.grain_density.zip(line.phi).map(|(density, phi)| density * phi);
+            let density = line.density.or(packed).or(self.density).ok_or_else(|| {
+                fault("column density is empty: give it, or grain_density and phi, or --density".to_owned())
+            })?;
+            for (column, value) in [("density", Some(density)), ("grain_density", line.grain_density)] {
+                if let Some(value) = value.filter(|v| !(DENSITIES[0]..DENSITIES[1]).contains(v)) {
+                    return Err(fault(format!(
+                        "column {column}: {value} must be from 200 to 10000; kg/m3 is expected"
+                    )));
+                }
+            }
+            let mut stddev = match (line.speed, line.speed_sigma) {
+                (Some(speed), Some(sigma)) => sigma / speed,
+                (speed, _) => {
+                    without_error += usize::from(speed.is_some());
+                    self.error.unwrap_or(DEFAULT_ERROR)
+                }
+            };
+            if let Some(speed) = line.speed {
+                // Waves in a packing are slower than in its grains, with P modulus K + 4/3 G, at the sample's density over φ.
+                let nu = poisson_ratio.min(0.45);
+                let stiff = shear_modulus * (2.0 - 2.0 * nu) / (1.0 - 2.0 * nu);
+                let fastest = (stiff / density).sqrt();
+                if speed > fastest || speed < 1.0 {
+                    return Err(fault(format!(
+                        "column speed: {speed} m/s is not between 1 and {fastest:.0} m/s, the speed in the grains; m/s is expected"
+                    )));
+                }
+                if let Some((frequency, diameter)) = line.frequency.zip(line.diameter) {
+                    let per_wave = frequency * diameter / speed;
+                    if per_wave > 1.0 / 15.0 {
+                        // Dispersion of a chain of grains, (π D/λ)²/6.
+                        stddev = stddev.hypot((PI * per_wave).powi(2) / 6.0);
+                        dispersed += 1;
+                    }
+                }
+            }
+            let (mode, angle) = line.wave;
+            rows.push(SeriesRow { pressure, density, mode, angle, speed: line.speed, stddev });
+        }
+        if without_error > 0 {
+            let error = 100.0 * self.error.unwrap_or(DEFAULT_ERROR);
+            assumed.push(format!("{without_error} speeds without speed_sigma have an error of {error} %"));
+        }
+        if dispersed > 0 {
+            assumed.push(format!(
+                "{dispersed} speeds with a wavelength below 15 diameters have a larger error, for dispersion"
+            ));
+        }
+        let spread = self.size_spread.unwrap_or_else(|| {
+            assumed.push("the spread of the sizes is not known: 0.17".to_owned());
+            UNKNOWN_SIZE_SPREAD.value
+        });
+        let relative = |of: fn(&SpeedLine) -> Option<(f64, f64)>, flag: f64| {
+            let all: Vec<f64> = lines.iter().filter_map(of).map(|(sigma, value)| sigma / value).collect();
+            if all.is_empty() { flag } else { all.iter().sum::<f64>() / all.len() as f64 }
+        };
+        let first = |of: fn(&SpeedLine) -> Option<f64>| lines.iter().find_map(of);
+        let rough = lines.iter().find_map(|l| Some((l, l.roughness?, l.diameter?)));
+        if let Some((line, roughness, diameter)) = rough
+            && roughness > 0.1 * diameter
+        {
+            return Err(format!(
+                "line {}: column roughness: {roughness} m is more than a tenth of the diameter",
+                line.line
+            ));
+        }
+        let ln_crossover =
+            rough.filter(|(_, roughness, _)| *roughness > 0.0).map(|(line, roughness, diameter)| {
+                let crossover =
+                    ContactKind::crossover(roughness / diameter, &material, first(|l| l.phi).unwrap_or(PHI));
+                let error = line.roughness_sigma.map_or(ROUGHNESS_ERROR, |sigma| sigma / roughness);
+                [crossover.ln(), 1.5 * error]
+            });
+        let series = SpeedSeries {
+            rows,
+            material,
+            shear_modulus_stddev: self.grain_shear_modulus_sigma / shear_modulus,
+            density_stddev: relative(
+                |l| l.density_sigma.zip(l.density),
+                self.density.map_or(0.0, |d| self.density_sigma / d),
+            ),
+            pressure_stddev: relative(
+                |l| l.pressure_sigma_pa.zip(l.pressure_pa),
+                self.pressure.map_or(0.0, |p| self.pressure_sigma / p),
+            ),
+            size_variance: spread * spread,
+            grains: self.grains,
+            ln_crossover,
+        };
+        Ok((series, assumed))
+    }
+}

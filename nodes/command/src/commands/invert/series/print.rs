@@ -1,0 +1,263 @@
+//! Answers on a series as text and as CSV, and the sentences on what they depend on.
+
+use super::Sample;
+use grainlab_console::{CsvText, Table, fixed};
+use grainlab_emt::{Interval, SeriesEstimate, SeriesPrior, SpeedMode};
+use std::f64::consts::PI;
+
+/// Share of a posterior at an end of a range from which it is said.
+const AT_END: f64 = 0.1;
+
+/// Probability of a contact law from which z under it is said.
+const LIKELY: f64 = 0.02;
+
+fn number(value: f64, digits: usize) -> String {
+    format!("{value:.digits$}")
+}
+
+fn interval(of: &Interval, digits: usize) -> String {
+    format!("{} +- {}", number(of.mean, digits), number(of.stddev, digits))
+}
+
+fn ends(of: &Interval, digits: usize) -> String {
+    format!("{} to {}", number(of.low, digits), number(of.high, digits))
+}
+
+fn kilopascals(pascals: f64) -> String {
+    let text = format!("{:.4}", pascals / 1e3);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The answer for people.
+pub(super) fn text(sample: &Sample) -> String {
+    let e = &sample.estimate;
+    let mut out = format!("contact: {}\n", sample.contact);
+    if !sample.sample.is_empty() {
+        out += &format!("sample: {}\n", sample.sample);
+    }
+    let has_eps = e.pressures.iter().any(|p| p.eps.is_some());
+    let header = ["pressure, kPa", "z", "95 %", "of prior", "eps", "eps_stiffness", "p"];
+    let mut table = Table::new(header);
+    for p in &e.pressures {
+        let optional = |of: Option<&Interval>| of.map_or_else(|| "-".to_owned(), |i| interval(i, 4));
+        table.row([
+            kilopascals(p.pressure),
+            interval(&p.z, 2),
+            ends(&p.z, 2),
+            number(p.z.left(), 2),
+            optional(p.eps.as_ref()),
+            optional(p.eps_stiffness.as_ref()),
+            fixed(p.p, 3),
+        ]);
+    }
+    out += &format!("\n{}", table.without_empty_columns().text());
+    out += "of prior: share of the prior's standard deviation that is left; p: probability of worse speeds, predicted from the other pressures\n";
+    if !has_eps {
+        out += "eps is not determined: speeds of one mode in two directions determine it\n";
+    }
+    let mut table = Table::new([
+        "pressure, kPa",
+        "mode",
+        "angle, deg",
+        "measured, m/s",
+        "predicted, m/s",
+        "difference, %",
+        "",
+    ]);
+    for ((line, row), of) in sample.lines.iter().zip(&sample.series.rows).zip(&e.rows) {
+        let difference = of.left_out.map(|l| 100.0 * l.residual.exp_m1());
+        let flag = match (of.left_out, line.speed) {
+            (Some(left), _) if !left.is_inside => "outside 95 %",
+            (None, None) => "predicted",
+            _ => "",
+        };
+        table.row([
+            kilopascals(row.pressure),
+            mode(row.mode).to_owned(),
+            fixed(row.angle.map(|a| a * 180.0 / PI), 0),
+            fixed(line.speed, 1),
+            format!("{} +- {}", number(of.predicted, 1), number(of.stddev, 1)),
+            difference.map_or_else(|| "-".to_owned(), |d| format!("{d:+.2}")),
+            flag.to_owned(),
+        ]);
+    }
+    let from = if e.pressures.len() > 1 { "pressures" } else { "rows" };
+    out +=
+        &format!("\nEach speed, predicted from the other {from}:\n{}", table.without_empty_columns().text());
+    out +=
+        &format!("\nk_t/k_n        {}  ({})\n", interval(&e.stiffness_ratio, 3), ends(&e.stiffness_ratio, 3));
+    out += &format!(
+        "stiffness      {:+.1} % +- {:.1} %, over that of the law\n",
+        100.0 * e.level.mean.exp_m1(),
+        100.0 * e.level.stddev
+    );
+    out += &format!(
+        "noise          {} times the stated errors  ({})\n",
+        interval(&e.noise, 2),
+        ends(&e.noise, 2)
+    );
+    for law in &e.laws {
+        let cross = law.ln_crossover.map_or_else(String::new, |c| {
+            format!(", changes at {:.3e} Pa, to a factor of {:.1}", c.mean.exp(), c.stddev.exp())
+        });
+        out += &format!("{:<14} {}{cross}\n", law.law.name(), number(law.probability.max(0.0), 3));
+    }
+    for (name, probability) in &e.preparations {
+        out += &format!("{name:<14} {}\n", number(probability.max(0.0), 3));
+    }
+    out.push('\n');
+    for note in sample.assumed.iter().chain(&sample.notes) {
+        out += &format!("note: {note}\n");
+    }
+    out
+}
+
+fn mode(mode: SpeedMode) -> &'static str {
+    match mode {
+        SpeedMode::P => "p",
+        SpeedMode::Sv => "sv",
+        SpeedMode::Sh => "sh",
+    }
+}
+
+/// One row for each pressure.
+pub(super) fn csv(samples: &[Sample]) -> String {
+    let mut text = CsvText::default();
+    text.row([
+        "sample",
+        "pressure_pa",
+        "z",
+        "z_sigma",
+        "z_low",
+        "z_high",
+        "z_prior_sigma",
+        "eps",
+        "eps_sigma",
+        "eps_stiffness",
+        "eps_stiffness_sigma",
+        "p",
+        "stiffness_ratio",
+        "stiffness_ratio_sigma",
+        "p_whole",
+        "status",
+    ]);
+    for sample in samples {
+        let e = &sample.estimate;
+        for p in &e.pressures {
+            text.cell(&sample.sample);
+            let pair = |of: Option<Interval>| [of.map(|i| i.mean), of.map(|i| i.stddev)];
+            let z = [p.z.mean, p.z.stddev, p.z.low, p.z.high, p.z.prior_stddev].map(Some);
+            let rest = [p.p, Some(e.stiffness_ratio.mean), Some(e.stiffness_ratio.stddev), Some(e.p)];
+            let all = z.into_iter().chain(pair(p.eps)).chain(pair(p.eps_stiffness)).chain(rest);
+            [Some(p.pressure)].into_iter().chain(all).for_each(|v| text.number(v));
+            text.cell(if e.is_contradictory() { "contradictory" } else { "ok" });
+            text.end();
+        }
+    }
+    text.finish()
+}
+
+/// What contradicts what.
+pub(super) fn contradiction(sample: &Sample) -> String {
+    let e = &sample.estimate;
+    let of_row = |n: usize| e.rows[n].p.filter(|p| *p < SeriesEstimate::CONTRADICTORY).map(|p| (n, p));
+    let rows: Vec<String> = (0..e.rows.len())
+        .filter_map(of_row)
+        .map(|(n, p)| {
+            let (row, of) = (&sample.series.rows[n], &e.rows[n]);
+            let speed = row.speed.unwrap_or(f64::NAN);
+            format!(
+                "line {} ({} at {} kPa: {:.1} m/s, {:.1} +- {:.1} by the others, p {p:.4})",
+                sample.lines[n].line,
+                mode(row.mode),
+                kilopascals(row.pressure),
+                speed,
+                of.predicted,
+                of.stddev
+            )
+        })
+        .collect();
+    let whole =
+        format!("p {:.4} of all speeds under what was assumed of contact, preparation and noise", e.p);
+    if rows.is_empty() { whole } else { format!("{whole}; against the others: {}", rows.join(", ")) }
+}
+
+/// Range of a list, as text.
+fn range(values: &[f64]) -> String {
+    let (first, last) =
+        (values.first().copied().unwrap_or(f64::NAN), values.last().copied().unwrap_or(f64::NAN));
+    if values.len() > 1 { format!("{first:.2} -> {last:.2}") } else { format!("{first:.2}") }
+}
+
+/// The sentences on what is not determined, what contradicts, and what z depends on.
+pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
+    let (e, s) = (&sample.estimate, &sample.sensitivity);
+    let mut notes = Vec::new();
+    if e.is_contradictory() {
+        notes.push(format!("contradictory: {}", contradiction(sample)));
+    }
+    for p in e.pressures.iter().filter(|p| p.p.is_some_and(|p| p < SeriesEstimate::CONTRADICTORY)) {
+        notes.push(format!(
+            "the speeds at {} kPa contradict those at the other pressures (p {:.4})",
+            kilopascals(p.pressure),
+            p.p.unwrap_or(f64::NAN)
+        ));
+    }
+    let mut open: Vec<String> = Vec::new();
+    let undetermined: Vec<_> = e.pressures.iter().filter(|p| p.z.is_undetermined()).collect();
+    if let (Some(first), Some(last)) = (undetermined.first(), undetermined.last()) {
+        open.push(format!("z from {} to {} kPa", kilopascals(first.pressure), kilopascals(last.pressure)));
+    }
+    for (name, of) in [
+        ("k_t/k_n", &e.stiffness_ratio),
+        ("the stiffness over that of the law", &e.level),
+        ("the noise", &e.noise),
+    ] {
+        if of.is_undetermined() {
+            open.push(format!("{name} ({:.2} of its prior)", of.left()));
+        }
+    }
+    for law in e.laws.iter().filter(|l| l.ln_crossover.is_some_and(|c| c.is_undetermined())) {
+        open.push(format!("the crossover of {}", law.law));
+    }
+    if !open.is_empty() {
+        notes.push(format!("not determined by these data: {}", open.join(", ")));
+    }
+    let below = prior.lowest_stiffness_ratio;
+    for (at, text) in e
+        .at_ends
+        .iter()
+        .zip([format!("at the lowest k_t/k_n that is assumed, {below}"), "at Mindlin's k_t/k_n".to_owned()])
+    {
+        if *at > AT_END && prior.mindlin < 1.0 {
+            notes.push(format!("{:.0} % of the posterior is {text}", 100.0 * at));
+        }
+    }
+    let beyond = e.pressures.iter().map(|p| p.z_beyond).fold(0.0, f64::max);
+    if beyond > AT_END {
+        notes.push(format!(
+            "{:.0} % of the posterior has z above 6.6, where nothing is stated",
+            100.0 * beyond
+        ));
+    }
+    let z: Vec<f64> = e.pressures.iter().map(|p| p.z.mean).collect();
+    notes.push(format!(
+        "z {}; with k_t/k_n falling 10 % per decade of pressure {}, rising {}; without the prior's slope of z {}",
+        range(&z), range(&s.drifted[0]), range(&s.drifted[1]), range(&s.without_slope)
+    ));
+    if e.laws.len() > 1 {
+        let under =
+            e.laws.iter().filter(|l| l.probability > LIKELY).map(|l| format!("{} {}", l.law, range(&l.z)));
+        notes.push(format!("z under each contact law alone: {}", under.collect::<Vec<_>>().join(", ")));
+    }
+    let worst = s.bulk_less_shear.iter().map(|[d, sd]| d.abs() / sd).fold(0.0, f64::max);
+    notes.push(format!(
+        "z of the bulk modulus and z of the shear modulus differ by at most {worst:.1} standard deviations"
+    ));
+    notes.push("grain modulus, density and contact stiffness are one scale, and the curvature of angular grains is another: the stiffness above has both".to_owned());
+    notes.push(
+        "validated on simulated spheres; on samples, predictions of speeds were tested, and z was not"
+            .to_owned(),
+    );
+    notes
+}

@@ -1,0 +1,109 @@
+//! Wave speeds of a sample over pressure.
+
+use crate::{grainlab, text};
+use serde_json::Value;
+
+const QUARTZ: [&str; 5] =
+    ["invert", "--speeds=-", "--grain-shear-modulus=44e9", "--poisson=0.08", "--density=1640"];
+
+/// P and S of a sand; `slip` is the error of the last S.
+fn sand(slip: f64) -> String {
+    format!(
+        "pressure_pa,mode,speed,speed_sigma\n1e5,p,425,4.3\n1e5,s,252,2.5\n4e5,p,600,6\n4e5,s,358,3.6\n1.6e6,p,848,8.5\n1.6e6,s,{},5.1\n4e6,p,,\n",
+        507.0 * (1.0 + slip)
+    )
+}
+
+fn run(flags: &[&str], input: &str) -> (Option<i32>, String, String) {
+    let output = grainlab(&[&QUARTZ[..], flags].concat(), input.as_bytes());
+    (output.status.code(), text(&output.stdout), text(&output.stderr))
+}
+
+#[test]
+fn an_answer_says_its_contact_what_is_not_determined_and_what_is_predicted() {
+    let (code, out, err) = run(&[], &sand(0.0));
+    assert_eq!(code, Some(0), "{err}");
+    for part in [
+        "contact: free (laboratory)",
+        "note: z under each contact law alone:",
+        "note: validated on simulated spheres",
+        "eps is not determined",
+        "predicted\n",
+    ] {
+        assert!(out.contains(part), "{part:?} is missing:\n{out}");
+    }
+    let (_, json, _) = run(&["--format=json"], &sand(0.0));
+    let all: Value = serde_json::from_str(&json).unwrap();
+    let estimate = &all[0]["estimate"];
+    let z = |k: usize| estimate["pressures"][k]["z"]["mean"].as_f64().unwrap();
+    assert!((0..4).all(|k| (4.05..=6.6).contains(&z(k))), "{json}");
+    let predicted = estimate["rows"][6]["predicted"].as_f64().unwrap();
+    assert!((980.0..1130.0).contains(&predicted), "{predicted}");
+    let (_, csv, _) = run(&["--format=csv"], &sand(0.0));
+    assert_eq!(csv.lines().count(), 5);
+}
+
+#[test]
+fn samples_of_one_file_are_inferred_apart_and_a_contradiction_ends_with_4() {
+    let bad = sand(0.25);
+    let (code, out, err) = run(&[], &bad);
+    assert_eq!(code, Some(4), "{out}");
+    assert!(err.contains("contradictory") && err.contains("line 7"), "{err}");
+    let good = sand(0.0);
+    let named = |text: &str, name: &str| -> String {
+        text.lines().skip(1).map(|l| format!("{name},{l}\n")).collect()
+    };
+    let header = "sample,pressure_pa,mode,speed,speed_sigma\n";
+    let both = format!("{header}{}{}", named(&good, "one"), named(&bad, "two"));
+    let (code, out, _) = run(&["--format=csv"], &both);
+    assert_eq!(
+        (code, out.matches("\none,").count(), out.matches("\ntwo,").count()),
+        (Some(4), 4, 4),
+        "{out}"
+    );
+}
+
+#[test]
+fn wrong_units_and_missing_inputs_are_named_with_their_line() {
+    for (from, to, fault) in [
+        ("1e5,p,425", "100,p,425", "line 2: column pressure_pa: 100 Pa is"),
+        ("600,6", "9600,6", "line 4: column speed: 9600 m/s is not between"),
+        ("1e5,p,425,4.3", "1e5,sh,425,4.3", "line 2: mode \"sh\" without a direction"),
+    ] {
+        let (code, _, err) = run(&[], &sand(0.0).replace(from, to));
+        assert!(code == Some(2) && err.contains(fault), "{code:?} {err}");
+    }
+    let without = |flag: &str| {
+        let flags: Vec<&str> = QUARTZ.into_iter().filter(|f| !f.starts_with(flag)).collect();
+        text(&grainlab(&flags, sand(0.0).as_bytes()).stderr)
+    };
+    assert!(without("--density").contains("column density is empty"));
+    assert!(without("--poisson").contains("the material of the grains is needed"));
+    let (code, _, err) = run(&["--explain"], &sand(0.0));
+    assert!(code == Some(2) && err.contains("--contact hertz"), "{err}");
+}
+
+#[test]
+fn the_prior_is_a_file_that_can_be_changed_and_smooth_spheres_have_another_answer() {
+    let printed = text(&grainlab(&["invert", "--print-prior", "--contact=free"], b"").stdout);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("prior.toml");
+    let z = |flags: &[&str]| -> f64 {
+        let (code, json, err) = run(&[flags, &["--format=json"]].concat(), &sand(0.0));
+        assert_eq!(code, Some(0), "{err}");
+        serde_json::from_str::<Value>(&json).unwrap()[0]["estimate"]["pressures"][0]["z"]["mean"]
+            .as_f64()
+            .unwrap()
+    };
+    std::fs::write(&file, &printed).unwrap();
+    let prior = format!("--prior={}", file.display());
+    assert_eq!(z(&[&prior]), z(&[]));
+    std::fs::write(&file, printed.replace("lowest_stiffness_ratio = 0.3", "lowest_stiffness_ratio = 0.8"))
+        .unwrap();
+    assert!((z(&[&prior]) - z(&[])).abs() > 0.1);
+    std::fs::write(&file, printed.replace("weight = 1.0", "weight = -1.0")).unwrap();
+    let (code, _, err) = run(&[&prior], &sand(0.0));
+    assert!(code == Some(2) && err.contains("weight = -1 must be positive"), "{err}");
+    let (_, out, _) = run(&["--contact=hertz"], &sand(0.0));
+    assert!(out.starts_with("contact: hertz (ideal)"), "{out}");
+}

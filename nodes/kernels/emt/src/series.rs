@@ -1,0 +1,30 @@
+//! The inversion of a series: wave speeds of one sample over pressure, with a contact law that is not known.
+//!
+//! Unknown at each pressure: z, and ε where the speeds have directions. Unknown for the sample: the contact law with its
+//! crossover, k_t/k_n, the level of the moduli, the preparation, and the noise. A prior of the contact and of z over pressure, from
+//! simulated preparations, makes z identifiable: K/G under one k_t/k_n determines it, and the level of the moduli determines the
+//! contact.
+//!
+//! - `sample`: the speeds; `prior`: what is known before them; `gain`: contact laws by their stiffness over pressure
+//! - `forward`: speeds and their slopes; `component`: a normal approximation of the posterior for each cell of the prior;
+//!   `draws`: their correction by importance sampling
+//! - `check`: pressures and rows left out, contradictions; `estimate`: what is stated
+
+mod check;
+mod component;
+mod draws;
+mod estimate;
+mod forward;
+mod gain;
+mod prior;
+mod sample;
+#[cfg(test)]
+mod tests;
+
+pub use check::LeftOut;
+pub use estimate::{
+    Interval, LawEstimate, PressureEstimate, RowEstimate, Sensitivity, SeriesEstimate, infer_series,
+};
+pub use gain::ContactKind;
+pub use prior::{ContactPrior, PreparationPrior, SeriesPrior};
+pub use sample::{SeriesRow, SpeedMode, SpeedSeries};

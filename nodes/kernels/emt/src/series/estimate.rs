@@ -1,0 +1,360 @@
+//! What is inferred from a series, and how far it depends on what was assumed.
+
+use super::check::LeftOut;
+use super::component::{Mixture, Solution, normalised};
+use super::draws::SeriesDraw;
+use super::forward::Forward;
+use super::gain::ContactKind;
+use super::prior::SeriesPrior;
+use super::sample::SpeedSeries;
+use crate::calibration::RelaxationCalibration;
+use crate::error::EmtError;
+use serde::Serialize;
+
+/// No z above is stated: packings of the calibration have none.
+const HIGHEST_Z: f64 = 6.6;
+
+/// Seed of draws and simulations.
+const SEED: u64 = 31;
+
+/// k_t/k_n closer than this to an end of its range is at it.
+const AT_END: f64 = 0.05;
+
+/// Drift of ln k_t/k_n per decade that is tried.
+const DRIFT: f64 = 0.1;
+
+/// Slope of z per decade without the prior's: mean and standard deviation.
+const NO_SLOPE: [f64; 2] = [0.0, 1.0];
+
+/// Probability of a contact law or preparation below which nothing is said of it.
+const UNLIKELY: f64 = 0.05;
+
+/// A marginal distribution: mean, standard deviation, and the ends of the central 95 %.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Interval {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub stddev: f64,
+    /// 2.5 % quantile.
+    pub low: f64,
+    /// 97.5 % quantile.
+    pub high: f64,
+    /// Standard deviation of the prior.
+    pub prior_stddev: f64,
+}
+
+impl Interval {
+    /// Of weighted values; the weights need not add up to 1.
+    fn of(values: impl Iterator<Item = (f64, f64)>) -> Self {
+        let mut all: Vec<(f64, f64)> = values.collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let sum: f64 = all.iter().map(|(_, w)| w).sum();
+        let mean = all.iter().map(|(v, w)| v * w).sum::<f64>() / sum;
+        let variance = all.iter().map(|(v, w)| (v - mean).powi(2) * w).sum::<f64>() / sum;
+        let quantile = |q: f64| {
+            let mut below = 0.0;
+            let place = all.iter().position(|(_, w)| {
+                below += w;
+                below >= q * sum
+            });
+            place.map_or(f64::NAN, |n| all[n].0)
+        };
+        Self {
+            mean,
+            stddev: variance.sqrt(),
+            low: quantile(0.025),
+            high: quantile(0.975),
+            prior_stddev: f64::NAN,
+        }
+    }
+
+    /// Share of the standard deviation of the prior that is left.
+    pub fn left(&self) -> f64 {
+        self.stddev / self.prior_stddev
+    }
+
+    /// True if the data say almost nothing: more than .8 of the prior's standard deviation is left.
+    pub fn is_undetermined(&self) -> bool {
+        self.left() > 0.8
+    }
+
+    fn cut(self) -> Self {
+        let cut = |v: f64| v.min(HIGHEST_Z);
+        Self { mean: cut(self.mean), low: cut(self.low), high: cut(self.high), ..self }
+    }
+}
+
+/// The structure at one pressure.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PressureEstimate {
+    /// Pressure, Pa.
+    pub pressure: f64,
+    /// Coordination number without rattlers.
+    pub z: Interval,
+    /// Probability of a z beyond those that are stated.
+    pub z_beyond: f64,
+    /// ε; `None` without speeds in two directions.
+    pub eps: Option<Interval>,
+    /// ε weighted by contact stiffness.
+    pub eps_stiffness: Option<Interval>,
+    /// Probability of worse speeds at this pressure, predicted from the others; `None` of the only pressure.
+    pub p: Option<f64>,
+}
+
+/// One row of the series.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RowEstimate {
+    /// Speed predicted from the other pressures (of the only pressure: from the other rows), m/s, and its standard deviation; of a
+    /// row without a speed from all rows.
+    pub predicted: f64,
+    /// Standard deviation of the prediction, m/s.
+    pub stddev: f64,
+    /// The measured speed against it.
+    pub left_out: Option<LeftOut>,
+    /// Probability of a worse speed, predicted from all other rows.
+    pub p: Option<f64>,
+}
+
+/// A family of contact laws, after the data.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LawEstimate {
+    /// The family.
+    pub law: ContactKind,
+    /// Its probability.
+    pub probability: f64,
+    /// ln of the crossover pressure, Pa; `None` without one.
+    pub ln_crossover: Option<Interval>,
+    /// Mean of z at each pressure under this family alone.
+    pub z: Vec<f64>,
+}
+
+/// What is inferred from a series.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SeriesEstimate {
+    /// Structure at each pressure.
+    pub pressures: Vec<PressureEstimate>,
+    /// Rows, in the order of the series.
+    pub rows: Vec<RowEstimate>,
+    /// k_t/k_n.
+    pub stiffness_ratio: Interval,
+    /// Probability that k_t/k_n is at the lowest that was assumed, and at Mindlin's.
+    pub at_ends: [f64; 2],
+    /// ln of the moduli over those of the contact law with the given material and density: one scale of grain modulus, density and
+    /// contact stiffness.
+    pub level: Interval,
+    /// Errors of the speeds over the stated ones.
+    pub noise: Interval,
+    /// Contact laws.
+    pub laws: Vec<LawEstimate>,
+    /// Preparations with their probabilities.
+    pub preparations: Vec<(String, f64)>,
+    /// Probability of data that are less probable than these, under all that was assumed.
+    pub p: f64,
+    /// ln of the evidence.
+    pub ln_evidence: f64,
+    /// Effective number of draws.
+    pub effective_draws: f64,
+}
+
+impl SeriesEstimate {
+    /// p below which data contradict each other or the model.
+    pub const CONTRADICTORY: f64 = 0.01;
+
+    /// True if the data as a whole contradict what was assumed.
+    pub fn is_contradictory(&self) -> bool {
+        self.p < Self::CONTRADICTORY
+    }
+}
+
+/// z under other assumptions, at each pressure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sensitivity {
+    /// With k_t/k_n falling and rising by 10 % per decade of pressure.
+    pub drifted: [Vec<f64>; 2],
+    /// Without the prior's slope of z.
+    pub without_slope: Vec<f64>,
+    /// z of the bulk modulus less z of the shear modulus, the contact shared: mean and standard deviation.
+    pub bulk_less_shear: Vec<[f64; 2]>,
+}
+
+/// Infers the structure of a sample at each pressure, and its contacts. Takes about a second.
+///
+/// # Errors
+/// An invalid number, or data far beyond the model.
+pub fn infer_series(
+    series: &SpeedSeries,
+    network: &RelaxationCalibration,
+    prior: &SeriesPrior,
+) -> Result<SeriesEstimate, EmtError> {
+    series.check()?;
+    let mixture = Mixture::of(Forward::new(series, network, prior), series.ln_crossover);
+    if mixture.solutions.is_empty() {
+        return Err(EmtError::NotFinite { quantity: "likelihood of the speeds", value: f64::NAN });
+    }
+    let (draws, effective_draws) = mixture.draws(SEED);
+    let before = mixture.of_prior(SEED);
+    let forward = &mixture.forward;
+    let marginal = |of: &dyn Fn(&SeriesDraw) -> f64| {
+        let spread = |all: &[SeriesDraw]| Interval::of(all.iter().map(|d| (of(d), d.weight)));
+        Interval { prior_stddev: spread(&before).stddev, ..spread(&draws) }
+    };
+    let probability =
+        |of: &dyn Fn(&SeriesDraw) -> bool| -> f64 { draws.iter().filter(|d| of(d)).map(|d| d.weight).sum() };
+    let determined = series.has_directions();
+    let groups = Groups::of(&mixture);
+    let pressures = (0..forward.count())
+        .map(|k| PressureEstimate {
+            pressure: forward.pressures[k],
+            z: marginal(&|d| d.z[k]).cut(),
+            z_beyond: probability(&|d| d.z[k] > HIGHEST_Z),
+            eps: determined.then(|| marginal(&|d| d.eps[k])),
+            eps_stiffness: determined.then(|| marginal(&|d| d.eps_stiffness[k])),
+            p: groups.of_pressures[k],
+        })
+        .collect();
+    let laws = prior.contact.iter().map(|c| c.law).map(|law| {
+        let probability = probability(&|d| d.kind == law);
+        let is_likely = law.has_crossover() && probability > UNLIKELY;
+        let of_law = |all: &[SeriesDraw]| {
+            Interval::of(all.iter().filter(|d| d.kind == law).map(|d| (d.ln_crossover, d.weight)))
+        };
+        let ln_crossover =
+            is_likely.then(|| Interval { prior_stddev: of_law(&before).stddev, ..of_law(&draws) });
+        LawEstimate { law, probability, ln_crossover, z: mixture.z(|s| s.component.kind == law) }
+    });
+    let preparations = prior.preparation.iter().enumerate();
+    let preparations = preparations.map(|(n, of)| (of.name.clone(), probability(&|d| d.preparation == n)));
+    let mut rows = vec![None; forward.rows.len()];
+    for (j, given) in forward.given.iter().enumerate() {
+        rows[*given] = Some(match j.checked_sub(forward.measured) {
+            None => {
+                let left = groups.rows[j];
+                let stddev = left.map_or(f64::NAN, |l| l.stddev);
+                let ln = mixture.data[j] - left.map_or(f64::NAN, |l| l.residual);
+                let p = groups.of_rows[j];
+                RowEstimate { predicted: ln.exp(), stddev: stddev * ln.exp(), left_out: left, p }
+            }
+            Some(n) => {
+                let ln = marginal_of(&draws, n);
+                RowEstimate {
+                    predicted: ln.mean.exp(),
+                    stddev: ln.stddev * ln.mean.exp(),
+                    left_out: None,
+                    p: None,
+                }
+            }
+        });
+    }
+    Ok(SeriesEstimate {
+        pressures,
+        rows: rows.into_iter().flatten().collect(),
+        stiffness_ratio: marginal(&|d| d.stiffness_ratio),
+        at_ends: [
+            probability(&|d| d.stiffness_ratio < prior.lowest_stiffness_ratio + AT_END),
+            probability(&|d| d.stiffness_ratio > forward.mindlin - AT_END),
+        ],
+        level: marginal(&|d| d.level),
+        noise: marginal(&|d| d.noise),
+        laws: laws.collect(),
+        preparations: preparations.collect(),
+        p: mixture.contradiction(SEED),
+        ln_evidence: mixture.ln_evidence(),
+        effective_draws,
+    })
+}
+
+fn marginal_of(draws: &[SeriesDraw], row: usize) -> Interval {
+    Interval::of(draws.iter().map(|d| (d.predicted[row], d.weight)))
+}
+
+/// What is predicted without each pressure, or of a single pressure without each row.
+struct Groups {
+    rows: Vec<Option<LeftOut>>,
+    of_pressures: Vec<Option<f64>>,
+    of_rows: Vec<Option<f64>>,
+}
+
+impl Groups {
+    fn of(mixture: &Mixture<'_>) -> Self {
+        let forward = &mixture.forward;
+        let m = forward.measured;
+        let mut found =
+            Self { rows: vec![None; m], of_pressures: vec![None; forward.count()], of_rows: vec![None; m] };
+        if m < 2 {
+            return found;
+        }
+        for j in 0..m {
+            let (rows, p) = mixture.leave_out(&[j]);
+            (found.rows[j], found.of_rows[j]) = (rows.first().copied(), Some(p));
+        }
+        for k in 0..forward.count() {
+            let group: Vec<usize> = (0..m).filter(|j| forward.place[*j] == k).collect();
+            if group.is_empty() || group.len() == m {
+                continue;
+            }
+            let (rows, p) = mixture.leave_out(&group);
+            found.of_pressures[k] = Some(p);
+            group.iter().zip(rows).for_each(|(j, row)| found.rows[*j] = Some(row));
+        }
+        found
+    }
+}
+
+/// Nodes and weights of a quadrature over a normal distribution (Gauss and Hermite, of order 5).
+const QUADRATURE: [[f64; 2]; 5] = [
+    [-2.856_970_013_872_806, 0.011_257_411_327_720_69],
+    [-1.355_626_179_974_266, 0.222_075_922_005_612_7],
+    [0.0, 0.533_333_333_333_333_3],
+    [1.355_626_179_974_266, 0.222_075_922_005_612_7],
+    [2.856_970_013_872_806, 0.011_257_411_327_720_69],
+];
+
+impl Mixture<'_> {
+    /// Means of z under some of the components, by their normal approximations.
+    fn z(&self, used: impl Fn(&Solution) -> bool) -> Vec<f64> {
+        let used: Vec<&Solution> = self.solutions.iter().filter(|s| used(s)).collect();
+        let weights = normalised(used.iter().map(|s| s.ln_weight()));
+        let (n, first) = (self.forward.count(), self.forward.ratio() - self.forward.count());
+        let mut mean = vec![0.0; n];
+        for (solution, weight) in used.iter().zip(weights) {
+            let variances = solution.variances();
+            for (k, mean) in mean.iter_mut().enumerate() {
+                let at = |x: f64| {
+                    Forward::z_of(solution.component.unknowns[first + k] + x * variances[first + k].sqrt())[0]
+                };
+                *mean += weight * QUADRATURE.iter().map(|[x, w]| w * at(*x)).sum::<f64>();
+            }
+        }
+        mean.into_iter().map(|z| z.min(HIGHEST_Z)).collect()
+    }
+}
+
+impl Sensitivity {
+    /// z under other assumptions: four more inversions by their normal approximations.
+    ///
+    /// # Errors
+    /// As [`infer_series`].
+    pub fn of(
+        series: &SpeedSeries,
+        network: &RelaxationCalibration,
+        prior: &SeriesPrior,
+    ) -> Result<Self, EmtError> {
+        series.check()?;
+        let z = |prior: SeriesPrior| {
+            Mixture::of(Forward::new(series, network, &prior), series.ln_crossover).z(|_| true)
+        };
+        let split = SeriesPrior { is_split: true, ..prior.clone() };
+        let apart = Mixture::of(Forward::new(series, network, &split), series.ln_crossover);
+        let (draws, _) = apart.draws(SEED);
+        let difference = |k: usize| {
+            let all = Interval::of(draws.iter().map(|d| (d.bulk_less_shear[k], d.weight)));
+            [all.mean, all.stddev]
+        };
+        Ok(Self {
+            drifted: [-DRIFT, DRIFT].map(|drift| z(SeriesPrior { drift, ..prior.clone() })),
+            without_slope: z(SeriesPrior { other_slope: Some(NO_SLOPE), ..prior.clone() }),
+            bulk_less_shear: (0..apart.forward.count()).map(difference).collect(),
+        })
+    }
+}

@@ -1,0 +1,135 @@
+//! Samples that the model itself makes: what was put in is found as often as stated.
+
+use super::component::{Component, Mixture, cells};
+use super::forward::Forward;
+use super::prior::SeriesPrior;
+use super::sample::{SeriesRow, SpeedMode, SpeedSeries};
+use crate::calibration::Calibration;
+use crate::random::Random;
+use grainlab_core::Material;
+use nalgebra::{Cholesky, DVector};
+
+fn normal(random: &mut Random, n: usize) -> DVector<f64> {
+    DVector::from_fn(n, |_, _| random.normal::<1>()[0])
+}
+
+/// P and S at six pressures, along and across an axis or without direction.
+fn template(has_directions: bool) -> SpeedSeries {
+    let mut rows = Vec::new();
+    for pressure in [50e3, 150e3, 500e3, 1.5e6, 5e6, 15e6] {
+        let angles: &[Option<f64>] =
+            if has_directions { &[Some(0.0), Some(std::f64::consts::FRAC_PI_2)] } else { &[None] };
+        for angle in angles {
+            for mode in [SpeedMode::P, SpeedMode::Sv] {
+                rows.push(SeriesRow {
+                    pressure,
+                    density: 1600.0,
+                    mode,
+                    angle: *angle,
+                    speed: Some(1.0),
+                    stddev: 0.01,
+                });
+            }
+            if *angle == Some(std::f64::consts::FRAC_PI_2) {
+                rows.push(SeriesRow {
+                    pressure,
+                    density: 1600.0,
+                    mode: SpeedMode::Sh,
+                    angle: *angle,
+                    speed: Some(1.0),
+                    stddev: 0.01,
+                });
+            }
+        }
+    }
+    SpeedSeries {
+        rows,
+        material: Material { shear_modulus: 29e9, poisson_ratio: 0.2, density: 2500.0 },
+        shear_modulus_stddev: 0.05,
+        density_stddev: 0.01,
+        pressure_stddev: 0.0,
+        size_variance: 0.01,
+        grains: None,
+        ln_crossover: None,
+    }
+}
+
+/// A sample from the prior, with the place of its z, k_t/k_n, ε and ε weighted by stiffness among the draws.
+fn simulated(series: &mut SpeedSeries, prior: &SeriesPrior, random: &mut Random) -> Vec<f64> {
+    let network = Calibration::builtin("grainlab").unwrap().network.as_ref().unwrap();
+    let forward = Forward::new(series, network, prior);
+    let all = cells(&forward, prior, series.ln_crossover);
+    let mut left = random.uniform();
+    let chosen = all.iter().find(|c| {
+        left -= c.ln_prior.exp();
+        left <= 0.0
+    });
+    let Component { kind, preparation, normal: of, .. } = chosen.unwrap_or(&all[0]);
+    let mut left = random.uniform();
+    let noise = prior.noises().into_iter().find(|[_, w]| {
+        left -= w;
+        left <= 0.0
+    });
+    let noise = noise.map_or(1.0, |[n, _]| n);
+    let unknowns = &of.0 + &of.2 * normal(random, of.0.len());
+    let at = forward.about(*kind, *preparation, &unknowns);
+    let m = forward.rows.len();
+    let cholesky = Cholesky::new(forward.unexplained(&at, m, noise)).unwrap();
+    let off = cholesky.l() * normal(random, m);
+    let mut truth = vec![forward.z(&unknowns)[3], unknowns[forward.ratio()].min(forward.mindlin)];
+    if forward.has_eps {
+        let (with, variance) = forward.with_eps_stiffness(&at, 3, m);
+        let left = variance - with.dot(&cholesky.solve(&with));
+        let own = with.dot(&cholesky.solve(&off)) + left.sqrt() * random.normal::<1>()[0];
+        truth.extend([forward.eps_of(&unknowns)[3], forward.eps_stiffness(&unknowns)[3] + own]);
+    }
+    for (j, given) in forward.given.clone().into_iter().enumerate() {
+        series.rows[given].speed = Some((at.ln_speed[j] + off[j]).exp());
+    }
+    let mixture = Mixture::of(Forward::new(series, network, prior), series.ln_crossover);
+    let (draws, effective) = mixture.draws(random.next_seed());
+    let mut found = Vec::new();
+    for (n, truth) in truth.iter().enumerate() {
+        let value = |d: &super::draws::SeriesDraw| match n {
+            0 => d.z[3],
+            1 => d.stiffness_ratio,
+            2 => d.eps[3],
+            _ => d.eps_stiffness[3],
+        };
+        let below: f64 = draws.iter().filter(|d| value(d) < *truth).map(|d| d.weight).sum();
+        let equal: f64 = draws.iter().filter(|d| value(d) == *truth).map(|d| d.weight).sum();
+        let mean: f64 = draws.iter().map(|d| d.weight * value(d)).sum();
+        found.extend([below + equal * random.uniform(), mean - truth]);
+    }
+    found.push(effective);
+    found
+}
+
+/// Probability of a largest distance of the ranks from uniform ones (Kolmogorov and Smirnov).
+fn uniform(mut ranks: Vec<f64>) -> f64 {
+    ranks.sort_by(f64::total_cmp);
+    let n = ranks.len() as f64;
+    let off = |(i, r): (usize, &f64)| (r - i as f64 / n).abs().max((r - (i + 1) as f64 / n).abs());
+    let scaled = (n.sqrt() + 0.12 + 0.11 / n.sqrt()) * ranks.iter().enumerate().map(off).fold(0.0, f64::max);
+    let term = |k: i32| (-1f64).powi(k - 1) * (-2.0 * (f64::from(k) * scaled).powi(2)).exp();
+    2.0 * (1..50).map(term).sum::<f64>()
+}
+
+/// With SERIES_SAMPLES=300 in the environment the figures of the documentation.
+#[test]
+fn true_values_rank_uniformly_among_draws() {
+    let count = std::env::var("SERIES_SAMPLES").map_or(24, |n| n.parse().unwrap());
+    let mut random = Random::new(3);
+    for directions in [false, true] {
+        let mut sample = || simulated(&mut template(directions), SeriesPrior::builtin(), &mut random);
+        let all: Vec<Vec<f64>> = (0..count).map(|_| sample()).collect();
+        for q in 0..(all[0].len() - 1) / 2 {
+            let ranks: Vec<f64> = all.iter().map(|a| a[2 * q]).collect();
+            let inside = ranks.iter().filter(|r| (0.025..=0.975).contains(*r)).count() as f64 / count as f64;
+            let rms = (all.iter().map(|a| a[2 * q + 1].powi(2)).sum::<f64>() / count as f64).sqrt();
+            let p = uniform(ranks);
+            println!("directions {directions}, quantity {q}: inside {inside:.3}, rms {rms:.4}, p {p:.3}");
+            assert!(p > 0.01 && inside > 0.8, "directions {directions}, quantity {q}: {inside} {p}");
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! The page of a series: speeds and z over pressure, the contact, and what is not determined.
+
+use crate::page::STYLE;
+use grainlab_emt::{SeriesEstimate, SpeedMode, SpeedSeries};
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
+use grainlab_page::{Cell, Html, Page, Section, csv, figure, heading, html, list, paragraph, table};
+use std::f64::consts::PI;
+
+/// A sample: its name, its speeds, what is inferred, and the notes on it.
+pub type InferredSample<'a> = (&'a str, &'a SpeedSeries, &'a SeriesEstimate, &'a [String]);
+
+/// The page of samples.
+pub fn series_page(samples: &[InferredSample<'_>]) -> String {
+    let content = |of: fn(usize, &InferredSample<'_>) -> Html| -> Html {
+        samples.iter().enumerate().map(|(n, sample)| of(n, sample)).collect()
+    };
+    let title = format!("{} of a series", grainlab_console::count(samples.len(), "sample"));
+    let page = Page {
+        heading: heading("grainlab", &title, ""),
+        title,
+        sections: vec![
+            Section { id: "structure", title: "Structure", content: content(structure) },
+            Section { id: "speeds", title: "Speeds", content: content(speeds) },
+            Section { id: "contact", title: "Contact", content: content(contact) },
+        ],
+        styles: vec![STYLE],
+        has_bar: true,
+        ..Page::default()
+    };
+    page.text()
+}
+
+fn named(sample: &InferredSample<'_>, what: &str) -> String {
+    if sample.0.is_empty() { what.to_owned() } else { format!("{}: {what}", sample.0) }
+}
+
+fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
+    let (_, _, e, notes) = sample;
+    let line = |of: fn(&grainlab_emt::Interval) -> f64, line: Line| Series {
+        colour: Some(0),
+        line: Some(line),
+        points: e.pressures.iter().map(|p| Point::at(p.pressure / 1e3, of(&p.z))).collect(),
+        ..Series::default()
+    };
+    let tooltip = |p: &grainlab_emt::PressureEstimate| {
+        format!(
+            "{:.4} kPa: z {:.2} ± {:.2}, {:.2} to {:.2}",
+            p.pressure / 1e3,
+            p.z.mean,
+            p.z.stddev,
+            p.z.low,
+            p.z.high
+        )
+    };
+    let points = e
+        .pressures
+        .iter()
+        .map(|p| Point { tooltip: Some(tooltip(p)), ..Point::at(p.pressure / 1e3, p.z.mean) });
+    let middle =
+        Series { marker: Some(Marker::Circle), points: points.collect(), ..line(|z| z.mean, Line::Straight) };
+    let drawn = Figure {
+        title: named(sample, "coordination number"),
+        subtitle: "mean and 95 % of the posterior".to_owned(),
+        x: Axis::log("pressure, kPa"),
+        y: Axis::linear("z"),
+        series: vec![line(|z| z.low, Line::Faint), middle, line(|z| z.high, Line::Faint)],
+        legend: Vec::new(),
+    };
+    let rows = e
+        .pressures
+        .iter()
+        .map(|p| [p.pressure, p.z.mean, p.z.stddev, p.z.low, p.z.high].map(|v| v.to_string()));
+    let data = csv(["pressure_pa", "z", "z_sigma", "z_low", "z_high"], rows);
+    let verdict = match e.is_contradictory() {
+        true => format!("These speeds contradict each other or the model: p = {:.4}.", e.p),
+        false => format!("These speeds are consistent: p = {:.2}.", e.p),
+    };
+    html!(
+        "{{ verdict }}{{ drawn }}{{ notes }}",
+        verdict => paragraph(verdict),
+        drawn => figure(&format!("z-{n}"), drawn.element(), "", &data),
+        notes => list(notes.iter().map(String::as_str))
+    )
+}
+
+fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
+    let (_, series, e, _) = sample;
+    let kind = |row: &grainlab_emt::SeriesRow| {
+        let mode = match row.mode {
+            SpeedMode::P => "P",
+            SpeedMode::Sv => "SV",
+            SpeedMode::Sh => "SH",
+        };
+        match row.angle {
+            Some(angle) => format!("{mode} at {:.0}°", angle * 180.0 / PI),
+            None if row.mode == SpeedMode::P => "P".to_owned(),
+            None => "S".to_owned(),
+        }
+    };
+    let mut kinds: Vec<String> = series.rows.iter().map(kind).collect();
+    kinds.sort();
+    kinds.dedup();
+    let (mut drawn, mut legend) = (Vec::new(), Vec::new());
+    for (colour, name) in kinds.iter().enumerate() {
+        let of = || series.rows.iter().zip(&e.rows).filter(|(row, _)| kind(row) == *name);
+        let marker = Some(Marker::of(colour));
+        let measured = of().filter_map(|(row, _)| Some(Point::at(row.pressure / 1e3, row.speed?))).collect();
+        let mut predicted: Vec<Point> = of()
+            .map(|(row, to)| Point { error: Some(to.stddev), ..Point::at(row.pressure / 1e3, to.predicted) })
+            .collect();
+        predicted.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let colour = Some(colour);
+        drawn.push(Series { colour, line: Some(Line::Faint), points: predicted, ..Series::default() });
+        drawn.push(Series { colour, marker, points: measured, ..Series::default() });
+        legend.push(Entry::Shape(marker.unwrap_or(Marker::Circle), colour, false, name.clone()));
+    }
+    let drawn = Figure {
+        title: named(sample, "wave speeds"),
+        subtitle: "markers: measured; lines with errors: predicted from the others".to_owned(),
+        x: Axis::log("pressure, kPa"),
+        y: Axis::log("speed, m/s"),
+        series: drawn,
+        legend,
+    };
+    let rows = series.rows.iter().zip(&e.rows).map(|(row, to)| {
+        let measured = row.speed.map(|s| s.to_string()).unwrap_or_default();
+        [row.pressure.to_string(), kind(row), measured, to.predicted.to_string(), to.stddev.to_string()]
+    });
+    let data = csv(["pressure_pa", "mode", "speed", "predicted", "predicted_sigma"], rows);
+    figure(&format!("speeds-{n}"), drawn.element(), "", &data)
+}
+
+fn contact(_: usize, sample: &InferredSample<'_>) -> Html {
+    let (_, _, e, _) = sample;
+    let cell = |value: f64, digits: usize| Cell::fixed(value, digits);
+    let unknown = |name: &str, of: &grainlab_emt::Interval| {
+        vec![
+            Cell::text(name.to_owned()),
+            cell(of.mean, 3),
+            cell(of.stddev, 3),
+            cell(of.low, 3),
+            cell(of.high, 3),
+            cell(of.left(), 2),
+        ]
+    };
+    let unknowns = [
+        unknown("k_t/k_n", &e.stiffness_ratio),
+        unknown("ln of the stiffness over that of the law", &e.level),
+        unknown("noise over the stated errors", &e.noise),
+    ];
+    let header = ["unknown", "mean", "standard deviation", "2.5 %", "97.5 %", "share of the prior's"];
+    let laws = e.laws.iter().map(|l| {
+        let at = l.ln_crossover.map_or(f64::NAN, |c| c.mean.exp() / 1e6);
+        vec![
+            Cell::text(l.law.name().to_owned()),
+            cell(l.probability, 3),
+            if at.is_nan() { Cell::number("") } else { cell(at, 3) },
+        ]
+    });
+    let preparations = e.preparations.iter().map(|(name, p)| vec![Cell::text(name.clone()), cell(*p, 3)]);
+    [
+        table(named(sample, "the sample"), header, unknowns),
+        table(named(sample, "contact laws"), ["contact law", "probability", "changes at, MPa"], laws),
+        table(named(sample, "preparations"), ["preparation", "probability"], preparations),
+    ]
+    .into_iter()
+    .collect()
+}
