@@ -14,7 +14,7 @@ pub fn series_page(samples: &[InferredSample<'_>]) -> String {
     let content = |of: fn(usize, &InferredSample<'_>) -> Html| -> Html {
         samples.iter().enumerate().map(|(n, sample)| of(n, sample)).collect()
     };
-    let title = format!("{} of a series", grainlab_console::count(samples.len(), "sample"));
+    let title = format!("Wave speeds of {}", grainlab_console::count(samples.len(), "sample"));
     let page = Page {
         heading: heading("grainlab", &title, ""),
         title,
@@ -103,7 +103,7 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
     let (mut drawn, mut legend) = (Vec::new(), Vec::new());
     for (colour, name) in kinds.iter().enumerate() {
         let of = || series.rows.iter().zip(&e.rows).filter(|(row, _)| kind(row) == *name);
-        let marker = Some(Marker::of(colour));
+        let marker = Marker::of(colour);
         let measured = of().filter_map(|(row, _)| Some(Point::at(row.pressure / 1e3, row.speed?))).collect();
         let mut predicted: Vec<Point> = of()
             .map(|(row, to)| Point { error: Some(to.stddev), ..Point::at(row.pressure / 1e3, to.predicted) })
@@ -111,8 +111,8 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
         predicted.sort_by(|a, b| a.x.total_cmp(&b.x));
         let colour = Some(colour);
         drawn.push(Series { colour, line: Some(Line::Faint), points: predicted, ..Series::default() });
-        drawn.push(Series { colour, marker, points: measured, ..Series::default() });
-        legend.push(Entry::Shape(marker.unwrap_or(Marker::Circle), colour, false, name.clone()));
+        drawn.push(Series { colour, marker: Some(marker), points: measured, ..Series::default() });
+        legend.push(Entry::Shape(marker, colour, false, name.clone()));
     }
     let drawn = Figure {
         title: named(sample, "wave speeds"),

@@ -1,7 +1,6 @@
 //! Wave speeds that laboratories measured, each pressure predicted from the others by the inversion of a series.
 
 use crate::error::VerificationError;
-use crate::reference::table;
 use crate::row::{Measure, Point, Row};
 use grainlab_core::Material;
 use grainlab_emt::{Calibration, EmtError, SeriesPrior, SeriesRow, SpeedMode, SpeedSeries, infer_series};
@@ -9,35 +8,74 @@ use grainlab_emt::{Calibration, EmtError, SeriesPrior, SeriesRow, SpeedMode, Spe
 /// The name of the suite.
 pub const NAME: &str = "laboratory";
 
-const ZIMMER: &str = include_str!("../data/laboratory_zimmer.csv");
-const DOMENICO: &str = include_str!("../data/laboratory_domenico.csv");
-const HARDIN: &str = include_str!("../data/laboratory_hardin.csv");
+/// A file of speeds, the grains, and the sources of its samples by the beginnings of their names.
+struct Measured {
+    file: &'static str,
+    text: &'static str,
+    grains: Material,
+    sources: &'static [(&'static str, &'static str)],
+}
 
-/// Grains of glass beads, and of quartz.
-const GLASS: Material = Material { shear_modulus: 29e9, poisson_ratio: 0.22, density: 2500.0 };
-const QUARTZ: Material = Material { shear_modulus: 44e9, poisson_ratio: 0.08, density: 2650.0 };
+const FILES: [Measured; 2] = [
+    Measured {
+        file: "laboratory_quartz.csv",
+        text: include_str!("../data/laboratory_quartz.csv"),
+        grains: Material { shear_modulus: 44e9, poisson_ratio: 0.08, density: 2650.0 },
+        sources: &[
+            ("dry", "Zimmer, Prasad & Mavko, Geophysics 72, E1 (2007), digitised for doi 10.1785/0220240469"),
+            ("ottawa", "Hardin & Richart (1963), the correlation of round sand"),
+        ],
+    },
+    Measured {
+        file: "laboratory_glass.csv",
+        text: include_str!("../data/laboratory_glass.csv"),
+        grains: Material { shear_modulus: 29e9, poisson_ratio: 0.22, density: 2500.0 },
+        sources: &[("beads", "Domenico, Geophysics 42, 1339 (1977), digitised for doi 10.1785/0220240469")],
+    },
+];
 
-/// Relative error of a speed from a correlation of G.
-const OF_CORRELATION: f64 = 0.01;
+const NOTE: &str = "Predicted: contact law, k_t/k_n and z are inferred from the other pressures. The speeds are verified, and z is not.";
 
-const NOTE: &str = "Predicted: contact law, k_t/k_n and z are inferred from the other pressures. What is verified is the speeds, not z.";
+/// A sample with its name and source.
+pub type LaboratorySample = (String, &'static str, SpeedSeries);
 
-/// A series of speeds of one sample.
-fn series(
-    rows: impl Iterator<Item = (f64, SpeedMode, f64, f64)>,
-    density: f64,
-    material: Material,
-) -> SpeedSeries {
-    let row = |(pressure, mode, speed, stddev)| SeriesRow {
-        pressure,
-        density,
-        mode,
-        angle: None,
-        speed: Some(speed),
-        stddev,
-    };
+/// The samples of all files.
+///
+/// # Errors
+/// A line that has no sample, pressure, density, mode, speed and standard deviation.
+pub fn samples() -> Result<Vec<LaboratorySample>, VerificationError> {
+    let mut all: Vec<LaboratorySample> = Vec::new();
+    for Measured { file, text, grains, sources } in FILES {
+        for line in text.lines().filter(|l| !l.starts_with('#')).skip(1) {
+            let fault = || VerificationError::Data { file, why: format!("{line:?} has no speed") };
+            let cells: Vec<&str> = line.split(',').collect();
+            let [sample, pressure, density, mode, speed, sigma] = cells[..] else { return Err(fault()) };
+            let number = |text: &str| text.parse::<f64>().map_err(|_| fault());
+            let value = number(speed)?;
+            let row = SeriesRow {
+                pressure: number(pressure)?,
+                density: number(density)?,
+                mode: if mode == "p" { SpeedMode::P } else { SpeedMode::Sv },
+                angle: None,
+                speed: Some(value),
+                stddev: number(sigma)? / value,
+            };
+            match all.iter_mut().find(|(name, ..)| name == sample) {
+                Some((_, _, series)) => series.rows.push(row),
+                None => {
+                    let source =
+                        sources.iter().find(|(start, _)| sample.starts_with(start)).ok_or_else(fault)?.1;
+                    all.push((sample.to_owned(), source, series(row, grains)));
+                }
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn series(row: SeriesRow, material: Material) -> SpeedSeries {
     SpeedSeries {
-        rows: rows.map(row).collect(),
+        rows: vec![row],
         material,
         shear_modulus_stddev: 0.0,
         density_stddev: 0.0,
@@ -46,46 +84,6 @@ fn series(
         grains: None,
         ln_crossover: None,
     }
-}
-
-/// Rows of pressure, mode, speed and its error.
-fn of_speeds(
-    file: &'static str,
-    text: &str,
-    density: f64,
-    material: Material,
-) -> Result<SpeedSeries, VerificationError> {
-    let mode = |code: f64| if code == 0.0 { SpeedMode::P } else { SpeedMode::Sv };
-    let all = table(file, text)?;
-    Ok(series(all.iter().map(|r| (r[0], mode(r[1]), r[2], r[3] / r[2])), density, material))
-}
-
-/// The samples, each with its name and source.
-pub fn samples() -> Result<Vec<(String, &'static str, SpeedSeries)>, VerificationError> {
-    let mut all = vec![
-        (
-            "dry sand, 0.06 to 12 MPa".to_owned(),
-            "Zimmer, Prasad & Mavko, Geophysics 72, E1 (2007), as digitised for doi 10.1785/0220240469; density 1643 kg/m3 and quartz assumed",
-            of_speeds("laboratory_zimmer.csv", ZIMMER, 1643.0, QUARTZ)?,
-        ),
-        (
-            "glass beads, 2 to 34 MPa".to_owned(),
-            "Domenico, Geophysics 42, 1339 (1977), as digitised for doi 10.1785/0220240469; density 1542 kg/m3 and glass assumed",
-            of_speeds("laboratory_domenico.csv", DOMENICO, 1542.0, GLASS)?,
-        ),
-    ];
-    let moduli = table("laboratory_hardin.csv", HARDIN)?;
-    for void_ratio in [0.55, 0.6, 0.65] {
-        let density = QUARTZ.density / (1.0 + void_ratio);
-        let speed = |r: &Vec<f64>| (r[1], SpeedMode::Sv, (r[2] / density).sqrt(), OF_CORRELATION);
-        let rows = moduli.iter().filter(|r| r[0] == void_ratio).map(speed);
-        all.push((
-            format!("Ottawa sand, void ratio {void_ratio}"),
-            "Hardin & Richart (1963), the correlation of round sand; quartz assumed",
-            series(rows, density, QUARTZ),
-        ));
-    }
-    Ok(all)
 }
 
 /// The rows: the speeds of each mode of each sample.

@@ -13,6 +13,10 @@ fn network() -> &'static RelaxationCalibration {
     Calibration::builtin("grainlab").unwrap().network.as_ref().unwrap()
 }
 
+fn sample(name: &str) -> SpeedSeries {
+    samples().unwrap().into_iter().find(|(of, ..)| of == name).unwrap().2
+}
+
 fn inferred(series: &SpeedSeries) -> SeriesEstimate {
     infer_series(series, network(), SeriesPrior::builtin()).unwrap()
 }
@@ -25,7 +29,7 @@ fn rms(found: &SeriesEstimate, series: &SpeedSeries, used: impl Fn(f64) -> bool)
 
 #[test]
 fn each_pressure_of_a_sand_is_predicted_from_the_others_within_its_interval() {
-    let (_, _, sand) = samples().unwrap().swap_remove(0);
+    let sand = sample("dry");
     let found = inferred(&sand);
     let inside = found.rows.iter().filter(|r| r.left_out.unwrap().is_inside).count();
     println!("sand: rms {:.4}, inside {inside} of {}", rms(&found, &sand, |_| true), sand.rows.len());
@@ -35,7 +39,7 @@ fn each_pressure_of_a_sand_is_predicted_from_the_others_within_its_interval() {
 
 #[test]
 fn speeds_that_no_packing_has_are_contradictory_alone_and_flagged_in_their_series() {
-    let (_, _, beads) = samples().unwrap().swap_remove(1);
+    let beads = sample("beads");
     let of_pair = |p: f64| (p - PAIR).abs() < 1e3;
     let found = inferred(&beads);
     let flagged = found.pressures.iter().filter(|p| p.p.unwrap() < SeriesEstimate::CONTRADICTORY);

@@ -1,16 +1,15 @@
 //! Wave speeds of samples whose contacts are not known: structure at each pressure, and the contact.
 
 pub(super) mod inputs;
-pub(super) mod print;
+mod print;
+mod sample;
 
 use super::speed_table::SpeedLine;
 use grainlab_console::{Failure, Format, say};
-use grainlab_emt::{
-    Calibration, ContactKind, EmtError, Sensitivity, SeriesEstimate, SeriesPrior, SpeedSeries, infer_series,
-};
+use grainlab_emt::{Calibration, ContactKind, EmtError, Sensitivity, SeriesPrior, infer_series};
 use grainlab_node_kit::Exit;
 use inputs::Inputs;
-use serde::Serialize;
+use sample::Sample;
 use std::path::Path;
 
 /// The contact law that is assumed.
@@ -37,7 +36,7 @@ impl Contact {
         }
     }
 
-    /// What the first line of an answer says of it.
+    /// Text in the first line of an answer.
     fn text(self) -> &'static str {
         match self {
             Self::Free => {
@@ -50,23 +49,6 @@ impl Contact {
             }
         }
     }
-}
-
-/// One sample with its answer.
-#[derive(Debug, Serialize)]
-pub(super) struct Sample {
-    pub(super) sample: String,
-    pub(super) contact: &'static str,
-    #[serde(skip)]
-    pub(super) lines: Vec<SpeedLine>,
-    #[serde(skip)]
-    pub(super) series: SpeedSeries,
-    pub(super) estimate: SeriesEstimate,
-    pub(super) sensitivity: Sensitivity,
-    /// What was assumed for want of a column or flag.
-    pub(super) assumed: Vec<String>,
-    /// What the answer does not determine, contradicts or depends on.
-    pub(super) notes: Vec<String>,
 }
 
 /// The prior of a series: the built-in one, or a file.

@@ -35,7 +35,7 @@ impl Wide {
 /// One structure of the sample over pressure, with its contact.
 #[derive(Clone, Debug)]
 pub(super) struct SeriesDraw {
-    /// Probability.
+    /// Probability of this draw.
     pub(super) weight: f64,
     pub(super) kind: ContactKind,
     pub(super) preparation: usize,
@@ -136,7 +136,7 @@ impl Mixture<'_> {
         let off = &self.data - at.ln_speed.rows(0, m);
         let ln_weight = ln_normal(&off, &cholesky) - proposed;
         let pull = cholesky.solve(&off);
-        // What the rows say of a quantity with this covariance with them and this variance.
+        // A quantity with this covariance with the rows and this variance, given the rows.
         let mut given = |with: &DVector<f64>, variance: f64| {
             let left = variance - with.dot(&cholesky.solve(with));
             with.dot(&pull) + left.max(0.0).sqrt() * random.normal::<1>()[0]

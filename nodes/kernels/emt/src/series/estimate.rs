@@ -1,4 +1,4 @@
-//! What is inferred from a series, and how far it depends on what was assumed.
+//! Inferred structure of a sample, and its dependence on what was assumed.
 
 use super::check::LeftOut;
 use super::component::{Mixture, Solution, normalised};
@@ -32,9 +32,9 @@ const UNLIKELY: f64 = 0.05;
 /// A marginal distribution: mean, standard deviation, and the ends of the central 95 %.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Interval {
-    /// Mean.
+    /// Mean of the distribution.
     pub mean: f64,
-    /// Standard deviation.
+    /// Standard deviation of it.
     pub stddev: f64,
     /// 2.5 % quantile.
     pub low: f64,
@@ -45,7 +45,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Of weighted values; the weights need not add up to 1.
+    /// Distribution of weighted values; the weights need not add up to 1.
     fn of(values: impl Iterator<Item = (f64, f64)>) -> Self {
         let mut all: Vec<(f64, f64)> = values.collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -88,7 +88,7 @@ impl Interval {
 /// The structure at one pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PressureEstimate {
-    /// Pressure, Pa.
+    /// Confining pressure, Pa.
     pub pressure: f64,
     /// Coordination number without rattlers.
     pub z: Interval,
@@ -119,9 +119,9 @@ pub struct RowEstimate {
 /// A family of contact laws, after the data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawEstimate {
-    /// The family.
+    /// Family of the law.
     pub law: ContactKind,
-    /// Its probability.
+    /// Probability of the family.
     pub probability: f64,
     /// ln of the crossover pressure, Pa; `None` without one.
     pub ln_crossover: Option<Interval>,
@@ -129,14 +129,14 @@ pub struct LawEstimate {
     pub z: Vec<f64>,
 }
 
-/// What is inferred from a series.
+/// Inferred structure and contacts of a sample.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SeriesEstimate {
     /// Structure at each pressure.
     pub pressures: Vec<PressureEstimate>,
     /// Rows, in the order of the series.
     pub rows: Vec<RowEstimate>,
-    /// k_t/k_n.
+    /// k_t/k_n of the contacts.
     pub stiffness_ratio: Interval,
     /// Probability that k_t/k_n is at the lowest that was assumed, and at Mindlin's.
     pub at_ends: [f64; 2],
@@ -145,7 +145,7 @@ pub struct SeriesEstimate {
     pub level: Interval,
     /// Errors of the speeds over the stated ones.
     pub noise: Interval,
-    /// Contact laws.
+    /// Families of contact laws.
     pub laws: Vec<LawEstimate>,
     /// Preparations with their probabilities.
     pub preparations: Vec<(String, f64)>,
@@ -268,7 +268,7 @@ fn marginal_of(draws: &[SeriesDraw], row: usize) -> Interval {
     Interval::of(draws.iter().map(|d| (d.predicted[row], d.weight)))
 }
 
-/// What is predicted without each pressure, or of a single pressure without each row.
+/// Predictions without each pressure, and without each row.
 struct Groups {
     rows: Vec<Option<LeftOut>>,
     of_pressures: Vec<Option<f64>>,

@@ -27,13 +27,13 @@ const OF_LOW_RATIO: [[f64; 3]; 2] = [[-0.132, 0.029, 0.295], [-0.199, 0.819, 0.7
 
 /// ln of both moduli by the spread of the contact stiffness, in units of e^(−(z − 4)/2): factors of α² − 1/9 for k ∝ F^α. From the
 /// campaign `rough`.
-const OF_SPREAD: [f64; 2] = [0.426, -0.456];
+const OF_SPREAD: [f64; 2] = [0.35, -0.56];
 const SPREAD_RATE: f64 = 0.5;
 
 /// Least modulus of a wave, over the shear modulus.
 const LEAST_MODULUS: f64 = 0.02;
 
-/// Least k_t/k_n.
+/// Least k_t/k_n of an iteration.
 const LEAST_RATIO: f64 = 0.05;
 
 /// Invariants and ε weighted by stiffness.

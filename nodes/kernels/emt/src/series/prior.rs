@@ -1,4 +1,4 @@
-//! What is known of a sample before its speeds: z over pressure by preparation, the contact, and the noise.
+//! Prior knowledge of a sample, before its speeds: z over pressure by preparation, the contact, and the noise.
 
 use super::gain::ContactKind;
 use crate::error::EmtError;
@@ -32,7 +32,7 @@ pub struct PreparationPrior {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactPrior {
-    /// The family.
+    /// Family of the law.
     pub law: ContactKind,
     /// Probability, in any unit.
     pub weight: f64,
@@ -61,9 +61,9 @@ pub struct SeriesPrior {
     pub eps_own: f64,
     /// Standard deviation of z at each pressure about that of the preparation.
     pub z_own: f64,
-    /// Contact laws.
+    /// Families of contact laws.
     pub contact: Vec<ContactPrior>,
-    /// Preparations.
+    /// Preparations of the sample.
     pub preparation: Vec<PreparationPrior>,
     /// d ln(k_t/k_n) per decade of pressure, fixed.
     #[serde(skip)]

@@ -6,7 +6,7 @@ use grainlab_core::Material;
 /// Mode of a wave: polarized along its direction, in the plane of direction and axis, or across it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpeedMode {
-    /// Longitudinal.
+    /// Longitudinal, along the direction.
     P,
     /// Transverse, in the plane of direction and axis.
     Sv,

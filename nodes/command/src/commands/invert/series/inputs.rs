@@ -5,7 +5,7 @@ use grainlab_core::Material;
 use grainlab_emt::{ContactKind, SeriesRow, SpeedSeries, UNKNOWN_SIZE_SPREAD};
 use std::f64::consts::PI;
 
-/// What flags say of all samples of a file.
+/// Inputs from flags, for all samples of a file.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Inputs {
     /// Pressure and density of rows without them.

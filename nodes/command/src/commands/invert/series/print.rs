@@ -1,6 +1,6 @@
 //! Answers on a series as text and as CSV, and the sentences on what they depend on.
 
-use super::Sample;
+use super::sample::Sample;
 use grainlab_console::{CsvText, Table, fixed};
 use grainlab_emt::{Interval, SeriesEstimate, SeriesPrior, SpeedMode};
 use std::f64::consts::PI;
@@ -157,7 +157,7 @@ pub(super) fn csv(samples: &[Sample]) -> String {
     text.finish()
 }
 
-/// What contradicts what.
+/// Text on the rows that contradict the others.
 pub(super) fn contradiction(sample: &Sample) -> String {
     let e = &sample.estimate;
     let of_row = |n: usize| e.rows[n].p.filter(|p| *p < SeriesEstimate::CONTRADICTORY).map(|p| (n, p));

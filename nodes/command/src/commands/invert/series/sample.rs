@@ -1,0 +1,22 @@
+//! One sample, and what is inferred of it.
+
+use super::super::speed_table::SpeedLine;
+use grainlab_emt::{Sensitivity, SeriesEstimate, SpeedSeries};
+use serde::Serialize;
+
+/// One sample with its answer.
+#[derive(Debug, Serialize)]
+pub(super) struct Sample {
+    pub(super) sample: String,
+    pub(super) contact: &'static str,
+    #[serde(skip)]
+    pub(super) lines: Vec<SpeedLine>,
+    #[serde(skip)]
+    pub(super) series: SpeedSeries,
+    pub(super) estimate: SeriesEstimate,
+    pub(super) sensitivity: Sensitivity,
+    /// Assumptions for want of a column or flag.
+    pub(super) assumed: Vec<String>,
+    /// Sentences on what is not determined, contradicts, or z depends on.
+    pub(super) notes: Vec<String>,
+}
