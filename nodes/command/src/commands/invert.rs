@@ -84,9 +84,11 @@ results; the other rows are processed. The exit code is that of the worst row.
 A file of --speeds has a row per speed: speed (m/s; empty: predicted), speed_sigma, pressure_pa, density (kg/m3) or grain_density and
 phi, mode (p, s, sv, sh) with direction (along, across or degrees from the axis) or angle_deg, or direction_x to _z and
 polarization_x to _z; and, if known, sample, diameter (m), roughness (root mean square, m), roughness_sigma, frequency (Hz), pressure_sigma_pa and
-density_sigma. Rows of one sample share its contacts and its preparation.
+density_sigma. Rows of one sample share its contacts and its preparation; all samples of a file are of the grains of
+--grain-shear-modulus and --poisson, and under isotropic stress. The sigmas of pressure and density are those of an error that all rows share.
+Unknown columns are refused. With --contact hertz, a file without pressure_pa is given to the models of smooth spheres.
 
-The status is ok, extrapolated (outside the range of the model, or not all of its unknowns), contradictory (the data contradict each
+The status of other answers is ok, extrapolated (outside the range of the model, or not all of its unknowns), contradictory (the data contradict each
 other or the model) or unknown (no answer); the column reason has the notes of an estimate. The exit code is 4 where the recommended
 answer is contradictory or unknown, or a model refuses the moduli, and 2 where an input is missing or invalid.";
 
@@ -163,7 +165,8 @@ pub(crate) struct Args {
     /// Number of grains of the sample, which its scatter depends on [default: unknown, taken as 2000]
     #[arg(long, value_name = "N", conflicts_with = "table", value_parser = clap::value_parser!(u32).range(1..))]
     grains: Option<u32>,
-    /// Relative one-sigma error of each modulus without its own error: 0.01 is one percent [default: unknown]
+    /// Relative one-sigma error of each modulus without its own error, and of each speed without speed_sigma: 0.01 is one percent
+    /// [default: unknown; 0.01 for speeds whose contacts are not known]
     #[arg(long, value_name = "REL")]
     error: Option<f64>,
     /// States from a CSV file, as described below; - is the standard input
@@ -404,12 +407,22 @@ impl Args {
             ("--evidence", self.evidence),
             ("--explain", self.explain),
             ("--rank-test", self.rank_test.is_some()),
+            ("--judge", self.judge),
+            ("--gamma", self.gamma.is_some()),
+            ("--seed", self.seed != 0),
+            ("--poisson-sigma", self.poisson_sigma != 0.0),
+            ("--calibration", self.calibration != [calibrations::DEFAULT]),
         ];
         refuse(
             &of_models,
             "is for smooth spheres at one pressure: give --contact hertz, and no column pressure_pa",
         )?;
         refuse(&[("--phi", self.phi.is_some())], "is a column of --speeds")?;
+        let all_have = lines.iter().all(|l| l.pressure_pa.is_some());
+        refuse(
+            &[("--pressure", all_have && self.pressure.is_some())],
+            "is in the column pressure_pa of every row",
+        )?;
         let inputs = Inputs {
             pressure: self.pressure,
             density: self.density,

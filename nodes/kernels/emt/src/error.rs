@@ -52,6 +52,18 @@ pub enum EmtError {
         /// The possible values.
         range: &'static str,
     },
+    /// Too few or too many speeds of a sample.
+    #[error(
+        "{measured} measured speeds: a sample has {least} to {most}; of more, take means over pressures that are near each other"
+    )]
+    SeriesLength {
+        /// Number of the speeds.
+        measured: usize,
+        /// Fewest speeds of a sample.
+        least: usize,
+        /// Most speeds of a sample.
+        most: usize,
+    },
     /// An invalid prior of a series.
     #[error("the prior of the series is invalid: {fault}")]
     SeriesPrior {

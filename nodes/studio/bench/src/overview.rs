@@ -110,7 +110,7 @@ fn of_engine(args: &Args) -> Result<Vec<Row>, Failure> {
     };
     settings.truncate(if args.quick { 1 } else { settings.len() });
     let (shares, of_energy, of_packings) =
-        if args.quick { (&[0.2, 0.8][..], 2, 3) } else { (&[0.2, 0.4, 0.8, 1.0][..], 5, 5) };
+        if args.quick { (&[0.4, 0.8][..], 2, 3) } else { (&[0.2, 0.4, 0.8, 1.0][..], 5, 5) };
     let threads = args.threads as usize;
     let mut rows = engine::energy(shares, &Runs { seeds: of_energy, threads })?;
     let runs = Runs { seeds: args.seeds.unwrap_or(of_packings), threads };

@@ -44,7 +44,7 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
     };
     let tooltip = |p: &grainlab_emt::PressureEstimate| {
         format!(
-            "{:.4} kPa: z {:.2} ± {:.2}, {:.2} to {:.2}",
+            "{:.1} kPa: z {:.2} ± {:.2}, {:.2} to {:.2}",
             p.pressure / 1e3,
             p.z.mean,
             p.z.stddev,

@@ -57,7 +57,7 @@ pub(super) fn prior(path: Option<&Path>) -> Result<SeriesPrior, Failure> {
     let name = path.display();
     let text = std::fs::read_to_string(path).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
     SeriesPrior::parse(&text)
-        .map_err(|e| Failure::usage(format!("{name}: {e}; --print-prior --contact free prints one")))
+        .map_err(|e| Failure::usage(format!("{name}: {e}; this prior is that of samples whose contacts are not known: --print-prior --contact free prints one")))
 }
 
 /// Infers every sample of a file, and prints the answers.
@@ -87,8 +87,18 @@ pub(super) fn run(
         let estimate = infer_series(&series, network, &prior).map_err(wrong)?;
         let sensitivity = Sensitivity::of(&series, network, &prior).map_err(wrong)?;
         let contact = contact.text();
-        let mut all =
-            Sample { sample, contact, lines, series, estimate, sensitivity, assumed, notes: Vec::new() };
+        let status = if estimate.is_contradictory() { "contradictory" } else { "ok" };
+        let mut all = Sample {
+            sample,
+            contact,
+            status,
+            lines,
+            series,
+            estimate,
+            sensitivity,
+            assumed,
+            notes: Vec::new(),
+        };
         all.notes = print::notes(&all, &prior);
         found.push(all);
     }

@@ -36,9 +36,9 @@ const COLUMNS: [&str; 22] = [
 ];
 
 /// One row; lengths in m, speeds in m/s, other units as in the names of the columns.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(super) struct SpeedLine {
-    #[serde(skip)]
+    #[serde(skip_deserializing)]
     pub(super) line: u64,
     #[serde(default)]
     pub(super) sample: String,
@@ -109,11 +109,14 @@ fn parsed(text: &str) -> Result<Vec<SpeedLine>, String> {
     for record in reader.records() {
         let record = record.map_err(|e| e.to_string())?;
         let line = record.position().map_or(0, csv::Position::line);
+        if record.iter().all(str::is_empty) {
+            continue;
+        }
         let row = row(&header, &record).map_err(|fault| format!("line {line}: {fault}"))?;
         lines.push(SpeedLine { line, ..row });
     }
     if lines.iter().all(|l| l.speed.is_none()) {
-        return Err("there is no speed below the header".to_owned());
+        return Err("there is no measured speed below the header".to_owned());
     }
     Ok(lines)
 }

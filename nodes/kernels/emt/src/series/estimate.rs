@@ -112,6 +112,8 @@ pub struct RowEstimate {
     pub stddev: f64,
     /// The measured speed against it.
     pub left_out: Option<LeftOut>,
+    /// The measured speed against its prediction from all other rows.
+    pub by_rows: Option<LeftOut>,
     /// Probability of a worse speed, predicted from all other rows.
     pub p: Option<f64>,
 }
@@ -199,8 +201,9 @@ pub fn infer_series(
         let spread = |all: &[SeriesDraw]| Interval::of(all.iter().map(|d| (of(d), d.weight)));
         Interval { prior_stddev: spread(&before).stddev, ..spread(&draws) }
     };
-    let probability =
-        |of: &dyn Fn(&SeriesDraw) -> bool| -> f64 { draws.iter().filter(|d| of(d)).map(|d| d.weight).sum() };
+    let probability = |of: &dyn Fn(&SeriesDraw) -> bool| -> f64 {
+        draws.iter().filter(|d| of(d)).map(|d| d.weight).fold(0.0, |a, w| a + w)
+    };
     let determined = series.has_directions();
     let groups = Groups::of(&mixture);
     let pressures = (0..forward.count())
@@ -233,7 +236,8 @@ pub fn infer_series(
                 let stddev = left.map_or(f64::NAN, |l| l.stddev);
                 let ln = mixture.data[j] - left.map_or(f64::NAN, |l| l.residual);
                 let p = groups.of_rows[j];
-                RowEstimate { predicted: ln.exp(), stddev: stddev * ln.exp(), left_out: left, p }
+                let by_rows = groups.by_rows[j];
+                RowEstimate { predicted: ln.exp(), stddev: stddev * ln.exp(), left_out: left, by_rows, p }
             }
             Some(n) => {
                 let ln = marginal_of(&draws, n);
@@ -241,6 +245,7 @@ pub fn infer_series(
                     predicted: ln.mean.exp(),
                     stddev: ln.stddev * ln.mean.exp(),
                     left_out: None,
+                    by_rows: None,
                     p: None,
                 }
             }
@@ -271,6 +276,7 @@ fn marginal_of(draws: &[SeriesDraw], row: usize) -> Interval {
 /// Predictions without each pressure, and without each row.
 struct Groups {
     rows: Vec<Option<LeftOut>>,
+    by_rows: Vec<Option<LeftOut>>,
     of_pressures: Vec<Option<f64>>,
     of_rows: Vec<Option<f64>>,
 }
@@ -279,14 +285,19 @@ impl Groups {
     fn of(mixture: &Mixture<'_>) -> Self {
         let forward = &mixture.forward;
         let m = forward.measured;
-        let mut found =
-            Self { rows: vec![None; m], of_pressures: vec![None; forward.count()], of_rows: vec![None; m] };
+        let mut found = Self {
+            rows: vec![None; m],
+            by_rows: vec![None; m],
+            of_pressures: vec![None; forward.count()],
+            of_rows: vec![None; m],
+        };
         if m < 2 {
             return found;
         }
         for j in 0..m {
             let (rows, p) = mixture.leave_out(&[j]);
-            (found.rows[j], found.of_rows[j]) = (rows.first().copied(), Some(p));
+            (found.by_rows[j], found.of_rows[j]) = (rows.first().copied(), Some(p));
+            found.rows[j] = found.by_rows[j];
         }
         for k in 0..forward.count() {
             let group: Vec<usize> = (0..m).filter(|j| forward.place[*j] == k).collect();

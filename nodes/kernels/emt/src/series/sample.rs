@@ -56,6 +56,9 @@ pub struct SpeedSeries {
 /// Pressures closer than this relative difference are one.
 const SAME_PRESSURE: f64 = 1e-3;
 
+/// Numbers of speeds of a series: one alone has nothing to agree with, and the time rises with the cube of it.
+const SPEEDS: std::ops::RangeInclusive<usize> = 2..=64;
+
 impl SpeedSeries {
     /// The different pressures, in order, Pa.
     pub fn pressures(&self) -> Vec<f64> {
@@ -108,7 +111,10 @@ impl SpeedSeries {
                 return Err(EmtError::NotFinite { quantity: "angle", value: f64::NAN });
             }
         }
-        positive("number of speeds", self.rows.iter().filter(|r| r.speed.is_some()).count() as f64)?;
+        let measured = self.rows.iter().filter(|r| r.speed.is_some()).count();
+        if !SPEEDS.contains(&measured) {
+            return Err(EmtError::SeriesLength { measured, least: *SPEEDS.start(), most: *SPEEDS.end() });
+        }
         positive("shear modulus of the grains", self.material.shear_modulus)?;
         for (quantity, value) in [
             ("stddev of the shear modulus of the grains", self.shear_modulus_stddev),

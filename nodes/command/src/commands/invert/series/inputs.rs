@@ -2,7 +2,7 @@
 
 use super::super::speed_table::SpeedLine;
 use grainlab_core::Material;
-use grainlab_emt::{ContactKind, SeriesRow, SpeedSeries, UNKNOWN_SIZE_SPREAD};
+use grainlab_emt::{ContactKind, SeriesRow, SpeedMode, SpeedSeries, UNKNOWN_SIZE_SPREAD};
 use std::f64::consts::PI;
 
 /// Inputs from flags, for all samples of a file.
@@ -42,6 +42,9 @@ impl Inputs {
         let shear_modulus = self.grain_shear_modulus.ok_or(GRAINS)?;
         let poisson_ratio = self.poisson.ok_or(GRAINS)?;
         let mut assumed = Vec::new();
+        if let Some(spread) = self.size_spread.filter(|s| !(0.0..=0.5).contains(s)) {
+            return Err(format!("--size-spread {spread} must be from 0 to 0.5"));
+        }
         let mut rows = Vec::new();
         let (mut without_error, mut dispersed) = (0, 0);
         let material = Material { shear_modulus, poisson_ratio, density: 2500.0 };
@@ -87,12 +90,31 @@ impl Inputs {
                 }
                 if let Some((frequency, diameter)) = line.frequency.zip(line.diameter) {
                     let per_wave = frequency * diameter / speed;
+                    if per_wave > 0.5 {
+                        return Err(fault(format!(
+                            "the wavelength, {:.3e} m, is below two diameters; Hz and m are expected",
+                            speed / frequency
+                        )));
+                    }
                     if per_wave > 1.0 / 15.0 {
                         // Dispersion of a chain of grains, (π D/λ)²/6.
                         stddev = stddev.hypot((PI * per_wave).powi(2) / 6.0);
                         dispersed += 1;
                     }
                 }
+            }
+            if line.diameter.is_none() && (line.frequency.is_some() || line.roughness.is_some()) {
+                return Err(fault("frequency and roughness need the column diameter".to_owned()));
+            }
+            if let Some(diameter) = line.diameter.filter(|d| !(1e-6..0.2).contains(d)) {
+                return Err(fault(format!(
+                    "column diameter: {diameter} must be from 1e-6 to 0.2; m is expected"
+                )));
+            }
+            if line.roughness != lines[0].roughness || line.diameter != lines[0].diameter {
+                return Err(fault(
+                    "roughness and diameter must be the same in all rows of a sample".to_owned(),
+                ));
             }
             let (mode, angle) = line.wave;
             rows.push(SeriesRow { pressure, density, mode, angle, speed: line.speed, stddev });
@@ -110,6 +132,16 @@ impl Inputs {
             assumed.push("the spread of the sizes is not known: 0.17".to_owned());
             UNKNOWN_SIZE_SPREAD.value
         });
+        if lines.iter().any(|l| l.phi.is_some_and(|phi| phi < 0.5)) {
+            assumed.push(
+                "phi below 0.5 was taken as the solid fraction, which is 1 less the porosity".to_owned(),
+            );
+        }
+        if let Some(line) = swapped(lines) {
+            return Err(format!(
+                "line {line}: this S wave is too fast for the P wave of the same pressure: the bulk modulus would be negative; are p and s exchanged?"
+            ));
+        }
         let relative = |of: fn(&SpeedLine) -> Option<(f64, f64)>, flag: f64| {
             let all: Vec<f64> = lines.iter().filter_map(of).map(|(sigma, value)| sigma / value).collect();
             if all.is_empty() { flag } else { all.iter().sum::<f64>() / all.len() as f64 }
@@ -147,6 +179,28 @@ impl Inputs {
             grains: self.grains,
             ln_crossover,
         };
+        for (name, error) in [
+            ("pressure", series.pressure_stddev),
+            ("density", series.density_stddev),
+            ("grain shear modulus", series.shear_modulus_stddev),
+        ] {
+            if error > 0.5 {
+                return Err(format!(
+                    "the standard deviation of the {name} is {:.0} % of it: at most 50 % is expected",
+                    100.0 * error
+                ));
+            }
+        }
         Ok((series, assumed))
     }
+}
+
+/// The line of an S wave with 4/3 vₛ² above v_p², without directions at one pressure.
+fn swapped(lines: &[SpeedLine]) -> Option<u64> {
+    let of = |mode: SpeedMode| lines.iter().filter(move |l| l.wave == (mode, None));
+    of(SpeedMode::Sv).find_map(|s| {
+        let same = of(SpeedMode::P).filter(|p| p.pressure_pa == s.pressure_pa);
+        let is_slower = |p: &SpeedLine| Some(p.speed? * p.speed? < 4.0 / 3.0 * s.speed? * s.speed?);
+        same.filter_map(is_slower).any(|slower| slower).then_some(s.line)
+    })
 }

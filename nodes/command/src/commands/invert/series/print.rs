@@ -2,14 +2,20 @@
 
 use super::sample::Sample;
 use grainlab_console::{CsvText, Table, fixed};
-use grainlab_emt::{Interval, SeriesEstimate, SeriesPrior, SpeedMode};
+use grainlab_emt::{Interval, PressureEstimate, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode};
 use std::f64::consts::PI;
 
 /// Share of a posterior at an end of a range from which it is said.
 const AT_END: f64 = 0.1;
 
+/// ln of a stiffness over that of the law from which the material is doubtful.
+const FAR_LEVEL: f64 = 1.0;
+
 /// Probability of a contact law from which z under it is said.
 const LIKELY: f64 = 0.02;
+
+/// Factor of the pressure beyond which a prediction is far from the data.
+const FAR: f64 = 3.0;
 
 fn number(value: f64, digits: usize) -> String {
     format!("{value:.digits$}")
@@ -43,7 +49,7 @@ pub(super) fn text(sample: &Sample) -> String {
         table.row([
             kilopascals(p.pressure),
             interval(&p.z, 2),
-            ends(&p.z, 2),
+            z_ends(p),
             number(p.z.left(), 2),
             optional(p.eps.as_ref()),
             optional(p.eps_stiffness.as_ref()),
@@ -51,7 +57,7 @@ pub(super) fn text(sample: &Sample) -> String {
         ]);
     }
     out += &format!("\n{}", table.without_empty_columns().text());
-    out += "of prior: share of the prior's standard deviation that is left; p: probability of worse speeds, predicted from the other pressures\n";
+    out += "of prior: share of the prior's standard deviation that is left; p: chance of speeds that agree less well with the other pressures, suspicious below 0.01\n";
     if !has_eps {
         out += "eps is not determined: speeds of one mode in two directions determine it\n";
     }
@@ -67,13 +73,14 @@ pub(super) fn text(sample: &Sample) -> String {
     for ((line, row), of) in sample.lines.iter().zip(&sample.series.rows).zip(&e.rows) {
         let difference = of.left_out.map(|l| 100.0 * l.residual.exp_m1());
         let flag = match (of.left_out, line.speed) {
+            (None, None) if is_far(sample, row.pressure) => "predicted, far outside the measured pressures",
             (Some(left), _) if !left.is_inside => "outside 95 %",
             (None, None) => "predicted",
             _ => "",
         };
         table.row([
             kilopascals(row.pressure),
-            mode(row.mode).to_owned(),
+            mode(row).to_owned(),
             fixed(row.angle.map(|a| a * 180.0 / PI), 0),
             fixed(line.speed, 1),
             format!("{} +- {}", number(of.predicted, 1), number(of.stddev, 1)),
@@ -86,22 +93,22 @@ pub(super) fn text(sample: &Sample) -> String {
         &format!("\nEach speed, predicted from the other {from}:\n{}", table.without_empty_columns().text());
     out +=
         &format!("\nk_t/k_n        {}  ({})\n", interval(&e.stiffness_ratio, 3), ends(&e.stiffness_ratio, 3));
-    out += &format!(
-        "stiffness      {:+.1} % +- {:.1} %, over that of the law\n",
-        100.0 * e.level.mean.exp_m1(),
-        100.0 * e.level.stddev
-    );
+    let [middle, low, high] = [e.level.mean, e.level.low, e.level.high].map(|l| number(l.exp(), 2));
+    out += &format!("stiffness      {middle} times that of the law with these grains  ({low} to {high})\n");
     out += &format!(
         "noise          {} times the stated errors  ({})\n",
         interval(&e.noise, 2),
         ends(&e.noise, 2)
     );
+    out += "\nprobability of each contact law\n";
     for law in &e.laws {
         let cross = law.ln_crossover.map_or_else(String::new, |c| {
-            format!(", changes at {:.3e} Pa, to a factor of {:.1}", c.mean.exp(), c.stddev.exp())
+            let (at, within) = (number(c.mean.exp() / 1e3, 0), number(c.stddev.exp(), 1));
+            format!(", its crossover at {at} kPa, within a factor of {within} either way")
         });
         out += &format!("{:<14} {}{cross}\n", law.law.name(), number(law.probability.max(0.0), 3));
     }
+    out += "\nprobability of each preparation (simulated: lubricated, moulded, dense by vibration, loose)\n";
     for (name, probability) in &e.preparations {
         out += &format!("{name:<14} {}\n", number(probability.max(0.0), 3));
     }
@@ -112,12 +119,26 @@ pub(super) fn text(sample: &Sample) -> String {
     out
 }
 
-fn mode(mode: SpeedMode) -> &'static str {
-    match mode {
+fn mode(row: &SeriesRow) -> &'static str {
+    match row.mode {
         SpeedMode::P => "p",
+        SpeedMode::Sv if row.angle.is_none() => "s",
         SpeedMode::Sv => "sv",
         SpeedMode::Sh => "sh",
     }
+}
+
+/// Ends of z, of which those above the highest that is stated are cut.
+fn z_ends(p: &PressureEstimate) -> String {
+    let is_cut = p.z_beyond > 0.025;
+    if is_cut { format!("{} to >6.6", number(p.z.low, 2)) } else { ends(&p.z, 2) }
+}
+
+/// True for a pressure three times beyond the measured ones.
+fn is_far(sample: &Sample, pressure: f64) -> bool {
+    let measured = || sample.series.rows.iter().filter(|r| r.speed.is_some()).map(|r| r.pressure);
+    let (low, high) = (measured().fold(f64::INFINITY, f64::min), measured().fold(0.0, f64::max));
+    pressure < low / FAR || pressure > high * FAR
 }
 
 /// One row for each pressure.
@@ -150,43 +171,44 @@ pub(super) fn csv(samples: &[Sample]) -> String {
             let rest = [p.p, Some(e.stiffness_ratio.mean), Some(e.stiffness_ratio.stddev), Some(e.p)];
             let all = z.into_iter().chain(pair(p.eps)).chain(pair(p.eps_stiffness)).chain(rest);
             [Some(p.pressure)].into_iter().chain(all).for_each(|v| text.number(v));
-            text.cell(if e.is_contradictory() { "contradictory" } else { "ok" });
+            text.cell(sample.status);
             text.end();
         }
     }
     text.finish()
 }
 
+fn chance(p: f64) -> String {
+    if p < 1e-4 { "p below 0.0001".to_owned() } else { format!("p {p:.4}") }
+}
+
 /// Text on the rows that contradict the others.
 pub(super) fn contradiction(sample: &Sample) -> String {
     let e = &sample.estimate;
-    let of_row = |n: usize| e.rows[n].p.filter(|p| *p < SeriesEstimate::CONTRADICTORY).map(|p| (n, p));
-    let rows: Vec<String> = (0..e.rows.len())
-        .filter_map(of_row)
-        .map(|(n, p)| {
-            let (row, of) = (&sample.series.rows[n], &e.rows[n]);
-            let speed = row.speed.unwrap_or(f64::NAN);
-            format!(
-                "line {} ({} at {} kPa: {:.1} m/s, {:.1} +- {:.1} by the others, p {p:.4})",
-                sample.lines[n].line,
-                mode(row.mode),
-                kilopascals(row.pressure),
-                speed,
-                of.predicted,
-                of.stddev
-            )
-        })
-        .collect();
-    let whole =
-        format!("p {:.4} of all speeds under what was assumed of contact, preparation and noise", e.p);
-    if rows.is_empty() { whole } else { format!("{whole}; against the others: {}", rows.join(", ")) }
+    let of_row = |n: usize| {
+        let p = e.rows[n].p.filter(|p| *p < SeriesEstimate::CONTRADICTORY)?;
+        let (row, by) = (&sample.series.rows[n], e.rows[n].by_rows?);
+        let (speed, predicted) = (row.speed?, row.speed? * (-by.residual).exp());
+        Some(format!(
+            "line {} ({} at {} kPa: {speed:.1} m/s, {predicted:.1} +- {:.1} by all other rows, {})",
+            sample.lines[n].line,
+            mode(row),
+            kilopascals(row.pressure),
+            by.stddev * predicted,
+            chance(p)
+        ))
+    };
+    let rows: Vec<String> = (0..e.rows.len()).filter_map(of_row).collect();
+    let whole = format!("the model does not fit these speeds ({})", chance(e.p));
+    if rows.is_empty() { whole } else { format!("{whole}; most of all {}", rows.join(", ")) }
 }
 
-/// Range of a list, as text.
+/// z at the lowest and the highest pressure, as text.
 fn range(values: &[f64]) -> String {
-    let (first, last) =
-        (values.first().copied().unwrap_or(f64::NAN), values.last().copied().unwrap_or(f64::NAN));
-    if values.len() > 1 { format!("{first:.2} -> {last:.2}") } else { format!("{first:.2}") }
+    match values {
+        [first, .., last] => format!("{first:.2} to {last:.2}"),
+        all => format!("{:.2}", all.first().unwrap_or(&f64::NAN)),
+    }
 }
 
 /// The sentences on what is not determined, what contradicts, and what z depends on.
@@ -198,15 +220,20 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
     }
     for p in e.pressures.iter().filter(|p| p.p.is_some_and(|p| p < SeriesEstimate::CONTRADICTORY)) {
         notes.push(format!(
-            "the speeds at {} kPa contradict those at the other pressures (p {:.4})",
+            "the speeds at {} kPa contradict those at the other pressures ({})",
             kilopascals(p.pressure),
-            p.p.unwrap_or(f64::NAN)
+            chance(p.p.unwrap_or(f64::NAN))
         ));
     }
     let mut open: Vec<String> = Vec::new();
     let undetermined: Vec<_> = e.pressures.iter().filter(|p| p.z.is_undetermined()).collect();
     if let (Some(first), Some(last)) = (undetermined.first(), undetermined.last()) {
-        open.push(format!("z from {} to {} kPa", kilopascals(first.pressure), kilopascals(last.pressure)));
+        let (first, last) = (kilopascals(first.pressure), kilopascals(last.pressure));
+        open.push(if first == last {
+            format!("z at {first} kPa")
+        } else {
+            format!("z from {first} to {last} kPa")
+        });
     }
     for (name, of) in [
         ("k_t/k_n", &e.stiffness_ratio),
@@ -214,7 +241,10 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
         ("the noise", &e.noise),
     ] {
         if of.is_undetermined() {
-            open.push(format!("{name} ({:.2} of its prior)", of.left()));
+            open.push(format!(
+                "{name} ({:.0} % of its prior's standard deviation is left)",
+                100.0 * of.left()
+            ));
         }
     }
     for law in e.laws.iter().filter(|l| l.ln_crossover.is_some_and(|c| c.is_undetermined())) {
@@ -224,14 +254,26 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
         notes.push(format!("not determined by these data: {}", open.join(", ")));
     }
     let below = prior.lowest_stiffness_ratio;
-    for (at, text) in e
-        .at_ends
-        .iter()
-        .zip([format!("at the lowest k_t/k_n that is assumed, {below}"), "at Mindlin's k_t/k_n".to_owned()])
-    {
+    let ends = [
+        format!("the lowest k_t/k_n that is assumed, {below}"),
+        "Mindlin's k_t/k_n, that of smooth contacts and the highest".to_owned(),
+    ];
+    for (at, text) in e.at_ends.iter().zip(ends) {
         if *at > AT_END && prior.mindlin < 1.0 {
-            notes.push(format!("{:.0} % of the posterior is {text}", 100.0 * at));
+            notes.push(format!("{:.0} % of the posterior is at {text}", 100.0 * at));
         }
+    }
+    if e.noise.mean > 0.8 * prior.noise[1] {
+        notes.push(format!(
+            "the model fits these speeds badly: their errors would be {:.1} times the stated ones, and {} is the most that is assumed",
+            e.noise.mean, prior.noise[1]
+        ));
+    }
+    if e.level.mean.abs() > FAR_LEVEL {
+        notes.push(format!(
+            "the stiffness is {:.2} times that of the law: check material, density and units",
+            e.level.mean.exp()
+        ));
     }
     let beyond = e.pressures.iter().map(|p| p.z_beyond).fold(0.0, f64::max);
     if beyond > AT_END {
@@ -240,24 +282,30 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
             100.0 * beyond
         ));
     }
-    let z: Vec<f64> = e.pressures.iter().map(|p| p.z.mean).collect();
-    notes.push(format!(
-        "z {}; with k_t/k_n falling 10 % per decade of pressure {}, rising {}; without the prior's slope of z {}",
-        range(&z), range(&s.drifted[0]), range(&s.drifted[1]), range(&s.without_slope)
-    ));
+    if e.pressures.len() > 1 {
+        let z: Vec<f64> = e.pressures.iter().map(|p| p.z.mean).collect();
+        notes.push(format!(
+            "z is {} from the lowest to the highest pressure; it would be {} if k_t/k_n fell by 10 % per decade of pressure, {} if \
+             it rose so, and {} without the prior's slope of z",
+            range(&z),
+            range(&s.drifted[0]),
+            range(&s.drifted[1]),
+            range(&s.without_slope)
+        ));
+    }
     if e.laws.len() > 1 {
         let under =
             e.laws.iter().filter(|l| l.probability > LIKELY).map(|l| format!("{} {}", l.law, range(&l.z)));
         notes.push(format!("z under each contact law alone: {}", under.collect::<Vec<_>>().join(", ")));
     }
-    let worst = s.bulk_less_shear.iter().map(|[d, sd]| d.abs() / sd).fold(0.0, f64::max);
-    notes.push(format!(
-        "z of the bulk modulus and z of the shear modulus differ by at most {worst:.1} standard deviations"
-    ));
-    notes.push("grain modulus, density and contact stiffness are one scale, and the curvature of angular grains is another: the stiffness above has both".to_owned());
-    notes.push(
-        "validated on simulated spheres; on samples, predictions of speeds were tested, and z was not"
-            .to_owned(),
-    );
+    let has = |p: bool| sample.series.rows.iter().any(|r| r.speed.is_some() && (r.mode == SpeedMode::P) == p);
+    if has(true) && has(false) {
+        let worst = s.bulk_less_shear.iter().map(|[d, sd]| d.abs() / sd).fold(0.0, f64::max);
+        notes.push(format!(
+            "z of the bulk modulus and z of the shear modulus differ by at most {worst:.1} standard deviations"
+        ));
+    }
+    notes.push("errors of the grain modulus and the density, and rounder or sharper grains, would look the same as this stiffness".to_owned());
+    notes.push("isotropic stress is assumed; validated on simulated spheres; on samples, predictions of speeds were tested, and z was not".to_owned());
     notes
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 pub(super) struct Sample {
     pub(super) sample: String,
     pub(super) contact: &'static str,
-    #[serde(skip)]
+    pub(super) status: &'static str,
     pub(super) lines: Vec<SpeedLine>,
     #[serde(skip)]
     pub(super) series: SpeedSeries,
