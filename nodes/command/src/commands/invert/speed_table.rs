@@ -292,7 +292,7 @@ mod tests {
     #[test]
     fn each_fault_is_named_with_its_line() {
         for (text, fault) in [
-            ("angle_deg,mode,speed\n", "no speed below the header"),
+            ("angle_deg,mode,speed\n", "no measured speed below the header"),
             ("angle_deg,mode,speed\n0,p,-5\n", "line 2: speed = -5"),
             ("angle_deg,mode,speed\n0,p,500\n0,x,500\n", "line 3: mode \"x\""),
             ("angle_deg,mode,speed\n0,,500\n", "line 2: give mode, with direction or angle_deg"),
