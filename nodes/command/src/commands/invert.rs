@@ -418,11 +418,13 @@ impl Args {
             "is for smooth spheres at one pressure: give --contact hertz, and no column pressure_pa",
         )?;
         refuse(&[("--phi", self.phi.is_some())], "is a column of --speeds")?;
-        let all_have = lines.iter().all(|l| l.pressure_pa.is_some());
-        refuse(
-            &[("--pressure", all_have && self.pressure.is_some())],
-            "is in the column pressure_pa of every row",
-        )?;
+        let has_pressure = lines.iter().all(|l| l.pressure_pa.is_some());
+        let has_density = lines.iter().all(|l| l.density.or(l.grain_density).is_some());
+        let in_columns = [
+            ("--pressure", has_pressure && self.pressure.is_some()),
+            ("--density", has_density && self.density.is_some()),
+        ];
+        refuse(&in_columns, "is in a column of every row")?;
         let inputs = Inputs {
             pressure: self.pressure,
             density: self.density,

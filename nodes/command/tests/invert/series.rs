@@ -80,6 +80,15 @@ fn wrong_units_and_missing_inputs_are_named_with_their_line() {
     };
     assert!(without("--density").contains("column density is empty"));
     assert!(without("--poisson").contains("the material of the grains is needed"));
+    let level = |flags: &[&str]| -> f64 {
+        let (_, json, err) = run(&[flags, &["--format=json"]].concat(), &sand(0.0));
+        let all: Value = serde_json::from_str(&json).unwrap_or_else(|_| panic!("{err}"));
+        all[0]["estimate"]["level"]["prior_stddev"].as_f64().unwrap()
+    };
+    assert!(
+        level(&["--density-sigma=800"]) > 1.2 * level(&[]),
+        "an error of the density is part of the scale"
+    );
     let (code, _, err) = run(&["--explain"], &sand(0.0));
     assert!(code == Some(2) && err.contains("--contact hertz"), "{err}");
 }

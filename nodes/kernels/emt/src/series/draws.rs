@@ -67,7 +67,7 @@ fn mean_ln(ln: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
     highest + (ln.map(|l| (l - highest).exp()).sum::<f64>() / count).ln()
 }
 
-fn normal(random: &mut Random, n: usize) -> DVector<f64> {
+pub(super) fn normal(random: &mut Random, n: usize) -> DVector<f64> {
     DVector::from_fn(n, |_, _| random.normal::<1>()[0])
 }
 
@@ -89,7 +89,12 @@ impl Mixture<'_> {
     /// Draws from the posterior, and their effective number.
     pub(super) fn draws(&self, seed: u64) -> (Vec<SeriesDraw>, f64) {
         let mut random = Random::new(seed);
-        let of = |place: usize, random: &mut Random| self.draw(&self.solutions[place], random);
+        let mut wide: Vec<Option<Wide>> = self.solutions.iter().map(|_| None).collect();
+        let mut of = |place: usize, random: &mut Random| {
+            let solution = &self.solutions[place];
+            wide[place] = wide[place].take().or_else(|| Wide::of(solution, self.forward.measured));
+            self.draw(solution, wide[place].as_ref()?, random)
+        };
         let (mut all, mut weights, mut effective) = (Vec::new(), Vec::new(), 0.0);
         for _ in 0..ROUNDS {
             let places = places(&self.weights, &mut random);
@@ -107,14 +112,13 @@ impl Mixture<'_> {
     }
 
     /// One draw of a component with ln of its weight; `None` where the model has no covariance.
-    fn draw(&self, of: &Solution, random: &mut Random) -> Option<(SeriesDraw, f64)> {
+    fn draw(&self, of: &Solution, wide: &Wide, random: &mut Random) -> Option<(SeriesDraw, f64)> {
         let (forward, m) = (&self.forward, self.forward.measured);
         let Component { kind, preparation, noise, .. } = of.component;
         let (mean, _, factor) = &*of.component.normal;
         let slopes = of.at.by_unknowns.rows(0, m);
         let about = |unknowns: &DVector<f64>| &self.data - &of.residual + slopes * (unknowns - mean);
         // Half of the draws are from a wider distribution, that of data with larger errors.
-        let wide = Wide::of(of, m)?;
         let (inverse, scale) =
             if random.uniform() < 0.5 { (&of.inverse, 1.0) } else { (&wide.inverse, WIDER.sqrt()) };
         // A draw from the prior and simulated data, moved by what the data differ: exact for the linear problem.

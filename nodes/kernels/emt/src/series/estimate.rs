@@ -240,7 +240,7 @@ pub fn infer_series(
                 RowEstimate { predicted: ln.exp(), stddev: stddev * ln.exp(), left_out: left, by_rows, p }
             }
             Some(n) => {
-                let ln = marginal_of(&draws, n);
+                let ln = Interval::of(draws.iter().map(|d| (d.predicted[n], d.weight)));
                 RowEstimate {
                     predicted: ln.mean.exp(),
                     stddev: ln.stddev * ln.mean.exp(),
@@ -267,10 +267,6 @@ pub fn infer_series(
         ln_evidence: mixture.ln_evidence(),
         effective_draws,
     })
-}
-
-fn marginal_of(draws: &[SeriesDraw], row: usize) -> Interval {
-    Interval::of(draws.iter().map(|d| (d.predicted[row], d.weight)))
 }
 
 /// Predictions without each pressure, and without each row.

@@ -5,9 +5,6 @@ use crate::error::EmtError;
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
-/// A mean and a standard deviation.
-pub(super) type Spread = [f64; 2];
-
 /// z over pressure of one preparation: z + slope log10 P + rise (P^0.3 − 1), P = p/E* / 1e-6, to .01 to .02 in packings of the
 /// campaign `preparations`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,13 +64,13 @@ pub struct SeriesPrior {
     pub preparation: Vec<PreparationPrior>,
     /// d ln(k_t/k_n) per decade of pressure, fixed.
     #[serde(skip)]
-    pub drift: f64,
+    pub(super) drift: f64,
     /// Slope of z instead of those of the preparations.
     #[serde(skip)]
-    pub other_slope: Option<[f64; 2]>,
+    pub(super) other_slope: Option<[f64; 2]>,
     /// True for z of the bulk modulus and of the shear modulus apart.
     #[serde(skip)]
-    pub is_split: bool,
+    pub(super) is_split: bool,
 }
 
 /// A normal distribution that stands for one cell of a uniform one.
@@ -219,7 +216,7 @@ impl SeriesPrior {
     }
 
     /// Cells of ln p_r of a family; `known` is that of rough grains of known roughness.
-    pub(super) fn crossovers(contact: &ContactPrior, known: Option<Spread>) -> Vec<Cell> {
+    pub(super) fn crossovers(contact: &ContactPrior, known: Option<[f64; 2]>) -> Vec<Cell> {
         match (contact.law, known, contact.crossover) {
             (ContactKind::Rough, Some([mean, stddev]), _) => vec![Cell { mean, stddev, weight: 1.0 }],
             (_, _, Some([low, high])) => {

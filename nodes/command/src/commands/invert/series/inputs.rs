@@ -142,10 +142,13 @@ impl Inputs {
                 "line {line}: this S wave is too fast for the P wave of the same pressure: the bulk modulus would be negative; are p and s exchanged?"
             ));
         }
-        let relative = |of: fn(&SpeedLine) -> Option<(f64, f64)>, flag: f64| {
-            let all: Vec<f64> = lines.iter().filter_map(of).map(|(sigma, value)| sigma / value).collect();
-            if all.is_empty() { flag } else { all.iter().sum::<f64>() / all.len() as f64 }
+        let relative = |of: fn(&SpeedLine, &SeriesRow) -> (Option<f64>, f64), flag: f64| {
+            let all = lines.iter().zip(&rows).map(|(line, row)| of(line, row));
+            all.map(|(sigma, value)| sigma.unwrap_or(flag) / value).sum::<f64>() / rows.len() as f64
         };
+        let density_stddev = relative(|line, row| (line.density_sigma, row.density), self.density_sigma);
+        let pressure_stddev =
+            relative(|line, row| (line.pressure_sigma_pa, row.pressure), self.pressure_sigma);
         let first = |of: fn(&SpeedLine) -> Option<f64>| lines.iter().find_map(of);
         let rough = lines.iter().find_map(|l| Some((l, l.roughness?, l.diameter?)));
         if let Some((line, roughness, diameter)) = rough
@@ -167,14 +170,8 @@ impl Inputs {
             rows,
             material,
             shear_modulus_stddev: self.grain_shear_modulus_sigma / shear_modulus,
-            density_stddev: relative(
-                |l| l.density_sigma.zip(l.density),
-                self.density.map_or(0.0, |d| self.density_sigma / d),
-            ),
-            pressure_stddev: relative(
-                |l| l.pressure_sigma_pa.zip(l.pressure_pa),
-                self.pressure.map_or(0.0, |p| self.pressure_sigma / p),
-            ),
+            density_stddev,
+            pressure_stddev,
             size_variance: spread * spread,
             grains: self.grains,
             ln_crossover,
