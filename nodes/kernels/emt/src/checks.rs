@@ -2,6 +2,7 @@
 
 use crate::calibration::{Calibration, NetworkState, Outside};
 use crate::conditions::{Conditions, StrainRatioSource};
+use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::Observation;
@@ -83,8 +84,9 @@ pub(crate) fn common(
     observation: &Observation,
     calibration: &Calibration,
     uses_gamma: bool,
-    compares_state: bool,
+    domain: &Domain,
 ) -> Vec<Warning> {
+    let Domain { compares_state, any_contact, .. } = *domain;
     let conditions = &observation.conditions;
     let mut warnings = Vec::new();
     let mut add = |applies: bool, warning: Warning| {
@@ -103,7 +105,7 @@ pub(crate) fn common(
         let calibrated = calibration.material().poisson_ratio;
         add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
     }
-    add(conditions.contact_law.is_none(), Warning::ContactLawAssumed);
+    add(conditions.contact_law.is_none() && !any_contact, Warning::ContactLawAssumed);
     if !compares_state {
         for Outside { quantity, value, range, .. } in outside_errors(conditions, calibration) {
             add(true, Warning::StateOutsideFit { quantity, value, range });

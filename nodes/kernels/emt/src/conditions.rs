@@ -2,7 +2,7 @@
 
 use crate::error::EmtError;
 use grainlab_core::Material;
-use grainlab_core::contact::{ContactLaw, SpringLaw};
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::StrainRatios;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -112,6 +112,11 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// Standard deviation of the square of a spread of the sizes.
+    pub fn variance_stddev(&self) -> f64 {
+        2.0 * self.value * self.stddev
+    }
+
     /// A number taken as exact.
     pub const fn exact(value: f64) -> Self {
         Self { value, stddev: 0.0 }
@@ -198,11 +203,6 @@ impl Conditions {
         let finite = |quantity: &'static str, value: f64| {
             if value.is_finite() { Ok(()) } else { Err(EmtError::NotFinite { quantity, value }) }
         };
-        if let Some(springs) = self.contact_law.map(|law| law.springs)
-            && springs != SpringLaw::HertzMindlin
-        {
-            return Err(EmtError::OtherContactLaw { law: springs.name() });
-        }
         if self.smooth {
             return Err(EmtError::SmoothGrains);
         }

@@ -3,6 +3,7 @@
 use crate::conditions::Conditions;
 use crate::error::EmtError;
 use crate::warning::Warning;
+use grainlab_core::contact::SpringLaw;
 use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// Lowest and highest value, both included.
@@ -41,6 +42,8 @@ pub struct Domain {
     pub size_spread: Range,
     /// True if the solid fraction must be known.
     pub needs_solid_fraction: bool,
+    /// True if the contacts may have any law, or one that is not known.
+    pub any_contact: bool,
     /// True if the model compares pressure, grains and stress with the packings of its calibration.
     pub compares_state: bool,
 }
@@ -57,7 +60,18 @@ impl Domain {
             stress_ratio: [-1.5, 3.0],
             size_spread: [0.0, f64::INFINITY],
             needs_solid_fraction: false,
+            any_contact: false,
             compares_state: false,
+        }
+    }
+
+    /// Refuses contacts whose law the model does not know.
+    pub(crate) fn validate_contact(&self, conditions: &Conditions) -> Result<(), EmtError> {
+        match conditions.contact_law.map(|law| law.springs) {
+            Some(springs) if springs != SpringLaw::HertzMindlin && !self.any_contact => {
+                Err(EmtError::OtherContactLaw { law: springs.name() })
+            }
+            _ => Ok(()),
         }
     }
 
@@ -74,6 +88,7 @@ impl Domain {
         conditions: &Conditions,
     ) -> Result<[f64; InferredQuantity::COUNT], EmtError> {
         conditions.check()?;
+        self.validate_contact(conditions)?;
         let mut values = [0.0; InferredQuantity::COUNT];
         for (i, quantity) in InferredQuantity::ALL.into_iter().enumerate() {
             let Some(range) = self.structure[i] else { continue };

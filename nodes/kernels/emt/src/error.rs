@@ -84,8 +84,8 @@ pub enum EmtError {
     },
     /// Contacts that are not Hertz–Mindlin contacts.
     #[error(
-        "unknown: the contact law is {law}; every model is for Hertz-Mindlin contacts, whose stiffness follows from the material \
-         of the grains"
+        "unknown: the contact law is {law}; this model is for Hertz-Mindlin contacts, whose stiffness follows from the material \
+         of the grains: free-contact is for others"
     )]
     OtherContactLaw {
         /// Name of the law.

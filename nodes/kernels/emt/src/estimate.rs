@@ -92,6 +92,8 @@ pub struct Estimate {
     inputs: Option<InputCovariance>,
     /// That of the model: its independent quantities, from which the others follow, and their ranges.
     domain: Domain,
+    /// Central intervals that the model states; `None`: those of normal errors.
+    bounds: Option<[Option<[f64; 2]>; InferredQuantity::COUNT]>,
     /// Limits of the prior of each quantity.
     limits: [[f64; 2]; InferredQuantity::COUNT],
 }
@@ -119,6 +121,7 @@ impl Estimate {
         with.structure = Microstructure::of_values(std::array::from_fn(|i| {
             self.structure.values()[i].map(|value| value + shift[i])
         }));
+        with.bounds = None;
         with.jacobian = kept * self.jacobian;
         (with.data_covariance, with.model_covariance) =
             (part(self.data_covariance), part(self.model_covariance));
@@ -179,8 +182,12 @@ impl Estimate {
         Some(self.covariance()?[(i, i)].max(0.0).sqrt())
     }
 
-    /// Central interval of a quantity at [`CREDIBLE_LEVEL`], low and high, for normal errors, within the limits of its prior.
+    /// Central interval of a quantity at [`CREDIBLE_LEVEL`], low and high: that of the model, else for normal errors, within the
+    /// limits of its prior.
     pub fn interval(&self, quantity: InferredQuantity) -> Option<[f64; 2]> {
+        if let Some(bounds) = &self.bounds {
+            return bounds[quantity as usize];
+        }
         let middle = self.structure.get(quantity)?;
         let half = normal::HALF_WIDTH * self.stddev(quantity)?;
         let [low, high] = self.limits[quantity as usize];
@@ -250,7 +257,7 @@ pub(crate) fn assemble(
     point: PointEstimate,
     jacobian: Jacobian,
 ) -> Result<Estimate, EmtError> {
-    let PointEstimate { structure, discrepancy, misfit, mut warnings, .. } = point;
+    let PointEstimate { structure, discrepancy, bounds, misfit, mut warnings, .. } = point;
     let inputs = observation.input_covariance(calibration.material());
     // The error of the data is not known where only errors of the state are known and the model does not use it.
     let data_covariance = inputs
@@ -271,7 +278,7 @@ pub(crate) fn assemble(
         }
     }
     domain.validate_solid_fraction(&observation.conditions)?;
-    warnings.extend(checks::common(observation, calibration, uses_gamma, domain.compares_state));
+    warnings.extend(checks::common(observation, calibration, uses_gamma, domain));
     warnings.extend(checks::of_structure(&structure));
     warnings.extend(outside_domain(&structure, domain, &warnings));
     warnings.extend(undetermined(&structure, domain));
@@ -290,6 +297,7 @@ pub(crate) fn assemble(
         warnings,
         inputs,
         domain: *domain,
+        bounds,
         limits: [[f64::NEG_INFINITY, f64::INFINITY]; InferredQuantity::COUNT],
     };
     if observation.covariance.is_none() && estimate.covariance().is_some() {

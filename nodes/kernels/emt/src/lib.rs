@@ -14,6 +14,7 @@
 //!   - `ratio`: the paper's model, corrected and as printed
 //!   - `directional`: each modulus with its own coordination number
 //!   - `relaxed`: the relaxed network
+//!   - `free_contact`: the relaxed network with contacts that are not known
 //!   - `hertz_mindlin`: a pack with contacts in all directions alike, as in rock physics
 //! - `calibration`: the constants of the models; the crate `calibration` of the studio learns them from packings
 //! - `moments`, `eq16`, `medium`, `invariants`: the theory that the models share
@@ -97,7 +98,7 @@ pub use posterior::{
     SimulationSettings, simulated_ranks,
 };
 pub use prior::{Density, Prior, PriorError};
-pub use registry::{model, models, recommended};
+pub use registry::{free_contact, model, models, recommended};
 pub use series::{
     ContactKind, ContactPrior, Interval, LawEstimate, LeftOut, PreparationPrior, PressureEstimate,
     RowEstimate, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode, SpeedSeries, infer_series,

@@ -55,6 +55,7 @@ pub trait Model: Sync + Debug {
     /// The structure with its uncertainty.
     fn infer(&self, observation: &Observation, calibration: &Calibration) -> Result<Estimate, EmtError> {
         let observation = observation.checked()?;
+        self.domain(calibration).validate_contact(&observation.conditions)?;
         let mut point = self.solve(&observation, calibration)?;
         let jacobian = point.jacobian.take().unwrap_or_else(|| {
             numerical_jacobian(&observation, &point.structure, calibration.material(), |o| {

@@ -3,6 +3,7 @@
 pub(crate) mod directional;
 pub(crate) mod effective_medium;
 mod equivalent;
+pub(crate) mod free_contact;
 pub(crate) mod hertz_mindlin;
 pub(crate) mod ratio;
 pub(crate) mod relaxed;

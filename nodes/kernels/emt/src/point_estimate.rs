@@ -19,6 +19,8 @@ pub struct PointEstimate {
     /// Covariance of the model's own error where the model computes it; `None`: as the calibration has it for the
     /// model.
     pub discrepancy: Option<MicrostructureCovariance>,
+    /// Central intervals of a posterior that is not normal, in the order of [`InferredQuantity::ALL`].
+    pub bounds: Option<[Option<[f64; 2]>; InferredQuantity::COUNT]>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,
     /// Warnings of this model; those common to all models are added later.
@@ -28,7 +30,14 @@ pub struct PointEstimate {
 impl PointEstimate {
     /// A structure that fits exactly, without warnings.
     pub const fn exact(structure: Microstructure) -> Self {
-        Self { structure, jacobian: None, discrepancy: None, misfit: None, warnings: Vec::new() }
+        Self {
+            structure,
+            jacobian: None,
+            discrepancy: None,
+            bounds: None,
+            misfit: None,
+            warnings: Vec::new(),
+        }
     }
 }
 

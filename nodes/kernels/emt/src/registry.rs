@@ -4,18 +4,24 @@ use crate::estimate::Status;
 use crate::model::Model;
 use crate::models::directional::Directional;
 use crate::models::effective_medium::EffectiveMedium;
+use crate::models::free_contact::{self, FreeContact};
 use crate::models::hertz_mindlin::HertzMindlin;
 use crate::models::ratio;
 use crate::models::relaxed::Relaxed;
 
-/// Every model, in the order of every list of results.
+/// Every model of contacts that are known, in the order of every list of results.
 pub fn models() -> &'static [&'static dyn Model] {
     &[&EffectiveMedium, &ratio::CORRECTED, &ratio::AS_PRINTED, &Directional, &Relaxed, &HertzMindlin]
 }
 
+/// The model of contacts that are not known, or of another law than Hertz–Mindlin.
+pub fn free_contact() -> &'static dyn Model {
+    &FreeContact
+}
+
 /// The model of this name.
 pub fn model(name: &str) -> Option<&'static dyn Model> {
-    models().iter().copied().find(|m| m.name() == name)
+    models().iter().copied().chain([free_contact()]).find(|m| m.name() == name)
 }
 
 /// Names of the models by their error, smallest first: rms error of ε over the 384 held-out packings of
@@ -27,11 +33,11 @@ const BY_ERROR: [&str; 5] = ["relaxed", "directional", "ratio", "ratio-as-printe
 /// Name of the model that infers no ε; its error of k over the same packings is 0.86.
 const WITHOUT_EPS: &str = "hertz-mindlin";
 
-/// The model that is recommended.
-const RECOMMENDED: &str = "relaxed";
+/// The models that are recommended, and none in their place: that of contacts that are not known is asked only where they are not.
+const RECOMMENDED: [&str; 2] = [free_contact::NAME, "relaxed"];
 
 /// The model whose estimate is recommended, of all models that were asked, those without an estimate as [`Status::Unknown`].
-/// Where `relaxed` was asked it is that one or none: another model is no substitute where `relaxed` has no answer. Among others,
+/// Where `free-contact` was asked, else where `relaxed` was, it is that one or none: no other model is a substitute for it. Among others,
 /// the one with the smallest error over the held-out packings of those inside their range, else of those that do not contradict
 /// the data; one that infers no ε only where no other has an estimate.
 pub fn recommended<'a>(asked: impl IntoIterator<Item = (&'a str, Status)>) -> Option<&'a str> {
@@ -43,7 +49,8 @@ pub fn recommended<'a>(asked: impl IntoIterator<Item = (&'a str, Status)>) -> Op
     };
     let answers = |(_, status): &(&str, Status)| *status != Status::Unknown;
     let asked: Vec<(&'a str, Status)> = asked.into_iter().collect();
-    if let Some(recommended) = asked.iter().find(|(name, _)| *name == RECOMMENDED) {
+    let of = |first: &str| asked.iter().find(|(name, _)| *name == first);
+    if let Some(recommended) = RECOMMENDED.into_iter().find_map(of) {
         return answers(recommended).then_some(recommended.0);
     }
     let key = |(name, status): &(&str, Status)| (*name == WITHOUT_EPS, trust(*status), rank(name));
@@ -70,6 +77,8 @@ mod tests {
         assert_eq!(recommended([("ratio", Ok), ("relaxed", Extrapolated)]), Some("relaxed"));
         assert_eq!(recommended([("relaxed", Contradictory), ("ratio", Ok)]), Some("relaxed"));
         assert_eq!(recommended([("ratio", Ok), ("relaxed", Unknown), ("directional", Ok)]), None);
+        assert_eq!(recommended([("relaxed", Ok), ("free-contact", Extrapolated)]), Some("free-contact"));
+        assert_eq!(recommended([("relaxed", Ok), ("free-contact", Unknown)]), None);
     }
 
     #[test]

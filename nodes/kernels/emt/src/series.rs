@@ -8,7 +8,8 @@
 //! - `sample`: the speeds; `prior`: what is known before them; `gain`: contact laws by their stiffness over pressure
 //! - `forward`: speeds and their slopes; `component`: a normal approximation of the posterior for each cell of the prior;
 //!   `draws`: their correction by importance sampling
-//! - `check`: pressures and rows left out, contradictions; `estimate`: what is stated
+//! - `check`: pressures and rows left out, contradictions; `estimate`: what is stated; `single`: of
+//!   one pressure, for the model `free-contact`
 
 mod check;
 mod component;
@@ -18,6 +19,7 @@ mod forward;
 mod gain;
 mod prior;
 mod sample;
+mod single;
 #[cfg(test)]
 mod tests;
 
@@ -28,3 +30,4 @@ pub use estimate::{
 pub use gain::ContactKind;
 pub use prior::{ContactPrior, PreparationPrior, SeriesPrior};
 pub use sample::{SeriesRow, SpeedMode, SpeedSeries};
+pub(crate) use single::SingleEstimate;

@@ -88,6 +88,35 @@ pub enum Warning {
     /// The contact law is not known; Hertz–Mindlin contacts were assumed.
     #[error("the contact law is not known: the contacts were taken as Hertz-Mindlin contacts")]
     ContactLawAssumed,
+    /// Contacts that are not known are inferred with the structure.
+    #[error(
+        "the contacts are not known: their law, k_t/k_n and stiffness are inferred; z follows from the ratio of the moduli, and from \
+         simulated preparations"
+    )]
+    ContactsInferred,
+    /// Contacts have another law than those of the calibration.
+    #[error(
+        "{law} contacts: z follows from the ratio of the moduli, and from simulated preparations; a roughness, or a linear \
+         stiffness, is inferred, since the size of the grains is not known"
+    )]
+    ContactsStated {
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// The data say little of a quantity.
+    #[error("the data hardly determine {quantity}: {:.0} % of the standard deviation of its prior is left", 100.0 * left)]
+    HardlyDetermined {
+        /// The quantity.
+        quantity: InferredQuantity,
+        /// Standard deviation over that of the prior.
+        left: f64,
+    },
+    /// The posterior contains higher z than are stated.
+    #[error("{:.0} % of the posterior has z above 6.6, where nothing is stated", 100.0 * share)]
+    HigherZ {
+        /// Probability of a higher z.
+        share: f64,
+    },
     /// A quantity of the state is outside the packings of the calibration.
     #[error("{quantity} = {}, the range of the calibration's packings", of_state(quantity, *value, *range))]
     StateOutsideFit {
@@ -311,6 +340,10 @@ impl Warning {
                 | Warning::SizesUnknown
                 | Warning::WidenedMost { .. }
                 | Warning::ContactLawAssumed
+                | Warning::ContactsInferred
+                | Warning::ContactsStated { .. }
+                | Warning::HardlyDetermined { .. }
+                | Warning::HigherZ { .. }
                 | Warning::IsotropicContacts
                 | Warning::ErrorsLarge { .. }
                 | Warning::TakenAsUnknown { .. }

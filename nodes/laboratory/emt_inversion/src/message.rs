@@ -5,8 +5,9 @@ use crate::moduli::{of_moduli, of_report};
 use crate::observed::{Observed, Unobservable};
 use crate::settings::Settings;
 use crate::speeds::of_speeds;
+use grainlab_core::contact::SpringLaw;
 use grainlab_core::results::PackingReport;
-use grainlab_emt::StrainRatio;
+use grainlab_emt::{Model, StrainRatio};
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Topic, msg, topics};
@@ -14,7 +15,7 @@ use grainlab_msgs::{Topic, msg, topics};
 /// The answer to one set of data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// One estimate per model, in the order of [`grainlab_emt::models`]; header, name and step are those of the data.
+    /// One estimate per model, in the order of [`Settings::models`]; header, name and step are those of the data.
     pub message: msg::Microstructure,
     /// Why the data were refused; every estimate is then unknown, with this reason.
     pub refused: Option<BoundaryError>,
@@ -43,6 +44,18 @@ pub fn microstructure_of_speeds(speeds: &msg::WaveSpeeds, settings: &Settings) -
     answer(&speeds.header, &speeds.name, speeds.source_step, &topics::WAVE_SPEEDS, observed, settings)
 }
 
+fn is_of_waves(source: &Topic) -> bool {
+    source.name == topics::WAVE_SPEEDS.name
+}
+
+/// True for wave speeds of contacts that nothing is known of, and for contacts of another law than Hertz–Mindlin.
+fn has_free_contacts(observed: &Observed, source: &Topic) -> bool {
+    match observed.observation.conditions.contact_law {
+        None => is_of_waves(source),
+        Some(law) => law.springs != SpringLaw::HertzMindlin,
+    }
+}
+
 fn answer(
     header: &Header,
     name: &str,
@@ -55,7 +68,10 @@ fn answer(
         Ok(observed) => (observed, None),
         Err(error) => (Err(Unobservable::Refused(error.clone())), Some(error)),
     };
-    let estimates = settings.models.iter().copied().map(|model| {
+    let is_free = observed.as_ref().map_or(is_of_waves(source), |o| has_free_contacts(o, source));
+    let applies =
+        |model: &&'static dyn Model| !settings.chooses || is_free || *model != grainlab_emt::free_contact();
+    let estimates = settings.models.iter().copied().filter(applies).map(|model| {
         let own = || model.default_calibration();
         let calibration = settings.calibration.as_ref().unwrap_or_else(own);
         let without = |gamma: StrainRatio, reasons: Vec<String>| {

@@ -9,7 +9,12 @@ pub fn parameters() -> Vec<ParameterSpec> {
     let error = "relative one-sigma error of each modulus if the data have none, 1; 0 leaves the uncertainty of the \
                  estimates unknown";
     vec![
-        ParameterSpec::new("models", "all", "models to apply: all, or comma-separated names"),
+        ParameterSpec::new(
+            "models",
+            "all",
+            "models to apply: all, or comma-separated names; free-contact is applied if it is named, and of all to wave speeds \
+             without a contact law and to contacts that are not Hertz-Mindlin contacts",
+        ),
         ParameterSpec::new(
             "calibration",
             "default",
@@ -43,8 +48,10 @@ pub struct SettingsError(pub &'static str, pub String);
 /// The values of the parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Models to apply, each once, in the order of [`grainlab_emt::models`].
+    /// Models to apply, each once: [`grainlab_emt::free_contact`], then the others in the order of [`grainlab_emt::models`].
     pub models: Vec<&'static dyn Model>,
+    /// True if `free-contact` is left to contacts that are not known, or of another law.
+    pub chooses: bool,
     /// Constants of all models; `None`: those of each, [`Model::default_calibration`].
     pub calibration: Option<Calibration>,
     /// Axis of the moduli.
@@ -75,7 +82,8 @@ pub enum Axis {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            models: grainlab_emt::models().to_vec(),
+            models: every_model(),
+            chooses: true,
             calibration: None,
             axis: Axis::Stated,
             gamma: StrainRatioSource::Total,
@@ -100,6 +108,7 @@ impl Settings {
         }
         Ok(Self {
             models: models(&text("models"))?,
+            chooses: text("models").trim() == "all",
             calibration: constants(&calibration)?,
             axis: axis(&text("axis"))?,
             gamma: match text("gamma_over_delta").as_str() {
@@ -113,9 +122,14 @@ impl Settings {
     }
 }
 
+/// The model of unknown contacts, and all others.
+fn every_model() -> Vec<&'static dyn Model> {
+    [grainlab_emt::free_contact()].into_iter().chain(grainlab_emt::models().iter().copied()).collect()
+}
+
 /// `all`, or comma-separated names in any order.
 fn models(text: &str) -> Result<Vec<&'static dyn Model>, SettingsError> {
-    let mut all = grainlab_emt::models().to_vec();
+    let mut all = every_model();
     if text.trim() == "all" {
         return Ok(all);
     }

@@ -90,6 +90,7 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
             SpeedMode::P => "P",
             SpeedMode::Sv => "SV",
             SpeedMode::Sh => "SH",
+            SpeedMode::Bulk => "bulk",
         };
         match row.angle {
             Some(angle) => format!("{mode} at {:.0}°", angle * 180.0 / PI),

@@ -74,16 +74,7 @@ pub fn samples() -> Result<Vec<LaboratorySample>, VerificationError> {
 }
 
 fn series(row: SeriesRow, material: Material) -> SpeedSeries {
-    SpeedSeries {
-        rows: vec![row],
-        material,
-        shear_modulus_stddev: 0.0,
-        density_stddev: 0.0,
-        pressure_stddev: 0.0,
-        size_variance: 0.01,
-        grains: None,
-        ln_crossover: None,
-    }
+    SpeedSeries { size_variance: [0.01, 0.0], ..SpeedSeries::of(vec![row], material) }
 }
 
 /// The rows: the speeds of each mode of each sample.

@@ -66,6 +66,7 @@ pub(super) fn cases(
 }
 
 fn no_model(name: &str) -> Failure {
-    let known: Vec<&str> = grainlab_emt::models().iter().map(|m| m.name()).collect();
+    let all = grainlab_emt::models().iter().copied().chain([grainlab_emt::free_contact()]);
+    let known: Vec<&str> = all.map(|m| m.name()).collect();
     Failure::usage(format!("no model {name:?}; there are: {}", known.join(", ")))
 }

@@ -65,6 +65,11 @@ impl ScalingLaw {
         by_ln_z / z + by_excess / (z - self.onset)
     }
 
+    /// d ln X/ds².
+    pub(crate) fn by_size_variance(&self) -> f64 {
+        self.coefficients[5]
+    }
+
     /// d ln X/dκ.
     pub(crate) fn by_stiffness_ratio(&self, z: f64) -> f64 {
         self.coefficients[4] + self.coefficients[6] * z.ln()
@@ -116,7 +121,7 @@ impl DeviatorLaw {
     }
 
     /// Derivative by q/p.
-    fn by_stress_ratio(&self, z: f64, state: &NetworkState) -> f64 {
+    pub(crate) fn by_stress_ratio(&self, z: f64, state: &NetworkState) -> f64 {
         dot(&self.by_stress_ratio, &Self::stress_factors(z, state))
     }
 

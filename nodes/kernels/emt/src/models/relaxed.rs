@@ -29,7 +29,8 @@ use crate::warning::Warning;
 use fit::{Data, Fit};
 use grainlab_core::results::{InferredQuantity, Microstructure};
 use network_likelihood::NetworkLikelihood;
-use state::{State, too_far};
+use state::State;
+pub(super) use state::too_far;
 
 /// The relaxed network: model `relaxed`.
 #[derive(Clone, Copy, Debug)]
@@ -136,11 +137,12 @@ impl Model for Relaxed {
         calibration: &'a Calibration,
     ) -> Result<Box<dyn Likelihood + 'a>, EmtError> {
         let observation = observation.checked()?;
+        self.domain(calibration).validate_contact(&observation.conditions)?;
         Ok(Box::new(NetworkLikelihood::new(NAME, &observation, network(calibration)?, calibration)?))
     }
 }
 
-fn network(calibration: &Calibration) -> Result<&RelaxationCalibration, EmtError> {
+pub(super) fn network(calibration: &Calibration) -> Result<&RelaxationCalibration, EmtError> {
     let missing = || EmtError::NotCalibrated { model: NAME, calibration: calibration.name().to_owned() };
     calibration.network().ok_or_else(missing)
 }

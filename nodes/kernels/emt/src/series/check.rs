@@ -90,6 +90,7 @@ impl Mixture<'_> {
             let Some(off) = whitened.solve_upper_triangular(&draw) else { continue };
             worse += usize::from(density(&(off - *r)) <= here);
         }
-        worse as f64 / SIMULATIONS as f64
+        // These data are one of them.
+        (worse + 1) as f64 / (SIMULATIONS + 1) as f64
     }
 }

@@ -6,7 +6,7 @@ use super::gain::ContactKind;
 use super::prior::SeriesPrior;
 use crate::normal::LN_SQRT_TAU;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Most steps of an iteration, and the change of u below which it has settled.
 const STEPS: usize = 5;
@@ -25,7 +25,7 @@ pub(super) struct Component {
     pub(super) noise: f64,
     pub(super) ln_prior: f64,
     /// Prior of the unknowns: mean, covariance, and its Cholesky factor.
-    pub(super) normal: Rc<(DVector<f64>, DMatrix<f64>, DMatrix<f64>)>,
+    pub(super) normal: Arc<(DVector<f64>, DMatrix<f64>, DMatrix<f64>)>,
     /// Mean of the posterior.
     pub(super) unknowns: DVector<f64>,
 }
@@ -67,7 +67,7 @@ impl Component {
         let m = forward.measured;
         let at = forward.about(self.kind, self.preparation, &self.unknowns);
         let slopes = at.by_unknowns.rows(0, m);
-        let normal = Rc::clone(&self.normal);
+        let normal = Arc::clone(&self.normal);
         let (mean, covariance, _) = &*normal;
         let gain = covariance * slopes.transpose();
         let own = forward.unexplained(&at, m, self.noise);
@@ -182,7 +182,7 @@ pub(super) fn cells(forward: &Forward<'_>, prior: &SeriesPrior, known: Option<[f
                         noise: 1.0,
                         ln_prior: weight.ln(),
                         unknowns: mean.clone(),
-                        normal: Rc::new((mean, covariance, factor.unpack())),
+                        normal: Arc::new((mean, covariance, factor.unpack())),
                     });
                 }
             }

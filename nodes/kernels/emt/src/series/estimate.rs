@@ -12,10 +12,10 @@ use crate::error::EmtError;
 use serde::Serialize;
 
 /// No z above is stated: packings of the calibration have none.
-const HIGHEST_Z: f64 = 6.6;
+pub(super) const HIGHEST_Z: f64 = 6.6;
 
 /// Seed of draws and simulations.
-const SEED: u64 = 31;
+pub(super) const SEED: u64 = 31;
 
 /// k_t/k_n closer than this to an end of its range is at it.
 const AT_END: f64 = 0.05;
@@ -46,7 +46,7 @@ pub struct Interval {
 
 impl Interval {
     /// Distribution of weighted values; the weights need not add up to 1.
-    fn of(values: impl Iterator<Item = (f64, f64)>) -> Self {
+    pub(super) fn of(values: impl Iterator<Item = (f64, f64)>) -> Self {
         let mut all: Vec<(f64, f64)> = values.collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let sum: f64 = all.iter().map(|(_, w)| w).sum();

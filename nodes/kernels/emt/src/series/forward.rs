@@ -5,7 +5,7 @@ use super::prior::{PreparationPrior, SeriesPrior};
 use super::sample::{SeriesRow, SpeedMode, SpeedSeries};
 use crate::calibration::{ISOSTATIC, NetworkState, RelaxationCalibration};
 use crate::invariants::{INVARIANTS, Invariants};
-use nalgebra::{DMatrix, DVector, RowSVector, SMatrix};
+use nalgebra::{DMatrix, DVector, RowSVector, SMatrix, SVector};
 use std::f64::consts::LN_10;
 
 /// Ends of z of the unknown u: z = low + (high − low)/(1 + e^−u). The laws were learned up to 6.41.
@@ -67,7 +67,10 @@ pub(super) struct Forward<'a> {
     /// log10 of the pressure over the geometric middle.
     pub(super) decades: Vec<f64>,
     ln_young: f64,
-    size_variance: f64,
+    size_variance: [f64; 2],
+    stress_ratio: [f64; 2],
+    /// Covariance of ln of the speeds of all rows by the stated errors.
+    errors: DMatrix<f64>,
     variance_factors: [f64; crate::calibration::SCATTERED],
 }
 
@@ -100,8 +103,8 @@ impl<'a> Forward<'a> {
         let state = NetworkState {
             ln_pressure: middle,
             stiffness_ratio: 0.0,
-            size_variance: series.size_variance,
-            stress_ratio: 0.0,
+            size_variance: series.size_variance[0],
+            stress_ratio: series.stress_ratio[0],
         };
         let by_state = RelaxationCalibration::growth(&network.scatter_by_state, &state);
         let of_size = network.variance_factors(Some(series.grains.unwrap_or(u32::MAX)));
@@ -112,17 +115,23 @@ impl<'a> Forward<'a> {
             series.density_stddev,
             0.5 * series.pressure_stddev,
         ];
+        let mut errors = DMatrix::from_diagonal(&DVector::from_fn(rows.len(), |j, _| rows[j].stddev.powi(2)));
+        if let Some(stated) = &series.covariance {
+            errors.view_mut((0, 0), stated.shape()).copy_from(stated);
+        }
         Self {
             network,
             prior,
             place: rows.iter().map(|row| SpeedSeries::place(&pressures, row)).collect(),
             measured: rows.iter().filter(|r| r.speed.is_some()).count(),
             has_eps: rows.iter().any(|r| r.angle.is_some()),
-            mindlin: series.material.stiffness_ratio(),
+            mindlin: prior.known_ratio.unwrap_or_else(|| series.material.stiffness_ratio()),
             level: scale.iter().map(|s| s * s).sum(),
             decades: ln_pressure.iter().map(|p| (p - middle) / LN_10).collect(),
             ln_young: young.ln(),
             size_variance: series.size_variance,
+            stress_ratio: series.stress_ratio,
+            errors,
             variance_factors: std::array::from_fn(|k| by_state[k] * of_size[k]),
             pressures,
             rows,
@@ -229,8 +238,8 @@ impl<'a> Forward<'a> {
         let state = NetworkState {
             ln_pressure: self.ln_pressure[k],
             stiffness_ratio: used - crate::calibration::REFERENCE_STIFFNESS_RATIO,
-            size_variance: self.size_variance,
-            stress_ratio: 0.0,
+            size_variance: self.size_variance[0],
+            stress_ratio: self.stress_ratio[0],
         };
         (state, slope)
     }
@@ -279,7 +288,8 @@ impl<'a> Forward<'a> {
             let z = Self::z_of(unknowns[(self.parts() - 1) * n + k])[0];
             let laws = [&network.dilatation, &network.voigt, &network.harmonic];
             let by_eps = if self.has_eps { laws.map(|law| law.by_eps(z, &state)) } else { [0.0; 3] };
-            at.push((theta, shear, by_eps));
+            let of_stress = laws.map(|law| law.value(z, 0.0, &state));
+            at.push((theta, shear, by_eps, of_stress));
         }
         let mut found = Linearised {
             ln_speed: DVector::zeros(self.rows.len()),
@@ -288,9 +298,10 @@ impl<'a> Forward<'a> {
             mean_z: self.z(unknowns).iter().sum::<f64>() / n as f64,
         };
         for (j, (row, k)) in self.rows.iter().zip(&self.place).enumerate() {
-            let ([ln_theta, k_u, k_ratio, k_cross], [ln_shear, g_u, g_ratio, g_cross], by_eps) = at[*k];
+            let ([ln_theta, k_u, k_ratio, k_cross], [ln_shear, g_u, g_ratio, g_cross], by_eps, of_stress) =
+                at[*k];
             let eps = if self.has_eps { unknowns[self.eps() + k] } else { 0.0 };
-            let [dilatation, voigt, harmonic] = by_eps.map(|f| f * eps);
+            let [dilatation, voigt, harmonic] = std::array::from_fn(|i| by_eps[i] * eps + of_stress[i]);
             let (ln_modulus, slopes) =
                 modulus(row, &Invariants { ln_theta, ln_shear, dilatation, voigt, harmonic });
             found.ln_speed[j] = 0.5 * (ln_modulus - row.density.ln());
@@ -317,6 +328,16 @@ impl<'a> Forward<'a> {
         for (part, variance) in parts.iter_mut().zip(alike) {
             part.fixed_view_mut::<2, 2>(0, 0).add_scalar_mut(variance);
         }
+        let network = self.network;
+        let (state, _) = self.state(self.count() / 2, self.mindlin);
+        let mut by_sizes = SVector::<f64, SCATTERED>::zeros();
+        (by_sizes[0], by_sizes[1]) = (network.theta.by_size_variance(), network.shear.by_size_variance());
+        let laws = [&network.dilatation, &network.voigt, &network.harmonic, &network.eps_stiffness];
+        let of_stress = laws.map(|law| law.by_stress_ratio(at.mean_z, &state));
+        let by_stress = SVector::from([0.0, 0.0, of_stress[0], of_stress[1], of_stress[2], of_stress[3]]);
+        for (by, [_, stddev]) in [(by_sizes, self.size_variance), (by_stress, self.stress_ratio)] {
+            parts[0] += by * by.transpose() * (stddev * stddev);
+        }
         parts
     }
 
@@ -333,9 +354,8 @@ impl<'a> Forward<'a> {
                 let value = sides[j][0].dot(b) + x(j) * x(k) * sides[j][1].dot(b);
                 (found[(j, k)], found[(k, j)]) = (value, value);
             }
-            found[(j, j)] += (noise * self.rows[j].stddev).powi(2);
         }
-        found
+        found + self.errors.view((0, 0), (rows, rows)) * (noise * noise)
     }
 
     /// Covariance of what the law leaves of ε weighted by stiffness at a pressure with the rows.
@@ -362,6 +382,9 @@ impl<'a> Forward<'a> {
 /// ln of the modulus ρ v² of a wave, and half its slopes by the invariants: those of ln v.
 fn modulus(row: &SeriesRow, invariants: &Invariants) -> (f64, Slopes) {
     let shear = invariants.ln_shear.exp();
+    if row.mode == SpeedMode::Bulk {
+        return (invariants.ln_theta, Slopes::from([0.5, 0.0, 0.0, 0.0, 0.0]));
+    }
     let Some(angle) = row.angle else {
         let bulk = invariants.ln_theta.exp();
         let [k, g] = if row.mode == SpeedMode::P { [1.0, 4.0 / 3.0] } else { [0.0, 1.0] };

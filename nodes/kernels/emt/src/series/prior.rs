@@ -2,6 +2,8 @@
 
 use super::gain::ContactKind;
 use crate::error::EmtError;
+use grainlab_core::Material;
+use grainlab_core::contact::SpringLaw;
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
@@ -62,6 +64,9 @@ pub struct SeriesPrior {
     pub contact: Vec<ContactPrior>,
     /// Preparations of the sample.
     pub preparation: Vec<PreparationPrior>,
+    /// k_t/k_n of contacts that are known.
+    #[serde(skip)]
+    pub(super) known_ratio: Option<f64>,
     /// d ln(k_t/k_n) per decade of pressure, fixed.
     #[serde(skip)]
     pub(super) drift: f64,
@@ -104,6 +109,10 @@ const CROSSOVER_WIDTH: f64 = 1.75;
 /// Standard deviation of k_t/k_n about Mindlin's.
 const AT_MINDLIN: f64 = 0.01;
 
+/// Standard deviation of a k_t/k_n that is known, and of ln of a level of which nothing is.
+const KNOWN: f64 = 1e-3;
+const ANY_LEVEL: f64 = 10.0;
+
 /// Mean and standard deviation in place of ln p_r where the law has none.
 const NO_CROSSOVER: Cell = Cell { mean: 0.0, stddev: 1.0, weight: 1.0 };
 
@@ -140,11 +149,31 @@ impl SeriesPrior {
         if prior.contact.is_empty() {
             prior.contact.push(ContactPrior { law, weight: 1.0, crossover: None });
         }
-        if law == ContactKind::Hertz {
-            // Smooth spheres of this material have no other stiffness.
-            (prior.mindlin, prior.level, prior.trend) = (1.0, 0.0, 0.0);
+        // Spheres of this material have no other stiffness, and linear springs have any.
+        match law {
+            ContactKind::Hertz => (prior.mindlin, prior.level, prior.trend) = (1.0, 0.0, 0.0),
+            ContactKind::Rough => (prior.level, prior.trend) = (0.0, 0.0),
+            ContactKind::Linear => (prior.level, prior.trend) = (ANY_LEVEL, 0.0),
+            ContactKind::Blunt => {}
         }
         prior
+    }
+
+    /// k_t/k_n of contacts that are known.
+    pub(crate) fn known_ratio(&self) -> Option<f64> {
+        self.known_ratio
+    }
+
+    /// The prior of contacts of this law, whose k_t/k_n is exact, between grains of this material.
+    #[must_use]
+    pub fn of_springs(&self, springs: &SpringLaw, material: &Material) -> Self {
+        let ratio = material.stiffness_ratio();
+        let (law, known) = match springs {
+            SpringLaw::HertzMindlin => (ContactKind::Hertz, ratio),
+            SpringLaw::Linear(l) => (ContactKind::Linear, l.stiffness_ratio),
+            SpringLaw::Rough(r) => (ContactKind::Rough, r.tangential_factor * ratio),
+        };
+        Self { known_ratio: Some(known), ..self.of_law(law) }
     }
 
     fn check(&self) -> Result<(), EmtError> {
@@ -204,6 +233,9 @@ impl SeriesPrior {
 
     /// Cells of k_t/k_n below that of Mindlin's contacts, and Mindlin's.
     pub(super) fn stiffness_ratios(&self, mindlin: f64) -> Vec<Cell> {
+        if let Some(mean) = self.known_ratio {
+            return vec![Cell { mean, stddev: KNOWN, weight: 1.0 }];
+        }
         let low = self.lowest_stiffness_ratio.min(mindlin - AT_MINDLIN);
         let mut cells = match self.mindlin {
             all if all >= 1.0 => Vec::new(),

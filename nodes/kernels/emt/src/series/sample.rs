@@ -2,6 +2,7 @@
 
 use crate::error::EmtError;
 use grainlab_core::Material;
+use nalgebra::DMatrix;
 
 /// Mode of a wave: polarized along its direction, in the plane of direction and axis, or across it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +13,8 @@ pub enum SpeedMode {
     Sv,
     /// Transverse, across that plane.
     Sh,
+    /// No wave: ρ v² is the bulk modulus.
+    Bulk,
 }
 
 /// One speed, or one that is to be predicted.
@@ -44,13 +47,17 @@ pub struct SpeedSeries {
     pub density_stddev: f64,
     /// Standard deviation of all pressures, alike, over them.
     pub pressure_stddev: f64,
-    /// Variance of the radii over the square of their mean.
-    pub size_variance: f64,
+    /// Variance of the radii over the square of their mean, and its standard deviation.
+    pub size_variance: [f64; 2],
+    /// Axial stress less the lateral one over the pressure, and its standard deviation.
+    pub stress_ratio: [f64; 2],
     /// Number of grains; `None` is a large sample.
     pub grains: Option<u32>,
     /// ln of the crossover pressure (Pa) of rough grains and its standard deviation, see
     /// [`ContactKind::crossover`](super::gain::ContactKind::crossover); `None`: not known.
     pub ln_crossover: Option<[f64; 2]>,
+    /// Covariance of ln of the measured speeds, in their order, instead of their standard deviations.
+    pub covariance: Option<DMatrix<f64>>,
 }
 
 /// Pressures closer than this relative difference are one.
@@ -60,6 +67,22 @@ const SAME_PRESSURE: f64 = 1e-3;
 const SPEEDS: std::ops::RangeInclusive<usize> = 2..=64;
 
 impl SpeedSeries {
+    /// Speeds of a large sample of grains of one size that is known exactly but for these speeds.
+    pub fn of(rows: Vec<SeriesRow>, material: Material) -> Self {
+        Self {
+            rows,
+            material,
+            shear_modulus_stddev: 0.0,
+            density_stddev: 0.0,
+            pressure_stddev: 0.0,
+            size_variance: [0.0; 2],
+            stress_ratio: [0.0; 2],
+            grains: None,
+            ln_crossover: None,
+            covariance: None,
+        }
+    }
+
     /// The different pressures, in order, Pa.
     pub fn pressures(&self) -> Vec<f64> {
         let mut all: Vec<f64> = self.rows.iter().map(|r| r.pressure).collect();
@@ -85,7 +108,7 @@ impl SpeedSeries {
         waves.iter().enumerate().any(|(n, (mode, angle))| {
             waves[..n].iter().any(|(other, other_angle)| match (mode == other, *mode, *other) {
                 (true, ..) => (angle.sin().abs() - other_angle.sin().abs()).abs() > 1e-3,
-                (_, SpeedMode::P, _) | (_, _, SpeedMode::P) => false,
+                (_, SpeedMode::P | SpeedMode::Bulk, _) | (_, _, SpeedMode::P | SpeedMode::Bulk) => false,
                 // Along the axis the two S modes are one, and that across the plane is one with it across the axis.
                 _ => !(is_along(*angle) && is_along(*other_angle)),
             })
@@ -120,7 +143,9 @@ impl SpeedSeries {
             ("stddev of the shear modulus of the grains", self.shear_modulus_stddev),
             ("stddev of the density", self.density_stddev),
             ("stddev of pressure", self.pressure_stddev),
-            ("variance of the sizes", self.size_variance),
+            ("variance of the sizes", self.size_variance[0]),
+            ("stddev of the variance of the sizes", self.size_variance[1]),
+            ("stddev of the stress ratio", self.stress_ratio[1]),
         ] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(EmtError::NegativeStddev { quantity, value });

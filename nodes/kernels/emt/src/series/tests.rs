@@ -3,12 +3,16 @@
 use super::component::{Component, Mixture, cells};
 use super::draws::normal;
 use super::forward::Forward;
+use super::gain::ContactKind;
 use super::prior::SeriesPrior;
 use super::sample::{SeriesRow, SpeedMode, SpeedSeries};
 use crate::calibration::Calibration;
 use crate::random::Random;
 use grainlab_core::Material;
-use nalgebra::Cholesky;
+use hammer_and_sample::{MinChainLen, Model, Serial, Stretch, sample};
+use nalgebra::{Cholesky, DVector};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::SeedableRng;
 
 /// P and S at six pressures, along and across an axis or without direction.
 fn template(has_directions: bool) -> SpeedSeries {
@@ -33,15 +37,12 @@ fn template(has_directions: bool) -> SpeedSeries {
     };
     let pressures = [50e3, 150e3, 500e3, 1.5e6, 5e6, 15e6].into_iter();
     let rows = pressures.flat_map(|p| waves.iter().map(move |wave| row(p, *wave))).collect();
+    let size_variance = [0.01, 0.0];
     SpeedSeries {
-        rows,
-        material: Material { shear_modulus: 29e9, poisson_ratio: 0.2, density: 2500.0 },
         shear_modulus_stddev: 0.05,
         density_stddev: 0.01,
-        pressure_stddev: 0.0,
-        size_variance: 0.01,
-        grains: None,
-        ln_crossover: None,
+        size_variance,
+        ..SpeedSeries::of(rows, Material::GLASS)
     }
 }
 
@@ -120,5 +121,87 @@ fn true_values_rank_uniformly_among_draws() {
             let p = uniform(ranks);
             assert!(p > 0.01 && inside > 0.8, "directions {directions}, quantity {q}: {inside} {p}");
         }
+    }
+}
+
+/// The posterior of rough contacts and one preparation, by the model itself: the components give the prior alone.
+struct OfRough<'a> {
+    mixture: &'a Mixture<'a>,
+    cells: Vec<(Component, Cholesky<f64, nalgebra::Dyn>)>,
+}
+
+impl Model for OfRough<'_> {
+    type Params = Vec<f64>;
+
+    fn log_prob(&self, unknowns: &Vec<f64>) -> f64 {
+        let unknowns = DVector::from_column_slice(unknowns);
+        let ln_normal = |off: &DVector<f64>, c: &Cholesky<f64, nalgebra::Dyn>| {
+            -0.5 * off.dot(&c.solve(off)) - c.l_dirty().diagonal().map(f64::ln).sum()
+        };
+        let prior: f64 = self
+            .cells
+            .iter()
+            .map(|(c, root)| (c.ln_prior + ln_normal(&(&unknowns - &c.normal.0), root)).exp())
+            .sum();
+        let forward = &self.mixture.forward;
+        let at = forward.about(ContactKind::Rough, 0, &unknowns);
+        let m = forward.measured;
+        let own = Cholesky::new(forward.unexplained(&at, m, 1.0));
+        own.map_or(f64::NEG_INFINITY, |own| {
+            prior.ln() + ln_normal(&(&self.mixture.data - at.ln_speed.rows(0, m)), &own)
+        })
+    }
+}
+
+/// Means differ by less than a tenth of the standard deviations, and these by less than a tenth.
+#[test]
+fn an_ensemble_sampler_finds_the_same_posterior() {
+    let mut prior = SeriesPrior::builtin().of_law(ContactKind::Rough);
+    prior.preparation.truncate(1);
+    (prior.level, prior.noise, prior.mindlin) = (0.1, [0.999, 1.001], 0.0);
+    let mut series = template(false);
+    series.rows.retain(|row| [50e3, 500e3, 1.5e6, 5e6].contains(&row.pressure));
+    simulated(&mut series, &prior, &mut Random::new(8));
+    let network = Calibration::builtin("grainlab").unwrap().network.as_ref().unwrap();
+    let mixture = Mixture::of(Forward::new(&series, network, &prior), None);
+    let (ours, _) = mixture.draws(1);
+    let root = |c: Component| Some((c.clone(), Cholesky::new(c.normal.1.clone())?));
+    let cells = cells(&mixture.forward, &prior, None).into_iter().filter_map(root).collect();
+    let target = OfRough { mixture: &mixture, cells };
+    let start = |seed: u64| {
+        let mut random = Random::new(seed);
+        let (c, root) = &target.cells[seed as usize % target.cells.len()];
+        let at = &c.normal.0 + root.l() * normal(&mut random, c.normal.0.len());
+        (at.as_slice().to_vec(), Pcg64::seed_from_u64(seed))
+    };
+    const WALKERS: usize = 48;
+    let walkers = (0..WALKERS as u64).map(start);
+    let (chain, _) = sample(&target, &Stretch::default(), walkers, MinChainLen(WALKERS * 3000), Serial);
+    let moments = |all: &[(f64, f64)]| {
+        let sum: f64 = all.iter().map(|(_, w)| w).sum();
+        let mean = all.iter().map(|(v, w)| v * w).sum::<f64>() / sum;
+        let square = all.iter().map(|(v, w)| (v - mean).powi(2) * w).sum::<f64>() / sum;
+        (mean, square.sqrt())
+    };
+    let ratio = mixture.forward.ratio();
+    for at in 0..=ratio + 1 {
+        let of_draw = |d: &super::draws::SeriesDraw| match at {
+            k if k < ratio => d.z[k],
+            k if k == ratio => d.stiffness_ratio,
+            _ => d.ln_crossover,
+        };
+        let of_chain = |v: &Vec<f64>| match at {
+            k if k < ratio => Forward::z_of(v[k])[0],
+            k if k == ratio => v[k].min(mixture.forward.mindlin),
+            k => v[k],
+        };
+        let (mean, stddev) = moments(&ours.iter().map(|d| (of_draw(d), d.weight)).collect::<Vec<_>>());
+        let theirs: Vec<_> = chain[WALKERS * 500..].iter().map(|v| (of_chain(v), 1.0)).collect();
+        let (their_mean, their_stddev) = moments(&theirs);
+        let found = format!("{at}: {mean} +- {stddev}, {their_mean} +- {their_stddev}");
+        assert!(
+            (mean - their_mean).abs() < 0.1 * stddev && (stddev / their_stddev - 1.0).abs() < 0.1,
+            "{found}"
+        );
     }
 }

@@ -62,7 +62,7 @@ fn a_sound_observation_has_no_errors_and_one_warning_if_the_contact_law_is_not_k
 
 /// Every law that the list of laws has or will have, but the one of the calibration.
 #[test]
-fn no_model_has_an_estimate_for_a_contact_law_that_is_not_hertz_mindlin() {
+fn models_of_smooth_spheres_have_no_estimate_for_another_contact_law_and_that_of_free_contacts_has() {
     let others = SpringLaw::EXAMPLES.into_iter().filter(|springs| *springs != SpringLaw::HertzMindlin);
     for springs in others {
         for model in grainlab_emt::models() {
@@ -72,6 +72,11 @@ fn no_model_has_an_estimate_for_a_contact_law_that_is_not_hertz_mindlin() {
             assert_eq!(refused, EmtError::OtherContactLaw { law: springs.name() }, "{}", model.name());
             assert!(!refused.is_input_error() && refused.to_string().starts_with("unknown: "), "{refused}");
         }
+        let mut o = sound();
+        o.conditions.contact_law = Some(ContactLaw::of(springs));
+        let found =
+            grainlab_emt::free_contact().infer(&o, Calibration::builtin("grainlab").unwrap()).unwrap();
+        assert!(found.structure.z.is_some_and(|z| (4.0..6.6).contains(&z)), "{found:?}");
     }
 }
 

@@ -42,6 +42,7 @@ fn the_declared_defaults_are_the_typed_ones() {
 fn the_models_named_answer_each_once_and_in_the_order_of_the_list() {
     let all: Vec<&str> = grainlab_emt::models().iter().map(|m| m.name()).collect();
     assert_eq!(models_of(&[]), all);
+    assert_eq!(models_of(&["-p", "models:=ratio, free-contact"]), ["free-contact", "ratio"]);
     assert_eq!(models_of(&["-p", "models:=ratio"]), ["ratio"]);
     let two = ["-p", "models:=ratio-as-printed, ratio,ratio-as-printed"];
     assert_eq!(models_of(&two), ["ratio", "ratio-as-printed"]);

@@ -215,7 +215,7 @@ fn what_is_refused_is_answered_too_with_its_name_its_stamp_and_the_reason() {
         assert!(answer.refused.unwrap().to_string().starts_with(reason), "{reason}");
         let m = answer.message;
         assert_eq!((&m.header, m.name.as_str(), m.source_step), (&broken.header, "beads 3", 42), "{reason}");
-        assert_eq!(m.estimates.len(), grainlab_emt::models().len());
+        assert_eq!(m.estimates.len(), Settings::default().models.len());
         for e in &m.estimates {
             assert_eq!(e.status, Estimate::STATUS_UNKNOWN);
             assert!(e.warnings[0].starts_with(reason), "{:?}", e.warnings);
@@ -246,4 +246,45 @@ fn an_error_that_the_instrument_states_of_its_pressure_or_grains_is_in_the_answe
     // Speeds of smooth grains have no estimate.
     let smooth = relaxed(&WaveSpeeds { smooth: true, ..known });
     assert!(smooth.status == Estimate::STATUS_UNKNOWN && smooth.warnings[0].contains("smooth"), "{smooth:?}");
+}
+
+#[test]
+fn contacts_that_are_not_known_are_inferred_and_those_of_smooth_spheres_are_not() {
+    let models =
+        |speeds: &WaveSpeeds| microstructure_of_speeds(speeds, &Settings::default()).message.estimates;
+    let free = models(&upright());
+    let (first, others) = free.split_first().unwrap();
+    assert_eq!((first.model.as_str(), first.status), ("free-contact", Estimate::STATUS_OK), "{first:?}");
+    assert!(first.warnings[0].starts_with("the contacts are not known"), "{:?}", first.warnings);
+    // Of the same moduli, smooth spheres have one z, and spheres with any contact a wide interval that has it.
+    let smooth = others.iter().find(|e| e.model == "relaxed").unwrap();
+    let [low, high] = [first.interval[4], first.interval[5]];
+    assert!((low..high).contains(&smooth.z[0]) && high - low > 0.5, "{low} {high} {smooth:?}");
+    assert!(first.covariance[12] > 4.0 * smooth.covariance[12], "{first:?} {smooth:?}");
+    assert!(smooth.warnings.iter().any(|w| w.contains("taken as Hertz-Mindlin")), "{smooth:?}");
+    let known = WaveSpeeds { contact_law: "hertz_mindlin".into(), ..upright() };
+    assert!(models(&known).iter().all(|e| e.model != "free-contact"));
+    // Another law has an estimate, of which the models of smooth spheres have none.
+    let linear = WaveSpeeds {
+        contact_law: "linear".into(),
+        contact_law_parameters: vec![1e5, 8.0 / 9.0],
+        size_spread: vec![0.0],
+        stress_ratio: vec![0.0],
+        ..upright()
+    };
+    let of_linear = models(&linear);
+    assert!(
+        of_linear[0].status == Estimate::STATUS_OK && of_linear[0].warnings[0].starts_with("linear contacts")
+    );
+    assert!(
+        of_linear[1..]
+            .iter()
+            .all(|e| e.status == Estimate::STATUS_UNKNOWN && e.warnings[0].contains("linear"))
+    );
+    // One wave says nothing of the anisotropy.
+    let two = |kept: [usize; 2]| WaveSpeeds {
+        speeds: kept.map(|k| upright().speeds[k].clone()).into(),
+        ..upright()
+    };
+    assert!(models(&two([0, 2]))[0].eps.is_empty() && !models(&two([0, 1]))[0].eps.is_empty());
 }

@@ -128,10 +128,13 @@ impl Inputs {
                 "{dispersed} speeds with a wavelength below 15 diameters have a larger error, for dispersion"
             ));
         }
-        let spread = self.size_spread.unwrap_or_else(|| {
-            assumed.push("the spread of the sizes is not known: 0.17".to_owned());
-            UNKNOWN_SIZE_SPREAD.value
-        });
+        let (spread, spread_error) = self.size_spread.map_or_else(
+            || {
+                assumed.push("the spread of the sizes is not known: any from 0 to 0.3".to_owned());
+                (UNKNOWN_SIZE_SPREAD.value, UNKNOWN_SIZE_SPREAD.variance_stddev())
+            },
+            |known| (known, 0.0),
+        );
         if lines.iter().any(|l| l.phi.is_some_and(|phi| phi < 0.5)) {
             assumed.push(
                 "phi below 0.5 was taken as the solid fraction, which is 1 less the porosity".to_owned(),
@@ -167,14 +170,13 @@ impl Inputs {
                 [crossover.ln(), 1.5 * error]
             });
         let series = SpeedSeries {
-            rows,
-            material,
             shear_modulus_stddev: self.grain_shear_modulus_sigma / shear_modulus,
             density_stddev,
             pressure_stddev,
-            size_variance: spread * spread,
+            size_variance: [spread * spread, spread_error],
             grains: self.grains,
             ln_crossover,
+            ..SpeedSeries::of(rows, material)
         };
         for (name, error) in [
             ("pressure", series.pressure_stddev),

@@ -125,6 +125,7 @@ fn mode(row: &SeriesRow) -> &'static str {
         SpeedMode::Sv if row.angle.is_none() => "s",
         SpeedMode::Sv => "sv",
         SpeedMode::Sh => "sh",
+        SpeedMode::Bulk => "bulk",
     }
 }
 

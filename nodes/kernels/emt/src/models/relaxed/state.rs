@@ -152,7 +152,7 @@ impl State {
 }
 
 /// The error of a quantity that is too far from the packings of the calibration.
-pub(super) fn too_far(outside: &Outside, calibration: &str) -> EmtError {
+pub(in crate::models) fn too_far(outside: &Outside, calibration: &str) -> EmtError {
     let Outside { quantity, value, range: [low, high], .. } = *outside;
     EmtError::TooFar { quantity, value, low, high, calibration: calibration.to_owned() }
 }

@@ -1,0 +1,192 @@
+//! The relaxed network with contacts that are not known: the inversion of a series ([`crate::infer_series`]) at one pressure.
+//!
+//! The ratio of the moduli and a prior of simulated preparations determine z; contact law, k_t/k_n and the level of the moduli
+//! are unknowns. Contacts of a stated law have its k_t/k_n, and its level where the material of the grains gives it.
+
+use super::relaxed::network;
+use crate::calibration::{Calibration, NetworkState, Outside};
+use crate::conditions::{Conditions, UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO};
+use crate::domain::Domain;
+use crate::error::EmtError;
+use crate::likelihood::Likelihood;
+use crate::model::Model;
+use crate::moduli::{Moduli, Modulus};
+use crate::observation::Observation;
+use crate::point_estimate::{Jacobian, PointEstimate};
+use crate::series::{SeriesPrior, SeriesRow, SingleEstimate, SpeedMode, SpeedSeries};
+use crate::warning::Warning;
+use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
+use nalgebra::DMatrix;
+use std::f64::consts::FRAC_PI_2;
+
+/// The relaxed network with unknown contacts: model `free-contact`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FreeContact;
+
+/// Name of the model.
+pub(crate) const NAME: &str = "free-contact";
+
+/// p/E* of samples, and k_t/k_n of the packings that taught.
+const PRESSURES: [f64; 2] = [1e-8, 1e-2];
+const RATIOS: [f64; 2] = [0.25, 1.0];
+
+/// Relative error of moduli of which none is stated: that of the series needs one.
+const EXACT: f64 = 1e-3;
+
+/// Share of the posterior beyond the highest z that is stated, above which it is said.
+const SAID: f64 = 0.1;
+
+/// Modes whose ρ v² are the moduli; C13 acts through Θ.
+const WAVES: [(Modulus, SpeedMode, f64); 5] = [
+    (Modulus::G12, SpeedMode::Sh, FRAC_PI_2),
+    (Modulus::G13, SpeedMode::Sv, 0.0),
+    (Modulus::Theta, SpeedMode::Bulk, 0.0),
+    (Modulus::C11, SpeedMode::P, FRAC_PI_2),
+    (Modulus::C33, SpeedMode::P, 0.0),
+];
+
+impl Model for FreeContact {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn uses_gamma(&self) -> bool {
+        false
+    }
+
+    fn domain(&self, calibration: &Calibration) -> Domain {
+        use InferredQuantity::{Eps, Z};
+        let ranges = calibration.network().map(|n| [(Z, n.domain()), (Eps, n.reach.eps_with_estimates())]);
+        let of = Domain::new(NAME, ranges.as_ref().map_or(&[], |r| r.as_slice()));
+        Domain { any_contact: true, compares_state: true, ..of }
+    }
+
+    fn predict(&self, _: &Microstructure, _: &Conditions, _: &Calibration) -> Result<Moduli, EmtError> {
+        Err(EmtError::Missing { model: NAME, missing: "the contact law, without which there are no moduli" })
+    }
+
+    fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError> {
+        let network = network(calibration)?;
+        let conditions = &observation.conditions;
+        let material = conditions.material.unwrap_or(*calibration.material());
+        let free = SeriesPrior::builtin();
+        let prior = match conditions.contact_law {
+            None => free.clone(),
+            Some(law) => free.of_springs(&law.springs, &material),
+        };
+        let within = |quantity, value: f64, [low, high]: [f64; 2]| {
+            let calibration = calibration.name().to_owned();
+            let is_inside = (low..=high).contains(&value);
+            is_inside.then_some(()).ok_or(EmtError::TooFar { quantity, value, low, high, calibration })
+        };
+        let reduced = observation.pressure() / material.effective_young();
+        within("p/E*", reduced, PRESSURES)?;
+        prior.known_ratio().map_or(Ok(()), |ratio| within("k_t/k_n", ratio, RATIOS))?;
+        let sizes = conditions.size_spread.unwrap_or(UNKNOWN_SIZE_SPREAD.value);
+        let stress = conditions.stress_ratio.unwrap_or(UNKNOWN_STRESS_RATIO).value;
+        let state = NetworkState::of(observation.pressure(), &material, sizes, stress);
+        let mut outside = network.reach.outside(reduced, &state);
+        // Pressure and k_t/k_n have the ranges of the series.
+        outside.retain(|o| o.is_extrapolation() && !["p/E*", "k_t/k_n"].contains(&o.quantity));
+        if let Some(far) = outside.iter().find(|o| o.is_too_far()) {
+            return Err(super::relaxed::too_far(far, calibration.name()));
+        }
+        let found = SingleEstimate::of(&series(observation, calibration)?, network, &prior)?;
+        Ok(point_estimate(&found, conditions, &outside))
+    }
+
+    fn likelihood<'a>(
+        &'a self,
+        _: &Observation,
+        _: &'a Calibration,
+    ) -> Result<Box<dyn Likelihood + 'a>, EmtError> {
+        Err(EmtError::NoLikelihood { model: NAME, reason: "its posterior is stated, with its own prior" })
+    }
+}
+
+fn series(observation: &Observation, calibration: &Calibration) -> Result<SpeedSeries, EmtError> {
+    let conditions = &observation.conditions;
+    let known =
+        |(modulus, ..): &(Modulus, SpeedMode, f64)| Some((*modulus, observation.moduli.get(*modulus)?));
+    let moduli: Vec<(Modulus, f64)> = WAVES.iter().filter_map(known).collect();
+    if moduli.len() < 2 {
+        return Err(EmtError::Missing { model: NAME, missing: "a second modulus beside C13" });
+    }
+    let pressure = conditions.pressure.value;
+    let row = |(_, mode, angle): &(Modulus, SpeedMode, f64), value: f64| SeriesRow {
+        pressure,
+        density: 1.0,
+        mode: *mode,
+        angle: Some(*angle),
+        speed: Some(value.sqrt()),
+        stddev: EXACT,
+    };
+    let rows = WAVES.iter().filter_map(|wave| Some(row(wave, observation.moduli.get(wave.0)?))).collect();
+    // Of ln v, half of ln of the modulus; those that follow from others have no error of their own.
+    let covariance = DMatrix::from_fn(moduli.len(), moduli.len(), |j, k| {
+        let ((a, at), (b, by)) = (moduli[j], moduli[k]);
+        let stated = observation.covariance.map_or(0.0, |c| c[(a as usize, b as usize)]);
+        0.25 * stated / (at * by) + if j == k { EXACT * EXACT } else { 0.0 }
+    });
+    let material = conditions.material.unwrap_or(*calibration.material());
+    let spread = |value: f64| [value * value, 0.0];
+    let unknown = || [UNKNOWN_SIZE_SPREAD.value.powi(2), UNKNOWN_SIZE_SPREAD.variance_stddev()];
+    let stress = conditions.stress_ratio.unwrap_or(UNKNOWN_STRESS_RATIO);
+    let of_poisson = conditions.poisson_ratio_stddev / (1.0 - material.poisson_ratio);
+    Ok(SpeedSeries {
+        shear_modulus_stddev: (conditions.shear_modulus_stddev / material.shear_modulus).hypot(of_poisson),
+        pressure_stddev: conditions.pressure.stddev / pressure,
+        size_variance: conditions.size_spread.map_or_else(unknown, spread),
+        stress_ratio: [stress.value, stress.stddev],
+        grains: observation.grains,
+        covariance: Some(covariance),
+        ..SpeedSeries::of(rows, material)
+    })
+}
+
+fn point_estimate(found: &SingleEstimate, conditions: &Conditions, outside: &[Outside]) -> PointEstimate {
+    use InferredQuantity::{Eps, EpsStiffness, Z};
+    let named = [Z, Eps, EpsStiffness];
+    let used = if found.has_eps { named.len() } else { 1 };
+    let mut structure = Microstructure::default();
+    let mut covariance = MicrostructureCovariance::zeros();
+    let mut bounds = [None; InferredQuantity::COUNT];
+    for (i, a) in named[..used].iter().enumerate() {
+        let of = &found.marginals[i];
+        structure = structure.with(*a, of.mean);
+        bounds[*a as usize] = Some([of.low, of.high]);
+        for (j, b) in named[..used].iter().enumerate() {
+            covariance[(*a as usize, *b as usize)] = found.covariance[(i, j)];
+        }
+    }
+    let mut warnings = vec![match conditions.contact_law {
+        None => Warning::ContactsInferred,
+        Some(law) => Warning::ContactsStated { law: law.springs.name() },
+    }];
+    let z = &found.marginals[0];
+    if z.is_undetermined() {
+        warnings.push(Warning::HardlyDetermined { quantity: Z, left: z.left() });
+    }
+    if found.z_beyond > SAID {
+        warnings.push(Warning::HigherZ { share: found.z_beyond });
+    }
+    if conditions.stress_ratio.is_none() {
+        warnings.push(Warning::StressRatioUnknown);
+    }
+    if conditions.size_spread.is_none() {
+        warnings.push(Warning::SizesUnknown);
+    }
+    for Outside { quantity, value, range, .. } in outside {
+        warnings.push(Warning::StateOutsideFit { quantity, value: *value, range: *range });
+    }
+    if found.p < crate::SeriesEstimate::CONTRADICTORY {
+        warnings.push(Warning::Improbable { probability: found.p });
+    }
+    PointEstimate {
+        jacobian: Some(Jacobian::zeros()),
+        discrepancy: Some(covariance),
+        bounds: Some(bounds),
+        warnings,
+        ..PointEstimate::exact(structure)
+    }
+}

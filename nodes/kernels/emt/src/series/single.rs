@@ -1,0 +1,61 @@
+//! Structure of a sample at one pressure, with the joint error of its quantities.
+
+use super::component::Mixture;
+use super::estimate::{HIGHEST_Z, Interval, SEED};
+use super::forward::Forward;
+use super::prior::SeriesPrior;
+use super::sample::SpeedSeries;
+use crate::calibration::RelaxationCalibration;
+use crate::error::EmtError;
+use nalgebra::{SMatrix, SVector};
+
+/// Quantities: z, ε, and ε weighted by contact stiffness.
+pub(crate) const QUANTITIES: usize = 3;
+
+/// The structure at the only pressure of a series.
+pub(crate) struct SingleEstimate {
+    /// Marginal distributions of z, ε and ε weighted by stiffness; the last two hold where the speeds have directions.
+    pub(crate) marginals: [Interval; QUANTITIES],
+    /// Their covariance.
+    pub(crate) covariance: SMatrix<f64, QUANTITIES, QUANTITIES>,
+    /// True if ε is determined.
+    pub(crate) has_eps: bool,
+    /// Probability of a z beyond those that are stated.
+    pub(crate) z_beyond: f64,
+    /// Probability of less probable data, under all that was assumed.
+    pub(crate) p: f64,
+}
+
+impl SingleEstimate {
+    pub(crate) fn of(
+        series: &SpeedSeries,
+        network: &RelaxationCalibration,
+        prior: &SeriesPrior,
+    ) -> Result<Self, EmtError> {
+        series.check()?;
+        let mixture = Mixture::of(Forward::new(series, network, prior), series.ln_crossover);
+        if mixture.solutions.is_empty() {
+            return Err(EmtError::NotFinite { quantity: "likelihood of the moduli", value: f64::NAN });
+        }
+        let (draws, _) = mixture.draws(SEED);
+        let first = |all: &[f64]| all.first().copied().unwrap_or(0.0);
+        let values = |d: &super::draws::SeriesDraw| {
+            SVector::from([first(&d.z).min(HIGHEST_Z), first(&d.eps), first(&d.eps_stiffness)])
+        };
+        let before = mixture.of_prior(SEED);
+        let marginals = std::array::from_fn(|i| {
+            let spread =
+                |all: &[super::draws::SeriesDraw]| Interval::of(all.iter().map(|d| (values(d)[i], d.weight)));
+            Interval { prior_stddev: spread(&before).stddev, ..spread(&draws) }
+        });
+        let mean = SVector::from(marginals.each_ref().map(|m| m.mean));
+        let off = draws.iter().map(|d| (values(d) - mean, d.weight));
+        Ok(Self {
+            marginals,
+            covariance: off.map(|(v, w)| v * v.transpose() * w).sum(),
+            has_eps: series.has_directions(),
+            z_beyond: draws.iter().filter(|d| first(&d.z) > HIGHEST_Z).fold(0.0, |sum, d| sum + d.weight),
+            p: mixture.contradiction(SEED),
+        })
+    }
+}
