@@ -25,10 +25,11 @@ const RISE: f64 = 0.3;
 /// κ² ln(z/5). From the packings of the campaign `preparations` with k_t/k_n lowered to .27: to .01.
 const OF_LOW_RATIO: [[f64; 3]; 2] = [[-0.132, 0.029, 0.295], [-0.199, 0.819, 0.738]];
 
-/// ln of both moduli by the spread of the contact stiffness, in units of e^(−(z − 4)/2): factors of α² − 1/9 for k ∝ F^α. From the
-/// campaign `rough`.
-const OF_SPREAD: [f64; 2] = [0.35, -0.56];
-const SPREAD_RATE: f64 = 0.5;
+/// ln of both moduli by the spread of the contact stiffness, in units of e^(−.65 (z − 4)): factors of α^1.5 − 3^−1.5 for k ∝ F^α. From
+/// the campaign `rough`, and from linear springs in the packings of `preparations`.
+const OF_SPREAD: [f64; 2] = [0.36, -0.56];
+const SPREAD_RATE: f64 = 0.65;
+const SPREAD_POWER: f64 = 1.5;
 
 /// Least modulus of a wave, over the shear modulus.
 const LEAST_MODULUS: f64 = 0.02;
@@ -267,7 +268,7 @@ impl<'a> Forward<'a> {
                 let [z, by_u] = Self::z_of(u);
                 let [gain, slope] = kind.gain(self.pressures[k].ln() - cross, z);
                 let spread = OF_SPREAD[which]
-                    * ((1.0 / 3.0 + slope).powi(2) - 1.0 / 9.0)
+                    * ((1.0 / 3.0 + slope).max(0.0).powf(SPREAD_POWER) - f64::powf(1.0 / 3.0, SPREAD_POWER))
                     * (-SPREAD_RATE * (z - ISOSTATIC)).exp();
                 let (kappa, ln_z, [square, cube, mixed]) =
                     (state.stiffness_ratio, (z / 5.0).ln(), OF_LOW_RATIO[which]);
