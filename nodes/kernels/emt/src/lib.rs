@@ -100,8 +100,9 @@ pub use posterior::{
 pub use prior::{Density, Prior, PriorError};
 pub use registry::{free_contact, model, models, recommended};
 pub use series::{
-    ContactKind, ContactPrior, Interval, LawEstimate, LeftOut, PreparationPrior, PressureEstimate,
-    RowEstimate, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode, SpeedSeries, infer_series,
+    ContactCorrections, ContactKind, ContactPrior, Interval, LawEstimate, LeftOut, PreparationPrior,
+    PressureEstimate, RowEstimate, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode,
+    SpeedSeries, infer_series,
 };
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

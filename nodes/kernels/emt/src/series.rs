@@ -6,13 +6,14 @@
 //! contact.
 //!
 //! - `sample`: the speeds; `prior`: what is known before them; `gain`: contact laws by their stiffness over pressure
-//! - `forward`: speeds and their slopes; `component`: a normal approximation of the posterior for each cell of the prior;
+//! - `forward`: speeds and their slopes; `corrections`: contacts that the laws were not learned from; `component`: a normal approximation of the posterior for each cell of the prior;
 //!   `draws`: their correction by importance sampling
 //! - `check`: pressures and rows left out, contradictions; `estimate`: what is stated; `single`: of
 //!   one pressure, for the model `free-contact`
 
 mod check;
 mod component;
+mod corrections;
 mod draws;
 mod estimate;
 mod forward;
@@ -24,6 +25,7 @@ mod single;
 mod tests;
 
 pub use check::LeftOut;
+pub use corrections::ContactCorrections;
 pub use estimate::{
     Interval, LawEstimate, PressureEstimate, RowEstimate, Sensitivity, SeriesEstimate, infer_series,
 };

@@ -106,7 +106,7 @@ pub enum Warning {
     /// The data say little of a quantity.
     #[error("the data hardly determine {quantity}: {:.0} % of the standard deviation of its prior is left", 100.0 * left)]
     HardlyDetermined {
-        /// The quantity.
+        /// Quantity that the data say little of.
         quantity: InferredQuantity,
         /// Standard deviation over that of the prior.
         left: f64,

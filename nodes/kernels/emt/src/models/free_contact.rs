@@ -122,7 +122,7 @@ fn series(observation: &Observation, calibration: &Calibration) -> Result<SpeedS
         stddev: EXACT,
     };
     let rows = WAVES.iter().filter_map(|wave| Some(row(wave, observation.moduli.get(wave.0)?))).collect();
-    // Of ln v, half of ln of the modulus; those that follow from others have no error of their own.
+    // ln v is half of ln of the modulus. Moduli that follow from others have no error of their own.
     let covariance = DMatrix::from_fn(moduli.len(), moduli.len(), |j, k| {
         let ((a, at), (b, by)) = (moduli[j], moduli[k]);
         let stated = observation.covariance.map_or(0.0, |c| c[(a as usize, b as usize)]);

@@ -1,9 +1,10 @@
 //! Logarithms of the speeds of a sample, and their slopes by the unknowns.
 
+use super::corrections::ContactCorrections;
 use super::gain::ContactKind;
 use super::prior::{PreparationPrior, SeriesPrior};
 use super::sample::{SeriesRow, SpeedMode, SpeedSeries};
-use crate::calibration::{ISOSTATIC, NetworkState, RelaxationCalibration};
+use crate::calibration::{NetworkState, RelaxationCalibration};
 use crate::invariants::{INVARIANTS, Invariants};
 use nalgebra::{DMatrix, DVector, RowSVector, SMatrix, SVector};
 use std::f64::consts::LN_10;
@@ -20,16 +21,6 @@ const TREND: f64 = 0.4;
 
 /// Exponent of the pressure in the rise of z.
 const RISE: f64 = 0.3;
-
-/// ln of the bulk and of the shear modulus beyond their laws, which were learned for k_t/k_n near Mindlin's: factors of κ², κ³ and
-/// κ² ln(z/5). From the packings of the campaign `preparations` with k_t/k_n lowered to .27: to .01.
-const OF_LOW_RATIO: [[f64; 3]; 2] = [[-0.132, 0.029, 0.295], [-0.199, 0.819, 0.738]];
-
-/// ln of both moduli by the spread of the contact stiffness, in units of e^(−.65 (z − 4)): factors of α^1.5 − 3^−1.5 for k ∝ F^α. From
-/// the campaign `rough`, and from linear springs in the packings of `preparations`.
-const OF_SPREAD: [f64; 2] = [0.36, -0.56];
-const SPREAD_RATE: f64 = 0.65;
-const SPREAD_POWER: f64 = 1.5;
 
 /// Least modulus of a wave, over the shear modulus.
 const LEAST_MODULUS: f64 = 0.02;
@@ -267,21 +258,18 @@ impl<'a> Forward<'a> {
                 let law = [&network.theta, &network.shear][which];
                 let [z, by_u] = Self::z_of(u);
                 let [gain, slope] = kind.gain(self.pressures[k].ln() - cross, z);
-                let spread = OF_SPREAD[which]
-                    * ((1.0 / 3.0 + slope).max(0.0).powf(SPREAD_POWER) - f64::powf(1.0 / 3.0, SPREAD_POWER))
-                    * (-SPREAD_RATE * (z - ISOSTATIC)).exp();
-                let (kappa, ln_z, [square, cube, mixed]) =
-                    (state.stiffness_ratio, (z / 5.0).ln(), OF_LOW_RATIO[which]);
+                let exponent = 1.0 / 3.0 + slope;
+                let corrections = &ContactCorrections::LEARNED;
+                let [spread, spread_by_z] = corrections.of_spread(which, exponent, z);
+                let [low, low_by_kappa, low_by_z] = corrections.of_low_ratio(which, state.stiffness_ratio, z);
                 let value =
                     law.value(z, &state) + 2.0 / 3.0 * self.ln_young + self.pressures[k].ln() / 3.0 + gain
                         - level[0]
                         + spread
-                        + kappa * kappa * (square + cube * kappa + mixed * ln_z)
+                        + low
                         + self.prior.preparation[preparation].moduli[which];
-                let by_z =
-                    law.slope(z, &state) - slope / z - SPREAD_RATE * spread + mixed * kappa * kappa / z;
-                let by_kappa =
-                    law.by_stiffness_ratio(z) + kappa * (2.0 * (square + mixed * ln_z) + 3.0 * cube * kappa);
+                let by_z = law.slope(z, &state) - slope / z + spread_by_z + low_by_z;
+                let by_kappa = law.by_stiffness_ratio(z) + low_by_kappa;
                 [value, by_z * by_u, by_kappa * by_ratio, level[1] - slope]
             };
             let theta = scalar(0, unknowns[k]);

@@ -57,7 +57,7 @@ impl ContactKind {
     }
 
     /// ln of the mean stiffness over that of Hertz contacts, and its slope by ln p, at this ln p − ln p_r and z.
-    pub(super) fn gain(self, ln_pressure: f64, z: f64) -> [f64; 2] {
+    pub fn gain(self, ln_pressure: f64, z: f64) -> [f64; 2] {
         let table = &tables()[self as usize];
         let step = -2.0 * FROM / STEPS as f64;
         let at = ((ln_pressure - (z / REFERENCE_Z).ln() - FROM) / step).clamp(0.0, STEPS as f64 - 1e-9);

@@ -256,7 +256,7 @@ fn contacts_that_are_not_known_are_inferred_and_those_of_smooth_spheres_are_not(
     let (first, others) = free.split_first().unwrap();
     assert_eq!((first.model.as_str(), first.status), ("free-contact", Estimate::STATUS_OK), "{first:?}");
     assert!(first.warnings[0].starts_with("the contacts are not known"), "{:?}", first.warnings);
-    // Of the same moduli, smooth spheres have one z, and spheres with any contact a wide interval that has it.
+    // Smooth spheres with these moduli have one z; with any contact the interval is wide and has that z.
     let smooth = others.iter().find(|e| e.model == "relaxed").unwrap();
     let [low, high] = [first.interval[4], first.interval[5]];
     assert!((low..high).contains(&smooth.z[0]) && high - low > 0.5, "{low} {high} {smooth:?}");

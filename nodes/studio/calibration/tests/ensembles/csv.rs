@@ -7,12 +7,12 @@ use grainlab_emt::{Moduli, Observation, StrainRatio};
 use std::path::Path;
 
 /// Header and rows of a file in `tests/golden`.
-struct Table {
+pub(crate) struct Table {
     header: Vec<String>,
-    rows: Vec<Vec<String>>,
+    pub(crate) rows: Vec<Vec<String>>,
 }
 
-fn read(name: &str) -> Table {
+pub(crate) fn read(name: &str) -> Table {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/golden").join(name);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let mut lines =
@@ -21,12 +21,12 @@ fn read(name: &str) -> Table {
 }
 
 impl Table {
-    fn cell<'a>(&self, row: &'a [String], column: &str) -> &'a str {
+    pub(crate) fn cell<'a>(&self, row: &'a [String], column: &str) -> &'a str {
         let at = self.header.iter().position(|h| h == column);
         &row[at.unwrap_or_else(|| panic!("no column {column}"))]
     }
 
-    fn number(&self, row: &[String], column: &str) -> f64 {
+    pub(crate) fn number(&self, row: &[String], column: &str) -> f64 {
         self.cell(row, column).parse().unwrap()
     }
 }

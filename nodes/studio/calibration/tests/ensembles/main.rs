@@ -1,6 +1,7 @@
 //! The stored ensembles of packings: those from which the built-in calibration was learned, and held-out
 //! ones.
 
+mod contacts;
 mod csv;
 mod judged;
 mod least_squares;

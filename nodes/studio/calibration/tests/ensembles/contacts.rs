@@ -1,0 +1,155 @@
+//! Packings with contacts other than those of the calibration: the corrections of the laws, and the preparations of the prior.
+
+use crate::csv;
+use grainlab_core::Material;
+use grainlab_emt::{
+    Calibration, ContactCorrections, ContactKind, Invariants, Moduli, NetworkState, SeriesPrior,
+};
+use nalgebra::{DMatrix, DVector};
+
+/// One packing under one contact law.
+struct Network {
+    preparation: String,
+    member: u32,
+    step: u64,
+    law: String,
+    /// d ln k_n/d ln F of the mean stiffness.
+    exponent: f64,
+    state: NetworkState,
+    z: f64,
+    /// ln of the bulk and of the shear modulus less the law of `relaxed`, those of the mean contact stiffness left out.
+    residual: [f64; 2],
+}
+
+impl Network {
+    /// Weight of a residual: the scatter of packings grows towards the isostatic point.
+    fn weight(&self) -> f64 {
+        (self.z - 4.0) / self.z
+    }
+
+    fn difference(&self) -> f64 {
+        self.residual[0] - self.residual[1]
+    }
+}
+
+fn networks() -> Vec<Network> {
+    let t = csv::read("ensembles/contacts.csv");
+    let laws = Calibration::builtin("grainlab").unwrap().network().unwrap();
+    let one = |row: &Vec<String>| {
+        let n = |column| t.number(row, column);
+        let moduli = ["g12_pa", "g13_pa", "theta_pa", "ti_c11_pa", "ti_c33_pa", "ti_c13_pa"];
+        let found = Invariants::of(&Moduli::of_values(moduli.map(|m| Some(n(m))))).unwrap();
+        let grains = n("grain_shear_modulus_pa");
+        let material = Material { shear_modulus: grains, poisson_ratio: n("poisson"), ..Material::GLASS };
+        let (pressure, z) = (n("pressure_pa"), n("z"));
+        let mindlin = NetworkState::of(pressure, &material, n("size_spread"), 0.0);
+        let kappa = mindlin.stiffness_ratio + n("stiffness_ratio") - material.stiffness_ratio();
+        let state = NetworkState { stiffness_ratio: kappa, ..mindlin };
+        let law = t.cell(row, "law").to_owned();
+        // The radius is 0.1 mm.
+        let [gain, slope] = match (law.as_str(), n("roughness")) {
+            ("rough", roughness) if roughness > 0.0 => {
+                let crossover = ContactKind::crossover(roughness / 2e-4, &material, n("phi"));
+                ContactKind::Rough.gain((pressure / crossover).ln(), z)
+            }
+            ("linear", _) => [0.0, -1.0 / 3.0],
+            _ => [0.0; 2],
+        };
+        let unit = 2.0 / 3.0 * material.effective_young().ln() + pressure.ln() / 3.0 + gain;
+        let off = |ln: f64, law: f64| ln - law - unit;
+        let residual = [
+            off(found.ln_theta, laws.theta.value(z, &state)),
+            off(found.ln_shear, laws.shear.value(z, &state)),
+        ];
+        let preparation = t.cell(row, "preparation").to_owned();
+        let (member, step) = (n("member") as u32, n("step") as u64);
+        Network { preparation, member, step, law, exponent: 1.0 / 3.0 + slope, state, z, residual }
+    };
+    t.rows.iter().map(one).collect()
+}
+
+/// The same packing with smooth contacts.
+fn smooth<'a>(all: &'a [Network], of: &Network) -> &'a Network {
+    let is_it = |n: &&Network| n.law == "hertz_mindlin" && (n.member, n.step) == (of.member, of.step);
+    all.iter().find(is_it).unwrap()
+}
+
+/// Least squares of weighted rows.
+fn fitted(rows: &[(Vec<f64>, f64, f64)]) -> Vec<f64> {
+    let count = rows[0].0.len();
+    let slopes = DMatrix::from_fn(rows.len(), count, |i, j| rows[i].0[j] * rows[i].2);
+    let values = DVector::from_fn(rows.len(), |i, _| rows[i].1 * rows[i].2);
+    slopes.svd(true, true).solve(&values, 1e-12).unwrap().as_slice().to_vec()
+}
+
+#[test]
+fn the_correction_for_low_tangential_stiffness_is_learned_from_the_stored_packings() {
+    let all = networks();
+    let lowered = |n: &&Network| n.law == "rough" && n.member < 100;
+    for (q, kept) in ContactCorrections::LEARNED.by_low_ratio.into_iter().enumerate() {
+        let row = |n: &Network| {
+            let terms = ContactCorrections::low_ratio_terms(n.state.stiffness_ratio, n.z);
+            (terms.to_vec(), n.residual[q] - smooth(&all, n).residual[q], n.weight())
+        };
+        let rows: Vec<_> = all.iter().filter(lowered).map(row).collect();
+        let found = fitted(&rows);
+        let off = |(terms, value, w): &(Vec<f64>, f64, f64)| {
+            ((value - terms.iter().zip(&found).map(|(t, f)| t * f).sum::<f64>()) * w).powi(2)
+        };
+        let rms = (rows.iter().map(off).sum::<f64>() / rows.len() as f64).sqrt();
+        println!("{q}: {found:.4?} of {} packings, weighted rms {rms:.4}", rows.len());
+        for (found, kept) in found.iter().zip(kept) {
+            assert!((found - kept).abs() < 2e-3, "{q}: {found} {kept}");
+        }
+    }
+}
+
+#[test]
+fn the_correction_for_the_spread_of_stiffness_is_learned_from_rough_and_linear_contacts() {
+    let all = networks();
+    let mut rows = Vec::new();
+    for n in all.iter().filter(|n| n.member > 100) {
+        let loose = f64::from(u8::from(n.preparation == "loose"));
+        let term = ContactCorrections::spread_term(n.exponent, n.z);
+        // Each preparation has its own offset of each modulus.
+        for q in 0..2 {
+            let mut terms = vec![0.0; 6];
+            (terms[q], terms[2 + q], terms[4 + q]) = (term, loose, 1.0 - loose);
+            rows.push((terms, n.residual[q], n.weight()));
+        }
+    }
+    // The level of linear springs is that of their stiffness: the ratio of the moduli alone counts.
+    for n in all.iter().filter(|n| n.law == "linear") {
+        let term = ContactCorrections::spread_term(0.0, n.z);
+        let value = n.difference() - smooth(&all, n).difference();
+        rows.push((vec![term, -term, 0.0, 0.0, 0.0, 0.0], value, n.weight()));
+    }
+    let found = fitted(&rows);
+    println!("{found:.4?}");
+    for (found, kept) in found.iter().zip(ContactCorrections::LEARNED.by_spread) {
+        assert!((found - kept).abs() < 5e-3, "{found} {kept}");
+    }
+}
+
+/// z within two standard deviations of the prior, and the offsets of the moduli within .002.
+#[test]
+fn preparations_of_the_prior_are_those_of_the_stored_packings() {
+    let all = networks();
+    for prior in &SeriesPrior::builtin().preparation {
+        let is_it = |n: &&Network| n.law == "hertz_mindlin" && n.preparation == prior.name;
+        let own: Vec<&Network> = all.iter().filter(is_it).collect();
+        assert_eq!(own.len(), 54, "{}", prior.name);
+        for n in &own {
+            let pressure = n.state.ln_pressure.exp();
+            let z =
+                prior.z[0] + prior.slope[0] * pressure.log10() + prior.rise[0] * (pressure.powf(0.3) - 1.0);
+            assert!((n.z - z).abs() < 2.0 * prior.z[1] + 0.1, "{}: {} {z}", prior.name, n.z);
+        }
+        let total: f64 = own.iter().map(|n| n.weight()).sum();
+        let offset = [0, 1].map(|q| own.iter().map(|n| n.residual[q] * n.weight()).sum::<f64>() / total);
+        println!("{}: {offset:.4?}", prior.name);
+        for (found, kept) in offset.iter().zip(prior.moduli) {
+            assert!((found - kept).abs() < 2e-3, "{}: {found} {kept}", prior.name);
+        }
+    }
+}
