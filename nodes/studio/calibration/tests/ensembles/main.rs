@@ -9,6 +9,7 @@ mod left_out;
 mod predictive;
 mod ranks;
 mod rock_physics;
+mod series;
 mod stress_and_fabric;
 
 use grainlab_calibration::{CalibrationSample, learn, with_errors};
