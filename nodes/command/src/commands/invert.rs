@@ -176,7 +176,7 @@ pub(crate) struct Args {
     /// g_contact, 0, or each but the first [default: given, else total, else contact, else zero]
     #[arg(long, value_name = "WHICH", value_parser = case::GAMMAS, requires = "table")]
     gamma: Option<String>,
-    /// Only these models, comma-separated [default: all]
+    /// Only these models, comma-separated [default: all but free-contact]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     model: Vec<String>,
     /// Source of the constants of the models: a name, a file, or several; default is the paper's for the
@@ -264,6 +264,20 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::usage("--contact other than hertz is for --speeds: give the speeds"));
     }
     let mut cases = cases(&args.models(), &args.calibration, args.gamma.as_deref())?;
+    if cases.iter().any(|case| case.model == grainlab_emt::free_contact()) {
+        let of_others = [
+            ("--prior", args.prior.is_some()),
+            ("--print-prior", args.print_prior),
+            ("--draws", args.draws.is_some()),
+            ("--evidence", args.evidence),
+            ("--explain", args.explain),
+            ("--rank-test", args.rank_test.is_some()),
+        ];
+        refuse(
+            &of_others,
+            "is not for model free-contact, whose prior is that of --print-prior --contact free",
+        )?;
+    }
     if let Some(path) = &args.prior {
         prior::apply(path, &mut cases)?;
     }

@@ -90,18 +90,31 @@ pub enum Warning {
     ContactLawAssumed,
     /// Contacts that are not known are inferred with the structure.
     #[error(
-        "the contacts are not known: their law, k_t/k_n and stiffness are inferred; z follows from the ratio of the moduli, and from \
-         simulated preparations"
+        "the contacts are not known, and are inferred: k_t/k_n {:.2} +- {:.2}, moduli {level:.2} times those of smooth contacts; z \
+         follows from the ratio of the moduli, and from simulated preparations", ratio[0], ratio[1]
     )]
-    ContactsInferred,
+    ContactsInferred {
+        /// k_t/k_n and its standard deviation.
+        ratio: [f64; 2],
+        /// Moduli over those of the contact law with the given material and density.
+        level: f64,
+    },
     /// Contacts have another law than those of the calibration.
     #[error(
-        "{law} contacts: z follows from the ratio of the moduli, and from simulated preparations; a roughness, or a linear \
-         stiffness, is inferred, since the size of the grains is not known"
+        "{law} contacts: their k_t/k_n is used, and {} is not, since the size of the grains is not known; z follows from the ratio \
+         of the moduli, and from simulated preparations", if *law == "rough" { "the roughness" } else { "the stiffness" }
     )]
     ContactsStated {
         /// Name of the law.
         law: &'static str,
+    },
+    /// Moduli are far from those of any contacts of these grains.
+    #[error(
+        "the moduli are {ratio:.2} times those of the contacts of these grains: check pressure, material, density and units"
+    )]
+    FarLevel {
+        /// Moduli over those of the contact law.
+        ratio: f64,
     },
     /// The data say little of a quantity.
     #[error("the data hardly determine {quantity}: {:.0} % of the standard deviation of its prior is left", 100.0 * left)]
@@ -312,6 +325,7 @@ impl Warning {
                 | Warning::Imbalance { .. }
                 | Warning::Conflict { .. }
                 | Warning::Improbable { .. }
+                | Warning::FarLevel { .. }
                 | Warning::PriorConflict { .. }
                 | Warning::PriorExcludes { .. }
                 | Warning::PriorsConflict { .. }
@@ -340,7 +354,7 @@ impl Warning {
                 | Warning::SizesUnknown
                 | Warning::WidenedMost { .. }
                 | Warning::ContactLawAssumed
-                | Warning::ContactsInferred
+                | Warning::ContactsInferred { .. }
                 | Warning::ContactsStated { .. }
                 | Warning::HardlyDetermined { .. }
                 | Warning::HigherZ { .. }

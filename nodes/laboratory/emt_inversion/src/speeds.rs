@@ -57,7 +57,11 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
     let misfit = fitted.chi_square.map(|chi_square| Misfit { chi_square, degrees_of_freedom: freedom });
     let observation = match fitted.observation.covariance {
         Some(_) => fitted.observation,
-        None => with_error(fitted.observation, settings.modulus_error),
+        None => {
+            let error = 100.0 * settings.modulus_error;
+            notes.push(format!("no wave speed has a standard deviation: every modulus has one of {error} %"));
+            with_error(fitted.observation, settings.modulus_error)
+        }
     };
     let observation = Observation { grains: reading.grains, ..observation };
     Ok(Observed { observation, misfit: misfit.filter(|m| m.degrees_of_freedom > 0), in_conflict, notes })

@@ -6,8 +6,19 @@ use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 use grainlab_page::{Cell, Html, Page, Section, csv, figure, heading, html, list, paragraph, table};
 use std::f64::consts::PI;
 
-/// A sample: its name, its speeds, what is inferred, and the notes on it.
-pub type InferredSample<'a> = (&'a str, &'a SpeedSeries, &'a SeriesEstimate, &'a [String]);
+/// A sample on the page.
+pub struct InferredSample<'a> {
+    /// Name of the sample; may be empty.
+    pub name: &'a str,
+    /// Speeds of the sample.
+    pub series: &'a SpeedSeries,
+    /// Result of the inversion.
+    pub estimate: &'a SeriesEstimate,
+    /// True if the speeds contradict each other or the model.
+    pub is_contradictory: bool,
+    /// Sentences on the result.
+    pub notes: &'a [String],
+}
 
 /// The page of samples.
 pub fn series_page(samples: &[InferredSample<'_>]) -> String {
@@ -31,11 +42,11 @@ pub fn series_page(samples: &[InferredSample<'_>]) -> String {
 }
 
 fn named(sample: &InferredSample<'_>, what: &str) -> String {
-    if sample.0.is_empty() { what.to_owned() } else { format!("{}: {what}", sample.0) }
+    if sample.name.is_empty() { what.to_owned() } else { format!("{}: {what}", sample.name) }
 }
 
 fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
-    let (_, _, e, notes) = sample;
+    let InferredSample { estimate: e, notes, .. } = sample;
     let line = |of: fn(&grainlab_emt::Interval) -> f64, line: Line| Series {
         colour: Some(0),
         line: Some(line),
@@ -71,9 +82,9 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
         .iter()
         .map(|p| [p.pressure, p.z.mean, p.z.stddev, p.z.low, p.z.high].map(|v| v.to_string()));
     let data = csv(["pressure_pa", "z", "z_sigma", "z_low", "z_high"], rows);
-    let verdict = match e.is_contradictory() {
-        true => format!("These speeds contradict each other or the model: p = {:.4}.", e.p),
-        false => format!("These speeds are consistent: p = {:.2}.", e.p),
+    let verdict = match sample.is_contradictory {
+        true => "These speeds contradict each other or the model.".to_owned(),
+        false => format!("The model fits these speeds: less probable ones have a probability of {:.2}.", e.p),
     };
     html!(
         "{{ verdict }}{{ drawn }}{{ notes }}",
@@ -84,7 +95,7 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
 }
 
 fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
-    let (_, series, e, _) = sample;
+    let InferredSample { series, estimate: e, .. } = sample;
     let kind = |row: &grainlab_emt::SeriesRow| {
         let mode = match row.mode {
             SpeedMode::P => "P",
@@ -132,7 +143,7 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
 }
 
 fn contact(_: usize, sample: &InferredSample<'_>) -> Html {
-    let (_, _, e, _) = sample;
+    let e = sample.estimate;
     let cell = |value: f64, digits: usize| Cell::fixed(value, digits);
     let unknown = |name: &str, of: &grainlab_emt::Interval| {
         vec![

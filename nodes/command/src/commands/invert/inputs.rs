@@ -158,7 +158,7 @@ pub(super) fn reference() -> String {
         let names: Vec<&str> = input.names().iter().map(|alias| alias.name).collect();
         format!("  {:<34} {}\n", names.join(", "), input.meaning())
     };
-    let law = "  contact_law                        hertz_mindlin, or linear:KN,RATIO or rough:SQ,FACTOR, which no model can invert\n";
+    let law = "  contact_law                        hertz_mindlin, or linear:KN,RATIO or rough:SQ,FACTOR, of which only --model free-contact has an estimate\n";
     let smooth = "  smooth                             true: the stiffness is without tangential springs, which no model can invert\n";
     let axis = "  axis_found                         of grainlab probe: false if no axis stood out in the speeds, which is noted\n";
     INPUTS.iter().map(line).chain([law, smooth, axis].map(str::to_owned)).collect()

@@ -87,7 +87,8 @@ pub(super) fn run(
         let estimate = infer_series(&series, network, &prior).map_err(wrong)?;
         let sensitivity = Sensitivity::of(&series, network, &prior).map_err(wrong)?;
         let contact = contact.text();
-        let status = if estimate.is_contradictory() { "contradictory" } else { "ok" };
+        let is_contradictory = estimate.is_contradictory() || sensitivity.is_contradictory();
+        let status = if is_contradictory { "contradictory" } else { "ok" };
         let mut all = Sample {
             sample,
             contact,
@@ -106,7 +107,7 @@ pub(super) fn run(
     if let Some(path) = plot {
         plotted(&found, path)?;
     }
-    let contradictory: Vec<&Sample> = found.iter().filter(|s| s.estimate.is_contradictory()).collect();
+    let contradictory: Vec<&Sample> = found.iter().filter(|s| s.status == "contradictory").collect();
     for sample in &contradictory {
         say!("grainlab: {name}: sample {:?}: contradictory: {}", sample.sample, print::contradiction(sample));
     }
@@ -115,8 +116,16 @@ pub(super) fn run(
 
 #[cfg(feature = "studio")]
 fn plotted(samples: &[Sample], path: &Path) -> Result<(), Failure> {
-    let all: Vec<_> =
-        samples.iter().map(|s| (s.sample.as_str(), &s.series, &s.estimate, s.notes.as_slice())).collect();
+    let mut all = Vec::new();
+    for s in samples {
+        all.push(grainlab_report::InferredSample {
+            name: &s.sample,
+            series: &s.series,
+            estimate: &s.estimate,
+            is_contradictory: s.status == "contradictory",
+            notes: &s.notes,
+        });
+    }
     let page = grainlab_report::series_page(&all);
     grainlab_console::write_whole(path, page.as_bytes())
         .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))

@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::{Jacobian, PointEstimate};
-use crate::series::{SeriesPrior, SeriesRow, SingleEstimate, SpeedMode, SpeedSeries};
+use crate::series::{Interval, SeriesPrior, SeriesRow, SingleEstimate, SpeedMode, SpeedSeries};
 use crate::warning::Warning;
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::DMatrix;
@@ -32,6 +32,9 @@ const RATIOS: [f64; 2] = [0.25, 1.0];
 
 /// Relative error of moduli of which none is stated: that of the series needs one.
 const EXACT: f64 = 1e-3;
+
+/// Standard deviations of the prior by which a level is far.
+const FAR_LEVEL: f64 = 3.0;
 
 /// Share of the posterior beyond the highest z that is stated, above which it is said.
 const SAID: f64 = 0.1;
@@ -110,7 +113,10 @@ fn series(observation: &Observation, calibration: &Calibration) -> Result<SpeedS
         |(modulus, ..): &(Modulus, SpeedMode, f64)| Some((*modulus, observation.moduli.get(*modulus)?));
     let moduli: Vec<(Modulus, f64)> = WAVES.iter().filter_map(known).collect();
     if moduli.len() < 2 {
-        return Err(EmtError::Missing { model: NAME, missing: "a second modulus beside C13" });
+        return Err(EmtError::Missing {
+            model: NAME,
+            missing: "a second one of G12, G13, Theta, C11 and C33",
+        });
     }
     let pressure = conditions.pressure.value;
     let row = |(_, mode, angle): &(Modulus, SpeedMode, f64), value: f64| SeriesRow {
@@ -159,10 +165,19 @@ fn point_estimate(found: &SingleEstimate, conditions: &Conditions, outside: &[Ou
             covariance[(*a as usize, *b as usize)] = found.covariance[(i, j)];
         }
     }
-    let mut warnings = vec![match conditions.contact_law {
-        None => Warning::ContactsInferred,
+    let mut warnings = Vec::new();
+    let level = &found.level;
+    if level.mean.abs() > FAR_LEVEL * level.prior_stddev {
+        warnings.push(Warning::FarLevel { ratio: level.mean.exp() });
+    }
+    if found.p < crate::SeriesEstimate::CONTRADICTORY {
+        warnings.push(Warning::Improbable { probability: found.p });
+    }
+    let Interval { mean, stddev, .. } = found.stiffness_ratio;
+    warnings.push(match conditions.contact_law {
+        None => Warning::ContactsInferred { ratio: [mean, stddev], level: level.mean.exp() },
         Some(law) => Warning::ContactsStated { law: law.springs.name() },
-    }];
+    });
     let z = &found.marginals[0];
     if z.is_undetermined() {
         warnings.push(Warning::HardlyDetermined { quantity: Z, left: z.left() });
@@ -178,9 +193,6 @@ fn point_estimate(found: &SingleEstimate, conditions: &Conditions, outside: &[Ou
     }
     for Outside { quantity, value, range, .. } in outside {
         warnings.push(Warning::StateOutsideFit { quantity, value: *value, range: *range });
-    }
-    if found.p < crate::SeriesEstimate::CONTRADICTORY {
-        warnings.push(Warning::Improbable { probability: found.p });
     }
     PointEstimate {
         jacobian: Some(Jacobian::zeros()),

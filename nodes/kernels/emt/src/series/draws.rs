@@ -146,7 +146,10 @@ impl Mixture<'_> {
             with.dot(&pull) + left.max(0.0).sqrt() * random.normal::<1>()[0]
         };
         let level = given(&(Forward::by_level(&at, m) * forward.level), forward.level);
-        let mut eps_stiffness = forward.eps_stiffness(&unknowns);
+        if unknowns[forward.ratio()] < forward.lowest_ratio() {
+            return None;
+        }
+        let mut eps_stiffness = forward.eps_stiffness(kind, &unknowns);
         for (k, eps) in eps_stiffness.iter_mut().enumerate() {
             let (with, variance) = forward.with_eps_stiffness(&at, k, m);
             *eps += given(&with, variance);
@@ -168,13 +171,16 @@ impl Mixture<'_> {
             let component = &self.solutions[place].component;
             let (mean, _, factor) = &*component.normal;
             let unknowns = mean + factor * normal(&mut random, mean.len());
-            let eps_stiffness = self.forward.eps_stiffness(&unknowns);
+            if unknowns[self.forward.ratio()] < self.forward.lowest_ratio() {
+                return None;
+            }
+            let eps_stiffness = self.forward.eps_stiffness(component.kind, &unknowns);
             let level = self.forward.level.sqrt() * random.normal::<1>()[0];
             let weight = 1.0 / DRAWS as f64;
-            SeriesDraw { weight, level, eps_stiffness, ..self.at(component, &unknowns) }
+            Some(SeriesDraw { weight, level, eps_stiffness, ..self.at(component, &unknowns) })
         };
         let mut first = Random::new(seed ^ 1);
-        places(&prior, &mut first).into_iter().map(draw).collect()
+        places(&prior, &mut first).into_iter().filter_map(draw).collect()
     }
 
     fn at(&self, component: &Component, unknowns: &DVector<f64>) -> SeriesDraw {

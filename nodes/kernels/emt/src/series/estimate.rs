@@ -1,7 +1,7 @@
 //! Inferred structure of a sample, and its dependence on what was assumed.
 
 use super::check::LeftOut;
-use super::component::{Mixture, Solution, normalised};
+use super::component::Mixture;
 use super::draws::SeriesDraw;
 use super::forward::Forward;
 use super::gain::ContactKind;
@@ -22,6 +22,9 @@ const AT_END: f64 = 0.05;
 
 /// Drift of ln k_t/k_n per decade that is tried.
 const DRIFT: f64 = 0.1;
+
+/// Standard deviations of a difference that contradicts.
+const FAR: f64 = 3.0;
 
 /// Slope of z per decade without the prior's: mean and standard deviation.
 const NO_SLOPE: [f64; 2] = [0.0, 1.0];
@@ -163,9 +166,15 @@ impl SeriesEstimate {
     /// p below which data contradict each other or the model.
     pub const CONTRADICTORY: f64 = 0.01;
 
-    /// True if the data as a whole contradict what was assumed.
+    /// True if the data contradict each other, or what was assumed: as a whole, at one of the pressures, or by their level.
     pub fn is_contradictory(&self) -> bool {
-        self.p < Self::CONTRADICTORY
+        let of_pressures = self.pressures.iter().filter_map(|p| p.p).fold(1.0, f64::min);
+        self.p.min(of_pressures * self.pressures.len() as f64) < Self::CONTRADICTORY || self.has_far_level()
+    }
+
+    /// True if the moduli are further from those of the law with the given material and density than is assumed of any sample.
+    pub fn has_far_level(&self) -> bool {
+        self.level.mean.abs() > FAR * self.level.prior_stddev
     }
 }
 
@@ -224,7 +233,11 @@ pub fn infer_series(
         };
         let ln_crossover =
             is_likely.then(|| Interval { prior_stddev: of_law(&before).stddev, ..of_law(&draws) });
-        LawEstimate { law, probability, ln_crossover, z: mixture.z(|s| s.component.kind == law) }
+        let z = (0..forward.count()).map(|k| {
+            let of_law = draws.iter().filter(|d| d.kind == law).map(|d| (d.z[k], d.weight));
+            Interval::of(of_law).mean.min(HIGHEST_Z)
+        });
+        LawEstimate { law, probability, ln_crossover, z: z.collect() }
     });
     let preparations = prior.preparation.iter().enumerate();
     let preparations = preparations.map(|(n, of)| (of.name.clone(), probability(&|d| d.preparation == n)));
@@ -318,13 +331,11 @@ const QUADRATURE: [[f64; 2]; 5] = [
 ];
 
 impl Mixture<'_> {
-    /// Means of z under some of the components, by their normal approximations.
-    fn z(&self, used: impl Fn(&Solution) -> bool) -> Vec<f64> {
-        let used: Vec<&Solution> = self.solutions.iter().filter(|s| used(s)).collect();
-        let weights = normalised(used.iter().map(|s| s.ln_weight()));
+    /// Means of z by the normal approximations.
+    fn z(&self) -> Vec<f64> {
         let (n, first) = (self.forward.count(), self.forward.ratio() - self.forward.count());
         let mut mean = vec![0.0; n];
-        for (solution, weight) in used.iter().zip(weights) {
+        for (solution, weight) in self.solutions.iter().zip(&self.weights) {
             let variances = solution.variances();
             for (k, mean) in mean.iter_mut().enumerate() {
                 let at = |x: f64| {
@@ -338,6 +349,11 @@ impl Mixture<'_> {
 }
 
 impl Sensitivity {
+    /// True if the bulk modulus and the shear modulus have no z in common.
+    pub fn is_contradictory(&self) -> bool {
+        self.bulk_less_shear.iter().any(|[difference, stddev]| difference.abs() > FAR * stddev)
+    }
+
     /// z under other assumptions: four more inversions by their normal approximations.
     ///
     /// # Errors
@@ -348,9 +364,8 @@ impl Sensitivity {
         prior: &SeriesPrior,
     ) -> Result<Self, EmtError> {
         series.check()?;
-        let z = |prior: SeriesPrior| {
-            Mixture::of(Forward::new(series, network, &prior), series.ln_crossover).z(|_| true)
-        };
+        let z =
+            |prior: SeriesPrior| Mixture::of(Forward::new(series, network, &prior), series.ln_crossover).z();
         let split = SeriesPrior { is_split: true, ..prior.clone() };
         let apart = Mixture::of(Forward::new(series, network, &split), series.ln_crossover);
         let (draws, _) = apart.draws(SEED);

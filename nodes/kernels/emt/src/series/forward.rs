@@ -19,6 +19,10 @@ const INSIDE: [f64; 2] = [0.04, 0.92];
 /// packings the error of the laws is a trend: scatter of its own at each pressure would measure z falsely.
 const TREND: f64 = 0.4;
 
+/// Variance of the bulk and the shear modulus between recipes, over the scatter of the packings of the calibration: of recipes that
+/// taught nothing (`judged.csv`, `series.csv`).
+const BETWEEN_RECIPES: f64 = 3.0;
+
 /// Exponent of the pressure in the rise of z.
 const RISE: f64 = 0.3;
 
@@ -146,6 +150,15 @@ impl<'a> Forward<'a> {
         self.parts() * self.count()
     }
 
+    /// Lowest k_t/k_n of a draw.
+    pub(super) fn lowest_ratio(&self) -> f64 {
+        if self.prior.known_ratio().is_some() {
+            0.0
+        } else {
+            self.prior.lowest_stiffness_ratio.min(self.mindlin)
+        }
+    }
+
     fn eps(&self) -> usize {
         self.ratio() + 2
     }
@@ -236,11 +249,18 @@ impl<'a> Forward<'a> {
         (state, slope)
     }
 
+    /// ε of the Hertz contacts that are stiffest in the same directions, over ε: contacts of one stiffness have their ε weighted by
+    /// it. Rough contacts were not found to differ.
+    fn eps_factor(&self, kind: ContactKind, z: f64, state: &NetworkState) -> f64 {
+        if kind == ContactKind::Linear { 1.0 / self.network.eps_stiffness.by_eps(z, state) } else { 1.0 }
+    }
+
     /// ε weighted by contact stiffness at each pressure by its law; empty if ε is no unknown.
-    pub(super) fn eps_stiffness(&self, unknowns: &DVector<f64>) -> Vec<f64> {
+    pub(super) fn eps_stiffness(&self, kind: ContactKind, unknowns: &DVector<f64>) -> Vec<f64> {
         let ratio = unknowns[self.ratio()];
         let of = |(k, (z, eps)): (usize, (f64, f64))| {
-            self.network.eps_stiffness.value(z, eps, &self.state(k, ratio).0)
+            let state = self.state(k, ratio).0;
+            self.network.eps_stiffness.value(z, eps * self.eps_factor(kind, z, &state), &state)
         };
         self.z(unknowns).into_iter().zip(self.eps_of(unknowns)).enumerate().map(of).collect()
     }
@@ -276,7 +296,8 @@ impl<'a> Forward<'a> {
             let shear = scalar(1, unknowns[(self.parts() - 1) * n + k]);
             let z = Self::z_of(unknowns[(self.parts() - 1) * n + k])[0];
             let laws = [&network.dilatation, &network.voigt, &network.harmonic];
-            let by_eps = if self.has_eps { laws.map(|law| law.by_eps(z, &state)) } else { [0.0; 3] };
+            let factor = if self.has_eps { self.eps_factor(kind, z, &state) } else { 0.0 };
+            let by_eps = laws.map(|law| law.by_eps(z, &state) * factor);
             let of_stress = laws.map(|law| law.value(z, 0.0, &state));
             at.push((theta, shear, by_eps, of_stress));
         }
@@ -318,6 +339,9 @@ impl<'a> Forward<'a> {
             part.fixed_view_mut::<2, 2>(0, 0).add_scalar_mut(variance);
         }
         let network = self.network;
+        let recipes = network.scatter_at(at.mean_z, &[BETWEEN_RECIPES; crate::calibration::SCATTERED]);
+        let mut block = parts[0].fixed_view_mut::<2, 2>(0, 0);
+        block += recipes.fixed_view::<2, 2>(0, 0);
         let (state, _) = self.state(self.count() / 2, self.mindlin);
         let mut by_sizes = SVector::<f64, SCATTERED>::zeros();
         (by_sizes[0], by_sizes[1]) = (network.theta.by_size_variance(), network.shear.by_size_variance());

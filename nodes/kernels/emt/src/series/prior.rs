@@ -171,7 +171,10 @@ impl SeriesPrior {
         let (law, known) = match springs {
             SpringLaw::HertzMindlin => (ContactKind::Hertz, ratio),
             SpringLaw::Linear(l) => (ContactKind::Linear, l.stiffness_ratio),
-            SpringLaw::Rough(r) => (ContactKind::Rough, r.tangential_factor * ratio),
+            SpringLaw::Rough(r) => {
+                let kind = if r.roughness > 0.0 { ContactKind::Rough } else { ContactKind::Hertz };
+                (kind, r.tangential_factor * ratio)
+            }
         };
         Self { known_ratio: Some(known), ..self.of_law(law) }
     }

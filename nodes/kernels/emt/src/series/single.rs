@@ -1,6 +1,7 @@
 //! Structure of a sample at one pressure, with the joint error of its quantities.
 
 use super::component::Mixture;
+use super::draws::SeriesDraw;
 use super::estimate::{HIGHEST_Z, Interval, SEED};
 use super::forward::Forward;
 use super::prior::SeriesPrior;
@@ -12,6 +13,9 @@ use nalgebra::{SMatrix, SVector};
 /// Quantities: z, ε, and ε weighted by contact stiffness.
 pub(crate) const QUANTITIES: usize = 3;
 
+/// Effective number of draws below which nothing is stated.
+const FEWEST: f64 = 30.0;
+
 /// The structure at the only pressure of a series.
 pub(crate) struct SingleEstimate {
     /// Marginal distributions of z, ε and ε weighted by stiffness; the last two hold where the speeds have directions.
@@ -22,6 +26,10 @@ pub(crate) struct SingleEstimate {
     pub(crate) has_eps: bool,
     /// Probability of a z beyond those that are stated.
     pub(crate) z_beyond: f64,
+    /// ln of the moduli over those of the contact law.
+    pub(crate) level: Interval,
+    /// k_t/k_n of the contacts.
+    pub(crate) stiffness_ratio: Interval,
     /// Probability of less probable data, under all that was assumed.
     pub(crate) p: f64,
 }
@@ -37,17 +45,24 @@ impl SingleEstimate {
         if mixture.solutions.is_empty() {
             return Err(EmtError::NotFinite { quantity: "likelihood of the moduli", value: f64::NAN });
         }
-        let (draws, _) = mixture.draws(SEED);
+        let (draws, effective) = mixture.draws(SEED);
+        if effective < FEWEST {
+            return Err(EmtError::NotSampled {
+                model: "free-contact",
+                reason: "the moduli are far from those of any contacts between these grains; check pressure, material, density and \
+                         units",
+            });
+        }
         let first = |all: &[f64]| all.first().copied().unwrap_or(0.0);
-        let values = |d: &super::draws::SeriesDraw| {
+        let values = |d: &SeriesDraw| {
             SVector::from([first(&d.z).min(HIGHEST_Z), first(&d.eps), first(&d.eps_stiffness)])
         };
         let before = mixture.of_prior(SEED);
-        let marginals = std::array::from_fn(|i| {
-            let spread =
-                |all: &[super::draws::SeriesDraw]| Interval::of(all.iter().map(|d| (values(d)[i], d.weight)));
+        let both = |of: &dyn Fn(&SeriesDraw) -> f64| {
+            let spread = |all: &[SeriesDraw]| Interval::of(all.iter().map(|d| (of(d), d.weight)));
             Interval { prior_stddev: spread(&before).stddev, ..spread(&draws) }
-        });
+        };
+        let marginals = std::array::from_fn(|i| both(&|d| values(d)[i]));
         let mean = SVector::from(marginals.each_ref().map(|m| m.mean));
         let off = draws.iter().map(|d| (values(d) - mean, d.weight));
         Ok(Self {
@@ -55,6 +70,8 @@ impl SingleEstimate {
             covariance: off.map(|(v, w)| v * v.transpose() * w).sum(),
             has_eps: series.has_directions(),
             z_beyond: draws.iter().filter(|d| first(&d.z) > HIGHEST_Z).fold(0.0, |sum, d| sum + d.weight),
+            level: both(&|d| d.level),
+            stiffness_ratio: both(&|d| d.stiffness_ratio),
             p: mixture.contradiction(SEED),
         })
     }

@@ -63,7 +63,12 @@ fn simulated(series: &mut SpeedSeries, prior: &SeriesPrior, random: &mut Random)
         left <= 0.0
     });
     let noise = noise.map_or(1.0, |[n, _]| n);
-    let unknowns = &of.0 + &of.2 * normal(random, of.0.len());
+    let unknowns = loop {
+        let unknowns = &of.0 + &of.2 * normal(random, of.0.len());
+        if unknowns[forward.ratio()] > forward.lowest_ratio() {
+            break unknowns;
+        }
+    };
     let at = forward.about(*kind, *preparation, &unknowns);
     let m = forward.rows.len();
     let cholesky = Cholesky::new(forward.unexplained(&at, m, noise)).unwrap();
@@ -73,7 +78,7 @@ fn simulated(series: &mut SpeedSeries, prior: &SeriesPrior, random: &mut Random)
         let (with, variance) = forward.with_eps_stiffness(&at, 3, m);
         let left = variance - with.dot(&cholesky.solve(&with));
         let own = with.dot(&cholesky.solve(&off)) + left.sqrt() * random.normal::<1>()[0];
-        truth.extend([forward.eps_of(&unknowns)[3], forward.eps_stiffness(&unknowns)[3] + own]);
+        truth.extend([forward.eps_of(&unknowns)[3], forward.eps_stiffness(*kind, &unknowns)[3] + own]);
     }
     for (j, given) in forward.given.clone().into_iter().enumerate() {
         series.rows[given].speed = Some((at.ln_speed[j] + off[j]).exp());
@@ -135,6 +140,10 @@ impl Model for OfRough<'_> {
 
     fn log_prob(&self, unknowns: &Vec<f64>) -> f64 {
         let unknowns = DVector::from_column_slice(unknowns);
+        let forward = &self.mixture.forward;
+        if unknowns[forward.ratio()] < forward.lowest_ratio() {
+            return f64::NEG_INFINITY;
+        }
         let ln_normal = |off: &DVector<f64>, c: &Cholesky<f64, nalgebra::Dyn>| {
             -0.5 * off.dot(&c.solve(off)) - c.l_dirty().diagonal().map(f64::ln).sum()
         };
@@ -143,7 +152,6 @@ impl Model for OfRough<'_> {
             .iter()
             .map(|(c, root)| (c.ln_prior + ln_normal(&(&unknowns - &c.normal.0), root)).exp())
             .sum();
-        let forward = &self.mixture.forward;
         let at = forward.about(ContactKind::Rough, 0, &unknowns);
         let m = forward.measured;
         let own = Cholesky::new(forward.unexplained(&at, m, 1.0));

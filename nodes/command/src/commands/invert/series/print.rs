@@ -11,6 +11,9 @@ const AT_END: f64 = 0.1;
 /// ln of a stiffness over that of the law from which the material is doubtful.
 const FAR_LEVEL: f64 = 1.0;
 
+/// Effective number of draws below which the stated errors are too small.
+const FEW_DRAWS: f64 = 100.0;
+
 /// Probability of a contact law from which z under it is said.
 const LIKELY: f64 = 0.02;
 
@@ -161,7 +164,9 @@ pub(super) fn csv(samples: &[Sample]) -> String {
         "stiffness_ratio",
         "stiffness_ratio_sigma",
         "p_whole",
+        "z_beyond",
         "status",
+        "reason",
     ]);
     for sample in samples {
         let e = &sample.estimate;
@@ -172,7 +177,9 @@ pub(super) fn csv(samples: &[Sample]) -> String {
             let rest = [p.p, Some(e.stiffness_ratio.mean), Some(e.stiffness_ratio.stddev), Some(e.p)];
             let all = z.into_iter().chain(pair(p.eps)).chain(pair(p.eps_stiffness)).chain(rest);
             [Some(p.pressure)].into_iter().chain(all).for_each(|v| text.number(v));
+            text.number(Some(p.z_beyond));
             text.cell(sample.status);
+            text.cell(&sample.notes.join("; "));
             text.end();
         }
     }
@@ -200,14 +207,33 @@ pub(super) fn contradiction(sample: &Sample) -> String {
         ))
     };
     let rows: Vec<String> = (0..e.rows.len()).filter_map(of_row).collect();
-    let whole = format!("the model does not fit these speeds ({})", chance(e.p));
-    if rows.is_empty() { whole } else { format!("{whole}; most of all {}", rows.join(", ")) }
+    let mut faults = Vec::new();
+    if e.p < SeriesEstimate::CONTRADICTORY {
+        faults.push(format!("the model does not fit these speeds ({})", chance(e.p)));
+    }
+    if e.has_far_level() {
+        let ratio = number(e.level.mean.exp(), 2);
+        faults.push(format!(
+            "the stiffness is {ratio} times that of the law: check pressure, material, density and units"
+        ));
+    }
+    if sample.sensitivity.is_contradictory() {
+        faults.push("the bulk modulus and the shear modulus have no z in common: check the P speeds against the S speeds".to_owned());
+    }
+    for p in e.pressures.iter().filter(|p| p.p.is_some_and(|p| p < SeriesEstimate::CONTRADICTORY)) {
+        let (at, p) = (kilopascals(p.pressure), chance(p.p.unwrap_or(f64::NAN)));
+        faults.push(format!("the speeds at {at} kPa contradict those at the other pressures ({p})"));
+    }
+    if !rows.is_empty() {
+        faults.push(format!("furthest from the others: {}", rows.join(", ")));
+    }
+    faults.join("; ")
 }
 
 /// z at the lowest and the highest pressure, as text.
 fn range(values: &[f64]) -> String {
     match values {
-        [first, .., last] => format!("{first:.2} to {last:.2}"),
+        [first, .., last] => format!("{first:.2}, {last:.2}"),
         all => format!("{:.2}", all.first().unwrap_or(&f64::NAN)),
     }
 }
@@ -216,7 +242,7 @@ fn range(values: &[f64]) -> String {
 pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
     let (e, s) = (&sample.estimate, &sample.sensitivity);
     let mut notes = Vec::new();
-    if e.is_contradictory() {
+    if sample.status == "contradictory" {
         notes.push(format!("contradictory: {}", contradiction(sample)));
     }
     for p in e.pressures.iter().filter(|p| p.p.is_some_and(|p| p < SeriesEstimate::CONTRADICTORY)) {
@@ -224,6 +250,12 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
             "the speeds at {} kPa contradict those at the other pressures ({})",
             kilopascals(p.pressure),
             chance(p.p.unwrap_or(f64::NAN))
+        ));
+    }
+    if e.effective_draws < FEW_DRAWS {
+        notes.push(format!(
+            "{:.0} draws represent the posterior, which is too few: the errors are larger than stated",
+            e.effective_draws
         ));
     }
     let mut open: Vec<String> = Vec::new();
@@ -279,15 +311,15 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
     let beyond = e.pressures.iter().map(|p| p.z_beyond).fold(0.0, f64::max);
     if beyond > AT_END {
         notes.push(format!(
-            "{:.0} % of the posterior has z above 6.6, where nothing is stated",
+            "up to {:.0} % of the posterior has z above 6.6, where nothing is stated (packings that taught have none)",
             100.0 * beyond
         ));
     }
     if e.pressures.len() > 1 {
         let z: Vec<f64> = e.pressures.iter().map(|p| p.z.mean).collect();
         notes.push(format!(
-            "z is {} from the lowest to the highest pressure; it would be {} if k_t/k_n fell by 10 % per decade of pressure, {} if \
-             it rose so, and {} without the prior's slope of z",
+            "z at the lowest and the highest pressure: {}; if k_t/k_n fell by 10 % per decade of pressure, {}; if it rose so, {}; \
+             without the prior's slope of z, {}",
             range(&z),
             range(&s.drifted[0]),
             range(&s.drifted[1]),
@@ -297,13 +329,16 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
     if e.laws.len() > 1 {
         let under =
             e.laws.iter().filter(|l| l.probability > LIKELY).map(|l| format!("{} {}", l.law, range(&l.z)));
-        notes.push(format!("z under each contact law alone: {}", under.collect::<Vec<_>>().join(", ")));
+        notes.push(format!(
+            "z at these pressures under each contact law alone: {}",
+            under.collect::<Vec<_>>().join(", ")
+        ));
     }
     let has = |p: bool| sample.series.rows.iter().any(|r| r.speed.is_some() && (r.mode == SpeedMode::P) == p);
     if has(true) && has(false) {
         let worst = s.bulk_less_shear.iter().map(|[d, sd]| d.abs() / sd).fold(0.0, f64::max);
         notes.push(format!(
-            "z of the bulk modulus and z of the shear modulus differ by at most {worst:.1} standard deviations"
+            "z of the bulk modulus and z of the shear modulus differ by {worst:.1} standard deviations where they differ most; 3 contradict"
         ));
     }
     notes.push("errors of the grain modulus and the density, and rounder or sharper grains, would look the same as this stiffness".to_owned());
