@@ -25,7 +25,7 @@ fn an_answer_says_its_contact_what_is_not_determined_and_what_is_predicted() {
     assert_eq!(code, Some(0), "{err}");
     for part in [
         "contact: free (laboratory)",
-        "note: z under each contact law alone:",
+        "note: z at these pressures under each contact law alone:",
         "validated on simulated spheres",
         "eps is not determined",
         "predicted\n",

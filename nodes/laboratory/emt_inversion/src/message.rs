@@ -82,7 +82,15 @@ fn answer(
             Err(nothing) => return without(StrainRatio::ZERO, vec![nothing.to_string()]),
         };
         match model.infer(&observed.observation, calibration) {
-            Ok(estimate) => estimate_message(&estimate, observed),
+            Ok(estimate) => {
+                let mut message = estimate_message(&estimate, observed);
+                let is_of_others = is_free && *model != *grainlab_emt::free_contact();
+                if is_of_others && message.status == msg::Estimate::STATUS_OK {
+                    // Hertz–Mindlin contacts are an assumption here.
+                    message.status = msg::Estimate::STATUS_EXTRAPOLATED;
+                }
+                message
+            }
             Err(error) => {
                 let reasons = std::iter::once(error.to_string()).chain(observed.notes.iter().cloned());
                 without(observed.observation.conditions.gamma, reasons.collect())

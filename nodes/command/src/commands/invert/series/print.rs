@@ -280,8 +280,11 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
             ));
         }
     }
-    for law in e.laws.iter().filter(|l| l.ln_crossover.is_some_and(|c| c.is_undetermined())) {
-        open.push(format!("the crossover of {}", law.law));
+    for law in &e.laws {
+        let Some(crossover) = law.ln_crossover.filter(|_| law.probability > LIKELY) else { continue };
+        if crossover.is_undetermined() || is_far(sample, crossover.mean.exp()) {
+            open.push(format!("the crossover of {}", law.law));
+        }
     }
     if !open.is_empty() {
         notes.push(format!("not determined by these data: {}", open.join(", ")));
