@@ -6,7 +6,7 @@
 //! - [`table`], [`mod@print`]: results in order, as text
 //! - [`explain`]: contributions of the data to the uncertainty
 //! - [`prior`]: priors; [`drawn`], [`evidence`], [`predictive`]: draws from the posterior, marginal likelihoods, and the data
-//!   against their prediction; [`rank_test`]: ranks of simulated structures
+//!   against their prediction
 //! - [`speed_table`]: measured wave speeds; [`series`]: what they say with an unknown contact; [`speeds`]: the moduli that fit them
 //! - [`judge`]: results against the truth in a table
 //! - [`calibrations`]: by name
@@ -23,7 +23,6 @@ mod judge;
 mod predictive;
 mod print;
 mod prior;
-mod rank_test;
 mod rows;
 mod series;
 mod slips;
@@ -64,8 +63,6 @@ Examples:
       --model relaxed --prior prior.toml --draws draws.json
   Probabilities of models that state an error of the same moduli:
     grainlab invert --g12 104.2e6 --g13 112.4e6 --theta 136e6 --pressure 50e3 --error 0.01 --calibration grainlab --evidence
-  Whether the posterior is right where the model is: ranks of 2,000 simulated structures
-    grainlab invert --rank-test 2000 --pressure 50e3 --stress-ratio 0 --size-spread 0 --error 0.01 --model relaxed
   Many states, or the output of an analysis:
     grainlab invert --table states.csv --format csv
     grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --gamma contact --format csv
@@ -221,11 +218,7 @@ pub(crate) struct Args {
     /// Prior odds of models [default: 1 each]
     #[arg(long, value_name = "MODEL=ODDS", value_delimiter = ',', requires = "evidence")]
     prior_odds: Vec<evidence::Odds>,
-    /// Draw so many structures from the prior, simulate their moduli with the scatter of the model and --error, infer them, and
-    /// print whether the ranks of the true values among draws are uniform
-    #[arg(long, value_name = "N", conflicts_with_all = ["table", "draws", "evidence", "explain", "speeds"], value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
-    rank_test: Option<u32>,
-    /// Seed of draws and simulations: the same one gives the same numbers
+    /// Seed of draws: the same one gives the same numbers
     #[arg(long, value_name = "SEED", conflicts_with = "table", default_value_t = 0)]
     seed: u64,
     /// Print the contribution of each datum to the uncertainty of each unknown, the parts of the uncertainty due to the data and
@@ -271,7 +264,6 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             ("--draws", args.draws.is_some()),
             ("--evidence", args.evidence),
             ("--explain", args.explain),
-            ("--rank-test", args.rank_test.is_some()),
         ];
         refuse(
             &of_others,
@@ -311,9 +303,6 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     ];
     refuse(&of_table, "is for --table")?;
     let state = args.state(defaults, speeds)?;
-    if let Some(simulations) = args.rank_test {
-        return rank_test::run(&state, &cases, simulations, args.seed, args.format);
-    }
     if let Some(path) = &args.draws {
         let (chains, per_chain) = (args.chains as usize, args.draws_per_chain as usize);
         drawn::write(&state, &cases, drawn::Number { chains, per_chain, seed: args.seed }, path)?;
@@ -420,7 +409,6 @@ impl Args {
             ("--draws", self.draws.is_some()),
             ("--evidence", self.evidence),
             ("--explain", self.explain),
-            ("--rank-test", self.rank_test.is_some()),
             ("--judge", self.judge),
             ("--gamma", self.gamma.is_some()),
             ("--seed", self.seed != 0),

@@ -1,4 +1,4 @@
-//! Priors, draws, evidence, predictive checks and rank tests.
+//! Priors, draws, evidence and predictive checks.
 
 use crate::{grainlab, table, text};
 use serde_json::Value;
@@ -185,19 +185,6 @@ fn moduli_unlike_any_packing_are_contradictory_when_explained() {
     assert_eq!(output.status.code(), Some(4), "{}", text(&output.stderr));
     let odd = text(&output.stdout);
     assert!(odd.contains("p left out") && odd.contains("contradictory"), "{odd}");
-}
-
-#[test]
-fn a_rank_test_prints_a_probability_of_each_quantity() {
-    let flags = ["--model=relaxed", "--rank-test=100", "--pressure=50e3", "--error=0.01", "--format=json"];
-    let output = grainlab(&[&["invert", "--stress-ratio=0", "--size-spread=0"], &flags[..]].concat(), b"");
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    let ranked: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let names: Vec<_> = ranked.as_array().unwrap().iter().map(|r| r["quantity"].clone()).collect();
-    assert_eq!(names, ["z", "eps", "eps_stiffness", "k"]);
-    for r in ranked.as_array().unwrap() {
-        assert!(r["p"].as_f64().unwrap() > 1e-3 && r["simulations"].as_u64().unwrap() > 90, "{r}");
-    }
 }
 
 #[test]

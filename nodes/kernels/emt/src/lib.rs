@@ -94,8 +94,7 @@ pub use normal::HALF_WIDTH;
 pub use observation::{INPUTS, Observation};
 pub use point_estimate::{Jacobian, Misfit, PointEstimate};
 pub use posterior::{
-    Check, Draw, Draws, Evidence, ModulusCheck, Posterior, PosteriorSettings, RankHistogram, SimulatedRanks,
-    SimulationSettings, simulated_ranks,
+    Check, Draw, Draws, Evidence, ModulusCheck, Posterior, PosteriorSettings, RankHistogram,
 };
 pub use prior::{Density, Prior, PriorError};
 pub use registry::{free_contact, model, models, recommended};

@@ -42,7 +42,7 @@ pub struct Predicted {
     /// Number of moduli.
     pub(crate) count: usize,
     /// Means of what follows, given the observed moduli, and their covariance.
-    pub(crate) following: (Vector2<f64>, Matrix2<f64>),
+    pub following: (Vector2<f64>, Matrix2<f64>),
 }
 
 impl Predicted {
@@ -97,7 +97,7 @@ impl Predicted {
     }
 
     /// Difference from the observed moduli of moduli drawn from this distribution by independent normal numbers, Pa.
-    pub(crate) fn replicated(&self, normal: &SVector<f64, MODULI>) -> SVector<f64, MODULI> {
+    pub fn replicated(&self, normal: &SVector<f64, MODULI>) -> SVector<f64, MODULI> {
         (self.cholesky.l() * normal - self.residual) * UNIT
     }
 }

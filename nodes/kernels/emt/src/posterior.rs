@@ -16,7 +16,6 @@ mod halton;
 mod points;
 mod proposal;
 mod ranks;
-mod simulated;
 mod target;
 
 pub use check::{Check, ModulusCheck};
@@ -24,4 +23,3 @@ pub use draws::{Draw, Draws};
 pub use evidence::Evidence;
 pub use points::{Posterior, PosteriorSettings};
 pub use ranks::RankHistogram;
-pub use simulated::{SimulatedRanks, SimulationSettings, simulated_ranks};

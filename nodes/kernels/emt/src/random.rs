@@ -34,11 +34,6 @@ impl Random {
         (radius * cos, radius * sin)
     }
 
-    /// For a generator of its own.
-    pub(crate) fn next_seed(&mut self) -> u64 {
-        self.0.next_u64()
-    }
-
     /// In [0, 1), 53 bits.
     pub(crate) fn uniform(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64

@@ -322,6 +322,7 @@ impl Warning {
         matches!(
             self,
             Warning::NotOneMedium
+                | Warning::CoordinationImpossible { .. }
                 | Warning::Imbalance { .. }
                 | Warning::Conflict { .. }
                 | Warning::Improbable { .. }

@@ -109,7 +109,7 @@ impl Density {
     }
 
     /// The value below which the probability is `p`, 0 to 1.
-    pub(crate) fn quantile(&self, p: f64) -> f64 {
+    pub fn quantile(&self, p: f64) -> f64 {
         let [low, high] = self.range;
         let Some([mean, stddev]) = self.normal else { return low + p * (high - low) };
         let [a, b] = self.range.map(|v| (v - mean) / stddev);

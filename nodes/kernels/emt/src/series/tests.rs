@@ -84,7 +84,7 @@ fn simulated(series: &mut SpeedSeries, prior: &SeriesPrior, random: &mut Random)
         series.rows[given].speed = Some((at.ln_speed[j] + off[j]).exp());
     }
     let mixture = Mixture::of(Forward::new(series, network, prior), series.ln_crossover);
-    let (draws, _) = mixture.draws(random.next_seed());
+    let (draws, _) = mixture.draws((random.uniform() * 1e9) as u64);
     let mut found = Vec::new();
     for (n, truth) in truth.iter().enumerate() {
         let value = |d: &super::draws::SeriesDraw| match n {

@@ -13,6 +13,7 @@ mod recovery;
 mod relaxed;
 mod rock_physics;
 mod sampling;
+mod simulated;
 mod sphere;
 mod table3;
 

@@ -1,10 +1,11 @@
 //! Draws, evidence, predictive checks and ranks.
 
+use crate::simulated::{SimulatedRanks, SimulationSettings, simulated_ranks};
 use grainlab_core::Material;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
     Calibration, Conditions, Density, EmtError, Measured, Model, Moduli, Modulus, Observation, Posterior,
-    PosteriorSettings, Prior, Relaxed, SimulatedRanks, SimulationSettings, StrainRatio, simulated_ranks,
+    PosteriorSettings, Prior, Relaxed, StrainRatio,
 };
 use nalgebra::{DMatrix, DVector};
 

@@ -1,18 +1,28 @@
 //! Simulation-based calibration (Talts et al. 2018): structures drawn from the prior, moduli simulated with all errors, and the
 //! rank of the true value among draws from the posterior of these moduli.
 
-use super::points::{Posterior, PosteriorSettings};
-use super::ranks::RankHistogram;
-use crate::calibration::Calibration;
-use crate::conditions::Conditions;
-use crate::error::EmtError;
-use crate::model::Model;
-use crate::moduli::{Moduli, Modulus};
-use crate::observation::Observation;
-use crate::prior::Prior;
-use crate::random::Random;
 use grainlab_core::results::{InferredQuantity, Microstructure};
-use nalgebra::Vector2;
+use grainlab_emt::{
+    Calibration, Conditions, EmtError, MODULI, Model, Moduli, Modulus, Observation, Posterior,
+    PosteriorSettings, Prior, RankHistogram,
+};
+use nalgebra::{SVector, Vector2};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+
+struct Random(Pcg64Mcg);
+
+impl Random {
+    fn uniform(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn normal<const N: usize>(&mut self) -> SVector<f64, N> {
+        let mut one =
+            || (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos();
+        SVector::from_fn(|_, _| one())
+    }
+}
 
 /// Draws per simulation: with the true value, a multiple of the number of bins.
 const DRAWS: usize = 99;
@@ -28,36 +38,36 @@ const TRIES: usize = 1000;
 
 /// Settings of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SimulationSettings {
+pub(crate) struct SimulationSettings {
     /// The state of every simulated sample.
-    pub conditions: Conditions,
+    pub(crate) conditions: Conditions,
     /// Number of grains of a sample; `None`: as the packings of the calibration.
-    pub grains: Option<u32>,
+    pub(crate) grains: Option<u32>,
     /// Standard deviation of each measured modulus over its value for the mean structure of the prior.
-    pub relative_error: f64,
+    pub(crate) relative_error: f64,
     /// The moduli that are measured.
-    pub moduli: [bool; crate::moduli::MODULI],
+    pub(crate) moduli: [bool; MODULI],
     /// Seed of the random numbers.
-    pub seed: u64,
+    pub(crate) seed: u64,
 }
 
 /// Ranks of one simulation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SimulatedRanks {
+pub(crate) struct SimulatedRanks {
     /// The share of draws below the true value of each quantity.
-    pub shares: Vec<(InferredQuantity, f64)>,
+    pub(crate) shares: Vec<(InferredQuantity, f64)>,
 }
 
 impl SimulatedRanks {
     /// Number of bins of a histogram of these ranks.
-    pub fn histogram() -> RankHistogram {
+    pub(crate) fn histogram() -> RankHistogram {
         RankHistogram::new(BINS)
     }
 }
 
 /// The ranks of simulation `index`. An error if the model predicts no moduli for the prior, if the
 /// simulated moduli are not those of a stable medium, or if their posterior cannot be sampled.
-pub fn simulated_ranks(
+pub(crate) fn simulated_ranks(
     model: &dyn Model,
     calibration: &Calibration,
     prior: &Prior,
@@ -67,7 +77,9 @@ pub fn simulated_ranks(
     let complete = prior.completed(&model.prior_domain(calibration))?;
     // The error of the data is the same in all simulations, so that it says nothing of the structure.
     let typical = typical_observation(model, calibration, &complete, settings)?;
-    let mut random = Random::new(settings.seed.wrapping_add(index.wrapping_mul(0x9e37_79b9_7f4a_7c15)));
+    let mut random = Random(Pcg64Mcg::seed_from_u64(
+        settings.seed.wrapping_add(index.wrapping_mul(0x9e37_79b9_7f4a_7c15)),
+    ));
     let likelihood = model.likelihood(&typical, calibration)?;
     let none = EmtError::NoLikelihood {
         model: model.name(),
@@ -93,7 +105,7 @@ pub fn simulated_ranks(
         let following: Vector2<f64> = mean + root * random.normal::<2>();
         truth.extend(following.iter());
     }
-    let own = PosteriorSettings { points: POINTS, seed: random.next_seed() };
+    let own = PosteriorSettings { points: POINTS, seed: random.0.next_u64() };
     let posterior = Posterior::new(model, &observation, calibration, prior, own)?;
     let draws = posterior.draws(DRAWS)?;
     let share = |(quantity, truth): (InferredQuantity, f64)| {
