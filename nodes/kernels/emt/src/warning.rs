@@ -322,7 +322,6 @@ impl Warning {
         matches!(
             self,
             Warning::NotOneMedium
-                | Warning::CoordinationImpossible { .. }
                 | Warning::Imbalance { .. }
                 | Warning::Conflict { .. }
                 | Warning::Improbable { .. }
