@@ -166,10 +166,15 @@ impl SeriesEstimate {
     /// p below which data contradict each other or the model.
     pub const CONTRADICTORY: f64 = 0.01;
 
-    /// True if the data contradict each other, or what was assumed: as a whole, at one of the pressures, or by their level.
+    /// True if the data contradict each other, or what was assumed: as a whole, at one of the pressures (of a
+    /// single one, in one row), or by their level.
     pub fn is_contradictory(&self) -> bool {
-        let of_pressures = self.pressures.iter().filter_map(|p| p.p).fold(1.0, f64::min);
-        self.p.min(of_pressures * self.pressures.len() as f64) < Self::CONTRADICTORY || self.has_far_level()
+        let least = |all: &mut dyn Iterator<Item = f64>, count: usize| all.fold(1.0, f64::min) * count as f64;
+        let of_parts = match self.pressures.as_slice() {
+            [_] => least(&mut self.rows.iter().filter_map(|r| r.p), self.rows.len()),
+            all => least(&mut all.iter().filter_map(|p| p.p), all.len()),
+        };
+        self.p.min(of_parts) < Self::CONTRADICTORY || self.has_far_level()
     }
 
     /// True if the moduli are further from those of the law with the given material and density than is assumed of any sample.
