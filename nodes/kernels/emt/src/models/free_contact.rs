@@ -5,7 +5,7 @@
 
 use super::relaxed::network;
 use crate::calibration::{Calibration, NetworkState, Outside};
-use crate::conditions::{Conditions, UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO};
+use crate::conditions::{Conditions, Measured, UNKNOWN_SIZE_SPREAD, UNKNOWN_STRESS_RATIO};
 use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::likelihood::Likelihood;
@@ -32,9 +32,6 @@ const RATIOS: [f64; 2] = [0.25, 1.0];
 
 /// Relative error of moduli of which none is stated: that of the series needs one.
 const EXACT: f64 = 1e-3;
-
-/// Standard deviations of the prior by which a level is far.
-const FAR_LEVEL: f64 = 3.0;
 
 /// Share of the posterior beyond the highest z that is stated, above which it is said.
 const SAID: f64 = 0.1;
@@ -135,14 +132,13 @@ fn series(observation: &Observation, calibration: &Calibration) -> Result<SpeedS
         0.25 * stated / (at * by) + if j == k { EXACT * EXACT } else { 0.0 }
     });
     let material = conditions.material.unwrap_or(*calibration.material());
-    let spread = |value: f64| [value * value, 0.0];
-    let unknown = || [UNKNOWN_SIZE_SPREAD.value.powi(2), UNKNOWN_SIZE_SPREAD.variance_stddev()];
+    let sizes = conditions.size_spread.map_or(UNKNOWN_SIZE_SPREAD, Measured::exact);
     let stress = conditions.stress_ratio.unwrap_or(UNKNOWN_STRESS_RATIO);
     let of_poisson = conditions.poisson_ratio_stddev / (1.0 - material.poisson_ratio);
     Ok(SpeedSeries {
         shear_modulus_stddev: (conditions.shear_modulus_stddev / material.shear_modulus).hypot(of_poisson),
         pressure_stddev: conditions.pressure.stddev / pressure,
-        size_variance: conditions.size_spread.map_or_else(unknown, spread),
+        size_variance: [sizes.value.powi(2), sizes.variance_stddev()],
         stress_ratio: [stress.value, stress.stddev],
         grains: observation.grains,
         covariance: Some(covariance),
@@ -167,7 +163,7 @@ fn point_estimate(found: &SingleEstimate, conditions: &Conditions, outside: &[Ou
     }
     let mut warnings = Vec::new();
     let level = &found.level;
-    if level.mean.abs() > FAR_LEVEL * level.prior_stddev {
+    if level.is_far() {
         warnings.push(Warning::FarLevel { ratio: level.mean.exp() });
     }
     if found.p < crate::SeriesEstimate::CONTRADICTORY {

@@ -82,6 +82,11 @@ impl Interval {
         self.left() > 0.8
     }
 
+    /// True if 0 is further off than is assumed: more than three standard deviations of the prior.
+    pub(crate) fn is_far(&self) -> bool {
+        self.mean.abs() > FAR * self.prior_stddev
+    }
+
     fn cut(self) -> Self {
         let cut = |v: f64| v.min(HIGHEST_Z);
         Self { mean: cut(self.mean), low: cut(self.low), high: cut(self.high), ..self }
@@ -169,17 +174,16 @@ impl SeriesEstimate {
     /// True if the data contradict each other, or what was assumed: as a whole, at one of the pressures (of a
     /// single one, in one row), or by their level.
     pub fn is_contradictory(&self) -> bool {
-        let least = |all: &mut dyn Iterator<Item = f64>, count: usize| all.fold(1.0, f64::min) * count as f64;
-        let of_parts = match self.pressures.as_slice() {
-            [_] => least(&mut self.rows.iter().filter_map(|r| r.p), self.rows.len()),
-            all => least(&mut all.iter().filter_map(|p| p.p), all.len()),
-        };
+        let of_pressures: Vec<f64> = self.pressures.iter().filter_map(|p| p.p).collect();
+        let of_rows = || self.rows.iter().filter_map(|r| r.p).collect();
+        let parts = if of_pressures.is_empty() { of_rows() } else { of_pressures };
+        let of_parts = parts.iter().copied().fold(1.0, f64::min) * parts.len() as f64;
         self.p.min(of_parts) < Self::CONTRADICTORY || self.has_far_level()
     }
 
     /// True if the moduli are further from those of the law with the given material and density than is assumed of any sample.
     pub fn has_far_level(&self) -> bool {
-        self.level.mean.abs() > FAR * self.level.prior_stddev
+        self.level.is_far()
     }
 }
 

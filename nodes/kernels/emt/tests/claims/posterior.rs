@@ -1,11 +1,11 @@
 //! Draws, evidence, predictive checks and ranks.
 
-use crate::simulated::{SimulatedRanks, SimulationSettings, simulated_ranks};
+use crate::simulated::{BINS, simulated_ranks};
 use grainlab_core::Material;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
     Calibration, Conditions, Density, EmtError, Measured, Model, Moduli, Modulus, Observation, Posterior,
-    PosteriorSettings, Prior, Relaxed, StrainRatio,
+    PosteriorSettings, Prior, RankHistogram, Relaxed, StrainRatio,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -181,21 +181,14 @@ fn an_observation_unlike_any_packing_is_improbable_and_an_ordinary_one_is_not() 
 /// 600 structures from the ranges of the calibration; χ² of 20 bins. `--nocapture` prints the probabilities.
 #[test]
 fn ranks_of_true_values_among_draws_are_uniform_for_the_scatter_that_the_model_states() {
-    let settings = SimulationSettings {
-        conditions: conditions(),
-        grains: None,
-        relative_error: 0.01,
-        moduli: [true; 6],
-        seed: 3,
-    };
     let prior = Prior::default()
         .with(InferredQuantity::Z, Density::uniform(4.2, 6.4).unwrap())
         .with(InferredQuantity::Eps, Density::uniform(-0.08, 0.13).unwrap());
     let mut histograms: Vec<_> = Vec::new();
     for index in 0..600 {
-        let ranks = simulated_ranks(&Relaxed, ours(), &prior, &settings, index).unwrap();
-        histograms.resize(ranks.shares.len(), SimulatedRanks::histogram());
-        for (histogram, (_, share)) in histograms.iter_mut().zip(&ranks.shares) {
+        let ranks = simulated_ranks(&Relaxed, ours(), &prior, conditions(), index).unwrap();
+        histograms.resize(ranks.len(), RankHistogram::new(BINS));
+        for (histogram, share) in histograms.iter_mut().zip(&ranks) {
             histogram.add(*share);
         }
     }

@@ -4,9 +4,11 @@
 use crate::csv;
 use crate::judged::Random;
 use grainlab_calibration::CalibrationSample;
+use grainlab_core::contact::{ContactLaw, Rough, SpringLaw};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, ContactKind, Interval, Modulus, SeriesPrior, SeriesRow, SpeedMode, SpeedSeries, infer_series,
+    Calibration, ContactKind, Interval, Modulus, SeriesPrior, SeriesRow, SpeedMode, SpeedSeries,
+    StrainRatioSource, infer_series,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -154,9 +156,16 @@ fn judged(every: usize, errors: Errors, prior: &SeriesPrior, is_known: bool) -> 
     found
 }
 
-fn assert_inside(found: &[Found; 4], [low, high]: [f64; 2]) {
+/// Every so many samples: `GRAINLAB_EVERY=1` takes all, in a quarter of an hour, for the figures of README.
+fn every(few: usize) -> usize {
+    std::env::var("GRAINLAB_EVERY").map_or(few, |n| n.parse().unwrap())
+}
+
+/// Shares inside the intervals: .92 of all samples; few scatter more.
+fn assert_inside(found: &[Found; 4], of_few: f64) {
+    let low = if every(0) == 1 { 0.92 } else { of_few };
     for (found, name) in found.iter().zip(["z", "eps", "eps_stiffness", "k_t/k_n"]) {
-        assert!((low..=high).contains(&found.coverage()), "{name}: {}", found.coverage());
+        assert!(found.coverage() > low, "{name}: {}", found.coverage());
     }
     let [z, ..] = found;
     let prior = z.prior.iter().sum::<f64>() / z.prior.len() as f64;
@@ -165,17 +174,54 @@ fn assert_inside(found: &[Found; 4], [low, high]: [f64; 2]) {
 
 #[test]
 fn samples_with_contacts_that_are_not_known_are_inside_their_intervals() {
-    assert_inside(&judged(15, ORDINARY, SeriesPrior::builtin(), false), [0.85, 1.0]);
+    assert_inside(&judged(every(15), ORDINARY, SeriesPrior::builtin(), false), 0.85);
 }
 
-/// All 300, also with inputs that are wrong by two of their standard deviations, and with a known roughness.
 #[test]
-#[ignore = "takes ten minutes; it gives the figures of README"]
-fn every_sample_with_contacts_that_are_not_known_is_inside_its_interval_as_often_as_stated() {
-    assert_inside(&judged(1, ORDINARY, SeriesPrior::builtin(), false), [0.925, 0.98]);
-    println!("density +3 %, pressure +5 %, grain modulus +10 %");
+fn samples_with_inputs_that_are_wrong_by_two_of_their_errors_are_inside_their_intervals() {
     let wrong = Errors { stated: [0.015, 0.025, 0.05], made: Some([0.03, 0.05, 0.1]) };
-    assert_inside(&judged(1, wrong, SeriesPrior::builtin(), false), [0.9, 0.98]);
-    println!("roughness known to 10 %, the grain modulus to 5 %");
-    judged(1, ORDINARY, &SeriesPrior::builtin().of_law(ContactKind::Rough), true);
+    assert_inside(&judged(every(30), wrong, SeriesPrior::builtin(), false), 0.85);
+}
+
+/// Roughness to 10 %. Ten samples: three standard errors below .92.
+#[test]
+fn samples_with_a_known_roughness_are_inside_their_intervals() {
+    let rough = SeriesPrior::builtin().of_law(ContactKind::Rough);
+    assert_inside(&judged(every(30), ORDINARY, &rough, true), 0.7);
+}
+
+/// Moduli with errors of 1 % at one pressure, by `free-contact`: without a contact law, and with it.
+#[test]
+fn single_states_are_inside_their_intervals_with_contacts_that_are_not_known_and_that_are() {
+    let calibration = Calibration::builtin("grainlab").unwrap();
+    for (few, is_known) in [(15, false), (5, true)] {
+        let mut random = Random::new(7);
+        let [mut z, mut eps] = [Found::default(), Found::default()];
+        for sample in samples().iter().step_by(every(few)) {
+            for state in &sample.states {
+                let mut observed = state.observation(StrainRatioSource::Zero).with_relative_error(0.01);
+                observed.moduli = observed.moduli.without(Modulus::C13);
+                let moduli = observed.moduli;
+                for (modulus, value) in moduli.known() {
+                    observed.moduli = observed.moduli.with(modulus, value * (1.0 + 0.01 * random.normal()));
+                }
+                let tangential_factor = sample.stiffness_ratio / state.material.stiffness_ratio();
+                let springs = SpringLaw::Rough(Rough { roughness: sample.roughness, tangential_factor });
+                observed.conditions.contact_law = is_known.then(|| ContactLaw::of(springs));
+                let found = grainlab_emt::free_contact().infer(&observed, calibration).unwrap();
+                for (of, q, truth) in [
+                    (&mut z, InferredQuantity::Z, state.z.min(HIGHEST)),
+                    (&mut eps, InferredQuantity::Eps, state.eps),
+                ] {
+                    let [low, high] = found.interval(q).unwrap();
+                    let (mean, stddev) = (found.structure.get(q).unwrap(), found.stddev(q).unwrap());
+                    of.add(&Interval { mean, stddev, low, high, prior_stddev: f64::NAN }, truth);
+                }
+            }
+        }
+        println!("one pressure, contact law {}", if is_known { "known" } else { "not known" });
+        z.print("z");
+        eps.print("eps");
+        assert!(z.coverage() > 0.85 && eps.coverage() > 0.85, "{} {}", z.coverage(), eps.coverage());
+    }
 }
