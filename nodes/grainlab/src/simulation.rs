@@ -30,7 +30,7 @@ pub fn simulate(scene: &str, settings: &[&str]) -> Result<Simulation, Error> {
     };
     let run = run.map_err(simulation)?;
     // As the run holds it: at its first step, without the strain of the file.
-    let start = found.start.is_some().then(|| present(&run));
+    let start = found.start.is_some().then(|| present(&run)).transpose().map_err(simulation)?;
     Ok(Simulation { run, start, notes: found.notes, failed: false })
 }
 
@@ -53,8 +53,8 @@ fn read(scene: &str, settings: &[&str]) -> Result<scenes::SceneText, Error> {
     })
 }
 
-fn present(run: &grainlab_experiment::Simulation) -> State {
-    State { packing: run.packing(), run_state: run.run_state(), notes: Vec::new() }
+fn present(run: &grainlab_experiment::Simulation) -> Result<State, grainlab_experiment::ExperimentError> {
+    Ok(State { packing: run.packing()?, run_state: run.run_state()?, notes: Vec::new() })
 }
 
 impl Simulation {
@@ -111,7 +111,7 @@ impl Simulation {
             let simulation = |e: &dyn std::fmt::Display| Error::Simulation(e.to_string());
             let output = grainlab_servo::control(&request.input).map_err(|e| simulation(&e))?;
             if self.run.advance(&output.rate).map_err(|e| simulation(&e))?.packing_due {
-                return Ok(Some(present(&self.run)));
+                return present(&self.run).map(Some).map_err(|e| simulation(&e));
             }
             if began.elapsed() >= limit {
                 break;

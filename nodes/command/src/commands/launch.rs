@@ -21,7 +21,7 @@ mod resume;
 
 use conduct::{conduct, medium};
 use directory::Given;
-use order::{Order, Record};
+use order::{EngineOrder, Order, Record};
 use output::Output;
 
 const EXAMPLES: &str = "\
@@ -74,6 +74,8 @@ pub(crate) struct Args {
     /// Messages to record
     #[arg(long, value_enum, default_value_t, conflicts_with = "resume")]
     record: Record,
+    #[command(flatten)]
+    engine: EngineOrder,
     /// Write no report.html
     #[arg(long)]
     no_report: bool,
@@ -95,7 +97,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let report = !args.no_report;
     let output = Output { format: args.format, verbose: args.verbose, resumed: false, report };
     if let Some(run) = &args.resume {
-        return resume::run(run, output);
+        return resume::run(run, args.engine.clone(), output);
     }
     let (scene, order) = planned(args)?;
     // Held to the end of the run.
@@ -106,7 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             Given::Finished => return Ok(Exit::Done),
             Given::Begun(directory, lock) => {
                 _at_work = Some(lock);
-                return resume::run(&directory, output);
+                return resume::run(&directory, EngineOrder::default(), output);
             }
             Given::Empty(directory, lock) => {
                 _at_work = Some(lock);
@@ -135,6 +137,7 @@ fn planned(args: &Args) -> Result<(SceneText, Order), Failure> {
         words: args.words.iter().map(|word| whole_path(word, path)).collect(),
         record: args.record,
         one_process: args.one_process,
+        engine: args.engine.clone(),
     };
     let plans = order.plans(Path::new("."))?;
     refuse_unknown(&plans)?;

@@ -63,7 +63,7 @@ fn made(scene: grainlab_scene::Scene) -> Result<Packing, Box<dyn std::error::Err
     while let Some(r) = run.request() {
         run.advance(&grainlab_servo::control(&r.input)?.rate)?;
     }
-    Ok(run.packing())
+    Ok(run.packing()?)
 }
 
 fn report(found: &[PackingReport]) {

@@ -50,9 +50,9 @@ fn run(text: &str) -> Result<Outcome, Box<dyn std::error::Error>> {
         let answer = grainlab_servo::control(&r.input)?;
         match run.advance(&answer.rate)?.ended.as_deref() {
             Some("gas") => out.seconds = begin.elapsed().as_secs_f64(),
-            Some("jam") => out.jammed = run.packing().solid_fraction(),
+            Some("jam") => out.jammed = run.packing()?.solid_fraction(),
             Some("load") => {
-                let packing = run.packing();
+                let packing = run.packing()?;
                 let settings = grainlab_micromechanics::Settings::default();
                 let contacts = grainlab_micromechanics::analyze(&packing, &settings)?.report.contacts;
                 out.loaded =

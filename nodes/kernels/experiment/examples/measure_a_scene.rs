@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     while let Some(request) = run.request() {
         let outcome = run.advance(&grainlab_servo::control(&request.input)?.rate)?;
         if outcome.packing_due {
-            let report = analyze(&run.packing(), &Settings::default())?.report;
+            let report = analyze(&run.packing()?, &Settings::default())?.report;
             let (k, eps) = (report.contacts.coordination, report.fabric.contact_anisotropy);
             println!(
                 "step {}: pressure {:.1} kPa, k {k:.3}, eps {eps:.4}",

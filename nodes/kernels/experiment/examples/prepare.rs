@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             );
             (mark, steps) = (Instant::now(), run.engine().steps());
             if advanced.packing_due {
-                report(&run.packing())?;
+                report(&run.packing()?)?;
             }
         }
     }

@@ -50,7 +50,7 @@ until = {{ on_target = 1e-6, unbalanced = 1e-7, hold = 2e-5, timeout = 0.1 }}
         let answer = grainlab_servo::control(&r.input)?;
         run.advance(&answer.rate)?;
     }
-    print(&run.packing());
+    print(&run.packing()?);
     Ok(())
 }
 

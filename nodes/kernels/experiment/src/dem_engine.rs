@@ -90,8 +90,8 @@ impl ParticleEngine for DemEngine {
         })
     }
 
-    fn packing(&self, deformation: Mat3) -> Packing {
-        self.engine.packing(deformation)
+    fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
+        Ok(self.engine.packing(deformation))
     }
 
     fn set_compute(&mut self, compute: &Compute) {

@@ -4,7 +4,27 @@ use crate::error::ExperimentError;
 use grainlab_core::stress::Stress;
 use grainlab_core::{Cell, Mat3, Packing};
 use grainlab_dem::{Compute, EnergyBalance, EngineSettings};
-use std::fmt::Debug;
+use grainlab_scene::Scene;
+use serde::{Deserialize, Serialize};
+use std::fmt::{self, Debug};
+
+/// The program of an engine that is not ours, as recorded with each packing.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EngineProgram {
+    /// Name, as a run names its engine.
+    pub name: String,
+    /// Version, as the program states it.
+    pub version: String,
+    /// Number of its processes.
+    pub ranks: u32,
+}
+
+impl fmt::Display for EngineProgram {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, version, ranks } = self;
+        write!(f, "{name} {version}, {ranks} {}", if *ranks == 1 { "rank" } else { "ranks" })
+    }
+}
 
 /// Measurements of an engine on its present contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +51,7 @@ pub struct Observables {
 ///
 /// # Contract
 /// - An engine changes only in the methods that take `&mut self`, and is a function of what it was told: the same calls give
-///   the same bits.
+///   the same bits. Where it is [another program](Self::program), observing it changes rounding errors.
 /// - Strain and strain rate are positive in extension, stress in compression; six components have Voigt order, as tensor
 ///   components. Velocities are relative to the affine motion.
 /// - After an error of [`run`](Self::run) an engine with [`save`](Self::save) returns by [`restore`](Self::restore); one
@@ -81,7 +101,23 @@ pub trait ParticleEngine: Debug + Send + Sync {
     fn observables(&self) -> Result<Observables, ExperimentError>;
 
     /// The present state; `deformation` is the deformation gradient since the reference state.
-    fn packing(&self, deformation: Mat3) -> Packing;
+    ///
+    /// # Errors
+    /// A program that does not answer.
+    fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError>;
+
+    /// The program, if it is not ours.
+    fn program(&self) -> Option<&EngineProgram> {
+        None
+    }
+
+    /// The part of the present state that a packing cannot hold, for [`EngineFactory::resume`]; empty if there is none.
+    ///
+    /// # Errors
+    /// A program that does not answer.
+    fn own_state(&self) -> Result<Vec<u8>, ExperimentError> {
+        Ok(Vec::new())
+    }
 
     /// Sets threads, instruction set and the flag that stops a computation. No result depends on them. Engines that divide
     /// their work otherwise ignore it.
@@ -120,6 +156,34 @@ pub trait ParticleEngine: Debug + Send + Sync {
 
 /// Starts engines of one kind.
 pub trait EngineFactory: Debug + Send + Sync {
+    /// Name of the program, as [`EngineProgram::name`]; `None` for ours.
+    fn name(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Refuses a scene with a part that engines of this kind do not have, before its first step.
+    ///
+    /// # Errors
+    /// The part, by its key.
+    fn check(&self, _scene: &Scene) -> Result<(), ExperimentError> {
+        Ok(())
+    }
+
+    /// An engine in the state of `packing`, with the [`ParticleEngine::own_state`] that was saved with it.
+    ///
+    /// # Errors
+    /// As those of [`EngineFactory::start`], and a state of another version.
+    fn resume(
+        &self,
+        packing: &Packing,
+        _own_state: &[u8],
+        settings: &EngineSettings,
+        rate: &[f64; 6],
+        compute: &Compute,
+    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
+        self.start(packing, settings, rate, compute)
+    }
+
     /// An engine with the grains, contacts, step and time of `packing`, with forces evaluated at `rate` (1/s).
     ///
     /// # Errors

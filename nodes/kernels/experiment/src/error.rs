@@ -16,6 +16,14 @@ pub enum ExperimentError {
         /// Why, and what to do.
         reason: String,
     },
+    /// The program of another engine ended, or does not answer. A new one can go on from the last packing.
+    #[error("{engine}: {reason}")]
+    EngineLost {
+        /// Name of the engine.
+        engine: String,
+        /// What happened, with the last lines of the program.
+        reason: String,
+    },
     /// The path failed.
     #[error(transparent)]
     Path(#[from] grainlab_scene::PathError),

@@ -87,7 +87,7 @@ impl EventDriven {
             let what = format!("a strain rate of {rate:?} 1/s is not isotropic");
             return Err(DemError::HardSpheres(what).into());
         }
-        let old = engine.packing(Mat3::identity());
+        let old = engine.packing(Mat3::identity())?;
         let interval = self.step * f64::from(period);
         let mut spheres =
             HardSpheres::new(old.cell, old.radii.clone(), old.positions.clone(), old.velocities.clone())?;

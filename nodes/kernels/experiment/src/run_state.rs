@@ -1,7 +1,10 @@
 //! The part of a run's state that is not in the packing: loading path, accumulated strain, present rate. It is stored as
 //! JSON with names and a version, so that a recording is also a checkpoint.
 
+use crate::engine::EngineProgram;
 use crate::error::ExperimentError;
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
 use grainlab_core::results::PackingReport;
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +37,33 @@ pub(crate) struct RunState {
     pub(crate) strain_origin: StrainOrigin,
     /// The state is within a phase, not at the end of one.
     pub(crate) within_phase: bool,
+    /// The engine that made the packing, if it is not ours.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) engine: Option<SavedEngine>,
+}
+
+/// An engine and the state that the packing cannot hold.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SavedEngine {
+    pub(crate) program: EngineProgram,
+    /// As base64.
+    state: String,
+}
+
+impl SavedEngine {
+    pub(crate) fn new(program: &EngineProgram, own_state: &[u8]) -> Self {
+        Self { program: program.clone(), state: BASE64_STANDARD.encode(own_state) }
+    }
+
+    pub(crate) fn own_state(&self) -> Result<Vec<u8>, ExperimentError> {
+        let damaged = |e| ExperimentError::Resume(format!("the state of {} is damaged: {e}", self.program));
+        BASE64_STANDARD.decode(&self.state).map_err(damaged)
+    }
+}
+
+/// The engine that made a packing with this run state; `None` if it is ours, or there is no run state.
+pub fn engine_program(run_state: &[u8]) -> Option<EngineProgram> {
+    Some(RunState::decode(run_state).ok()?.engine?.program)
 }
 
 impl RunState {

@@ -5,7 +5,7 @@ use crate::engine::{EngineFactory, Observables, ParticleEngine};
 use crate::error::ExperimentError;
 use crate::gas::{EventDriven, at_random, is_event_driven};
 use crate::phase_settings::phase_settings;
-use crate::run_state::{RunState, StrainOrigin};
+use crate::run_state::{RunState, SavedEngine, StrainOrigin};
 use grainlab_core::{Mat3, Packing, ServoLaw, SymTensor};
 use grainlab_dem::{Compute, EnergyBalance};
 use grainlab_scene::{Observation, PathState, PhaseEnded, PhaseKind, Scene, Travelled};
@@ -64,23 +64,54 @@ pub struct StepOutcome {
 impl Simulation {
     /// The start of a scene: grains placed at random with thermal velocities.
     pub fn new(scene: Scene) -> Result<Self, ExperimentError> {
-        Self::with_engine(scene, Arc::new(Dem))
+        Self::with_engine(scene, Arc::new(Dem), None)
     }
 
-    /// The start of a scene with another engine, which takes over where the event-driven gas ends.
-    pub fn with_engine(scene: Scene, factory: Arc<dyn EngineFactory>) -> Result<Self, ExperimentError> {
+    /// The start of a scene whose path begins with this packing. Its clock and its strain are set to 0.
+    pub fn from_packing(scene: Scene, packing: &Packing) -> Result<Self, ExperimentError> {
+        Self::at_start(scene, Arc::new(Dem), packing)
+    }
+
+    /// Resumes from a packing and the run state that was published with it.
+    pub fn resume(scene: Scene, packing: &Packing, run_state: &[u8]) -> Result<Self, ExperimentError> {
+        Self::resumed(scene, Arc::new(Dem), packing, run_state)
+    }
+
+    /// A run with engines of `factory`, which take over where an event-driven gas ends: from grains at random, from a packing
+    /// with the run state that was published with it, or at the start of a path that begins with a packing (no run state). A
+    /// packing that another engine made is taken without what only that engine knows.
+    ///
+    /// # Errors
+    /// A scene that the engine does not have, and a state of another scene or version.
+    pub fn with_engine(
+        scene: Scene,
+        factory: Arc<dyn EngineFactory>,
+        from: Option<(&Packing, &[u8])>,
+    ) -> Result<Self, ExperimentError> {
+        factory.check(&scene)?;
+        match from {
+            None => Self::at_random(scene, factory),
+            Some((packing, [])) if scene.start.is_some() => Self::at_start(scene, factory, packing),
+            Some((packing, run_state)) => Self::resumed(scene, factory, packing, run_state),
+        }
+    }
+
+    fn at_random(scene: Scene, factory: Arc<dyn EngineFactory>) -> Result<Self, ExperimentError> {
         let packing = at_random(&scene)?;
-        let mut run = Self::at(scene, factory, &packing, 0, &[0.0; 6])?;
+        let mut run = Self::at(scene, factory, &packing, None, 0, &[0.0; 6])?;
         run.measure_energy();
         run.progress.within_phase = true;
         Ok(run)
     }
 
-    /// The start of a scene whose path begins with this packing. Its clock and its strain are set to 0.
-    pub fn from_packing(scene: Scene, packing: &Packing) -> Result<Self, ExperimentError> {
+    fn at_start(
+        scene: Scene,
+        factory: Arc<dyn EngineFactory>,
+        packing: &Packing,
+    ) -> Result<Self, ExperimentError> {
         // The time step of the packing was set under other settings.
         let start = Packing { step: 0, time: 0.0, time_step: 0.0, ..packing.clone() };
-        let mut run = Self::at(scene, Arc::new(Dem), &start, 0, &[0.0; 6])?;
+        let mut run = Self::at(scene, factory, &start, None, 0, &[0.0; 6])?;
         run.measure_energy();
         run.progress.friction = packing.friction;
         // It is published before the first request.
@@ -93,6 +124,7 @@ impl Simulation {
         scene: Scene,
         factory: Arc<dyn EngineFactory>,
         start: &Packing,
+        own_state: Option<Vec<u8>>,
         phase: usize,
         rate: &[f64; 6],
     ) -> Result<Self, ExperimentError> {
@@ -100,7 +132,10 @@ impl Simulation {
         let phase = phase.ok_or(ExperimentError::Resume("the scene has no phases".into()))?;
         let (settings, compute) = (phase_settings(&scene, phase), Compute::default());
         let maker: &dyn EngineFactory = if is_event_driven(phase) { &Dem } else { &*factory };
-        let engine = maker.start(start, &settings, rate, &compute)?;
+        let engine = match own_state {
+            Some(state) => maker.resume(start, &state, &settings, rate, &compute)?,
+            None => maker.start(start, &settings, rate, &compute)?,
+        };
         let observables = engine.observables()?;
         let progress = Progress {
             path: PathState::START,
@@ -118,8 +153,12 @@ impl Simulation {
         Ok(Self { scene, factory, compute, engine, progress, rollback: None })
     }
 
-    /// Resumes from a packing and the run state that was published with it.
-    pub fn resume(scene: Scene, packing: &Packing, run_state: &[u8]) -> Result<Self, ExperimentError> {
+    fn resumed(
+        scene: Scene,
+        factory: Arc<dyn EngineFactory>,
+        packing: &Packing,
+        run_state: &[u8],
+    ) -> Result<Self, ExperimentError> {
         let saved = RunState::decode(run_state)?;
         if saved.scene != scene.fingerprint {
             return Err(ExperimentError::Resume("the packing belongs to another scene or seed".into()));
@@ -136,7 +175,9 @@ impl Simulation {
             return Err(ExperimentError::Resume(why.into()));
         }
         let start = Packing { time: saved.time, ..packing.clone() };
-        let mut run = Self::at(scene, Arc::new(Dem), &start, saved.phase, &saved.rate)?;
+        let same = saved.engine.as_ref().filter(|e| Some(e.program.name.as_str()) == factory.name());
+        let own_state = same.map(SavedEngine::own_state).transpose()?;
+        let mut run = Self::at(scene, factory, &start, own_state, saved.phase, &saved.rate)?;
         run.progress = Progress {
             path: PathState { phase: saved.phase, began: saved.began, holding_since: saved.holding_since },
             sequence: saved.sequence,
@@ -371,7 +412,7 @@ impl Simulation {
         if let Some(phase) = self.progress.path.phase(&self.scene) {
             let settings = phase_settings(&self.scene, phase);
             if is_event_driven(&self.scene.phases[ended]) && !is_event_driven(phase) {
-                let packing = self.engine.packing(self.progress.deformation);
+                let packing = self.engine.packing(self.progress.deformation)?;
                 self.engine = self.factory.start(&packing, &settings, &self.engine.rate(), &self.compute)?;
             }
             self.engine.begin_phase(&settings)?;
@@ -383,14 +424,22 @@ impl Simulation {
     }
 
     /// Present state of the grains.
-    pub fn packing(&self) -> Packing {
-        Packing { friction: self.progress.friction, ..self.engine.packing(self.progress.deformation) }
+    ///
+    /// # Errors
+    /// An engine that does not answer.
+    pub fn packing(&self) -> Result<Packing, ExperimentError> {
+        let packing = self.engine.packing(self.progress.deformation)?;
+        Ok(Packing { friction: self.progress.friction, ..packing })
     }
 
     /// The part of the state that is not in the packing. [`Simulation::resume`] takes both.
-    pub fn run_state(&self) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// An engine that does not answer.
+    pub fn run_state(&self) -> Result<Vec<u8>, ExperimentError> {
         let p = &self.progress;
-        RunState {
+        let own_state = self.engine.own_state()?;
+        Ok(RunState {
             version: RunState::CURRENT,
             scene: self.scene.fingerprint,
             sequence: p.sequence,
@@ -404,8 +453,9 @@ impl Simulation {
             phase_strain: p.phase_strain,
             strain_origin: p.strain_origin,
             within_phase: p.within_phase,
+            engine: self.engine.program().map(|program| SavedEngine::new(program, &own_state)),
         }
-        .encode()
+        .encode())
     }
 
     fn save_rollback(&mut self) {

@@ -65,6 +65,6 @@ fn the_balance_of_a_scene_closes_in_every_phase() {
         assert_eq!(ended, phases);
         assert!(slid > 0.0, "{name}");
         assert_eq!(rolled > 0.0, contact_law.rolling.is_some(), "{name}");
-        assert_eq!(run.packing().law, contact_law);
+        assert_eq!(run.packing().unwrap().law, contact_law);
     }
 }

@@ -93,7 +93,7 @@ fn resumes(scene: &str) -> Packing {
         phases.push(run.path().phase);
         advance(&mut run);
     }
-    let end = run.packing();
+    let end = run.packing().unwrap();
     assert!(end.contacts.len() > 50, "{} contacts", end.contacts.len());
     let mut saves = Vec::new();
     for phase in 0..5 {
@@ -104,12 +104,12 @@ fn resumes(scene: &str) -> Packing {
     let mut first = begin(scene);
     for (at, phase) in phases.iter().enumerate() {
         if saves.contains(&at) {
-            let saved = (first.packing(), first.run_state());
+            let saved = (first.packing().unwrap(), first.run_state().unwrap());
             let mut second = Simulation::resume(Scene::parse(scene).unwrap(), &saved.0, &saved.1).unwrap();
             while advance(&mut second) {}
             // Every number of both states, contact history and run state included.
-            assert_eq!(second.packing(), end, "resumed at request {at}, in phase {phase}");
-            assert_eq!(second.run_state(), run.run_state());
+            assert_eq!(second.packing().unwrap(), end, "resumed at request {at}, in phase {phase}");
+            assert_eq!(second.run_state().unwrap(), run.run_state().unwrap());
         }
         advance(&mut first);
     }
@@ -122,11 +122,11 @@ fn an_event_driven_gas_resumed_at_every_request_equals_the_run_that_went_on() {
     let (mut run, mut saves) = (begin(&scene), Vec::new());
     while run.path().phase < 2 {
         if run.path().phase == 0 {
-            saves.push((run.packing(), run.run_state(), run.request()));
+            saves.push((run.packing().unwrap(), run.run_state().unwrap(), run.request()));
         }
         advance(&mut run);
     }
-    let end = run.packing();
+    let end = run.packing().unwrap();
     assert!(saves.len() > 20, "{} exchanges", saves.len());
     for (packing, state, request) in saves {
         let mut second = Simulation::resume(Scene::parse(&scene).unwrap(), &packing, &state).unwrap();
@@ -134,8 +134,8 @@ fn an_event_driven_gas_resumed_at_every_request_equals_the_run_that_went_on() {
         while second.path().phase < 2 {
             advance(&mut second);
         }
-        assert_eq!(second.packing(), end, "resumed at step {}", packing.step);
-        assert_eq!(second.run_state(), run.run_state());
+        assert_eq!(second.packing().unwrap(), end, "resumed at step {}", packing.step);
+        assert_eq!(second.run_state().unwrap(), run.run_state().unwrap());
     }
 }
 
@@ -144,7 +144,7 @@ fn a_run_that_is_stopped_saves_a_state_that_goes_on_to_the_same_bytes() {
     for scene in [SCENE.to_owned(), event_driven()] {
         let mut run = begin(&scene);
         while advance(&mut run) {}
-        let (end, state) = (run.packing(), run.run_state());
+        let (end, state) = (run.packing().unwrap(), run.run_state().unwrap());
         let (mut run, mut advances, mut stop_at, mut stops) = (begin(&scene), 0u64, 3, [0; 5]);
         while let Some(request) = run.request() {
             let rate = grainlab_servo::control(&request.input).unwrap().rate;
@@ -159,15 +159,15 @@ fn a_run_that_is_stopped_saves_a_state_that_goes_on_to_the_same_bytes() {
             let back = run.request().unwrap();
             let at_once = request.phase == 1 && scene != SCENE;
             assert!(if at_once { back == request } else { back.step <= request.step }, "{back:?}");
-            let saved = (run.packing(), run.run_state());
+            let saved = (run.packing().unwrap(), run.run_state().unwrap());
             run = Simulation::resume(Scene::parse(&scene).unwrap(), &saved.0, &saved.1).unwrap();
         }
         assert!(
             stops.iter().filter(|n| **n > 0).count() > 2,
             "stopped {stops:?} times in {advances} advances"
         );
-        assert_eq!(run.packing(), end, "stopped {stops:?} times");
-        assert_eq!(run.run_state(), state);
+        assert_eq!(run.packing().unwrap(), end, "stopped {stops:?} times");
+        assert_eq!(run.run_state().unwrap(), state);
     }
 }
 
@@ -182,11 +182,11 @@ fn an_event_driven_phase_keeps_its_clock_and_meets_its_conditions() {
         let expected = asked.time + asked.input.control_interval;
         assert!((time / expected - 1.0).abs() < 1e-14 && time > asked.time, "{time} {expected}");
         assert!(speed(&run) <= 1.0 + 1e-12);
-        let packing = run.packing().validated().unwrap();
+        let packing = run.packing().unwrap().validated().unwrap();
         let deepest = packing.contacts.iter().map(|c| c.overlap).fold(0.0, f64::max);
         assert!(deepest < 1e-12 * 2e-4, "{deepest:e}");
     }
-    let reached = run.packing().solid_fraction();
+    let reached = run.packing().unwrap().solid_fraction();
     assert!((0.55..0.55 * (1.0 + 1e-8)).contains(&reached), "{reached}");
     assert!(speed(&run) > 0.9, "still a gas: {}", speed(&run));
     // The contact law continues with its own time step.
@@ -197,7 +197,7 @@ fn an_event_driven_phase_keeps_its_clock_and_meets_its_conditions() {
 fn an_event_driven_gas_accepts_isotropic_rates_only_and_reports_jamming() {
     let mut run = begin(&event_driven());
     advance(&mut run);
-    let before = (run.packing(), run.run_state());
+    let before = (run.packing().unwrap(), run.run_state().unwrap());
     let error = run.advance(&[-60.0, -60.0, -50.0, 0.0, 0.0, 0.0]).unwrap_err().to_string();
     assert!(error.contains("not isotropic"), "{error}");
     let error = run.advance(&[f64::NAN; 6]).unwrap_err().to_string();
@@ -219,23 +219,23 @@ fn an_event_driven_gas_accepts_isotropic_rates_only_and_reports_jamming() {
         }
     };
     assert!(matches!(error, ExperimentError::Engine(DemError::Jammed { .. })), "{error}");
-    assert!(run.packing().validated().is_ok());
+    assert!(run.packing().unwrap().validated().is_ok());
 }
 
 #[test]
 fn observing_changes_nothing() {
     let (mut plain, mut watched) = (start(), start());
     while advance(&mut plain) {
-        let _ = (watched.packing(), watched.run_state(), watched.engine().observables());
+        let _ = (watched.packing().unwrap(), watched.run_state().unwrap(), watched.engine().observables());
         assert!(advance(&mut watched));
     }
-    assert_eq!(plain.packing(), watched.packing());
+    assert_eq!(plain.packing().unwrap(), watched.packing().unwrap());
 }
 
 #[test]
 fn a_foreign_or_broken_run_state_is_refused() {
     let run = start();
-    let (packing, state) = (run.packing(), run.run_state());
+    let (packing, state) = (run.packing().unwrap(), run.run_state().unwrap());
     let resume =
         |scene: &str, state: &[u8]| Simulation::resume(Scene::parse(scene).unwrap(), &packing, state);
     assert!(resume(SCENE, &state).is_ok());
@@ -268,7 +268,7 @@ fn a_run_state_of_version_3_has_a_position_and_is_not_resumed() {
     let position = PathPosition::of(&state).unwrap();
     assert_eq!((position.phase, position.end_of_phase), (2, true));
     assert_eq!(position.strain_origin, StrainOrigin::Reference);
-    let error = Simulation::resume(Scene::parse(SCENE).unwrap(), &start().packing(), &state).unwrap_err();
+    let error = Simulation::resume(Scene::parse(SCENE).unwrap(), &start().packing().unwrap(), &state).unwrap_err();
     assert!(error.to_string().contains("version 3"), "{error}");
     assert_eq!(PathPosition::of(&state[..200]), None);
 }

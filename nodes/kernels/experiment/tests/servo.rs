@@ -53,7 +53,7 @@ fn settled() -> &'static Vec<(Engine, f64)> {
                 let error = |i: usize| (stress[i] - if i < 3 { target } else { 0.0 }).abs() / target;
                 println!("{target:e} Pa at step {}: {stress:?}", run.engine().steps());
                 let settings = *run.engine().settings();
-                let mut engine = Engine::from_packing(&run.packing(), settings).unwrap();
+                let mut engine = Engine::from_packing(&run.packing().unwrap(), settings).unwrap();
                 engine.initialise().unwrap();
                 out.push((engine, (0..6).map(error).fold(0.0, f64::max)));
             }

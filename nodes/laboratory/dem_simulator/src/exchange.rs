@@ -149,6 +149,8 @@ impl DemSimulator {
                     self.lockstep.not_applied();
                     Ok(Next::Again)
                 }
+                // There is no state to save. A restarted simulator goes on from the last packing.
+                Err(error @ ExperimentError::EngineLost { .. }) => Err(NodeError::failed(error)),
                 Err(error) => self.fail(bus, &error.to_string()),
             };
         }
@@ -172,7 +174,10 @@ impl DemSimulator {
         if advanced.packing_due
             && let Err(error) = self.publish_packing()
         {
-            return self.fail(bus, &error.to_string());
+            return match error {
+                ExperimentError::EngineLost { .. } => Err(NodeError::failed(error)),
+                error => self.fail(bus, &error.to_string()),
+            };
         }
         if let Some(phase) = &advanced.ended {
             log::info!("phase {phase} ended at step {}", self.run.engine().steps());

@@ -1,8 +1,7 @@
 //! The messages of a run. All their times are simulated time.
 
-use grainlab_core::PackingError;
-use grainlab_dem::EnergyBalance;
-use grainlab_experiment::Simulation;
+use grainlab_dem::{DemError, EnergyBalance};
+use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::geometry_msgs::{Quaternion, Transform, TransformStamped};
 use grainlab_msgs::std_msgs::Header;
@@ -17,8 +16,9 @@ fn number(index: usize) -> u32 {
 /// Frame of everything measured in the cell.
 const FRAME: &str = "cell";
 
-pub(crate) fn packing(run: &Simulation) -> Result<msg::Packing, PackingError> {
-    Ok(packing_message(&run.packing().validated()?, &run.scene().name, run.run_state()))
+pub(crate) fn packing(run: &Simulation) -> Result<msg::Packing, ExperimentError> {
+    let packing = run.packing()?.validated().map_err(DemError::Packing)?;
+    Ok(packing_message(&packing, &run.scene().name, run.run_state()?))
 }
 
 /// Step and number of the packings published so far.

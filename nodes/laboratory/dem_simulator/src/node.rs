@@ -9,7 +9,7 @@ use crate::samples::Samples;
 use crate::send_queue::SendQueue;
 use crate::settings::Settings;
 use crate::speculative_step::{self, SpeculativeStep};
-use grainlab_experiment::Simulation;
+use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::tf2_msgs::TFMessage;
 use grainlab_msgs::{to_cdr, topics};
@@ -98,18 +98,14 @@ impl DemSimulator {
         resume: Option<(grainlab_core::Packing, Vec<u8>)>,
         settings: Settings,
     ) -> Result<Self, NodeError> {
-        let (mut run, packings) = match &resume {
-            Some((packing, state)) if state.is_empty() && scene.start.is_some() => (
-                Simulation::from_packing(scene, packing).map_err(NodeError::failed)?,
-                Packings { last_step: 0, count: 1 },
-            ),
-            Some((packing, state)) => {
-                let run = Simulation::resume(scene, packing, state).map_err(NodeError::failed)?;
-                let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
-                (run, Packings { last_step: packing.step, count })
-            }
-            None => (Simulation::new(scene).map_err(NodeError::failed)?, Packings::default()),
-        };
+        let from = resume.as_ref().map(|(packing, state)| (packing, state.as_slice()));
+        let factory = settings.engine_for(from).map_err(NodeError::usage)?;
+        let mut run = Simulation::with_engine(scene, factory, from).map_err(|e| match e {
+            ExperimentError::OtherEngine { .. } => NodeError::usage(e),
+            e => NodeError::failed(e),
+        })?;
+        let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
+        let packings = from.map_or_else(Packings::default, |_| Packings { last_step: run.engine().steps(), count });
         let compute = settings.compute(run.scene().grains as usize).map_err(NodeError::failed)?;
         run.set_compute(match bus.stop_flag() {
             Some(flag) => compute.stopping_on(flag),
@@ -169,7 +165,7 @@ impl DemSimulator {
     }
 
     /// Publishes the current packing.
-    pub(crate) fn publish_packing(&mut self) -> Result<(), grainlab_core::PackingError> {
+    pub(crate) fn publish_packing(&mut self) -> Result<(), ExperimentError> {
         let message = messages::packing(&self.run)?;
         self.packings = Packings { last_step: message.step, count: self.packings.count.saturating_add(1) };
         self.send_queue.push_packing(to_cdr(&message));

@@ -1,13 +1,20 @@
 //! The parameters of the node.
 
+use grainlab_core::Packing;
 use grainlab_dem::{Compute, ComputeError, Simd};
+use grainlab_experiment::{Dem, EngineFactory, engine_program};
+use grainlab_lammps::Lammps;
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Topics of the simulator that `wait_for` may name.
 const AWAITED: [Topic; 4] = [topics::STRESS, topics::PACKING, topics::RUN_STATE, topics::CLOCK];
+
+/// Name of our engine.
+const OURS: &str = "grainlab";
 
 /// The parameters of the node; scene and packing to resume from come as values.
 pub fn parameters() -> Vec<ParameterSpec> {
@@ -65,6 +72,20 @@ pub fn parameters() -> Vec<ParameterSpec> {
             true,
             "continue with the answer predicted by the servo's law while the answer is in transit, up to 4000 grains; results do not depend on it",
         ),
+        ParameterSpec::new(
+            "engine",
+            "",
+            "program that moves the grains once they touch: grainlab or lammps; empty: grainlab, and in a resumed run the one of the \
+             recording. Naming another one than the recording's changes it",
+        )
+        .within(Range::Choice(&["", "grainlab", "lammps"])),
+        ParameterSpec::new(
+            "engine_command",
+            "lmp",
+            "for lammps: the program with what starts it, as in mpiexec -n 4 lmp",
+        ),
+        ParameterSpec::new("engine_time_limit", 300.0, "for lammps: longest time of an exchange, s")
+            .within(Range::Positive),
         ParameterSpec::new("threads", 0_i64, "number of threads, 0 for as many as are efficient; results do not depend on it")
             .within(Range::Integer { min: 0, max: 1024 }),
         ParameterSpec::new("simd", "best", "instruction set to compute with; results do not depend on it")
@@ -95,6 +116,10 @@ pub struct Settings {
     pub inverted_within: Duration,
     /// True to continue with the answer predicted by the servo's law while the answer is in transit.
     pub ahead: bool,
+    /// Name of the engine; empty for that of the packing that the run resumes from, which is ours for a new run.
+    pub engine: String,
+    /// Starts an engine that is another program.
+    pub lammps: Lammps,
     /// Number of threads; `None`: as many as are efficient.
     pub threads: Option<NonZeroUsize>,
     /// Instruction set; `None`: the widest.
@@ -102,6 +127,25 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// The engine of a run from the beginning, or from a packing with its run state.
+    pub(crate) fn engine_for(&self, from: Option<(&Packing, &[u8])>) -> Result<Arc<dyn EngineFactory>, String> {
+        let made_by = from.and_then(|(_, run_state)| engine_program(run_state));
+        let recorded = made_by.as_ref().map_or(OURS, |program| program.name.as_str());
+        let wanted = if self.engine.is_empty() { recorded } else { &self.engine };
+        // A gas is ours under any engine.
+        let is_changed = |(packing, run_state): (&Packing, &[u8])| {
+            !run_state.is_empty() && wanted != recorded && !packing.contacts.is_empty()
+        };
+        if from.is_some_and(is_changed) {
+            log::warn!("the run continues with the engine {wanted}; its last packing was made by {recorded}");
+        }
+        match wanted {
+            OURS => Ok(Arc::new(Dem)),
+            grainlab_lammps::NAME => Ok(Arc::new(self.lammps.clone())),
+            other => Err(format!("the recording was made with the engine {other:?}, which this version does not have")),
+        }
+    }
+
     /// The compute settings of a run of `grains` grains.
     pub(crate) fn compute(&self, grains: usize) -> Result<Compute, ComputeError> {
         let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
@@ -140,6 +184,8 @@ impl From<&Parameters> for Settings {
             ),
             inverted_within: seconds("inverted_within"),
             ahead: parameters.get("ahead"),
+            engine: parameters.get("engine"),
+            lammps: Lammps { command: parameters.get("engine_command"), time_limit: seconds("engine_time_limit") },
             threads: NonZeroUsize::new(count("threads") as usize),
             simd: parameters.get::<String>("simd").parse().ok(),
         }

@@ -38,6 +38,9 @@ pub fn text(s: &Summary, directory: &Path, files: &[&str], program: &str) -> Str
         several => lines.extend(states::lines(several)),
     }
     lines.extend(of_instruments(&s.of_instruments));
+    let engines: Vec<String> =
+        s.engines.iter().map(|e| format!("{} from step {}", e.engine, e.from_step)).collect();
+    lines.extend((!engines.is_empty()).then(|| row("Engine", &engines.join("; "))));
     lines.push(row("Run", &pace(s)));
     let folder = quoted(&directory.display().to_string());
     let files = if files.is_empty() { "nothing was written".to_owned() } else { files.join(", ") };

@@ -56,6 +56,8 @@ pub struct ReadBack {
     pub packings: usize,
     /// Step of the last packing that a run can be resumed from.
     pub saved_step: Option<u64>,
+    /// Engines that made the packings, in order; empty if ours made all.
+    pub(crate) engines: Vec<EngineRange>,
     /// Data of packings without a microstructure.
     pub not_inverted: usize,
     /// Messages whose content is refused.
@@ -94,6 +96,24 @@ impl ReadBack {
         let several = SeveralRuns { path: recording.path().to_owned(), sign };
         Self { several_runs: Some(several.clone()), ..Self::failed(several) }
     }
+}
+
+/// Packings that one engine made.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct EngineRange {
+    /// The program, with version and number of processes; `grainlab` for ours.
+    pub(crate) engine: String,
+    /// Step of the first packing.
+    pub(crate) from_step: u64,
+}
+
+/// The engines of these packings.
+fn engines(about: &BTreeMap<u64, About>) -> Vec<EngineRange> {
+    let simulated = about.values().filter(|a| a.position.is_some());
+    let named = simulated.map(|a| (a.engine.as_ref().map_or("grainlab".to_owned(), ToString::to_string), a.step));
+    let mut found: Vec<EngineRange> = named.map(|(engine, from_step)| EngineRange { engine, from_step }).collect();
+    found.dedup_by(|next, known| next.engine == known.engine);
+    if found.iter().all(|range| range.engine == "grainlab") { Vec::new() } else { found }
 }
 
 /// Packings published within phases.
@@ -174,6 +194,7 @@ pub fn read(recording: &Recording) -> ReadBack {
     if let Some(sign) = about.values().find_map(About::contradiction) {
         return ReadBack::of_several_runs(recording, sign);
     }
+    back.engines = engines(&about);
     let source = recording.path().display().to_string();
     let is_of_earlier_version =
         channels.iter().any(|c| c.ros_type == TypeInfo::of::<msg::Fabric>().type_name);

@@ -1,7 +1,7 @@
 //! The result of a launched run, with the stable keys of `summary.json`.
 
 use crate::inference::Inference;
-use crate::read_back::{InvertedPacking, ReadBack, WithinPhases};
+use crate::read_back::{EngineRange, InvertedPacking, ReadBack, WithinPhases};
 use grainlab_msgs::{Exit, Report};
 use grainlab_recordings::TopicTally;
 use grainlab_recordings::strangers::StrangerView;
@@ -22,6 +22,9 @@ pub struct Summary {
     pub(crate) waiting_fraction: Option<f64>,
     /// Steps per second while computing.
     pub(crate) particle_steps_per_second: Option<f64>,
+    /// Engines of the packings, if another one than ours made any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) engines: Vec<EngineRange>,
     /// Packings at the ends of phases, with what was inferred.
     pub states: Vec<InvertedPacking>,
     /// Inferred from data that are not about a packing of the run.
@@ -110,6 +113,7 @@ impl Summary {
             exchanges_per_second: per_wall("exchanges"),
             waiting_fraction: per_wall("waiting_s"),
             particle_steps_per_second: number("particle_steps_per_s"),
+            engines: back.engines,
             states: back.states,
             of_instruments: back.of_instruments,
             within_phases: back.within_phases,

@@ -145,6 +145,10 @@ fn net_forces(packing: &Packing) -> Vec<Vec3> {
     net
 }
 
+fn state(engine: &dyn ParticleEngine) -> Result<Packing, String> {
+    engine.packing(Mat3::identity()).map_err(|e| e.to_string())
+}
+
 fn run(engine: &mut dyn ParticleEngine, steps: u32) -> Result<(Mat3, Observables), String> {
     engine.run(steps).map_err(|e| e.to_string())
 }
@@ -161,7 +165,7 @@ fn close(what: &str, found: f64, expected: f64, tolerance: f64) -> Result<(), St
 
 fn has_the_grains(bench: &Bench<'_>) -> Result<(), String> {
     let given = lattice();
-    let found = bench.start(&given, &settings())?.packing(Mat3::identity());
+    let found = state(&*bench.start(&given, &settings())?)?;
     let id = |n: usize| (0..found.grains()).find(|m| found.ids[*m] == given.ids[n]);
     for n in 0..given.grains() {
         let m = id(n).ok_or_else(|| format!("grain {} is missing", given.ids[n]))?;
@@ -186,7 +190,7 @@ fn counts_steps(bench: &Bench<'_>) -> Result<(), String> {
     run(&mut *engine, 7)?;
     holds(engine.steps() == 47, || format!("{} steps after 7", engine.steps() - 40))?;
     close("the time of 7 steps", engine.time() - 2.5e-3, 7.0 * step, 1e-6)?;
-    let packing = engine.packing(Mat3::identity());
+    let packing = state(&*engine)?;
     holds((packing.step, packing.time) == (47, engine.time()), || "the packing has another step".to_owned())
 }
 
@@ -195,7 +199,7 @@ fn strains(bench: &Bench<'_>) -> Result<(), String> {
     let rate = [-3.0, 1.0, 0.5, 0.4, 0.2, -0.3];
     engine.set_rate(&rate).map_err(|e| e.to_string())?;
     holds(engine.rate() == rate, || format!("the strain rate is {:?}", engine.rate()))?;
-    let (before, time) = (engine.packing(Mat3::identity()).cell, engine.time());
+    let (before, time) = (state(&*engine)?.cell, engine.time());
     let (deformation, seen) = run(&mut *engine, 50)?;
     let interval = engine.time() - time;
     let [xx, yy, zz, yz, xz, xy] = rate;
@@ -209,16 +213,16 @@ fn strains(bench: &Bench<'_>) -> Result<(), String> {
 fn follows(bench: &Bench<'_>) -> Result<(), String> {
     let mut engine = bench.ready(&lattice())?;
     engine.set_rate(&[-900.0, 300.0, 150.0, 12.0, 120.0, -600.0]).map_err(|e| e.to_string())?;
-    let before = engine.packing(Mat3::identity());
+    let before = state(&*engine)?;
     let (nothing, _) = run(&mut *engine, 0)?;
-    holds(nothing == Mat3::identity() && engine.packing(nothing) == before, || "no step is one".to_owned())?;
+    holds(nothing == Mat3::identity() && state(&*engine)? == before, || "no step is one".to_owned())?;
     let mut parts = bench.ready(&lattice())?;
     parts.set_rate(&engine.rate()).map_err(|e| e.to_string())?;
     run(&mut *engine, 60)?;
     for steps in [1, 2, 57] {
         run(&mut *parts, steps)?;
     }
-    let (after, in_parts) = (engine.packing(Mat3::identity()), parts.packing(Mat3::identity()));
+    let (after, in_parts) = (state(&*engine)?, state(&*parts)?);
     for (n, id) in before.ids.iter().enumerate() {
         let of = |p: &Packing| (0..p.grains()).find(|m| p.ids[*m] == *id).unwrap_or_default();
         let place = |p: &Packing| p.cell.inverse() * p.positions[of(p)];
@@ -253,7 +257,7 @@ fn observes_the_packing(bench: &Bench<'_>) -> Result<(), String> {
     let mut engine = bench.ready(&crooked())?;
     let (_, seen) = run(&mut *engine, 20)?;
     let deformation = Mat3::new(1.0, 0.1, 0.0, 0.2, 0.9, 0.0, 0.0, 0.3, 1.1);
-    let packing = engine.packing(deformation);
+    let packing = engine.packing(deformation).map_err(|e| e.to_string())?;
     holds(packing.deformation == deformation, || "another deformation".to_owned())?;
     let stress = grainlab_core::stress::stress(&packing).tensor.voigt();
     for ((found, expected), name) in
@@ -279,7 +283,7 @@ fn has_the_law(bench: &Bench<'_>) -> Result<(), String> {
         // A law that the engine does not have is refused.
         let Ok(mut engine) = bench.try_start(&given, &settings()) else { continue };
         engine.begin_phase(&settings()).map_err(|e| e.to_string())?;
-        let packing = engine.packing(Mat3::identity());
+        let packing = state(&*engine)?;
         let off = packing.law_difference();
         holds(packing.law == law && off < 1e-6, || format!("forces are off those of {law:?} by {off:e}"))?;
         packing.check().and_then(|()| packing.check_consistency()).map_err(|e| e.to_string())?;
@@ -291,9 +295,9 @@ fn accelerates(bench: &Bench<'_>) -> Result<(), String> {
     let mut given = crooked();
     given.positions[21] += 0.3 * OVERLAP * Vec3::new(1.0, -0.7, 0.4);
     let mut engine = bench.ready(&given)?;
-    let before = engine.packing(Mat3::identity());
+    let before = state(&*engine)?;
     run(&mut *engine, 1)?;
-    let after = engine.packing(Mat3::identity());
+    let after = state(&*engine)?;
     let of = |p: &Packing| (0..p.grains()).find(|n| p.ids[*n] == given.ids[21]).unwrap_or_default();
     let force = net_forces(&before)[of(&before)];
     let gained = after.velocities[of(&after)] - before.velocities[of(&before)];
@@ -312,7 +316,7 @@ fn acts(bench: &Bench<'_>) -> Result<(), String> {
         engine.set_rate(&[0.0, 0.0, 0.0, 0.0, 10.0, 0.0]).map_err(|e| e.to_string())?;
         run(&mut *engine, 50)?;
         let slip =
-            engine.packing(Mat3::identity()).contacts.iter().any(|c| c.tangential_force != Vec3::zeros());
+            state(&*engine)?.contacts.iter().any(|c| c.tangential_force != Vec3::zeros());
         holds(slip, || "friction is taken, and no contact has a tangential force".to_owned())?;
     }
     let speed = |damping: f64| {
@@ -329,7 +333,7 @@ fn acts(bench: &Bench<'_>) -> Result<(), String> {
 fn repels(bench: &Bench<'_>) -> Result<(), String> {
     let mut engine = bench.ready(&uneven())?;
     run(&mut *engine, 5)?;
-    let packing = engine.packing(Mat3::identity());
+    let packing = state(&*engine)?;
     let at = |id: u32| (0..packing.grains()).find(|n| packing.ids[*n] == id).unwrap_or_default();
     let moved = packing.velocities[at(121)].x;
     holds(moved < 0.0, || format!("a grain that is pressed towards -x moves at {moved:e} m/s"))?;
@@ -355,7 +359,7 @@ fn repeats(bench: &Bench<'_>) -> Result<(), String> {
         let mut engine = bench.ready(&uneven())?;
         engine.set_rate(&[-2.0, 0.0, 0.0, 0.0, 0.0, 0.1]).map_err(|e| e.to_string())?;
         let seen = run(&mut *engine, 100)?;
-        Ok::<_, String>((seen, engine.packing(Mat3::identity())))
+        Ok::<_, String>((seen, state(&*engine)?))
     };
     holds(once()? == once()?, || "two runs differ".to_owned())
 }
@@ -365,17 +369,21 @@ fn observing_is_free(bench: &Bench<'_>) -> Result<(), String> {
     for _ in 0..5 {
         run(&mut *plain, 10)?;
         watched.observables().map_err(|e| e.to_string())?;
-        let _ = (watched.packing(Mat3::identity()), watched.energy(), watched.left_out());
+        let _ = (state(&*watched)?, watched.energy(), watched.left_out());
         run(&mut *watched, 10)?;
     }
-    let packing = |engine: &dyn ParticleEngine| engine.packing(Mat3::identity());
-    holds(packing(&*plain) == packing(&*watched), || "the observed run differs".to_owned())
+    let (left, right) = (state(&*plain)?, state(&*watched)?);
+    let largest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max);
+    let still = vec![Vec3::zeros(); left.grains()];
+    let off = largest(&left.velocities, &right.velocities) / largest(&left.velocities, &still);
+    let is_rounding = plain.program().is_some() && left.ids == right.ids && off < 1e-8;
+    holds(left == right || is_rounding, || format!("velocities of the observed run differ by {off:e}"))
 }
 
 fn continues(bench: &Bench<'_>) -> Result<(), String> {
     let mut first = bench.ready(&uneven())?;
     run(&mut *first, 50)?;
-    let mut second = bench.start(&first.packing(Mat3::identity()), &settings())?;
+    let mut second = bench.start(&state(&*first)?, &settings())?;
     let (found, expected) = (run(&mut *second, 50)?.1, run(&mut *first, 50)?.1);
     holds(second.steps() == first.steps(), || format!("step {} and {}", second.steps(), first.steps()))?;
     close("the stress xx", found.stress.tensor.xx, expected.stress.tensor.xx, 1e-9)?;
@@ -388,7 +396,7 @@ fn refuses(bench: &Bench<'_>) -> Result<(), String> {
         holds(started.is_err(), || format!("{what} is taken"))
     };
     let mut engine = bench.ready(&lattice())?;
-    let before = engine.packing(Mat3::identity());
+    let before = state(&*engine)?;
     holds(engine.set_rate(&[0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0]).is_err(), || {
         "a rate of NaN is taken".to_owned()
     })?;
@@ -397,7 +405,7 @@ fn refuses(bench: &Bench<'_>) -> Result<(), String> {
     holds(engine.rate() == [0.0; 6] && engine.settings() == &settings(), || {
         "a refusal changed it".to_owned()
     })?;
-    holds(engine.packing(Mat3::identity()) == before, || "a refusal changed the state".to_owned())?;
+    holds(state(&*engine)? == before, || "a refusal changed the state".to_owned())?;
     refused("a negative drag", &lattice(), &negative)?;
     let mut packing = lattice();
     packing.positions[3].y = f64::NAN;
@@ -410,17 +418,16 @@ fn refuses(bench: &Bench<'_>) -> Result<(), String> {
 fn saves_and_forks(bench: &Bench<'_>) -> Result<(), String> {
     let mut engine = bench.ready(&uneven())?;
     run(&mut *engine, 20)?;
-    let here = engine.packing(Mat3::identity());
+    let here = state(&*engine)?;
     holds(!engine.restore(), || "returns to a state that was not kept".to_owned())?;
     if engine.save() {
         run(&mut *engine, 30)?;
         holds(engine.restore(), || "does not return".to_owned())?;
-        holds(engine.packing(Mat3::identity()) == here, || "returns to another state".to_owned())?;
+        holds(state(&*engine)? == here, || "returns to another state".to_owned())?;
     }
     let Some(mut fork) = engine.fork() else { return Ok(()) };
     run(&mut *fork, 30)?;
-    holds(engine.packing(Mat3::identity()) == here, || "a fork moves its origin".to_owned())?;
+    holds(state(&*engine)? == here, || "a fork moves its origin".to_owned())?;
     run(&mut *engine, 30)?;
-    let packing = |engine: &dyn ParticleEngine| engine.packing(Mat3::identity());
-    holds(packing(&*fork) == packing(&*engine), || "a fork differs".to_owned())
+    holds(state(&*fork)? == state(&*engine)?, || "a fork differs".to_owned())
 }

@@ -193,7 +193,7 @@ mod tests {
         let text = "base = 'demo'\nname = 'few'\ngrains.count = 20";
         let scene = grainlab_scene::Scene::parse(text).unwrap();
         let run = grainlab_experiment::Simulation::new(scene).unwrap();
-        let (packing, run_state) = (run.packing(), run.run_state());
+        let (packing, run_state) = (run.packing().unwrap(), run.run_state().unwrap());
         let imported = |run_state| Imported {
             header: grainlab_msgs::boundary::packing_header(&packing),
             packing: packing.clone(),

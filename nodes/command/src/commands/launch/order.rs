@@ -2,7 +2,7 @@
 
 use crate::viewers::VIEWERS;
 use grainlab_console::{Failure, json, write_whole};
-use grainlab_launcher::{LaunchFile, NodePlan, check_one_process};
+use grainlab_launcher::{LaunchFile, NodeKind, NodePlan, check_one_process};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -29,6 +29,46 @@ pub(super) struct Order {
     /// All nodes are in the process of the launcher.
     #[serde(default)]
     pub(super) one_process: bool,
+    /// Engine of the simulator, and its program, where they are given.
+    #[serde(default, skip_serializing_if = "EngineOrder::is_default")]
+    pub(super) engine: EngineOrder,
+}
+
+/// The engine of a run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::Args)]
+pub(super) struct EngineOrder {
+    /// Program that moves the grains once they touch; the gas before is always that of grainlab. lammps: an `lmp` on the PATH, see
+    /// nodes/laboratory/lammps/README.md
+    #[arg(long, value_parser = ["grainlab", "lammps"])]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    engine: Option<String>,
+    /// The program of the engine with what starts it, as in 'mpiexec -n 4 lmp' [default: lmp]
+    #[arg(long, value_name = "COMMAND")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    engine_command: Option<String>,
+}
+
+impl EngineOrder {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// What is given in `other`, and else what is known.
+    pub(super) fn or(self, known: Self) -> Self {
+        Self {
+            engine: self.engine.or(known.engine),
+            engine_command: self.engine_command.or(known.engine_command),
+        }
+    }
+
+    /// Sets the parameters of the simulator.
+    fn apply(&self, plan: &mut NodePlan) {
+        for (name, value) in [("engine", &self.engine), ("engine_command", &self.engine_command)] {
+            if let Some(value) = value.as_ref().filter(|_| plan.is(NodeKind::DemSimulator)) {
+                plan.insist(&[&format!("{name}:={}", serde_json::Value::from(value.as_str()))]);
+            }
+        }
+    }
 }
 
 /// Messages that are recorded.
@@ -50,6 +90,7 @@ impl Order {
         self.launch == other.launch
             && self.arguments == other.arguments
             && self.seed == other.seed
+            && self.engine == other.engine
             && is_recorded
     }
 
@@ -87,6 +128,7 @@ impl Order {
         let scene = directory.join("scene.toml");
         let agrees = |plan: &NodePlan| plan.check_handed_on(&scene, self.seed, directory);
         plans.iter().try_for_each(agrees).map_err(Failure::usage)?;
+        plans.iter_mut().for_each(|plan| self.engine.apply(plan));
         if self.record == Record::Results {
             plans.iter_mut().for_each(NodePlan::record_results);
         }
@@ -102,14 +144,13 @@ impl Order {
 mod tests {
     use super::*;
     use grainlab_launcher::BUILT_IN;
-    use grainlab_launcher::NodeKind;
 
     #[test]
     fn what_was_launched_is_read_back_as_it_was() {
         let directory = tempfile::tempdir().unwrap();
         let arguments = BTreeMap::from([("simd".to_owned(), "scalar".to_owned())]);
         let (launch, words) = (BUILT_IN[0].1.to_owned(), vec!["demo".to_owned()]);
-        let order = Order { launch, arguments, seed: 7, words, record: Record::Results, one_process: false };
+        let order = Order { launch, arguments, seed: 7, words, record: Record::Results, one_process: false, engine: EngineOrder::default() };
         order.keep(directory.path()).unwrap();
         let known = Order::read(directory.path()).unwrap();
         assert_eq!(known, order);

@@ -5,7 +5,7 @@
 //! repeat with the same bytes are not recorded again.
 
 use super::conduct::{conduct, medium};
-use super::order::Order;
+use super::order::{EngineOrder, Order};
 use super::output::Output;
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
@@ -15,16 +15,21 @@ use grainlab_recordings::{Recording, RunState, run_state, scenes};
 use grainlab_results::brief::goes_on;
 use std::path::Path;
 
-pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
+/// Continues a run, with another engine if one is given.
+pub(super) fn run(directory: &Path, engine: EngineOrder, output: Output) -> Result<Exit, Failure> {
     let output = Output { resumed: true, ..output };
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     let directory = directory.canonicalize().map_err(|e| failed(&e))?;
-    let order = Order::read(&directory)?;
+    let known = Order::read(&directory)?;
+    let order = Order { engine: engine.or(known.engine.clone()), ..known.clone() };
     let path_of_scene = directory.join("scene.toml").to_string_lossy().into_owned();
     let scene = scenes::load(&path_of_scene, &[], Some(order.seed))?;
     let mut plans = order.plans(&directory)?;
     if matches!(run_state(&directory), RunState::Ended(0)) {
         return Err(Failure::usage(format!("{}: the run is finished", directory.display())));
+    }
+    if order != known {
+        order.keep(&directory)?;
     }
     // Without a recording the run starts anew, in its own directory.
     if Recording::open(&directory).is_ok() {

@@ -74,7 +74,7 @@ until = {{ on_target = 0.05, unbalanced = 1e-4, timeout = 0.2 }}
         let input = ServoInput { law, rate_limit, ..r.input };
         run.advance(&grainlab_servo::control(&input).unwrap().rate).unwrap();
     }
-    let p = run.packing();
+    let p = run.packing().unwrap();
     let mut e = Engine::from_packing(&p, setting(0.1, p.time_step)).unwrap();
     e.initialise().unwrap();
     let kept = left(&mut e);

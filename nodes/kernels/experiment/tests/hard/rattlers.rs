@@ -133,7 +133,7 @@ until = {{ elapsed = 4e-3 }}
             let input = ServoInput { rate_limit, ..r.input };
             run.advance(&grainlab_servo::control(&input).unwrap().rate).unwrap();
         }
-        let p = run.packing();
+        let p = run.packing().unwrap();
         let contacts =
             |g: usize| p.contacts.iter().filter(|c| c.i as usize == g || c.j as usize == g).count();
         let held = (0..p.grains()).find(|g| contacts(*g) == 2);
@@ -169,13 +169,13 @@ fn a_two_contact_grain_settles_in_a_relaxing_packing_without_any_setting() {
     let left = |spin_drag: &str| {
         let (run, g) = rested(spin_drag);
         // Too slow to reach a third contact.
-        let p = turning(run.packing(), g, 0.1);
-        let mut run = Simulation::resume(run.scene().clone(), &p, &run.run_state()).unwrap();
+        let p = turning(run.packing().unwrap(), g, 0.1);
+        let mut run = Simulation::resume(run.scene().clone(), &p, &run.run_state().unwrap()).unwrap();
         while run.request().is_some() {
             run.advance(&[0.0; 6]).unwrap();
         }
         assert!(run.engine().observables().unwrap().unbalanced < 1e-8);
-        run.packing().spins[g].norm() / 0.1
+        run.packing().unwrap().spins[g].norm() / 0.1
     };
     let (settled, free) = (left(""), left("spin_drag = 0.0"));
     assert!(settled < 1e-6 && free > 0.99, "{settled} {free} of the spin are left");

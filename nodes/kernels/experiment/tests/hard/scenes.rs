@@ -71,7 +71,7 @@ fn errors(scene: Scene) -> Vec<(String, f64)> {
         if let Some(name) = advanced.ended
             && targets.iter().all(|t| t.is_finite())
         {
-            let found = stress(&run.packing()).tensor.voigt();
+            let found = stress(&run.packing().unwrap()).tensor.voigt();
             let worst = found.iter().zip(targets).map(|(s, t)| (s - t).abs()).fold(0.0, f64::max);
             errors.push((label.clone() + &name, worst / (targets[..3].iter().sum::<f64>() / 3.0)));
         }

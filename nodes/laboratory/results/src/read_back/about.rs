@@ -4,7 +4,7 @@ use crate::inference::{Inference, Origin};
 use crate::measurements::{Identity, Measurement, Measurements};
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
-use grainlab_experiment::PathPosition;
+use grainlab_experiment::{EngineProgram, PathPosition, engine_program};
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::{Topic, msg, topics};
@@ -37,9 +37,11 @@ struct Answer {
 /// The messages about one packing; repeated ones are equal.
 #[derive(Default)]
 pub(super) struct About {
-    step: u64,
+    pub(super) step: u64,
     /// Position on the loading path. A packing within a phase need not be at rest, and may have no results.
     pub(super) position: Option<PathPosition>,
+    /// The engine that made it, if it is not ours.
+    pub(super) engine: Option<EngineProgram>,
     /// Number of its grains and of its contacts.
     pub(super) packing: Option<(usize, usize)>,
     stamp: Option<Time>,
@@ -164,6 +166,7 @@ pub(super) fn enter(
             run.packing(&recorded.channel.topic, &packing).map_err(Unused::OfAnotherRun)?;
             let about = about(all, packing.step);
             about.position = PathPosition::of(&message.run_state);
+            about.engine = engine_program(&message.run_state);
             about.stamp = Some(message.header.stamp);
             about.packing = Some((packing.grains(), packing.contacts.len()));
             Ok(packing.step)

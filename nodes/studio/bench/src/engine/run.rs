@@ -19,7 +19,7 @@ pub(crate) fn press() -> Result<Scene, Failure> {
 pub(crate) fn prepared(grains: u32) -> Result<Packing, Failure> {
     let (run, _) = run(&Scene { grains, ..press()? }, u64::MAX)
         .map_err(|why| Failure::new(Exit::PhysicsInvalid, why))?;
-    Ok(run.packing())
+    run.packing().map_err(Failure::failed)
 }
 
 /// Cost and result of a run.
@@ -112,7 +112,7 @@ fn run(scene: &Scene, limit: u64) -> Result<(Simulation, Option<EnergyBalance>),
 
 fn observe(run: &Simulation) -> Result<Observables, String> {
     let settings = grainlab_micromechanics::Settings::default();
-    let r = grainlab_micromechanics::analyze(&run.packing(), &settings).map_err(|e| e.to_string())?.report;
+    let r = grainlab_micromechanics::analyze(&run.packing().map_err(|e| e.to_string())?, &settings).map_err(|e| e.to_string())?.report;
     let (k, eps, phi) = (r.contacts.coordination, r.fabric.contact_anisotropy, r.solid_fraction);
     let c = r.elasticity.map_err(|e| e.to_string())?.tensor;
     Ok([k, eps, phi, c.transverse_isotropy().g12, c.bulk_voigt()])

@@ -62,16 +62,16 @@ publish = true
 #[test]
 fn a_scene_runs_with_another_engine_from_the_end_of_the_gas() {
     let run = |factory: Arc<dyn EngineFactory>| {
-        let mut run = Simulation::with_engine(Scene::parse(SCENE).unwrap(), factory).unwrap();
+        let mut run = Simulation::with_engine(Scene::parse(SCENE).unwrap(), factory, None).unwrap();
         let mut gas = None;
         while let Some(request) = run.request() {
             if request.phase == 2 && gas.is_none() {
-                gas = Some(run.packing().positions);
+                gas = Some(run.packing().unwrap().positions);
             }
             run.advance(&grainlab_servo::control(&request.input).unwrap().rate).unwrap();
         }
         let pressure = run.engine().observables().unwrap().stress.tensor.mean();
-        (gas.unwrap(), pressure, run.packing())
+        (gas.unwrap(), pressure, run.packing().unwrap())
     };
     let (ours, theirs) = (run(Arc::new(Dem)), run(Arc::new(Toys::default())));
     let sorted = |mut positions: Vec<grainlab_core::Vec3>| {
@@ -87,7 +87,7 @@ fn a_scene_runs_with_another_engine_from_the_end_of_the_gas() {
 #[test]
 fn a_setting_that_an_engine_does_not_have_is_refused_by_name() {
     let scene = Scene::parse(&SCENE.replace("friction = 0.0", "friction = 0.3")).unwrap();
-    let mut run = Simulation::with_engine(scene, Arc::new(Toys::default())).unwrap();
+    let mut run = Simulation::with_engine(scene, Arc::new(Toys::default()), None).unwrap();
     let error = loop {
         let request = run.request().unwrap();
         if let Err(error) = run.advance(&grainlab_servo::control(&request.input).unwrap().rate) {

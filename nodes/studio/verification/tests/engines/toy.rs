@@ -198,7 +198,7 @@ impl ParticleEngine for Toy {
         })
     }
 
-    fn packing(&self, deformation: Mat3) -> Packing {
-        Packing { deformation, ..self.grains.clone() }
+    fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
+        Ok(Packing { deformation, ..self.grains.clone() })
     }
 }

@@ -1,0 +1,399 @@
+//! One run of LAMMPS as an engine.
+
+use crate::exchange::{Exchange, FIRST_STEP, OBSERVED};
+use crate::files::{CONTACT_COLUMNS, Dumps, GRAIN_COLUMNS, data_file};
+use crate::frame::{Affine, Frame};
+use crate::law::{check_law, check_scene, check_settings, pair_coeff};
+use crate::program::Program;
+use crate::survey::{Load, Survey};
+use grainlab_core::stress::Stress;
+use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3, min_contacts};
+use grainlab_dem::{Compute, EngineSettings};
+use grainlab_experiment::{EngineFactory, EngineProgram, ExperimentError, Observables, ParticleEngine};
+use grainlab_scene::Scene;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Name of the engine, in a launch and in recordings.
+pub const NAME: &str = "lammps";
+
+/// Starts LAMMPS.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lammps {
+    /// The program, with what starts it: `lmp`, `mpiexec -n 4 lmp`, `srun -n 64 /opt/lammps/lmp`. Its first process must see the
+    /// folder of temporary files (`TMPDIR`) of this one.
+    pub command: String,
+    /// Time limit of an exchange.
+    pub time_limit: Duration,
+}
+
+impl Default for Lammps {
+    fn default() -> Self {
+        Self { command: "lmp".into(), time_limit: Duration::from_secs(300) }
+    }
+}
+
+/// An error of LAMMPS, or a refusal.
+pub(crate) fn refused<T>(reason: impl Into<String>) -> Result<T, ExperimentError> {
+    Err(ExperimentError::OtherEngine { engine: NAME.into(), reason: reason.into() })
+}
+
+impl EngineFactory for Lammps {
+    fn name(&self) -> Option<&'static str> {
+        Some(NAME)
+    }
+
+    fn check(&self, scene: &Scene) -> Result<(), ExperimentError> {
+        check_scene(scene)?;
+        // A program that is missing is found before the gas.
+        Program::start(&self.command, self.time_limit).map(drop)
+    }
+
+    fn start(
+        &self,
+        packing: &Packing,
+        settings: &EngineSettings,
+        rate: &[f64; 6],
+        _compute: &Compute,
+    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
+        let is_loaded = packing.contacts.iter().any(|c| c.tangential_force != Vec3::zeros());
+        if settings.friction > 0.0 && is_loaded {
+            return refused(
+                "the packing has tangential forces, which LAMMPS cannot read: begin from one without (after a phase without \
+                 friction), or continue with the engine that made it",
+            );
+        }
+        let mut engine = Running::new(self, packing, settings, rate)?;
+        engine.load(packing)?;
+        Ok(Box::new(engine))
+    }
+
+    fn resume(
+        &self,
+        packing: &Packing,
+        own_state: &[u8],
+        settings: &EngineSettings,
+        rate: &[f64; 6],
+        _compute: &Compute,
+    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
+        let mut engine = Running::new(self, packing, settings, rate)?;
+        engine.read_restart(own_state)?;
+        Ok(Box::new(engine))
+    }
+}
+
+/// A running LAMMPS and the state that it is in. Between two exchanges its velocities are those relative to the affine motion.
+#[derive(Debug)]
+struct Running {
+    program: Mutex<Program>,
+    about: EngineProgram,
+    folder: TempDir,
+    settings: EngineSettings,
+    rate: [f64; 6],
+    /// The grains, with cell, step, time and time step as they are now; positions, velocities and contacts of the start.
+    known: Packing,
+    frame: Frame,
+    /// Angular velocity of the affine motion that spins contain, 1/s.
+    spin: Vec3,
+    survey: Survey,
+    /// Number of the present step in LAMMPS.
+    at: u64,
+    seen: Observables,
+}
+
+impl Running {
+    /// The program started, without grains.
+    fn new(
+        with: &Lammps,
+        packing: &Packing,
+        settings: &EngineSettings,
+        rate: &[f64; 6],
+    ) -> Result<Self, ExperimentError> {
+        check_law(&packing.law)?;
+        check_settings(settings)?;
+        let (survey, seen) = Survey::of(packing, settings)?;
+        let time_step = if packing.time_step > 0.0 { packing.time_step } else { survey.time_step };
+        let folder = tempfile::Builder::new().prefix("grainlab-lammps-").tempdir();
+        let folder = folder.or_else(|e| refused(format!("no folder for temporary files: {e}")))?;
+        let (program, about) = Program::start(&with.command, with.time_limit)?;
+        log::info!("the engine is {about}");
+        Ok(Self {
+            program: Mutex::new(program),
+            about,
+            folder,
+            settings: *settings,
+            rate: *rate,
+            known: Packing { time_step, friction: settings.friction, ..packing.clone() },
+            frame: Frame::of(&packing.cell),
+            spin: Vec3::zeros(),
+            survey,
+            at: FIRST_STEP,
+            seen,
+        })
+    }
+
+    fn program(&self) -> MutexGuard<'_, Program> {
+        self.program.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Loads the grains of a packing, with empty springs.
+    fn load(&mut self, packing: &Packing) -> Result<(), ExperimentError> {
+        self.frame = self.checked_frame(&packing.cell)?;
+        self.spin = Vec3::zeros();
+        let path = self.file("start.data");
+        self.write(&path, data_file(packing, &self.frame).as_bytes())?;
+        let read = format!("atom_style sphere\nread_data {}\npair_style granular\n", path.display());
+        self.set_up(&read)?;
+        // Velocities half a step before the positions become those at the positions.
+        let (half, frictional) = (0.5 * self.known.time_step, self.settings.friction > 0.0);
+        let mut commands = String::new();
+        for axis in ["x", "y", "z"] {
+            commands += &format!("variable v{axis} atom v{axis}+f{axis}*({half:e})/mass\n");
+        }
+        commands += "velocity all set v_vx v_vy v_vz units box\n";
+        if frictional {
+            for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
+                let torque = format!("c_spins[{}]*({half:e})/(0.4*mass*radius^2)", k + 4);
+                commands += &format!("variable w{axis} atom c_spins[{}]+{torque}\n", k + 1);
+            }
+            commands += "set group all omega v_wx v_wy v_wz\n";
+        }
+        self.program().tell(&commands)?;
+        self.observe(&Affine::NONE)
+    }
+
+    fn read_restart(&mut self, own_state: &[u8]) -> Result<(), ExperimentError> {
+        let at = own_state.iter().position(|b| *b == b'\n').unwrap_or(own_state.len());
+        let Ok(spin) = serde_json::from_slice::<[f64; 3]>(&own_state[..at]) else {
+            return refused("the saved state is damaged");
+        };
+        self.spin = spin.into();
+        let path = self.file("saved.restart");
+        self.write(&path, own_state.get(at + 1..).unwrap_or_default())?;
+        self.set_up(&format!("read_restart {}\n", path.display()))
+    }
+
+    fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), ExperimentError> {
+        std::fs::write(path, bytes).or_else(|e| refused(format!("{}: {e}", path.display())))
+    }
+
+    /// Begins anew with the grains that the commands `read` have, and evaluates forces.
+    fn set_up(&mut self, read: &str) -> Result<(), ExperimentError> {
+        self.at = FIRST_STEP;
+        let law = pair_coeff(&self.known.material, &self.settings)?;
+        let frictional = self.settings.friction > 0.0;
+        let (integrator, spins) = if frictional {
+            ("nve/sphere", "compute spins all property/atom omegax omegay omegaz tqx tqy tqz\n")
+        } else {
+            ("nve", "")
+        };
+        let commands = format!(
+            "clear\nunits si\nnewton on\n{read}reset_timestep {FIRST_STEP}\ncomm_modify vel yes\npair_coeff * * {law}\nneighbor {:e} bin\n\
+             neigh_modify delay 0 every 1 check yes\ntimestep {:e}\nfix move all {integrator}\n{spins}{}",
+            self.settings.skin,
+            self.known.time_step,
+            Exchange::computes(min_contacts(self.settings.friction), frictional),
+        );
+        self.program().tell(&commands)?;
+        self.observe(&Affine::NONE)
+    }
+
+    fn checked_frame(&self, cell: &Cell) -> Result<Frame, ExperimentError> {
+        let frame = Frame::of(cell);
+        if frame.tilt() > 0.5 {
+            return refused(format!(
+                "the cell is tilted by {:.2} of an edge; LAMMPS has cells up to 0.5: end the shear before that",
+                frame.tilt()
+            ));
+        }
+        Ok(frame)
+    }
+
+    /// Evaluates forces at the present state, and observes it.
+    fn observe(&mut self, affine: &Affine) -> Result<(), ExperimentError> {
+        let velocities = Exchange::relative_velocities(&affine.last, self.known.time_step);
+        self.program().tell(&format!("{velocities}run 0 post no\n"))?;
+        self.take_observables("", 1.0)
+    }
+
+    /// Reads what was observed at the last step, where the box had `volume` times that of the cell, and sends the commands after
+    /// it.
+    fn take_observables(&mut self, after: &str, volume: f64) -> Result<(), ExperimentError> {
+        let values = self.program().ask(OBSERVED)?;
+        self.program().tell(after)?;
+        let [xx, yy, zz, xy, xz, yz, touching, squares, net, backbone, forces, largest, fastest, closest] = values;
+        let (n, dt) = (self.known.grains() as f64, self.known.time_step);
+        let smallest = self.known.radii.iter().fold(f64::INFINITY, |a, r| a.min(*r));
+        let speed = fastest.sqrt();
+        if !(values[..10].iter().all(|v| v.is_finite()) && speed <= 0.1 * smallest / dt) {
+            return refused(format!(
+                "unstable at step {}: a grain moves at {speed:e} m/s, more than a tenth of its radius in one step of {dt:e} s; lower \
+                 the time step (in a scene: numerics.time_step_safety) or the strain rates",
+                self.known.step
+            ));
+        }
+        if touching > 0.0 && closest < 1.8 * smallest {
+            return refused(format!(
+                "at step {} two grains are {closest:e} m apart: they overlap by more than a tenth of a diameter; lower the strain \
+                 rates, the stress targets or the gas speed",
+                self.known.step
+            ));
+        }
+        let contacts = 0.5 * touching;
+        let load = Load { contacts, sum: forces, largest: if contacts > 0.0 { largest } else { 0.0 } };
+        let in_lammps = volume * Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        let unbalanced = net / backbone / (forces / contacts);
+        self.seen = Observables {
+            stress: Stress { tensor: self.frame.tensor(&in_lammps), asymmetry: 0.0 },
+            cell: self.known.cell,
+            unbalanced: if unbalanced.is_finite() { unbalanced } else { 1.0 },
+            speed: (squares / n).sqrt(),
+            contacts: contacts.round() as u32,
+            tangent: Some(self.survey.tangent(&load)),
+            solid_fraction: Some(self.known.solid_fraction()),
+        };
+        if self.survey.is_stale(self.known.step, &load) {
+            self.survey()?;
+        }
+        Ok(())
+    }
+
+    /// Chooses the time step anew from the present contacts.
+    fn survey(&mut self) -> Result<(), ExperimentError> {
+        let (survey, seen) = Survey::of(&self.packing(self.known.deformation)?, &self.settings)?;
+        self.survey = survey;
+        self.known.time_step = survey.time_step;
+        self.seen.tangent = seen.tangent;
+        self.program().tell(&format!("timestep {:e}\n", survey.time_step))
+    }
+}
+
+impl ParticleEngine for Running {
+    fn settings(&self) -> &EngineSettings {
+        &self.settings
+    }
+
+    fn begin_phase(&mut self, settings: &EngineSettings) -> Result<(), ExperimentError> {
+        check_settings(settings)?;
+        let law = pair_coeff(&self.known.material, settings)?;
+        let was_frictional = self.settings.friction > 0.0;
+        let packing = self.packing(self.known.deformation)?;
+        (self.settings, self.known.friction) = (*settings, settings.friction);
+        if was_frictional != (settings.friction > 0.0) {
+            // The springs of the new law begin without a force.
+            let mut packing = Packing { friction: settings.friction, ..packing };
+            packing.spins.fill(Vec3::zeros());
+            packing.contacts.iter_mut().for_each(|c| c.tangential_force = Vec3::zeros());
+            self.load(&packing)?;
+        } else {
+            self.program().tell(&format!("pair_coeff * * {law}\nneighbor {:e} bin\n", settings.skin))?;
+        }
+        self.survey()?;
+        self.observe(&Affine::NONE)
+    }
+
+    fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), ExperimentError> {
+        if let Some(c) = rate.iter().position(|r| !r.is_finite()) {
+            let component = SymTensor::COMPONENTS[c];
+            return Err(grainlab_dem::DemError::Rate { component, value: rate[c] }.into());
+        }
+        self.rate = *rate;
+        Ok(())
+    }
+
+    fn rate(&self) -> [f64; 6] {
+        self.rate
+    }
+
+    fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), ExperimentError> {
+        let mut total = Mat3::identity();
+        let mut left = steps;
+        while left > 0 {
+            let count = left.min(Exchange::longest(&self.settings, self.known.time_step));
+            let dt = self.known.time_step;
+            let step = Mat3::identity() + SymTensor::from_voigt(self.rate).matrix() * dt;
+            let deformation = step.pow(count);
+            let Some(cell) = self.known.cell.deformed(&deformation) else {
+                return Err(grainlab_dem::DemError::Cell { step: self.known.step }.into());
+            };
+            let frame = self.checked_frame(&cell)?;
+            let time = f64::from(count) * dt;
+            let affine = Affine::between(&self.frame.edges, &frame.edges, time);
+            let exchange =
+                Exchange { steps: count, dt, affine, settings: &self.settings, spin: self.spin, from: &self.frame, to: &frame, at: self.at };
+            let ((commands, after, spin), volume) = (exchange.commands(), exchange.volume_ratio());
+            self.program().tell(&commands)?;
+            (self.known.cell, self.frame, self.spin) = (cell, frame, spin);
+            self.at += u64::from(count);
+            self.known.step += u64::from(count);
+            self.known.time += time;
+            self.take_observables(&after, volume)?;
+            total = deformation * total;
+            left -= count;
+        }
+        Ok((total, self.seen))
+    }
+
+    fn steps(&self) -> u64 {
+        self.known.step
+    }
+
+    fn time(&self) -> f64 {
+        self.known.time
+    }
+
+    fn time_step(&self) -> f64 {
+        self.known.time_step
+    }
+
+    fn observables(&self) -> Result<Observables, ExperimentError> {
+        Ok(self.seen)
+    }
+
+    fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
+        let (grains, contacts) = (self.file("grains.dump"), self.file("contacts.dump"));
+        let velocities = Exchange::relative_velocities(&Mat3::zeros(), self.known.time_step);
+        let commands = format!(
+            "{velocities}run 0 post no\nwrite_dump all custom {} {GRAIN_COLUMNS} modify format float %.17g\n\
+             write_dump all local {} {CONTACT_COLUMNS} modify format float %.17g\n",
+            grains.display(),
+            contacts.display()
+        );
+        let mut program = self.program();
+        program.tell(&commands)?;
+        program.finish()?;
+        let dumps = Dumps { grains: &grains, contacts: &contacts, frame: self.frame, spin: self.spin };
+        Ok(Packing { deformation, ..dumps.read(&self.known)? })
+    }
+
+    fn program(&self) -> Option<&EngineProgram> {
+        Some(&self.about)
+    }
+
+    fn own_state(&self) -> Result<Vec<u8>, ExperimentError> {
+        let path = self.file("present.restart");
+        let mut program = self.program();
+        program.tell(&format!("write_restart {}\n", path.display()))?;
+        program.finish()?;
+        let restart = std::fs::read(&path).or_else(|e| refused(format!("{}: {e}", path.display())))?;
+        let spin: [f64; 3] = self.spin.into();
+        let mut bytes = serde_json::to_vec(&spin).unwrap_or_default();
+        bytes.push(b'\n');
+        bytes.extend(restart);
+        Ok(bytes)
+    }
+
+    fn left_out(&self) -> String {
+        if self.settings.friction > 0.0 {
+            format!("with the whole contact law, by {}", self.about)
+        } else {
+            format!("without spins and tangential springs, by {}", self.about)
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! LAMMPS as an engine: an `lmp` on the PATH or by name, alone or under `mpiexec -n R` or `srun`, driven by commands through a
+//! pipe. Nothing is linked.
+//!
+//! - [`Lammps`]: the factory; `engine`: one run; `exchange`: its commands for some steps
+//! - `law`: the contact law as commands, and parts of a scene that LAMMPS does not have
+//! - `frame`: the cell as LAMMPS has it, and the affine velocities in it
+//! - `files`: packings to and from files of LAMMPS
+//! - `survey`: time step and tangent stiffness, by our engine
+//! - `program`: the process, its pipe, and its end
+//!
+//! # Model
+//! Grains have velocities of the laboratory, u + L x, in a box that deforms linearly during an exchange (`fix deform ... remap
+//! v`). At every exchange velocities change by (L' − L) x, and drag acts on u. Differences from our engine:
+//!
+//! - A stress is that of all forces, dashpots included, and has no asymmetry.
+//! - The Coulomb limit is a fraction of the normal force with its dashpot.
+//! - Spins move a contact with the lever R in place of R − δ/2.
+//! - The tangential force does not turn with the mean spin of two grains about their normal.
+//! - Forces on grains at the border of the box are those of the box one step before.
+
+mod engine;
+mod exchange;
+mod files;
+mod frame;
+mod law;
+mod program;
+mod survey;
+
+pub use engine::{Lammps, NAME};

