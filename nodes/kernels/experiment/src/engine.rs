@@ -33,7 +33,7 @@ pub struct Observables {
     pub stress: Stress,
     /// The periodic cell, m.
     pub cell: Cell,
-    /// Mean net force of non-rattlers over mean contact force; 1 where nothing is in contact.
+    /// Mean net force of non-rattlers over mean contact force, to 1e-4 of it; 1 where nothing is in contact.
     pub unbalanced: f64,
     /// Root mean square speed relative to the affine motion, m/s. Half its square is the kinetic energy per mass of equal
     /// grains.

@@ -217,40 +217,37 @@ impl Running {
 
     /// Evaluates forces at the present state, and observes it.
     fn observe(&mut self, affine: &Affine) -> Result<(), ExperimentError> {
-        let velocities = Exchange::relative_velocities(&affine.last, self.known.time_step);
-        self.program().tell(&format!("{velocities}run 0 post no\n"))?;
-        self.take_observables("", 1.0)
+        let observe = Exchange::observe(&affine.last, self.known.time_step, self.at);
+        self.program().tell(&format!("{observe}run 0 post no\n"))?;
+        self.take_observables("")
     }
 
-    /// Reads what was observed at the last step, where the box had `volume` times that of the cell, and sends the commands after
-    /// it.
-    fn take_observables(&mut self, after: &str, volume: f64) -> Result<(), ExperimentError> {
-        let values = self.program().ask(OBSERVED)?;
+    /// Reads what was observed at the last step, and sends the commands after it.
+    fn take_observables(&mut self, after: &str) -> Result<(), ExperimentError> {
+        let names: [String; OBSERVED] = std::array::from_fn(|k| format!("f_seen[{}]", k + 1));
+        let values = self.program().ask(names.each_ref().map(String::as_str))?;
         self.program().tell(after)?;
-        let [xx, yy, zz, xy, xz, yz, touching, squares, net, backbone, forces, largest, fastest, closest] = values;
+        let [xx, yy, zz, xy, xz, yz, touching, net, backbone, ux, uy, uz, vx, vy, vz, tx, ty, tz] = values;
+        let torque = Vec3::new(tx, ty, tz);
         let (n, dt) = (self.known.grains() as f64, self.known.time_step);
         let smallest = self.known.radii.iter().fold(f64::INFINITY, |a, r| a.min(*r));
-        let speed = fastest.sqrt();
-        if !(values[..10].iter().all(|v| v.is_finite()) && speed <= 0.1 * smallest / dt) {
+        let (squares, speed) = (ux + uy + uz, vx.max(vy).max(vz));
+        if !(values.iter().all(|v| v.is_finite()) && speed <= 0.1 * smallest / dt) {
             return refused(format!(
                 "unstable at step {}: a grain moves at {speed:e} m/s, more than a tenth of its radius in one step of {dt:e} s; lower \
                  the time step (in a scene: numerics.time_step_safety) or the strain rates",
                 self.known.step
             ));
         }
-        if touching > 0.0 && closest < 1.8 * smallest {
-            return refused(format!(
-                "at step {} two grains are {closest:e} m apart: they overlap by more than a tenth of a diameter; lower the strain \
-                 rates, the stress targets or the gas speed",
-                self.known.step
-            ));
-        }
         let contacts = 0.5 * touching;
-        let load = Load { contacts, sum: forces, largest: if contacts > 0.0 { largest } else { 0.0 } };
-        let in_lammps = volume * Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        let unbalanced = net / backbone / (forces / contacts);
+        let load = Load { contacts, virial: (xx + yy + zz) * self.known.cell.volume() };
+        // LAMMPS sums r_x F_y, but not r_y F_x: their difference is the sum of torques.
+        let turned = torque / self.known.cell.volume();
+        let in_lammps =
+            Mat3::new(xx, xy, xz, xy + turned.z, yy, yz, xz - turned.y, yz + turned.x, zz);
+        let unbalanced = net / backbone / self.survey.mean_force(&load);
         self.seen = Observables {
-            stress: Stress { tensor: self.frame.tensor(&in_lammps), asymmetry: 0.0 },
+            stress: Stress { tensor: self.frame.tensor(&in_lammps), asymmetry: turned.amax() },
             cell: self.known.cell,
             unbalanced: if unbalanced.is_finite() { unbalanced } else { 1.0 },
             speed: (squares / n).sqrt(),
@@ -327,13 +324,13 @@ impl ParticleEngine for Running {
             let affine = Affine::between(&self.frame.edges, &frame.edges, time);
             let exchange =
                 Exchange { steps: count, dt, affine, settings: &self.settings, spin: self.spin, from: &self.frame, to: &frame, at: self.at };
-            let ((commands, after, spin), volume) = (exchange.commands(), exchange.volume_ratio());
+            let (commands, after, spin) = exchange.commands();
             self.program().tell(&commands)?;
             (self.known.cell, self.frame, self.spin) = (cell, frame, spin);
             self.at += u64::from(count);
             self.known.step += u64::from(count);
             self.known.time += time;
-            self.take_observables(&after, volume)?;
+            self.take_observables(&after)?;
             total = deformation * total;
             left -= count;
         }
@@ -358,9 +355,9 @@ impl ParticleEngine for Running {
 
     fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
         let (grains, contacts) = (self.file("grains.dump"), self.file("contacts.dump"));
-        let velocities = Exchange::relative_velocities(&Mat3::zeros(), self.known.time_step);
+        let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, self.at);
         let commands = format!(
-            "{velocities}run 0 post no\nwrite_dump all custom {} {GRAIN_COLUMNS} modify format float %.17g\n\
+            "{observe}run 0 post no\nwrite_dump all custom {} {GRAIN_COLUMNS} modify format float %.17g\n\
              write_dump all local {} {CONTACT_COLUMNS} modify format float %.17g\n",
             grains.display(),
             contacts.display()

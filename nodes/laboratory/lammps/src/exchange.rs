@@ -5,12 +5,8 @@ use grainlab_core::{Mat3, Vec3};
 use grainlab_dem::EngineSettings;
 use std::fmt::Write as _;
 
-/// Variables that are observed at the last step: pressure, twice the number of contacts, sums over grains of u², |F| and 1
-/// (without rattlers), over contacts of F_n; the largest F_n and u², the smallest distance.
-pub(crate) const OBSERVED: [&str; 14] = [
-    "c_stress[1]", "c_stress[2]", "c_stress[3]", "c_stress[4]", "c_stress[5]", "c_stress[6]", "c_sums[1]", "c_sums[2]",
-    "c_sums[3]", "c_sums[4]", "c_forces", "c_largest", "c_fastest", "c_closest",
-];
+/// Number of quantities that are observed at the last step.
+pub(crate) const OBSERVED: usize = 18;
 
 /// Largest product of drag and time in one exchange: drag acts at its beginning.
 const DRAG: f64 = 0.05;
@@ -40,46 +36,43 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 impl Exchange<'_> {
     /// Largest number of steps of one exchange.
     pub(crate) fn longest(settings: &EngineSettings, dt: f64) -> u32 {
-        let drag = settings.drag.max(settings.spin_drag);
+        let drag = if settings.friction > 0.0 { settings.drag.max(settings.spin_drag) } else { settings.drag };
         (DRAG / (drag * dt)).clamp(1.0, f64::from(u32::MAX)) as u32
     }
 
     /// The computes that every step is observed with.
     pub(crate) fn computes(min_contacts: u32, frictional: bool) -> String {
-        let spins = if frictional { " c_spins[1] c_spins[4]" } else { "" };
-        let thermo = OBSERVED.join(" ");
+        // That also brings spins up to date for where they are set.
+        let torques = if frictional { "c_spins[4] c_spins[5] c_spins[6]" } else { "v_none v_none v_none" };
         format!(
             "compute stress all pressure NULL pair\n\
              compute touching all contact/atom\n\
-             compute contacts all pair/local dx dy dz p1 p2 p3 force dist cutoff radius\n\
+             compute contacts all pair/local dx dy dz p1 p2 p3 cutoff radius\n\
              compute ids all property/local patom1 patom2 cutoff radius\n\
-             variable ux atom vx\nvariable uy atom vy\nvariable uz atom vz\n\
-             variable u2 atom v_ux^2+v_uy^2+v_uz^2\n\
+             variable none atom 0\nvariable ux atom vx\nvariable uy atom vy\nvariable uz atom vz\n\
              variable backbone atom c_touching>={min_contacts}\n\
-             variable net atom v_backbone*sqrt(fx^2+fy^2+fz^2)\n\
-             compute sums all reduce sum c_touching v_u2 v_net v_backbone{spins}\n\
-             compute fastest all reduce max v_u2\n\
-             compute forces all reduce sum c_contacts[7] inputs local\n\
-             compute largest all reduce max c_contacts[7] inputs local\n\
-             compute closest all reduce min c_contacts[8] inputs local\n\
-             thermo_style custom step {thermo}\nthermo_modify norm no lost error\nthermo 0\n"
+             variable net atom (c_touching>={min_contacts})*sqrt(fx*fx+fy*fy+fz*fz)\n\
+             compute sums all reduce sum c_touching v_net v_backbone {torques}\n\
+             compute squares all reduce sumsq v_ux v_uy v_uz\n\
+             compute fastest all reduce maxabs vx vy vz\n\
+             thermo_style custom step\nthermo_modify norm no lost error\nthermo 0\n"
         )
     }
 
-    /// Velocities relative to an affine motion, half a step before the positions.
-    pub(crate) fn relative_velocities(affine: &Mat3, dt: f64) -> String {
+    /// Observes step `at`: pressure; twice the number of contacts; sums over grains without rattlers of |F| and 1, over all of u²,
+    /// where u is relative to an affine motion, half a step before the positions; largest velocities; sum of torques.
+    pub(crate) fn observe(affine: &Mat3, dt: f64, at: u64) -> String {
+        let half = 0.5 * dt;
         let row = |k: usize| {
-            let axis = AXES[k];
-            let [x, y, z] = [0, 1, 2].map(|c| affine[(k, c)]);
-            let half = 0.5 * dt;
-            format!("variable u{axis} atom v{axis}-f{axis}*({half:e})/mass-({x:e})*x-({y:e})*y-({z:e})*z\n")
+            let (axis, affine) = (AXES[k], linear(&-affine.row(k)));
+            format!("variable u{axis} atom v{axis}-f{axis}*({half:e})/mass{affine}\n")
         };
         [0, 1, 2].map(row).concat()
-    }
-
-    /// Volume of the box at its last step, one step ahead, over that of the cell.
-    pub(crate) fn volume_ratio(&self) -> f64 {
-        (Mat3::identity() + self.affine.last * self.dt).determinant()
+            + &format!(
+                "fix seen all ave/time 1 1 {at} c_stress[1] c_stress[2] c_stress[3] c_stress[4] c_stress[5] c_stress[6] c_sums[1] \
+                 c_sums[2] c_sums[3] c_squares[1] c_squares[2] c_squares[3] c_fastest[1] c_fastest[2] c_fastest[3] \
+                 c_sums[4] c_sums[5] c_sums[6]\n"
+            )
     }
 
     /// The commands up to the last step, those after it was observed, and the angular velocity that spins then contain.
@@ -113,7 +106,7 @@ impl Exchange<'_> {
             let ahead = self.to.edges + self.affine.last * self.to.edges * self.dt;
             let _ = writeln!(before, "fix box all deform 1 {} remap v flip no units box", edges(&ahead));
         }
-        before += &Self::relative_velocities(&self.affine.last, self.dt);
+        before += &Self::observe(&self.affine.last, self.dt, self.at + u64::from(self.steps));
         let _ = writeln!(before, "run {} post no", self.steps);
         let mut after = String::new();
         if !is_fixed {
@@ -129,11 +122,17 @@ impl Exchange<'_> {
             return String::new();
         }
         let row = |k: usize| {
-            let (axis, [x, y, z]) = (AXES[k], [0, 1, 2].map(|c| l[(k, c)]));
-            format!("variable v{axis} atom ({factor:e})*v{axis}+({x:e})*x+({y:e})*y+({z:e})*z\n")
+            let (axis, affine) = (AXES[k], linear(&l.row(k).into_owned()));
+            format!("variable v{axis} atom {factor:e}*v{axis}{affine}\n")
         };
         [0, 1, 2].map(row).concat() + "velocity all set v_vx v_vy v_vz units box\n"
     }
+}
+
+/// A linear function of the position, as further terms of a formula.
+fn linear(row: &nalgebra::RowVector3<f64>) -> String {
+    let terms = row.iter().zip(AXES).filter(|(c, _)| **c != 0.0);
+    terms.map(|(c, axis)| format!("+({c:e})*{axis}")).collect()
 }
 
 /// The arguments that set the box.

@@ -40,7 +40,7 @@ impl Frame {
         self.rotation.tr_mul(v)
     }
 
-    /// A symmetric tensor in the axes of the packing.
+    /// The symmetric part of a tensor, in the axes of the packing.
     pub(crate) fn tensor(&self, in_lammps: &Mat3) -> SymTensor {
         SymTensor::symmetric_part(&(self.rotation * in_lammps * self.rotation.transpose()))
     }

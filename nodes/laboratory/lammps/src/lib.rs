@@ -12,11 +12,10 @@
 //! Grains have velocities of the laboratory, u + L x, in a box that deforms linearly during an exchange (`fix deform ... remap
 //! v`). At every exchange velocities change by (L' − L) x, and drag acts on u. Differences from our engine:
 //!
-//! - A stress is that of all forces, dashpots included, and has no asymmetry.
+//! - A stress is that of all forces, dashpots included.
 //! - The Coulomb limit is a fraction of the normal force with its dashpot.
 //! - Spins move a contact with the lever R in place of R − δ/2.
 //! - The tangential force does not turn with the mean spin of two grains about their normal.
-//! - Forces on grains at the border of the box are those of the box one step before.
 
 mod engine;
 mod exchange;

@@ -17,23 +17,23 @@ pub(crate) struct Survey {
     pub(crate) time_step: f64,
     tangent: [f64; 6],
     load: Load,
+    /// Sum of normal forces over the trace of the virial, 1/m.
+    forces: f64,
 }
 
-/// Measures of the stiffness of contacts, all of which LAMMPS reduces itself.
+/// The load of contacts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Load {
     /// Number of contacts.
     pub(crate) contacts: f64,
-    /// Sum of their normal forces, N.
-    pub(crate) sum: f64,
-    /// Largest of them, N.
-    pub(crate) largest: f64,
+    /// Trace of their virial, J: normal forces times distances.
+    pub(crate) virial: f64,
 }
 
 impl Load {
-    /// Measures of k_n ∝ F^(1/3): of all contacts, and of the stiffest one.
-    fn stiffness(&self) -> [f64; 2] {
-        [self.contacts.powi(2) * self.sum, self.largest].map(f64::cbrt)
+    /// A measure of the sum of k_n ∝ F^(1/3).
+    fn stiffness(&self) -> f64 {
+        (self.contacts.powi(2) * self.virial).cbrt()
     }
 }
 
@@ -44,10 +44,13 @@ impl Survey {
         engine.initialise()?;
         engine.update_time_step();
         let seen = engine.observables()?;
-        let forces = engine.packing(packing.deformation).contacts.into_iter().map(|c| c.normal_force);
-        let (sum, largest) = forces.fold((0.0f64, 0.0f64), |(sum, largest), f| (sum + f, largest.max(f)));
-        let load = Load { contacts: f64::from(seen.contacts), sum, largest };
-        let survey = Self { step: packing.step, time_step: engine.time_step(), tangent: seen.tangent, load };
+        let forces: f64 = engine.packing(packing.deformation).contacts.iter().map(|c| c.normal_force).sum();
+        let virial = 3.0 * seen.stress.tensor.mean() * packing.cell.volume();
+        let (time_step, tangent) = (engine.time_step(), seen.tangent);
+        // About 1/(2 R) until there are contacts.
+        let forces = if virial > 0.0 { forces / virial } else { 0.5 / packing.radii[0] };
+        let load = Load { contacts: f64::from(seen.contacts), virial };
+        let survey = Self { step: packing.step, time_step, tangent, load, forces };
         let observables = Observables {
             stress: seen.stress,
             cell: packing.cell,
@@ -62,13 +65,18 @@ impl Survey {
 
     /// True if the contacts at `step` are too different for the time step and the tangent stiffness of this survey.
     pub(crate) fn is_stale(&self, step: u64, load: &Load) -> bool {
-        let changed = |(now, then): (f64, f64)| now > CHANGE * then || CHANGE * now < then;
-        step >= self.step + INTERVAL && load.stiffness().into_iter().zip(self.load.stiffness()).any(changed)
+        let (now, then) = (load.stiffness(), self.load.stiffness());
+        step >= self.step + INTERVAL && (now > CHANGE * then || CHANGE * now < then)
     }
 
     /// Affine tangent stiffness, Pa, in proportion to the stiffness of all contacts.
     pub(crate) fn tangent(&self, load: &Load) -> [f64; 6] {
-        let ([now, _], [then, _]) = (load.stiffness(), self.load.stiffness());
+        let (now, then) = (load.stiffness(), self.load.stiffness());
         self.tangent.map(|c| if then > 0.0 { c * now / then } else { c })
+    }
+
+    /// Mean normal force, N.
+    pub(crate) fn mean_force(&self, load: &Load) -> f64 {
+        self.forces * load.virial / load.contacts
     }
 }
