@@ -15,6 +15,9 @@ use std::sync::Arc;
 /// Solver steps between two copies of the state that a failing run returns to.
 const ROLLBACK_INTERVAL: u64 = 100;
 
+/// Added to the numbers of requests where another program goes on with a run: more than any run has.
+const ANOTHER_PROGRAM: u64 = 1 << 40;
+
 /// A run: scene, path, engine and clock. It advances only when it is given a strain rate.
 #[derive(Debug)]
 pub struct Simulation {
@@ -178,9 +181,12 @@ impl Simulation {
         let same = saved.engine.as_ref().filter(|e| Some(e.program.name.as_str()) == factory.name());
         let own_state = same.map(SavedEngine::own_state).transpose()?;
         let mut run = Self::at(scene, factory, &start, own_state, saved.phase, &saved.rate)?;
+        // Requests of another program differ from those that are recorded after this packing: they have numbers of their own.
+        let made_by = saved.engine.as_ref().map(|engine| &engine.program);
+        let is_same = made_by == run.engine.program() || packing.contacts.is_empty();
         run.progress = Progress {
             path: PathState { phase: saved.phase, began: saved.began, holding_since: saved.holding_since },
-            sequence: saved.sequence,
+            sequence: saved.sequence + if is_same { 0 } else { ANOTHER_PROGRAM },
             packings: saved.packings,
             friction: packing.friction,
             deformation: packing.deformation,

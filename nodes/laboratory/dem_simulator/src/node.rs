@@ -10,7 +10,8 @@ use crate::send_queue::SendQueue;
 use crate::settings::Settings;
 use crate::speculative_step::{self, SpeculativeStep};
 use grainlab_experiment::{ExperimentError, Simulation};
-use grainlab_msgs::msg::{RunState, StrainRate, Stress};
+use grainlab_msgs::boundary::packing_message;
+use grainlab_msgs::msg::{self, RunState, StrainRate, Stress};
 use grainlab_msgs::tf2_msgs::TFMessage;
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{
@@ -75,8 +76,8 @@ pub struct DemSimulator {
     pub(crate) foreseen: u64,
     pub(crate) send_queue: SendQueue,
     pub(crate) packings: Packings,
-    /// True while the packing that the run resumes from is still to be published.
-    pub(crate) resumed: bool,
+    /// The packing that the run resumes from, while it is still to be published.
+    pub(crate) resumed: Option<msg::Packing>,
     pub(crate) created_at: Duration,
     pub(crate) began: Duration,
     pub(crate) first_step: u64,
@@ -104,6 +105,12 @@ impl DemSimulator {
             ExperimentError::OtherEngine { .. } => NodeError::usage(e),
             e => NodeError::failed(e),
         })?;
+        let resumed = match &resume {
+            None => None,
+            // With the clock and the strain of the run.
+            Some((_, state)) if state.is_empty() => Some(messages::packing(&run).map_err(NodeError::failed)?),
+            Some((packing, state)) => Some(packing_message(packing, &run.scene().name, state.clone())),
+        };
         let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
         let packings = from.map_or_else(Packings::default, |_| Packings { last_step: run.engine().steps(), count });
         let compute = settings.compute(run.scene().grains as usize).map_err(NodeError::failed)?;
@@ -145,7 +152,7 @@ impl DemSimulator {
             foreseen: 0,
             send_queue: SendQueue::new(packing),
             packings,
-            resumed: resume.is_some(),
+            resumed,
             created_at: now,
             began: now,
             first_step: run.engine().steps(),

@@ -2,7 +2,6 @@
 
 use crate::DemSimulator;
 use crate::duplicate_simulators::Verdict;
-use crate::messages;
 use crate::node::Stage;
 use crate::partner::{different, predecessor};
 use grainlab_msgs::{to_cdr, topics};
@@ -83,9 +82,7 @@ impl DemSimulator {
             return Ok(Next::Wait(LOOK_AGAIN));
         }
         self.began = now;
-        if std::mem::take(&mut self.resumed) {
-            let message = messages::packing(&self.run)
-                .map_err(|e| NodeError::new(Exit::PhysicsInvalid, e.to_string()))?;
+        if let Some(message) = self.resumed.take() {
             self.send_queue.push_packing(to_cdr(&message));
         }
         self.request_next(bus, now)

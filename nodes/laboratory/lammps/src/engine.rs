@@ -11,6 +11,7 @@ use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3, min_contacts};
 use grainlab_dem::{Compute, EngineSettings};
 use grainlab_experiment::{EngineFactory, EngineProgram, ExperimentError, Observables, ParticleEngine};
 use grainlab_scene::Scene;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -33,6 +34,25 @@ impl Default for Lammps {
     fn default() -> Self {
         Self { command: "lmp".into(), time_limit: Duration::from_secs(300) }
     }
+}
+
+/// The state of an engine beside a packing and its restart file.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Saved {
+    spin: [f64; 3],
+    stress: [f64; 6],
+    asymmetry: f64,
+    unbalanced: f64,
+    speed: f64,
+    contacts: u32,
+    tangent: Option<[f64; 6]>,
+    survey: Survey,
+}
+
+/// The commands that read a restart file. A style that is named again evaluates the reach of its forces anew.
+fn read_restart(path: &Path) -> String {
+    format!("read_restart {}\npair_style granular\n", path.display())
 }
 
 /// An error of LAMMPS, or a refusal.
@@ -87,7 +107,7 @@ impl EngineFactory for Lammps {
 /// A running LAMMPS and the state that it is in. Between two exchanges its velocities are those relative to the affine motion.
 #[derive(Debug)]
 struct Running {
-    program: Mutex<Program>,
+    link: Mutex<Link>,
     about: EngineProgram,
     folder: TempDir,
     settings: EngineSettings,
@@ -98,9 +118,15 @@ struct Running {
     /// Angular velocity of the affine motion that spins contain, 1/s.
     spin: Vec3,
     survey: Survey,
+    seen: Observables,
+}
+
+/// The program, which reading a state moves, too.
+#[derive(Debug)]
+struct Link {
+    program: Program,
     /// Number of the present step in LAMMPS.
     at: u64,
-    seen: Observables,
 }
 
 impl Running {
@@ -120,7 +146,7 @@ impl Running {
         let (program, about) = Program::start(&with.command, with.time_limit)?;
         log::info!("the engine is {about}");
         Ok(Self {
-            program: Mutex::new(program),
+            link: Mutex::new(Link { program, at: FIRST_STEP }),
             about,
             folder,
             settings: *settings,
@@ -129,13 +155,12 @@ impl Running {
             frame: Frame::of(&packing.cell),
             spin: Vec3::zeros(),
             survey,
-            at: FIRST_STEP,
             seen,
         })
     }
 
-    fn program(&self) -> MutexGuard<'_, Program> {
-        self.program.lock().unwrap_or_else(PoisonError::into_inner)
+    fn link(&self) -> MutexGuard<'_, Link> {
+        self.link.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn file(&self, name: &str) -> PathBuf {
@@ -164,19 +189,42 @@ impl Running {
             }
             commands += "set group all omega v_wx v_wy v_wz\n";
         }
-        self.program().tell(&commands)?;
-        self.observe(&Affine::NONE)
+        self.link().program.tell(&commands)?;
+        self.observe()
     }
 
+    /// Returns to a saved state.
     fn read_restart(&mut self, own_state: &[u8]) -> Result<(), ExperimentError> {
         let at = own_state.iter().position(|b| *b == b'\n').unwrap_or(own_state.len());
-        let Ok(spin) = serde_json::from_slice::<[f64; 3]>(&own_state[..at]) else {
-            return refused("the saved state is damaged");
+        let Ok(saved) = serde_json::from_slice::<Saved>(&own_state[..at]) else {
+            return refused("the saved state is damaged, or of another version");
         };
-        self.spin = spin.into();
-        let path = self.file("saved.restart");
+        let path = self.file("present.restart");
         self.write(&path, own_state.get(at + 1..).unwrap_or_default())?;
-        self.set_up(&format!("read_restart {}\n", path.display()))
+        self.spin = saved.spin.into();
+        self.set_up(&read_restart(&path))?;
+        let stress = SymTensor::from_voigt(saved.stress);
+        let off = (self.seen.stress.tensor.matrix() - stress.matrix()).norm();
+        // Dashpots are evaluated with velocities half a step later.
+        if self.seen.contacts != saved.contacts || off > 1e-3 * stress.matrix().norm() {
+            return refused(format!(
+                "the restart file is not of this packing: {} contacts and a stress of {:?} Pa, {} and {:?} expected",
+                self.seen.contacts,
+                self.seen.stress.tensor.voigt(),
+                saved.contacts,
+                saved.stress
+            ));
+        }
+        // To the last digit, so that requests are repeated with the same bytes.
+        self.seen = Observables {
+            stress: Stress { tensor: stress, asymmetry: saved.asymmetry },
+            unbalanced: saved.unbalanced,
+            speed: saved.speed,
+            tangent: saved.tangent,
+            ..self.seen
+        };
+        self.survey = saved.survey;
+        Ok(())
     }
 
     fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), ExperimentError> {
@@ -185,7 +233,16 @@ impl Running {
 
     /// Begins anew with the grains that the commands `read` have, and evaluates forces.
     fn set_up(&mut self, read: &str) -> Result<(), ExperimentError> {
-        self.at = FIRST_STEP;
+        let commands = self.commands(read)?;
+        let mut link = self.link();
+        link.at = FIRST_STEP;
+        link.program.tell(&commands)?;
+        drop(link);
+        self.observe()
+    }
+
+    /// The commands from the first to the computes, with the grains that the commands `read` have.
+    fn commands(&self, read: &str) -> Result<String, ExperimentError> {
         let law = pair_coeff(&self.known.material, &self.settings)?;
         let frictional = self.settings.friction > 0.0;
         let (integrator, spins) = if frictional {
@@ -193,15 +250,13 @@ impl Running {
         } else {
             ("nve", "")
         };
-        let commands = format!(
+        Ok(format!(
             "clear\nunits si\nnewton on\n{read}reset_timestep {FIRST_STEP}\ncomm_modify vel yes\npair_coeff * * {law}\nneighbor {:e} bin\n\
              neigh_modify delay 0 every 1 check yes\ntimestep {:e}\nfix move all {integrator}\n{spins}{}",
             self.settings.skin,
             self.known.time_step,
             Exchange::computes(min_contacts(self.settings.friction), frictional),
-        );
-        self.program().tell(&commands)?;
-        self.observe(&Affine::NONE)
+        ))
     }
 
     fn checked_frame(&self, cell: &Cell) -> Result<Frame, ExperimentError> {
@@ -216,17 +271,21 @@ impl Running {
     }
 
     /// Evaluates forces at the present state, and observes it.
-    fn observe(&mut self, affine: &Affine) -> Result<(), ExperimentError> {
-        let observe = Exchange::observe(&affine.last, self.known.time_step, self.at);
-        self.program().tell(&format!("{observe}run 0 post no\n"))?;
+    fn observe(&mut self) -> Result<(), ExperimentError> {
+        let mut link = self.link();
+        let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
+        link.program.tell(&format!("{observe}run 0 post no\n"))?;
+        drop(link);
         self.take_observables("")
     }
 
     /// Reads what was observed at the last step, and sends the commands after it.
     fn take_observables(&mut self, after: &str) -> Result<(), ExperimentError> {
         let names: [String; OBSERVED] = std::array::from_fn(|k| format!("f_seen[{}]", k + 1));
-        let values = self.program().ask(names.each_ref().map(String::as_str))?;
-        self.program().tell(after)?;
+        let mut link = self.link();
+        let values = link.program.ask(names.each_ref().map(String::as_str))?;
+        link.program.tell(after)?;
+        drop(link);
         let [xx, yy, zz, xy, xz, yz, touching, net, backbone, ux, uy, uz, vx, vy, vz, tx, ty, tz] = values;
         let torque = Vec3::new(tx, ty, tz);
         let (n, dt) = (self.known.grains() as f64, self.known.time_step);
@@ -267,7 +326,7 @@ impl Running {
         self.survey = survey;
         self.known.time_step = survey.time_step;
         self.seen.tangent = seen.tangent;
-        self.program().tell(&format!("timestep {:e}\n", survey.time_step))
+        self.link().program.tell(&format!("timestep {:e}\n", survey.time_step))
     }
 }
 
@@ -289,10 +348,11 @@ impl ParticleEngine for Running {
             packing.contacts.iter_mut().for_each(|c| c.tangential_force = Vec3::zeros());
             self.load(&packing)?;
         } else {
-            self.program().tell(&format!("pair_coeff * * {law}\nneighbor {:e} bin\n", settings.skin))?;
+            let commands = format!("pair_coeff * * {law}\nneighbor {:e} bin\n", settings.skin);
+            self.link().program.tell(&commands)?;
         }
         self.survey()?;
-        self.observe(&Affine::NONE)
+        self.observe()
     }
 
     fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), ExperimentError> {
@@ -322,12 +382,14 @@ impl ParticleEngine for Running {
             let frame = self.checked_frame(&cell)?;
             let time = f64::from(count) * dt;
             let affine = Affine::between(&self.frame.edges, &frame.edges, time);
+            let mut link = self.link();
             let exchange =
-                Exchange { steps: count, dt, affine, settings: &self.settings, spin: self.spin, from: &self.frame, to: &frame, at: self.at };
+                Exchange { steps: count, dt, affine, settings: &self.settings, spin: self.spin, from: &self.frame, to: &frame, at: link.at };
             let (commands, after, spin) = exchange.commands();
-            self.program().tell(&commands)?;
+            link.program.tell(&commands)?;
+            link.at += u64::from(count);
+            drop(link);
             (self.known.cell, self.frame, self.spin) = (cell, frame, spin);
-            self.at += u64::from(count);
             self.known.step += u64::from(count);
             self.known.time += time;
             self.take_observables(&after)?;
@@ -355,16 +417,16 @@ impl ParticleEngine for Running {
 
     fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
         let (grains, contacts) = (self.file("grains.dump"), self.file("contacts.dump"));
-        let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, self.at);
+        let mut link = self.link();
+        let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
         let commands = format!(
             "{observe}run 0 post no\nwrite_dump all custom {} {GRAIN_COLUMNS} modify format float %.17g\n\
              write_dump all local {} {CONTACT_COLUMNS} modify format float %.17g\n",
             grains.display(),
             contacts.display()
         );
-        let mut program = self.program();
-        program.tell(&commands)?;
-        program.finish()?;
+        link.program.tell(&commands)?;
+        link.program.finish()?;
         let dumps = Dumps { grains: &grains, contacts: &contacts, frame: self.frame, spin: self.spin };
         Ok(Packing { deformation, ..dumps.read(&self.known)? })
     }
@@ -375,12 +437,26 @@ impl ParticleEngine for Running {
 
     fn own_state(&self) -> Result<Vec<u8>, ExperimentError> {
         let path = self.file("present.restart");
-        let mut program = self.program();
-        program.tell(&format!("write_restart {}\n", path.display()))?;
-        program.finish()?;
+        let mut link = self.link();
+        // LAMMPS goes on from the file, too: a run that is resumed from it then has the same rounding errors.
+        let again = self.commands(&read_restart(&path))?;
+        let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, FIRST_STEP);
+        link.program.tell(&format!("write_restart {}\n{again}{observe}run 0 post no\n", path.display()))?;
+        link.program.finish()?;
+        link.at = FIRST_STEP;
         let restart = std::fs::read(&path).or_else(|e| refused(format!("{}: {e}", path.display())))?;
-        let spin: [f64; 3] = self.spin.into();
-        let mut bytes = serde_json::to_vec(&spin).unwrap_or_default();
+        let seen = &self.seen;
+        let saved = Saved {
+            spin: self.spin.into(),
+            stress: seen.stress.tensor.voigt(),
+            asymmetry: seen.stress.asymmetry,
+            unbalanced: seen.unbalanced,
+            speed: seen.speed,
+            contacts: seen.contacts,
+            tangent: seen.tangent,
+            survey: self.survey,
+        };
+        let mut bytes = serde_json::to_vec(&saved).unwrap_or_default();
         bytes.push(b'\n');
         bytes.extend(restart);
         Ok(bytes)

@@ -9,7 +9,10 @@ use grainlab_scene::{GasMethod, PhaseKind, Scene};
 use std::f64::consts::PI;
 
 /// Refuses a scene with a part that LAMMPS does not have.
-pub(crate) fn check_scene(scene: &Scene) -> Result<(), ExperimentError> {
+///
+/// # Errors
+/// The part, by its key or its phase.
+pub fn check_scene(scene: &Scene) -> Result<(), ExperimentError> {
     check_law(&scene.law)?;
     if scene.numerics.energy_balance {
         return refused("numerics.energy_balance: LAMMPS has no balance of the energy of contacts");

@@ -26,3 +26,4 @@ mod program;
 mod survey;
 
 pub use engine::{Lammps, NAME};
+pub use law::check_scene;

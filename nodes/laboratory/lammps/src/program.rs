@@ -113,7 +113,7 @@ impl Program {
         let mark = format!("@{}", self.questions);
         let question = format!("print \"{mark} {text}\"\n");
         let asked = self.input.as_mut().is_some_and(|input| input.write_all(question.as_bytes()).is_ok());
-        let end = Instant::now() + self.limit;
+        let (mut end, mut reported) = (Instant::now() + self.limit, false);
         loop {
             match self.output.recv_timeout(end.saturating_duration_since(Instant::now())) {
                 Ok(line) => {
@@ -121,10 +121,18 @@ impl Program {
                         return Ok(words.split_whitespace().map(str::to_owned).collect());
                     }
                     see(&line);
+                    // It ends after an error, though what started it may not.
+                    if line.starts_with("ERROR") && !reported {
+                        (end, reported) = (Instant::now() + FAREWELL, true);
+                    }
                     self.last.push_back(line);
                     if self.last.len() > QUOTED {
                         self.last.pop_front();
                     }
+                }
+                Err(RecvTimeoutError::Timeout) if reported => {
+                    self.kill();
+                    return self.failed("it stopped with an error");
                 }
                 Err(RecvTimeoutError::Timeout) => {
                     let limit = self.limit.as_secs_f64();
@@ -146,6 +154,8 @@ impl Program {
     fn failed<T>(&self, what: &str) -> Result<T, ExperimentError> {
         let lines: Vec<&str> =
             self.last.iter().map(|l| l.trim()).filter(|l| !l.is_empty() && !l.contains("^^")).collect();
+        let from = lines.iter().position(|l| l.contains("ERROR")).unwrap_or(lines.len().saturating_sub(3));
+        let lines = &lines[from..];
         let quoted = if lines.is_empty() { String::new() } else { format!(": {}", lines.join(" | ")) };
         let reason = format!("`{}`: {what}{quoted}", self.command);
         Err(ExperimentError::EngineLost { engine: crate::NAME.into(), reason })
@@ -153,9 +163,12 @@ impl Program {
 
     fn kill(&mut self) {
         self.input = None;
-        if let Ok(group) = i32::try_from(self.child.id()) {
-            // SAFETY: kill takes two integers. The child leads its group and was not waited for, so the id is still that group's.
-            unsafe { libc::kill(-group, libc::SIGKILL) };
+        let id = self.child.id();
+        // mpiexec gives its processes groups of their own, and a hung one does not end with it.
+        for process in descendants(id).into_iter().chain([id]).filter_map(|id| i32::try_from(id).ok()) {
+            // SAFETY: kill takes two integers. The child was not waited for, so its id is still its own, and so are those of its
+            // descendants unless they ended in this moment.
+            unsafe { libc::kill(process, libc::SIGKILL) };
         }
         let _ = self.child.wait();
     }
@@ -175,6 +188,28 @@ impl Drop for Program {
         }
         self.kill();
     }
+}
+
+/// The processes that this one started, directly or through others.
+fn descendants(root: u32) -> Vec<u32> {
+    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let parents: Vec<(u32, u32)> = entries
+        .filter_map(|entry| {
+            let id = entry.file_name().to_str()?.parse().ok()?;
+            let stat = std::fs::read_to_string(entry.path().join("stat")).ok()?;
+            // After the name in parentheses: the state, and the parent.
+            let parent = stat.rsplit_once(')')?.1.split_whitespace().nth(1)?.parse().ok()?;
+            Some((id, parent))
+        })
+        .collect();
+    let mut found = vec![root];
+    let mut next = 0;
+    while next < found.len() {
+        let of = found[next];
+        found.extend(parents.iter().filter(|(_, parent)| *parent == of).map(|(id, _)| *id));
+        next += 1;
+    }
+    found.split_off(1)
 }
 
 /// Sends each line of a stream, in a thread that ends with the stream.

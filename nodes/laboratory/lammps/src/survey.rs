@@ -3,6 +3,7 @@
 use grainlab_core::Packing;
 use grainlab_dem::{Engine, EngineSettings};
 use grainlab_experiment::{ExperimentError, Observables};
+use serde::{Deserialize, Serialize};
 
 /// Change of the load of contacts after which a state is surveyed again.
 const CHANGE: f64 = 1.1;
@@ -11,7 +12,7 @@ const CHANGE: f64 = 1.1;
 const INTERVAL: u64 = 200;
 
 /// A state, as our engine has it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Survey {
     step: u64,
     pub(crate) time_step: f64,
@@ -22,7 +23,7 @@ pub(crate) struct Survey {
 }
 
 /// The load of contacts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Load {
     /// Number of contacts.
     pub(crate) contacts: f64,

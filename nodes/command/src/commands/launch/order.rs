@@ -46,6 +46,10 @@ pub(super) struct EngineOrder {
     #[arg(long, value_name = "COMMAND")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     engine_command: Option<String>,
+    /// Longest time of one exchange with the program of the engine, after which it counts as hung [default: 300]
+    #[arg(long, value_name = "SECONDS")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    engine_time_limit: Option<String>,
 }
 
 impl EngineOrder {
@@ -58,14 +62,21 @@ impl EngineOrder {
         Self {
             engine: self.engine.or(known.engine),
             engine_command: self.engine_command.or(known.engine_command),
+            engine_time_limit: self.engine_time_limit.or(known.engine_time_limit),
         }
     }
 
     /// Sets the parameters of the simulator.
     fn apply(&self, plan: &mut NodePlan) {
-        for (name, value) in [("engine", &self.engine), ("engine_command", &self.engine_command)] {
-            if let Some(value) = value.as_ref().filter(|_| plan.is(NodeKind::DemSimulator)) {
-                plan.insist(&[&format!("{name}:={}", serde_json::Value::from(value.as_str()))]);
+        let quoted = |text: &String| serde_json::Value::from(text.as_str()).to_string();
+        let given = [
+            ("engine", self.engine.as_ref().map(quoted)),
+            ("engine_command", self.engine_command.as_ref().map(quoted)),
+            ("engine_time_limit", self.engine_time_limit.clone()),
+        ];
+        for (name, value) in given {
+            if let Some(value) = value.filter(|_| plan.is(NodeKind::DemSimulator)) {
+                plan.insist(&[&format!("{name}:={value}")]);
             }
         }
     }

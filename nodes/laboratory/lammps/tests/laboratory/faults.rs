@@ -1,0 +1,98 @@
+//! A program that is missing, refuses, ends or hangs.
+
+use super::agreement::PRESSED;
+use super::lammps;
+use grainlab_core::contact::ContactLaw;
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_dem::{Compute, EngineSettings};
+use grainlab_experiment::{Dem, EngineFactory, ExperimentError};
+use grainlab_lammps::Lammps;
+use std::time::Duration;
+
+/// Two grains that touch, at rest.
+fn pair() -> Packing {
+    Packing {
+        step: 0,
+        time: 0.0,
+        time_step: 1e-8,
+        cell: Cell::cube(1e-3).unwrap(),
+        deformation: Mat3::identity(),
+        ids: vec![0, 1],
+        radii: vec![1e-4; 2],
+        positions: vec![Vec3::new(4e-4, 5e-4, 5e-4), Vec3::new(5.999e-4, 5e-4, 5e-4)],
+        velocities: vec![Vec3::zeros(); 2],
+        spins: vec![Vec3::zeros(); 2],
+        contacts: Vec::new(),
+        material: Material::GLASS,
+        law: ContactLaw::default(),
+        friction: 0.0,
+    }
+}
+
+fn settings() -> EngineSettings {
+    EngineSettings { skin: 1e-5, ..EngineSettings::default() }
+}
+
+/// The error of a start and 10 steps with this command in place of `lmp`.
+fn error(command: &str, limit: Duration) -> ExperimentError {
+    let lammps = Lammps { command: command.to_owned(), time_limit: limit };
+    let started = lammps.start(&pair(), &settings(), &[0.0; 6], &Compute::default());
+    started.and_then(|mut engine| engine.run(10).map(drop)).unwrap_err()
+}
+
+#[test]
+fn a_program_that_is_missing_or_is_not_lammps_is_named_with_its_last_lines() {
+    let limit = Duration::from_secs(20);
+    let missing = error("/no/lmp", limit);
+    assert!(matches!(missing, ExperimentError::OtherEngine { .. }));
+    assert!(missing.to_string().contains("`/no/lmp` cannot be started: No such file"), "{missing}");
+    let ended = error("sh -c 'echo no licence >&2; exit 7'", limit);
+    assert!(matches!(ended, ExperimentError::EngineLost { .. }));
+    let text = ended.to_string();
+    assert!(text.contains("it ended (exit status: 7): no licence"), "{text}");
+}
+
+#[test]
+fn a_program_that_hangs_is_ended_after_the_time_limit_with_all_its_processes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mark = folder.path().join("alive");
+    let hang = format!("sh -c '(sleep 3; touch {}) & sleep 60' -n", mark.display());
+    let text = error(&hang, Duration::from_millis(300)).to_string();
+    assert!(text.contains("it did not answer within 0 s, and was ended"), "{text}");
+    std::thread::sleep(Duration::from_millis(3500));
+    assert!(!mark.exists());
+}
+
+#[test]
+fn an_error_of_lammps_is_quoted_and_ends_the_engine() {
+    let Some(lammps) = lammps(1) else { return };
+    // In place of the command that sets the time step.
+    let spoiled = format!("sh -c '{{ sed -u s/^timestep/nonsense/; }} | {} -nb -log none'", lammps.command);
+    let text = error(&spoiled, lammps.time_limit).to_string();
+    assert!(text.contains("Unknown command: nonsense"), "{text}");
+}
+
+#[test]
+fn tangential_forces_of_another_engine_are_refused_and_those_of_lammps_are_continued() {
+    let Some(lammps) = lammps(1) else { return };
+    let settings = EngineSettings { friction: 0.3, ..settings() };
+    let start = |factory: &dyn EngineFactory, packing: &Packing| {
+        factory.start(packing, &settings, &[0.0; 6], &Compute::default())
+    };
+    let mut engine = start(&lammps, &PRESSED).unwrap();
+    engine.begin_phase(&settings).unwrap();
+    engine.set_rate(&[0.0, 0.0, 0.0, 0.0, 0.0, 30.0]).unwrap();
+    engine.run(50).unwrap();
+    let (packing, own_state) = (engine.packing(Mat3::identity()).unwrap(), engine.own_state().unwrap());
+    assert!(packing.contacts.iter().any(|c| c.tangential_force.norm() > 0.1 * c.normal_force));
+    // By its restart file, with all springs.
+    let mut again = lammps.resume(&packing, &own_state, &settings, &engine.rate(), &Compute::default()).unwrap();
+    again.set_rate(&engine.rate()).unwrap();
+    let (first, second) = (engine.run(50).unwrap().1, again.run(50).unwrap().1);
+    let off = (first.stress.tensor.matrix() - second.stress.tensor.matrix()).norm() / first.stress.tensor.matrix().norm();
+    assert!(off < 1e-10, "{off:e}");
+    // To ours by the forces of contacts; from ours not at all.
+    assert!(start(&Dem, &packing).is_ok());
+    let refused = start(&lammps, &packing).unwrap_err().to_string();
+    assert!(refused.contains("the packing has tangential forces, which LAMMPS cannot read"), "{refused}");
+}
