@@ -77,6 +77,14 @@ pub fn start(draft: &Draft, file: &grainlab_scene::Start) -> Result<Start, Failu
             return Err(Failure::usage(format!("start.step: {path} has no packing of step {step}")));
         }
     };
+    let packing = match file.copies {
+        1 => packing,
+        copies => packing.repeated(copies).ok_or_else(|| {
+            Failure::usage(format!(
+                "start.copies: {copies} copies along each edge are no packing, or have too many grains"
+            ))
+        })?,
+    };
     notes.extend(draft.first_friction().and_then(|friction| cut(&packing, friction)));
     Ok(Start { packing, path, contact_forces, step, notes })
 }

@@ -12,6 +12,7 @@ mod hosts;
 mod instrument;
 mod interrupted;
 mod isolation;
+mod lammps;
 mod large_packings;
 mod live;
 mod main_job;

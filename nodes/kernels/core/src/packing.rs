@@ -324,6 +324,7 @@ fn range(field: &'static str, index: usize, value: f64, requirement: &'static st
     PackingError::Range { field, index, value, requirement }
 }
 
+mod copies;
 #[cfg(test)]
 mod pair;
 

@@ -15,9 +15,6 @@ use std::sync::Arc;
 /// Solver steps between two copies of the state that a failing run returns to.
 const ROLLBACK_INTERVAL: u64 = 100;
 
-/// Added to the numbers of requests where another program goes on with a run: more than any run has.
-const ANOTHER_PROGRAM: u64 = 1 << 40;
-
 /// A run: scene, path, engine and clock. It advances only when it is given a strain rate.
 #[derive(Debug)]
 pub struct Simulation {
@@ -28,6 +25,8 @@ pub struct Simulation {
     progress: Progress,
     /// Step and progress of the state that the engine has kept.
     rollback: Option<(u64, Progress)>,
+    /// The packing that the run was resumed from is of another program than its engine.
+    another_program: bool,
 }
 
 /// Everything except the engine that changes as a run advances.
@@ -153,7 +152,7 @@ impl Simulation {
             observables,
             solid_fraction: solid_fraction(&scene, &observables),
         };
-        Ok(Self { scene, factory, compute, engine, progress, rollback: None })
+        Ok(Self { scene, factory, compute, engine, progress, rollback: None, another_program: false })
     }
 
     fn resumed(
@@ -181,12 +180,11 @@ impl Simulation {
         let same = saved.engine.as_ref().filter(|e| Some(e.program.name.as_str()) == factory.name());
         let own_state = same.map(SavedEngine::own_state).transpose()?;
         let mut run = Self::at(scene, factory, &start, own_state, saved.phase, &saved.rate)?;
-        // Requests of another program differ from those that are recorded after this packing: they have numbers of their own.
         let made_by = saved.engine.as_ref().map(|engine| &engine.program);
-        let is_same = made_by == run.engine.program() || packing.contacts.is_empty();
+        run.another_program = made_by != run.engine.program() && !packing.contacts.is_empty();
         run.progress = Progress {
             path: PathState { phase: saved.phase, began: saved.began, holding_since: saved.holding_since },
-            sequence: saved.sequence + if is_same { 0 } else { ANOTHER_PROGRAM },
+            sequence: saved.sequence,
             packings: saved.packings,
             friction: packing.friction,
             deformation: packing.deformation,
@@ -214,7 +212,16 @@ impl Simulation {
             engine: self.engine.fork()?,
             progress: self.progress,
             rollback: self.rollback,
+            another_program: self.another_program,
         })
+    }
+
+    /// Gives the first request of a run that another program goes on with the number `next`: those with lower numbers are recorded,
+    /// and would have other stresses now.
+    pub fn number_requests_from(&mut self, next: u64) {
+        if self.another_program {
+            self.progress.sequence = self.progress.sequence.max(next);
+        }
     }
 
     /// The scene being run.

@@ -268,7 +268,8 @@ fn a_run_state_of_version_3_has_a_position_and_is_not_resumed() {
     let position = PathPosition::of(&state).unwrap();
     assert_eq!((position.phase, position.end_of_phase), (2, true));
     assert_eq!(position.strain_origin, StrainOrigin::Reference);
-    let error = Simulation::resume(Scene::parse(SCENE).unwrap(), &start().packing().unwrap(), &state).unwrap_err();
+    let error =
+        Simulation::resume(Scene::parse(SCENE).unwrap(), &start().packing().unwrap(), &state).unwrap_err();
     assert!(error.to_string().contains("version 3"), "{error}");
     assert_eq!(PathPosition::of(&state[..200]), None);
 }

@@ -119,6 +119,12 @@ impl Draft {
             contact_forces: path("contact_forces"),
             contact_columns: columns.filter_map(|name| name.as_str().map(str::to_owned)).collect(),
             step: start.get("step").and_then(Value::as_integer).and_then(|s| u64::try_from(s).ok()),
+            // Others are refused where the scene is resolved.
+            copies: start
+                .get("copies")
+                .and_then(Value::as_integer)
+                .and_then(|n| u32::try_from(n).ok())
+                .unwrap_or(1),
         })
     }
 

@@ -53,6 +53,7 @@ keys! {
     START_PACKING = text("start.packing", Required, "file with the packing, by its path from this file: a recording, CSV, LAMMPS or YADE; excludes [grains] and a gas");
     START_CONTACT_FORCES = text("start.contact_forces", Words("those in the file of the packing"), "LAMMPS `dump local` with the contact forces of the packing, a dump with one step, by its path from this file");
     START_CONTACT_COLUMNS = form("start.contact_columns", "an array of five or eight names, as [\"patom1\", \"patom2\", \"fx\", \"fy\", \"fz\", \"p1\", \"p2\", \"p3\"]", Words("found by their names"), "columns of contact_forces: ids, normal force, tangential force; or ids and the whole force");
+    START_COPIES = whole("start.copies", 1, 100, DefaultValue::Whole(1), "copies of the packing along each edge of its cell: the run has the cube of it times the grains");
     START_STEP = whole("start.step", 0, u64::MAX >> 1, Words("the last one"), "solver step of the packing in a recording or a dump");
 
     GRAINS = form("grains", "a table with count and diameter", Words("required, but with start"), "[grains]: number and sizes");

@@ -92,6 +92,8 @@ pub struct Start {
     pub contact_columns: Vec<String>,
     /// Solver step of the packing.
     pub step: Option<u64>,
+    /// Copies of the packing along each edge of its cell.
+    pub copies: u32,
 }
 
 /// Interval at which packings are published.

@@ -23,7 +23,8 @@ pub(crate) fn read(r: &mut Reader<'_>) -> Option<Start> {
             r.fault("contact_columns", "names columns of contact_forces, which is missing");
         }
         let step = r.get(&keys::START_STEP).map(|_| r.whole(&keys::START_STEP, None));
-        Start { packing, contact_forces, contact_columns, step }
+        let copies = r.whole(&keys::START_COPIES, None) as u32;
+        Start { packing, contact_forces, contact_columns, step, copies }
     })
 }
 

@@ -105,6 +105,7 @@ impl DemSimulator {
             ExperimentError::OtherEngine { .. } => NodeError::usage(e),
             e => NodeError::failed(e),
         })?;
+        run.number_requests_from(settings.next_request);
         let resumed = match &resume {
             None => None,
             // With the clock and the strain of the run.
@@ -112,7 +113,8 @@ impl DemSimulator {
             Some((packing, state)) => Some(packing_message(packing, &run.scene().name, state.clone())),
         };
         let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
-        let packings = from.map_or_else(Packings::default, |_| Packings { last_step: run.engine().steps(), count });
+        let packings =
+            from.map_or_else(Packings::default, |_| Packings { last_step: run.engine().steps(), count });
         let compute = settings.compute(run.scene().grains as usize).map_err(NodeError::failed)?;
         run.set_compute(match bus.stop_flag() {
             Some(flag) => compute.stopping_on(flag),

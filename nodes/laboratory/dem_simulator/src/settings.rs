@@ -120,6 +120,8 @@ pub struct Settings {
     pub engine: String,
     /// Starts an engine that is another program.
     pub lammps: Lammps,
+    /// Number of the first request that the recording does not have, of a run that is resumed.
+    pub next_request: u64,
     /// Number of threads; `None`: as many as are efficient.
     pub threads: Option<NonZeroUsize>,
     /// Instruction set; `None`: the widest.
@@ -128,7 +130,10 @@ pub struct Settings {
 
 impl Settings {
     /// The engine of a run from the beginning, or from a packing with its run state.
-    pub(crate) fn engine_for(&self, from: Option<(&Packing, &[u8])>) -> Result<Arc<dyn EngineFactory>, String> {
+    pub(crate) fn engine_for(
+        &self,
+        from: Option<(&Packing, &[u8])>,
+    ) -> Result<Arc<dyn EngineFactory>, String> {
         let made_by = from.and_then(|(_, run_state)| engine_program(run_state));
         let recorded = made_by.as_ref().map_or(OURS, |program| program.name.as_str());
         let wanted = if self.engine.is_empty() { recorded } else { &self.engine };
@@ -142,7 +147,9 @@ impl Settings {
         match wanted {
             OURS => Ok(Arc::new(Dem)),
             grainlab_lammps::NAME => Ok(Arc::new(self.lammps.clone())),
-            other => Err(format!("the recording was made with the engine {other:?}, which this version does not have")),
+            other => Err(format!(
+                "the recording was made with the engine {other:?}, which this version does not have"
+            )),
         }
     }
 
@@ -185,7 +192,11 @@ impl From<&Parameters> for Settings {
             inverted_within: seconds("inverted_within"),
             ahead: parameters.get("ahead"),
             engine: parameters.get("engine"),
-            lammps: Lammps { command: parameters.get("engine_command"), time_limit: seconds("engine_time_limit") },
+            next_request: 0,
+            lammps: Lammps {
+                command: parameters.get("engine_command"),
+                time_limit: seconds("engine_time_limit"),
+            },
             threads: NonZeroUsize::new(count("threads") as usize),
             simd: parameters.get::<String>("simd").parse().ok(),
         }

@@ -302,8 +302,7 @@ impl Running {
         let load = Load { contacts, virial: (xx + yy + zz) * self.known.cell.volume() };
         // LAMMPS sums r_x F_y, but not r_y F_x: their difference is the sum of torques.
         let turned = torque / self.known.cell.volume();
-        let in_lammps =
-            Mat3::new(xx, xy, xz, xy + turned.z, yy, yz, xz - turned.y, yz + turned.x, zz);
+        let in_lammps = Mat3::new(xx, xy, xz, xy + turned.z, yy, yz, xz - turned.y, yz + turned.x, zz);
         let unbalanced = net / backbone / self.survey.mean_force(&load);
         self.seen = Observables {
             stress: Stress { tensor: self.frame.tensor(&in_lammps), asymmetry: turned.amax() },
@@ -383,8 +382,16 @@ impl ParticleEngine for Running {
             let time = f64::from(count) * dt;
             let affine = Affine::between(&self.frame.edges, &frame.edges, time);
             let mut link = self.link();
-            let exchange =
-                Exchange { steps: count, dt, affine, settings: &self.settings, spin: self.spin, from: &self.frame, to: &frame, at: link.at };
+            let exchange = Exchange {
+                steps: count,
+                dt,
+                affine,
+                settings: &self.settings,
+                spin: self.spin,
+                from: &self.frame,
+                to: &frame,
+                at: link.at,
+            };
             let (commands, after, spin) = exchange.commands();
             link.program.tell(&commands)?;
             link.at += u64::from(count);

@@ -36,7 +36,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 impl Exchange<'_> {
     /// Largest number of steps of one exchange.
     pub(crate) fn longest(settings: &EngineSettings, dt: f64) -> u32 {
-        let drag = if settings.friction > 0.0 { settings.drag.max(settings.spin_drag) } else { settings.drag };
+        let drag =
+            if settings.friction > 0.0 { settings.drag.max(settings.spin_drag) } else { settings.drag };
         (DRAG / (drag * dt)).clamp(1.0, f64::from(u32::MAX)) as u32
     }
 
@@ -85,7 +86,11 @@ impl Exchange<'_> {
             // A deforming box is set at the end of a step. One step ahead, it is that of the positions at which forces are evaluated,
             // except at the beginning: there the forces of the step before are used again.
             let ahead = self.from.edges + self.affine.first * self.from.edges * self.dt;
-            let _ = writeln!(before, "fix held all store/state 0 fx fy fz\nchange_box all {} units box", edges(&ahead));
+            let _ = writeln!(
+                before,
+                "fix held all store/state 0 fx fy fz\nchange_box all {} units box",
+                edges(&ahead)
+            );
             for (k, axis) in AXES.into_iter().enumerate() {
                 let _ = writeln!(before, "variable h{axis} atom f_held[{}]-f{axis}", k + 1);
             }
@@ -97,7 +102,8 @@ impl Exchange<'_> {
         if self.settings.friction > 0.0 && (spin_drag != 1.0 || first != old) {
             for k in 0..3 {
                 let (axis, change) = (AXES[k], first[k] - spin_drag * old[k]);
-                let _ = writeln!(before, "variable w{axis} atom ({spin_drag:e})*c_spins[{}]+({change:e})", k + 1);
+                let _ =
+                    writeln!(before, "variable w{axis} atom ({spin_drag:e})*c_spins[{}]+({change:e})", k + 1);
             }
             before += "set group all omega v_wx v_wy v_wz\n";
             now = first;
@@ -111,7 +117,11 @@ impl Exchange<'_> {
         let mut after = String::new();
         if !is_fixed {
             after += &Self::change_velocities(1.0, &-self.affine.last);
-            let _ = writeln!(after, "unfix box\nunfix hold\nunfix held\nchange_box all {} units box", edges(&self.to.edges));
+            let _ = writeln!(
+                after,
+                "unfix box\nunfix hold\nunfix held\nchange_box all {} units box",
+                edges(&self.to.edges)
+            );
         }
         (before, after, now)
     }

@@ -21,14 +21,8 @@ pub(crate) fn data_file(packing: &Packing, frame: &Frame) -> String {
         let x = frame.to_lammps(&(position - packing.cell.matrix() * cells));
         let (diameter, density) = (2.0 * radius, packing.material.density);
         let [a, b, c] = [cells.x, cells.y, cells.z].map(|n| n as i64);
-        let _ = writeln!(
-            text,
-            "{} 1 {diameter:e} {density:e} {:e} {:e} {:e} {a} {b} {c}",
-            k + 1,
-            x.x,
-            x.y,
-            x.z
-        );
+        let _ =
+            writeln!(text, "{} 1 {diameter:e} {density:e} {:e} {:e} {:e} {a} {b} {c}", k + 1, x.x, x.y, x.z);
     }
     text += "\nVelocities\n\n";
     for (k, (velocity, omega)) in packing.velocities.iter().zip(&packing.spins).enumerate() {
@@ -39,8 +33,7 @@ pub(crate) fn data_file(packing: &Packing, frame: &Frame) -> String {
 }
 
 /// Columns of a dump of grains.
-pub(crate) const GRAIN_COLUMNS: &str =
-    "id xu yu zu vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz";
+pub(crate) const GRAIN_COLUMNS: &str = "id xu yu zu vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz";
 /// Columns of a dump of contacts, from the computes `ids` and `contacts`.
 pub(crate) const CONTACT_COLUMNS: &str = "c_ids[1] c_ids[2] c_contacts[1] c_contacts[2] c_contacts[3] c_contacts[4] c_contacts[5] \
      c_contacts[6]";
@@ -78,7 +71,9 @@ impl Dumps<'_> {
             true
         })?;
         if seen != n {
-            return refused(format!("{seen} of {n} grains are left: the others were lost, as after an unstable step"));
+            return refused(format!(
+                "{seen} of {n} grains are left: the others were lost, as after an unstable step"
+            ));
         }
         let mut contacts = Vec::new();
         rows::<8>(self.contacts, |row| {
@@ -141,7 +136,9 @@ fn rows<const N: usize>(path: &Path, mut take: impl FnMut(&[f64; N]) -> bool) ->
     while file.read_line(&mut line).map_err(failed)? > 0 {
         if is_row {
             let mut row = [f64::NAN; N];
-            row.iter_mut().zip(line.split_ascii_whitespace()).for_each(|(v, w)| *v = w.parse().unwrap_or(f64::NAN));
+            row.iter_mut()
+                .zip(line.split_ascii_whitespace())
+                .for_each(|(v, w)| *v = w.parse().unwrap_or(f64::NAN));
             if !row.iter().all(|v| v.is_finite()) || !take(&row) {
                 return refused(format!("a state that is not finite: {}", line.trim()));
             }

@@ -58,7 +58,10 @@ pub(crate) struct Affine {
 
 impl Affine {
     /// That of a fixed box.
-    pub(crate) const NONE: Self = Self { first: Mat3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), last: Mat3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0) };
+    pub(crate) const NONE: Self = Self {
+        first: Mat3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        last: Mat3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    };
 
     pub(crate) fn between(from: &Mat3, to: &Mat3, time: f64) -> Self {
         let speed = (to - from) / time;

@@ -41,7 +41,9 @@ pub fn check_scene(scene: &Scene) -> Result<(), ExperimentError> {
 /// Refuses a contact law other than Hertz and Mindlin.
 pub(crate) fn check_law(law: &ContactLaw) -> Result<(), ExperimentError> {
     if law.rolling.is_some() {
-        return refused("resistance to rolling: its force is not that of LAMMPS; only hertz_mindlin without it");
+        return refused(
+            "resistance to rolling: its force is not that of LAMMPS; only hertz_mindlin without it",
+        );
     }
     if law.springs != SpringLaw::default() {
         return refused(format!("contact law {}; only hertz_mindlin", law.name()));

@@ -110,7 +110,7 @@ impl Program {
 
     fn answer(&mut self, text: &str, mut see: impl FnMut(&str)) -> Result<Vec<String>, ExperimentError> {
         self.questions += 1;
-        let mark = format!("@{}", self.questions);
+        let mark = format!("@{}:", self.questions);
         let question = format!("print \"{mark} {text}\"\n");
         let asked = self.input.as_mut().is_some_and(|input| input.write_all(question.as_bytes()).is_ok());
         let (mut end, mut reported) = (Instant::now() + self.limit, false);
@@ -119,6 +119,13 @@ impl Program {
                 Ok(line) => {
                     if let Some(words) = line.strip_prefix(&mark).filter(|_| asked) {
                         return Ok(words.split_whitespace().map(str::to_owned).collect());
+                    }
+                    if line.starts_with('@') {
+                        self.kill();
+                        return self.failed(
+                            "several programs answer: its processes are not one LAMMPS. Under srun, --mpi must name the interface of \
+                             the program's MPI (srun --mpi=pmi2)",
+                        );
                     }
                     see(&line);
                     // It ends after an error, though what started it may not.

@@ -40,7 +40,10 @@ impl Load {
 
 impl Survey {
     /// Surveys a packing. Grains that overlap too far are found.
-    pub(crate) fn of(packing: &Packing, settings: &EngineSettings) -> Result<(Self, Observables), ExperimentError> {
+    pub(crate) fn of(
+        packing: &Packing,
+        settings: &EngineSettings,
+    ) -> Result<(Self, Observables), ExperimentError> {
         let mut engine = Engine::from_packing(packing, *settings)?;
         engine.initialise()?;
         engine.update_time_step();

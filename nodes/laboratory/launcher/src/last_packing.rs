@@ -2,7 +2,7 @@
 
 use grainlab_console::Failure;
 use grainlab_core::Packing;
-use grainlab_msgs::{msg, topics};
+use grainlab_msgs::{Topic, msg, topics};
 use grainlab_recordings::{Messages, Recording, Selection};
 use std::path::Path;
 
@@ -28,9 +28,23 @@ pub fn read(directory: &Path) -> Result<(Packing, Vec<u8>), Failure> {
     Ok((packing, message.run_state))
 }
 
+/// Number after those of all recorded requests of the lockstep.
+pub(crate) fn next_request(directory: &Path) -> Result<u64, Failure> {
+    let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
+    let recording = Recording::open(directory).map_err(|e| failed(&e))?;
+    let requests = of_type(&recording, &topics::STRESS)?;
+    let numbers =
+        requests.map(|message| message.decoded::<msg::Stress>().map_or(0, |request| request.sequence + 1));
+    Ok(numbers.max().unwrap_or(0))
+}
+
 fn packings(recording: &Recording) -> Result<Messages<'_>, Failure> {
+    of_type(recording, &topics::PACKING)
+}
+
+/// The messages of the type of a topic.
+fn of_type<'a>(recording: &'a Recording, topic: &Topic) -> Result<Messages<'a>, Failure> {
     let channels = recording.channels();
-    let of_packings = channels.iter().filter(|c| c.ros_type == topics::PACKING.info.type_name);
-    let names = of_packings.map(|c| c.topic.clone());
+    let names = channels.iter().filter(|c| c.ros_type == topic.info.type_name).map(|c| c.topic.clone());
     recording.messages(&Selection::topics(names)).map_err(Failure::failed)
 }

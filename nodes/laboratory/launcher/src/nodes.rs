@@ -274,9 +274,15 @@ fn simulator(bus: &mut dyn Bus, parameters: &Parameters) -> Result<DemSimulator,
     let sets: Vec<String> = parameters.get("set");
     let scene = scenes::load(&name, &sets, seed)?;
     let recording: String = parameters.get("resume");
-    let from = (!recording.is_empty()).then(|| last_packing::read(Path::new(&recording)));
-    let from = from.transpose()?.or(scene.start.map(|packing| (packing, Vec::new())));
-    DemSimulator::new(bus, scene.scene, from, parameters.into())
+    let mut settings = grainlab_dem_simulator::Settings::from(parameters);
+    let from = match recording.as_str() {
+        "" => scene.start.map(|packing| (packing, Vec::new())),
+        recording => {
+            settings.next_request = last_packing::next_request(Path::new(recording))?;
+            Some(last_packing::read(Path::new(recording))?)
+        }
+    };
+    DemSimulator::new(bus, scene.scene, from, settings)
 }
 
 #[cfg(test)]

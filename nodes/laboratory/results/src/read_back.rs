@@ -86,6 +86,11 @@ impl ReadBack {
         Self { complaints: vec![error.to_string()], ..Self::default() }
     }
 
+    /// Number of times that another engine went on with the run.
+    pub fn engine_changes(&self) -> usize {
+        self.engines.len().saturating_sub(1)
+    }
+
     fn dispute(&mut self, lines: impl IntoIterator<Item = String>) {
         let before = self.complaints.len();
         self.complaints.extend(lines);
@@ -110,8 +115,10 @@ pub(crate) struct EngineRange {
 /// The engines of these packings.
 fn engines(about: &BTreeMap<u64, About>) -> Vec<EngineRange> {
     let simulated = about.values().filter(|a| a.position.is_some());
-    let named = simulated.map(|a| (a.engine.as_ref().map_or("grainlab".to_owned(), ToString::to_string), a.step));
-    let mut found: Vec<EngineRange> = named.map(|(engine, from_step)| EngineRange { engine, from_step }).collect();
+    let named =
+        simulated.map(|a| (a.engine.as_ref().map_or("grainlab".to_owned(), ToString::to_string), a.step));
+    let mut found: Vec<EngineRange> =
+        named.map(|(engine, from_step)| EngineRange { engine, from_step }).collect();
     found.dedup_by(|next, known| next.engine == known.engine);
     if found.iter().all(|range| range.engine == "grainlab") { Vec::new() } else { found }
 }

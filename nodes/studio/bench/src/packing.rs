@@ -2,7 +2,7 @@
 
 use flate2::read::GzDecoder;
 use grainlab_console::Failure;
-use grainlab_core::{Cell, Contact, Material, Packing, Vec3};
+use grainlab_core::{Material, Packing};
 use grainlab_recordings::import::{ImportOptions, lammps_data, load as load_file};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -71,56 +71,9 @@ pub(crate) fn copies(grains: usize, wanted: &[u64]) -> Result<Vec<u32>, Failure>
     wanted.iter().map(one).collect()
 }
 
-/// Cell and centres of a packing repeated `copies` times along each edge of its cell.
-fn repeated(packing: &Packing, copies: u32) -> Option<(Cell, Vec<Vec3>)> {
-    let matrix = *packing.cell.matrix();
-    let cell = Cell::new(matrix * f64::from(copies))?;
-    let mut centres = Vec::with_capacity(packing.grains() * (copies as usize).pow(3));
-    for a in 0..copies {
-        for b in 0..copies {
-            for c in 0..copies {
-                let shift = matrix * Vec3::new(f64::from(a), f64::from(b), f64::from(c));
-                centres.extend(packing.positions.iter().map(|x| x + shift));
-            }
-        }
-    }
-    Some((cell, centres))
-}
-
-/// The packing repeated `copies` times along each edge of its cell, with its contacts and their forces.
+/// The packing repeated `copies` times along each edge of its cell.
 pub(crate) fn replicated(packing: &Packing, copies: u32) -> Result<Packing, Failure> {
-    let invalid = || Failure::failed("the cell of the copies is invalid");
-    let (cell, positions) = repeated(packing, copies).ok_or_else(invalid)?;
-    let (grains, times) = (packing.grains() as u32, copies.pow(3));
-    let along = i64::from(copies);
-    let mut contacts = Vec::with_capacity(packing.contacts.len() * times as usize);
-    for copy in 0..times {
-        let place = [copy / (copies * copies), copy / copies % copies, copy % copies].map(i64::from);
-        for c in &packing.contacts {
-            let reached: [i64; 3] = std::array::from_fn(|k| place[k] + i64::from(c.image[k]));
-            let [a, b, d] = reached.map(|k| k.rem_euclid(along) as u32);
-            let image = reached.map(|k| k.div_euclid(along) as i8);
-            let (i, j) = (copy * grains + c.i, ((a * copies + b) * copies + d) * grains + c.j);
-            contacts.push(if i < j || (i == j && image > [0; 3]) {
-                Contact { i, j, image, ..*c }
-            } else {
-                let (normal, tangential_force) = (-c.normal, -c.tangential_force);
-                Contact { i: j, j: i, image: image.map(|k| -k), normal, tangential_force, ..*c }
-            });
-        }
-    }
-    contacts.sort_unstable_by_key(|c| (c.i, c.j, c.image));
-    let times = times as usize;
-    Ok(Packing {
-        cell,
-        ids: (0..positions.len() as u32).collect(),
-        radii: packing.radii.repeat(times),
-        velocities: packing.velocities.repeat(times),
-        spins: packing.spins.repeat(times),
-        positions,
-        contacts,
-        ..*packing
-    })
+    packing.repeated(copies).ok_or_else(|| Failure::failed("the cell of the copies is invalid"))
 }
 
 #[cfg(test)]
@@ -145,7 +98,7 @@ mod tests {
     #[test]
     fn copies_keep_the_solid_fraction_and_lie_apart() {
         let packing = load(None).unwrap();
-        let (cell, centres) = repeated(&packing, 2).unwrap();
+        let Packing { cell, positions: centres, .. } = replicated(&packing, 2).unwrap();
         assert_eq!(centres.len(), 16_000);
         assert!((cell.volume() / packing.cell.volume() - 8.0).abs() < 1e-9);
         let shift = centres[2000] - centres[0];

@@ -89,7 +89,9 @@ pub fn prepared(state: &State, seed: u64) -> Result<Found, VerificationError> {
         let answer = grainlab_servo::control(&request.input).map_err(|e| failed(&e))?;
         run.advance(&answer.rate).map_err(|e| failed(&e))?;
     }
-    let report = analyze(&run.packing().map_err(|e| failed(&e))?, &Settings::default()).map_err(|e| failed(&e))?.report;
+    let report = analyze(&run.packing().map_err(|e| failed(&e))?, &Settings::default())
+        .map_err(|e| failed(&e))?
+        .report;
     Ok(Found { solid_fraction: report.solid_fraction, coordination: report.contacts.mechanical_coordination })
 }
 

@@ -315,8 +315,7 @@ fn acts(bench: &Bench<'_>) -> Result<(), String> {
     if engine.begin_phase(&EngineSettings { friction: 0.3, ..settings() }).is_ok() {
         engine.set_rate(&[0.0, 0.0, 0.0, 0.0, 10.0, 0.0]).map_err(|e| e.to_string())?;
         run(&mut *engine, 50)?;
-        let slip =
-            state(&*engine)?.contacts.iter().any(|c| c.tangential_force != Vec3::zeros());
+        let slip = state(&*engine)?.contacts.iter().any(|c| c.tangential_force != Vec3::zeros());
         holds(slip, || "friction is taken, and no contact has a tangential force".to_owned())?;
     }
     let speed = |damping: f64| {

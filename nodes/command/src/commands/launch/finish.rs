@@ -52,7 +52,7 @@ pub(super) fn finish(
     let exchanges = recording.as_ref().ok().map(Exchanges::of).transpose()?.flatten();
     // An interrupted run may end with an unanswered request.
     if let (Some(_), Some(exchanges)) = (supervised.received.packings, &exchanges) {
-        missing.extend(exchanges.missing());
+        missing.extend(exchanges.missing(back.engine_changes()));
     }
     let topics = recording.as_ref().map_or_else(|_| Vec::new(), |recording| recording.info().topics);
     let children = &supervised.children;

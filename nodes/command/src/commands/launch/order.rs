@@ -161,7 +161,15 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let arguments = BTreeMap::from([("simd".to_owned(), "scalar".to_owned())]);
         let (launch, words) = (BUILT_IN[0].1.to_owned(), vec!["demo".to_owned()]);
-        let order = Order { launch, arguments, seed: 7, words, record: Record::Results, one_process: false, engine: EngineOrder::default() };
+        let order = Order {
+            launch,
+            arguments,
+            seed: 7,
+            words,
+            record: Record::Results,
+            one_process: false,
+            engine: EngineOrder::default(),
+        };
         order.keep(directory.path()).unwrap();
         let known = Order::read(directory.path()).unwrap();
         assert_eq!(known, order);

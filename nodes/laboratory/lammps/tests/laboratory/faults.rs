@@ -86,10 +86,12 @@ fn tangential_forces_of_another_engine_are_refused_and_those_of_lammps_are_conti
     let (packing, own_state) = (engine.packing(Mat3::identity()).unwrap(), engine.own_state().unwrap());
     assert!(packing.contacts.iter().any(|c| c.tangential_force.norm() > 0.1 * c.normal_force));
     // By its restart file, with all springs.
-    let mut again = lammps.resume(&packing, &own_state, &settings, &engine.rate(), &Compute::default()).unwrap();
+    let mut again =
+        lammps.resume(&packing, &own_state, &settings, &engine.rate(), &Compute::default()).unwrap();
     again.set_rate(&engine.rate()).unwrap();
     let (first, second) = (engine.run(50).unwrap().1, again.run(50).unwrap().1);
-    let off = (first.stress.tensor.matrix() - second.stress.tensor.matrix()).norm() / first.stress.tensor.matrix().norm();
+    let off = (first.stress.tensor.matrix() - second.stress.tensor.matrix()).norm()
+        / first.stress.tensor.matrix().norm();
     assert!(off < 1e-10, "{off:e}");
     // To ours by the forces of contacts; from ours not at all.
     assert!(start(&Dem, &packing).is_ok());

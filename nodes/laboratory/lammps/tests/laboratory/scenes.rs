@@ -7,7 +7,9 @@ use grainlab_scene::{BUILT_IN, Scene};
 use std::sync::Arc;
 
 fn built_in() -> impl Iterator<Item = (&'static str, Scene)> {
-    BUILT_IN.into_iter().map(|(name, text)| (name, Scene::parse(text).unwrap_or_else(|e| panic!("{name}: {e}"))))
+    BUILT_IN
+        .into_iter()
+        .map(|(name, text)| (name, Scene::parse(text).unwrap_or_else(|e| panic!("{name}: {e}"))))
 }
 
 #[test]

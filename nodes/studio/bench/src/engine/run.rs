@@ -112,7 +112,9 @@ fn run(scene: &Scene, limit: u64) -> Result<(Simulation, Option<EnergyBalance>),
 
 fn observe(run: &Simulation) -> Result<Observables, String> {
     let settings = grainlab_micromechanics::Settings::default();
-    let r = grainlab_micromechanics::analyze(&run.packing().map_err(|e| e.to_string())?, &settings).map_err(|e| e.to_string())?.report;
+    let r = grainlab_micromechanics::analyze(&run.packing().map_err(|e| e.to_string())?, &settings)
+        .map_err(|e| e.to_string())?
+        .report;
     let (k, eps, phi) = (r.contacts.coordination, r.fabric.contact_anisotropy, r.solid_fraction);
     let c = r.elasticity.map_err(|e| e.to_string())?.tensor;
     Ok([k, eps, phi, c.transverse_isotropy().g12, c.bulk_voigt()])

@@ -1,0 +1,75 @@
+//! LAMMPS on two processes as the engine of a laboratory.
+
+use grainlab_msgs::{from_cdr, msg};
+use std::path::Path;
+use system_tests::bodies::distinct;
+use system_tests::lab::{LIMIT, Lab, appeared, golden, until};
+use system_tests::process::{children, runs, send};
+use system_tests::python;
+
+/// The command of LAMMPS on two processes, from the packages of the Python of the tests.
+fn two_processes() -> Option<String> {
+    let folder = python::with("lammps")?.parent()?.to_owned();
+    Some(format!("{} -n 2 {}", folder.join("mpiexec").display(), folder.join("lmp").display()))
+}
+
+/// Every process below this one.
+fn below(pid: u32) -> Vec<u32> {
+    children(pid, "").into_iter().flat_map(|child| [vec![child], below(child)].concat()).collect()
+}
+
+fn engines(run: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(run.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let ranges = summary["engines"].as_array().cloned().unwrap_or_default();
+    ranges.iter().map(|range| range["engine"].as_str().unwrap().to_owned()).collect()
+}
+
+fn last_report(run: &Path) -> msg::PackingReport {
+    from_cdr(distinct(run, "/packing_report").last().unwrap()).unwrap()
+}
+
+#[test]
+fn a_run_with_lammps_on_two_processes_outlives_their_end_and_goes_on_with_our_engine() {
+    let Some(command) = two_processes() else { return };
+    let scene = golden("scenes/pressed.toml");
+    let with = ["--engine", "lammps", "--engine-command", &command, "--no-report"];
+    let lab = Lab::new();
+    let whole = lab.launch(&scene, &with);
+    assert!(
+        matches!(engines(&whole).as_slice(), [one] if one.starts_with("lammps ") && one.ends_with(", 2 ranks"))
+    );
+    let requests = distinct(&whole, "/stress").len();
+    // Both engines press the same gas to packings that differ as those of two seeds do.
+    let (theirs, ours) = (last_report(&whole), last_report(&Lab::new().launch(&scene, &["--no-report"])));
+    assert!((theirs.solid_fraction - ours.solid_fraction).abs() < 0.01);
+    assert!((theirs.mechanical_coordination - ours.mechanical_coordination).abs() < 0.4);
+    // One of the two processes ends in the last phase: the run goes on from the packing before it, to the same requests.
+    let start = |lab: &Lab| {
+        let given = [&["launch", "--scene", &scene.to_string_lossy()], with.as_slice()].concat();
+        let launcher = lab.start(&given);
+        let simulator = appeared(&launcher, "run dem_simulator");
+        lab.until_recorded(requests - 110);
+        (launcher, below(simulator))
+    };
+    let lab = Lab::new();
+    let (launcher, processes) = start(&lab);
+    send(*processes.last().unwrap(), libc::SIGKILL);
+    let ended = launcher.ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    assert!(ended.stderr.contains("the run continues from the last packing recorded"), "{}", ended.stderr);
+    assert!(distinct(&whole, "/stress") == distinct(&lab.last_run(), "/stress"));
+    until("processes of LAMMPS end", || !processes.iter().any(|pid| runs(*pid)));
+    // An interrupted run goes on with another engine, and the results name both.
+    let lab = Lab::new();
+    let (launcher, _) = start(&lab);
+    launcher.signal(libc::SIGINT);
+    assert_eq!(launcher.ended(LIMIT).code, Some(130));
+    let run = lab.last_run();
+    let resumed = lab.run(&["launch", "--resume", &run.to_string_lossy(), "--engine", "grainlab"]);
+    assert_eq!(resumed.code, Some(0), "{}\n{}", resumed.stdout, resumed.stderr);
+    assert!(
+        matches!(engines(&run).as_slice(), [first, last] if first.starts_with("lammps") && last == "grainlab")
+    );
+    assert!(resumed.stdout.contains("; grainlab from step"), "{}", resumed.stdout);
+}
