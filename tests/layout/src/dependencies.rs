@@ -11,7 +11,7 @@ const DDS: &str = "grainlab_rustdds";
 const LINK_DDS: usize = 14;
 
 /// Packages that the binary links, with those of the workspace and procedural macros.
-const IN_BINARY: usize = 254;
+const IN_BINARY: usize = 255;
 
 /// Crates that read files and must link neither the engine nor a node.
 const READERS: [&str; 2] = ["grainlab_recordings", "grainlab_pictures"];

@@ -43,11 +43,11 @@ fn a_run_with_lammps_on_two_processes_outlives_their_end_and_goes_on_with_our_en
     // Both engines press the same gas to packings that differ as those of two seeds do.
     let (theirs, ours) = (last_report(&whole), last_report(&Lab::new().launch(&scene, &["--no-report"])));
     assert!((theirs.solid_fraction - ours.solid_fraction).abs() < 0.01);
-    assert!((theirs.mechanical_coordination - ours.mechanical_coordination).abs() < 0.4);
+    assert!((theirs.contacts.mechanical_coordination - ours.contacts.mechanical_coordination).abs() < 0.4);
     // One of the two processes ends in the last phase: the run goes on from the packing before it, to the same requests.
     let start = |lab: &Lab| {
-        let given = [&["launch", "--scene", &scene.to_string_lossy()], with.as_slice()].concat();
-        let launcher = lab.start(&given);
+        let path = scene.to_string_lossy();
+        let launcher = lab.start(&[&["launch", "--scene", &path], with.as_slice()].concat());
         let simulator = appeared(&launcher, "run dem_simulator");
         lab.until_recorded(requests - 110);
         (launcher, below(simulator))

@@ -21,7 +21,7 @@ pub enum ExperimentError {
     EngineLost {
         /// Name of the engine.
         engine: String,
-        /// What happened, with the last lines of the program.
+        /// Fault, with the last lines of the program.
         reason: String,
     },
     /// The path failed.

@@ -12,6 +12,7 @@ mod engine;
 mod error;
 mod gas;
 mod phase_settings;
+mod progress;
 mod run_state;
 mod simulation;
 

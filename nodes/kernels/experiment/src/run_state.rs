@@ -46,7 +46,7 @@ pub(crate) struct RunState {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SavedEngine {
     pub(crate) program: EngineProgram,
-    /// As base64.
+    /// Bytes of the state as base64.
     state: String,
 }
 

@@ -5,10 +5,11 @@ use crate::engine::{EngineFactory, Observables, ParticleEngine};
 use crate::error::ExperimentError;
 use crate::gas::{EventDriven, at_random, is_event_driven};
 use crate::phase_settings::phase_settings;
+use crate::progress::{Progress, solid_fraction};
 use crate::run_state::{RunState, SavedEngine, StrainOrigin};
 use grainlab_core::{Mat3, Packing, ServoLaw, SymTensor};
 use grainlab_dem::{Compute, EnergyBalance};
-use grainlab_scene::{Observation, PathState, PhaseEnded, PhaseKind, Scene, Travelled};
+use grainlab_scene::{PathState, PhaseEnded, PhaseKind, Scene, Travelled};
 use grainlab_servo::{ServoInput, ServoRequest};
 use std::sync::Arc;
 
@@ -27,27 +28,6 @@ pub struct Simulation {
     rollback: Option<(u64, Progress)>,
     /// The packing that the run was resumed from is of another program than its engine.
     another_program: bool,
-}
-
-/// Everything except the engine that changes as a run advances.
-#[derive(Clone, Copy, Debug)]
-struct Progress {
-    path: PathState,
-    sequence: u64,
-    packings: u64,
-    /// Friction coefficient of the present forces. At the end of a phase the engine already has that of the
-    /// next one.
-    friction: f64,
-    /// Deformation gradient since the reference state; since the first step until a phase sets one.
-    deformation: Mat3,
-    phase_deformation: Mat3,
-    /// Integral over time of the largest component of the strain rate since the phase began.
-    phase_strain: f64,
-    strain_origin: StrainOrigin,
-    /// The present state is within a phase, not at the end of one.
-    within_phase: bool,
-    observables: Observables,
-    solid_fraction: f64,
 }
 
 /// The result of one control period.
@@ -485,26 +465,4 @@ impl Simulation {
             self.progress = saved;
         }
     }
-}
-
-impl Progress {
-    /// The present state, as the path evaluates it.
-    fn observation(&self, time: f64) -> Observation {
-        Observation {
-            time,
-            stress: self.observables.stress.tensor,
-            strain: SymTensor::logarithmic_strain(&self.phase_deformation),
-            solid_fraction: self.solid_fraction,
-            unbalanced: self.observables.unbalanced,
-            speed: self.observables.speed,
-        }
-    }
-}
-
-/// Solid fraction, by the engine or by the sizes of the grains.
-fn solid_fraction(scene: &Scene, seen: &Observables) -> f64 {
-    seen.solid_fraction.unwrap_or_else(|| {
-        let cubes: f64 = scene.sizes.diameters(scene.grains).iter().map(|d| d * d * d).sum();
-        std::f64::consts::PI / 6.0 * cubes / seen.cell.volume()
-    })
 }

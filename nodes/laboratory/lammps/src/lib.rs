@@ -6,7 +6,7 @@
 //! - `frame`: the cell as LAMMPS has it, and the affine velocities in it
 //! - `files`: packings to and from files of LAMMPS
 //! - `survey`: time step and tangent stiffness, by our engine
-//! - `program`: the process, its pipe, and its end
+//! - `program`: the process, its pipe, and its end; `folder`: its files; `refusal`: errors
 //!
 //! # Model
 //! Grains have velocities of the laboratory, u + L x, in a box that deforms linearly during an exchange (`fix deform ... remap
@@ -20,10 +20,13 @@
 mod engine;
 mod exchange;
 mod files;
+mod folder;
 mod frame;
 mod law;
 mod program;
+mod refusal;
 mod survey;
 
-pub use engine::{Lammps, NAME};
+pub use engine::Lammps;
 pub use law::check_scene;
+pub use refusal::NAME;

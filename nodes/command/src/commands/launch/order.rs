@@ -57,7 +57,7 @@ impl EngineOrder {
         *self == Self::default()
     }
 
-    /// What is given in `other`, and else what is known.
+    /// Options of this command, and for those not given the known ones.
     pub(super) fn or(self, known: Self) -> Self {
         Self {
             engine: self.engine.or(known.engine),

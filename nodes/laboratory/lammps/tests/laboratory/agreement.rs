@@ -1,4 +1,4 @@
-//! The same packings, stepped by LAMMPS and by our engine.
+//! Packings that LAMMPS and our engine step alike.
 
 use super::lammps;
 use grainlab_core::contact::ContactLaw;

@@ -1,0 +1,44 @@
+//! A folder for the files that LAMMPS reads and writes.
+
+use crate::refusal::refused;
+use grainlab_experiment::ExperimentError;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A folder of this process alone, which is removed with it.
+#[derive(Debug)]
+pub(crate) struct Folder(PathBuf);
+
+impl Folder {
+    pub(crate) fn new() -> Result<Self, ExperimentError> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("grainlab-lammps-{}-{number}", std::process::id()));
+        match std::fs::create_dir(&path) {
+            Ok(()) => Ok(Self(path)),
+            Err(e) => refused(format!("no folder for temporary files: {}: {e}", path.display())),
+        }
+    }
+
+    pub(crate) fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, ExperimentError> {
+        let path = self.file(name);
+        match std::fs::write(&path, bytes) {
+            Ok(()) => Ok(path),
+            Err(e) => refused(format!("{}: {e}", path.display())),
+        }
+    }
+
+    pub(crate) fn read(path: &Path) -> Result<Vec<u8>, ExperimentError> {
+        std::fs::read(path).or_else(|e| refused(format!("{}: {e}", path.display())))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
