@@ -30,7 +30,7 @@ fn last_report(run: &Path) -> msg::PackingReport {
 }
 
 #[test]
-fn a_run_with_lammps_on_two_processes_outlives_their_end_and_goes_on_with_our_engine() {
+fn a_run_with_lammps_goes_on_after_one_of_its_processes_ended_and_with_our_engine() {
     let Some(command) = two_processes() else { return };
     let scene = golden("scenes/pressed.toml");
     let with = ["--engine", "lammps", "--engine-command", &command, "--no-report"];

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 mod conduct;
 mod directory;
+mod engine;
 mod finish;
 mod order;
 mod output;
@@ -21,7 +22,8 @@ mod resume;
 
 use conduct::{conduct, medium};
 use directory::Given;
-use order::{EngineOrder, Order, Record};
+use engine::EngineOptions;
+use order::{Order, Record};
 use output::Output;
 
 const EXAMPLES: &str = "\
@@ -75,7 +77,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t, conflicts_with = "resume")]
     record: Record,
     #[command(flatten)]
-    engine: EngineOrder,
+    engine: EngineOptions,
     /// Write no report.html
     #[arg(long)]
     no_report: bool,
@@ -97,7 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let report = !args.no_report;
     let output = Output { format: args.format, verbose: args.verbose, resumed: false, report };
     if let Some(run) = &args.resume {
-        return resume::run(run, args.engine.clone(), output);
+        return resume::run(run, &args.engine, output);
     }
     let (scene, order) = planned(args)?;
     // Held to the end of the run.
@@ -108,7 +110,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             Given::Finished => return Ok(Exit::Done),
             Given::Begun(directory, lock) => {
                 _at_work = Some(lock);
-                return resume::run(&directory, EngineOrder::default(), output);
+                return resume::run(&directory, &EngineOptions::default(), output);
             }
             Given::Empty(directory, lock) => {
                 _at_work = Some(lock);
@@ -130,15 +132,15 @@ fn planned(args: &Args) -> Result<(SceneText, Order), Failure> {
     let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
     let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
     let scene = scenes::load(name, &args.set, seed)?;
-    let order = Order {
+    let mut order = Order {
         launch: file.text().to_owned(),
         arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
         seed: scene.scene.seed,
         words: args.words.iter().map(|word| whole_path(word, path)).collect(),
         record: args.record,
         one_process: args.one_process,
-        engine: args.engine.clone(),
     };
+    args.engine.set(&mut order.arguments);
     let plans = order.plans(Path::new("."))?;
     refuse_unknown(&plans)?;
     plans.iter().try_for_each(NodePlan::check_parameters).map_err(Failure::usage)?;

@@ -121,7 +121,7 @@ impl NodePlan {
     }
 
     /// Sets parameters of the node; they take precedence over those of the launch file.
-    pub fn insist(&mut self, parameters: &[&str]) {
+    fn insist(&mut self, parameters: &[&str]) {
         for given in parameters {
             self.arguments.extend(["--ros-args", "-p", given].map(str::to_owned));
         }

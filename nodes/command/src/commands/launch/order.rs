@@ -2,7 +2,7 @@
 
 use crate::viewers::VIEWERS;
 use grainlab_console::{Failure, json, write_whole};
-use grainlab_launcher::{LaunchFile, NodeKind, NodePlan, check_one_process};
+use grainlab_launcher::{LaunchFile, NodePlan, check_one_process};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -29,57 +29,6 @@ pub(super) struct Order {
     /// All nodes are in the process of the launcher.
     #[serde(default)]
     pub(super) one_process: bool,
-    /// Engine of the simulator, and its program, where they are given.
-    #[serde(default, skip_serializing_if = "EngineOrder::is_default")]
-    pub(super) engine: EngineOrder,
-}
-
-/// The engine of a run.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::Args)]
-pub(super) struct EngineOrder {
-    /// Program that moves the grains once they touch; the gas before is always that of grainlab. lammps: an `lmp` on the PATH, see
-    /// nodes/laboratory/lammps/README.md
-    #[arg(long, value_parser = ["grainlab", "lammps"])]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    engine: Option<String>,
-    /// The program of the engine with what starts it, as in 'mpiexec -n 4 lmp' [default: lmp]
-    #[arg(long, value_name = "COMMAND")]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    engine_command: Option<String>,
-    /// Longest time of one exchange with the program of the engine, after which it counts as hung [default: 300]
-    #[arg(long, value_name = "SECONDS")]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    engine_time_limit: Option<String>,
-}
-
-impl EngineOrder {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
-    /// Options of this command, and for those not given the known ones.
-    pub(super) fn or(self, known: Self) -> Self {
-        Self {
-            engine: self.engine.or(known.engine),
-            engine_command: self.engine_command.or(known.engine_command),
-            engine_time_limit: self.engine_time_limit.or(known.engine_time_limit),
-        }
-    }
-
-    /// Sets the parameters of the simulator.
-    fn apply(&self, plan: &mut NodePlan) {
-        let quoted = |text: &String| serde_json::Value::from(text.as_str()).to_string();
-        let given = [
-            ("engine", self.engine.as_ref().map(quoted)),
-            ("engine_command", self.engine_command.as_ref().map(quoted)),
-            ("engine_time_limit", self.engine_time_limit.clone()),
-        ];
-        for (name, value) in given {
-            if let Some(value) = value.filter(|_| plan.is(NodeKind::DemSimulator)) {
-                plan.insist(&[&format!("{name}:={value}")]);
-            }
-        }
-    }
 }
 
 /// Messages that are recorded.
@@ -101,7 +50,6 @@ impl Order {
         self.launch == other.launch
             && self.arguments == other.arguments
             && self.seed == other.seed
-            && self.engine == other.engine
             && is_recorded
     }
 
@@ -139,7 +87,6 @@ impl Order {
         let scene = directory.join("scene.toml");
         let agrees = |plan: &NodePlan| plan.check_handed_on(&scene, self.seed, directory);
         plans.iter().try_for_each(agrees).map_err(Failure::usage)?;
-        plans.iter_mut().for_each(|plan| self.engine.apply(plan));
         if self.record == Record::Results {
             plans.iter_mut().for_each(NodePlan::record_results);
         }
@@ -154,22 +101,14 @@ impl Order {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_launcher::BUILT_IN;
+    use grainlab_launcher::{BUILT_IN, NodeKind};
 
     #[test]
     fn what_was_launched_is_read_back_as_it_was() {
         let directory = tempfile::tempdir().unwrap();
         let arguments = BTreeMap::from([("simd".to_owned(), "scalar".to_owned())]);
         let (launch, words) = (BUILT_IN[0].1.to_owned(), vec!["demo".to_owned()]);
-        let order = Order {
-            launch,
-            arguments,
-            seed: 7,
-            words,
-            record: Record::Results,
-            one_process: false,
-            engine: EngineOrder::default(),
-        };
+        let order = Order { launch, arguments, seed: 7, words, record: Record::Results, one_process: false };
         order.keep(directory.path()).unwrap();
         let known = Order::read(directory.path()).unwrap();
         assert_eq!(known, order);

@@ -5,7 +5,8 @@
 //! repeat with the same bytes are not recorded again.
 
 use super::conduct::{conduct, medium};
-use super::order::{EngineOrder, Order};
+use super::engine::EngineOptions;
+use super::order::Order;
 use super::output::Output;
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
@@ -16,12 +17,13 @@ use grainlab_results::brief::goes_on;
 use std::path::Path;
 
 /// Continues a run, with another engine if one is given.
-pub(super) fn run(directory: &Path, engine: EngineOrder, output: Output) -> Result<Exit, Failure> {
+pub(super) fn run(directory: &Path, engine: &EngineOptions, output: Output) -> Result<Exit, Failure> {
     let output = Output { resumed: true, ..output };
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     let directory = directory.canonicalize().map_err(|e| failed(&e))?;
     let known = Order::read(&directory)?;
-    let order = Order { engine: engine.or(known.engine.clone()), ..known.clone() };
+    let mut order = known.clone();
+    engine.set(&mut order.arguments);
     let path_of_scene = directory.join("scene.toml").to_string_lossy().into_owned();
     let scene = scenes::load(&path_of_scene, &[], Some(order.seed))?;
     let mut plans = order.plans(&directory)?;
