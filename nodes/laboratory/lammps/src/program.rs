@@ -157,15 +157,28 @@ impl Program {
         Err(ExperimentError::EngineLost { engine: crate::refusal::NAME.into(), reason })
     }
 
+    fn ends_within(&mut self, limit: Duration) -> bool {
+        let end = Instant::now() + limit;
+        while Instant::now() < end {
+            if matches!(self.child.try_wait(), Ok(Some(_))) {
+                return true;
+            }
+            thread::sleep(Duration::from_millis(5));
+        }
+        false
+    }
+
     fn kill(&mut self) {
         self.input = None;
         let id = self.child.id();
         // mpiexec gives its processes groups of their own, and a hung one does not end with it.
-        for process in descendants(id).into_iter().chain([id]).filter_map(|id| i32::try_from(id).ok()) {
-            // SAFETY: kill takes two integers. The child was not waited for, so its id is still its own, and so are those of its
-            // descendants unless they ended in this moment.
-            unsafe { libc::kill(process, libc::SIGKILL) };
+        let below = descendants(id);
+        // srun ends its processes on other hosts where it is asked to end, and leaves them where it is killed.
+        signal(&[id], libc::SIGTERM);
+        if !self.ends_within(FAREWELL) {
+            signal(&[id], libc::SIGKILL);
         }
+        signal(&below, libc::SIGKILL);
         let _ = self.child.wait();
     }
 }
@@ -175,14 +188,16 @@ impl Drop for Program {
         let Some(mut input) = self.input.take() else { return };
         let _ = input.write_all(b"quit\n");
         drop(input);
-        let end = Instant::now() + FAREWELL;
-        while Instant::now() < end {
-            if matches!(self.child.try_wait(), Ok(Some(_))) {
-                return;
-            }
-            thread::sleep(Duration::from_millis(5));
+        if !self.ends_within(FAREWELL) {
+            self.kill();
         }
-        self.kill();
+    }
+}
+
+fn signal(processes: &[u32], signal: i32) {
+    for process in processes.iter().filter_map(|id| i32::try_from(*id).ok()) {
+        // SAFETY: kill takes two integers. The processes ran a moment ago, so that their ids are still their own.
+        unsafe { libc::kill(process, signal) };
     }
 }
 
