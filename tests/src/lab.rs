@@ -83,15 +83,20 @@ impl Lab {
         self.last_run()
     }
 
-    /// Waits until the current run has recorded this many messages of `/stress`.
-    pub fn until_recorded(&self, messages: usize) {
+    /// Number of messages of `/stress` that the current run has recorded.
+    pub fn recorded(&self) -> usize {
         let recorded = || {
             let runs = std::fs::read_dir(self.folder().join("recordings/runs")).ok()?;
             let run = runs.flatten().next()?.path();
             let recording = grainlab_recordings::Recording::open(&run).ok()?;
             Some(recording.messages(&grainlab_recordings::Selection::topics(["/stress"])).ok()?.count())
         };
-        until("messages of /stress", || recorded().unwrap_or(0) >= messages);
+        recorded().unwrap_or(0)
+    }
+
+    /// Waits until the current run has recorded this many messages of `/stress`.
+    pub fn until_recorded(&self, messages: usize) {
+        until("messages of /stress", || self.recorded() >= messages);
     }
 
     /// Waits until a process that was started by hand has announced a writer of `topic`.

@@ -33,7 +33,7 @@ pub struct Observables {
     pub stress: Stress,
     /// The periodic cell, m.
     pub cell: Cell,
-    /// Mean net force of non-rattlers over mean contact force, to 1e-4 of it; 1 where nothing is in contact.
+    /// Mean net force of non-rattlers over mean contact force, which another program may know to 1e-4; 1 where nothing is in contact.
     pub unbalanced: f64,
     /// Root mean square speed relative to the affine motion, m/s. Half its square is the kinetic energy per mass of equal
     /// grains.
@@ -111,7 +111,7 @@ pub trait ParticleEngine: Debug + Send + Sync {
         None
     }
 
-    /// The part of the present state that a packing cannot hold, for [`EngineFactory::resume`]; empty if there is none.
+    /// State beside the packing that [`EngineFactory::resume`] needs; empty for most engines.
     ///
     /// # Errors
     /// A program that does not answer.

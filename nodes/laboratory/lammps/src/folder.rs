@@ -2,7 +2,7 @@
 
 use crate::refusal::refused;
 use grainlab_experiment::ExperimentError;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A folder of this process alone, which is removed with it.
@@ -30,10 +30,6 @@ impl Folder {
             Ok(()) => Ok(path),
             Err(e) => refused(format!("{}: {e}", path.display())),
         }
-    }
-
-    pub(crate) fn read(path: &Path) -> Result<Vec<u8>, ExperimentError> {
-        std::fs::read(path).or_else(|e| refused(format!("{}: {e}", path.display())))
     }
 }
 

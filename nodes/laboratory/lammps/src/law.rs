@@ -18,21 +18,15 @@ pub fn check_scene(scene: &Scene) -> Result<(), ExperimentError> {
         return refused("numerics.energy_balance: LAMMPS has no balance of the energy of contacts");
     }
     for phase in &scene.phases {
-        let at = |e: ExperimentError| match e {
-            ExperimentError::OtherEngine { engine, reason } => {
-                ExperimentError::OtherEngine { engine, reason: format!("phase {}: {reason}", phase.name) }
-            }
-            other => other,
-        };
+        let place = format!("phase {}: ", phase.name);
         match phase.kind {
             PhaseKind::Gas { method: GasMethod::EventDriven, .. } => {}
             PhaseKind::Gas { .. } => {
-                return refused(format!(
-                    "phase {}: a gas of soft grains; the gas before LAMMPS is method = \"event_driven\"",
-                    phase.name
-                ));
+                return refused(
+                    place + "a gas of soft grains; the gas before LAMMPS is method = \"event_driven\"",
+                );
             }
-            _ => check(phase.friction, phase.damping).map_err(at)?,
+            _ => check(&place, phase.friction, phase.damping)?,
         }
     }
     Ok(())
@@ -62,24 +56,24 @@ pub(crate) fn check_settings(settings: &EngineSettings) -> Result<(), Experiment
     if settings.thermostat_speed.is_some() {
         return refused("a thermostat; the gas before LAMMPS is that of grainlab");
     }
-    check(friction, damping)
+    check("", friction, damping)
 }
 
-fn check(friction: f64, damping: f64) -> Result<(), ExperimentError> {
+fn check(place: &str, friction: f64, damping: f64) -> Result<(), ExperimentError> {
     if !(0.0..=1e4).contains(&friction) {
-        return refused(format!("friction {friction}: 0 to 10000; without sliding, take 10000"));
+        return refused(format!("{place}friction {friction}: 0 to 10000; without sliding, take 10000"));
     }
-    restitution(damping).map(drop)
+    restitution(place, damping).map(drop)
 }
 
 /// The coefficient of restitution that gives LAMMPS the dashpot of ours with this fraction of critical damping.
 ///
 /// `coeff_restitution` has c = √5 s √(m F/δ) with s = −ln e/√(π² + ln² e), and F/δ = (2/3) k_n of Hertz; ours is
 /// c = 2 ζ √(m k_n). So s = 2 ζ √(3/10).
-fn restitution(damping: f64) -> Result<f64, ExperimentError> {
+fn restitution(place: &str, damping: f64) -> Result<f64, ExperimentError> {
     let s = 2.0 * damping * 0.3f64.sqrt();
     if !(0.0..0.999).contains(&s) {
-        return refused(format!("damping {damping}: 0 to 0.91, which is a restitution of 0"));
+        return refused(format!("{place}damping {damping}: 0 to 0.91, which is a restitution of 0"));
     }
     Ok((-PI * s / (1.0 - s * s).sqrt()).exp())
 }
@@ -87,7 +81,7 @@ fn restitution(damping: f64) -> Result<f64, ExperimentError> {
 /// The arguments of `pair_coeff` for one material.
 pub(crate) fn pair_coeff(material: &Material, settings: &EngineSettings) -> Result<String, ExperimentError> {
     let young = 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio);
-    let restitution = restitution(settings.damping)?;
+    let restitution = restitution("", settings.damping)?;
     let dashpot_ratio = material.stiffness_ratio().sqrt();
     let tangential = match (settings.friction, settings.tangential) {
         (0.0, _) => "linear_nohistory 0 0".to_owned(),

@@ -81,7 +81,7 @@ impl Program {
         }
     }
 
-    /// The values of these variables (`$(lx)`, `$(c_p[1])`) once all commands sent are done.
+    /// The values of these variables (`$(lx)`, `$(c_p[1])`) once all commands sent are done; without variables, a wait for that.
     pub(crate) fn ask<const N: usize>(&mut self, variables: [&str; N]) -> Result<[f64; N], ExperimentError> {
         let words = variables.map(|v| format!("$({v}:%.17g)")).join(" ");
         let words = self.answer(&words, |_| {})?;
@@ -90,11 +90,6 @@ impl Program {
             return self.failed(&format!("it answered {words:?}"));
         };
         Ok(numbers)
-    }
-
-    /// Waits until all commands sent are done.
-    pub(crate) fn finish(&mut self) -> Result<(), ExperimentError> {
-        self.ask([]).map(|[]| ())
     }
 
     fn answer(&mut self, text: &str, mut see: impl FnMut(&str)) -> Result<Vec<String>, ExperimentError> {

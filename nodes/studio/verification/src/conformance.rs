@@ -268,7 +268,8 @@ fn observes_the_packing(bench: &Bench<'_>) -> Result<(), String> {
     let net: f64 = net_forces(&packing).iter().map(|f| f.norm()).sum();
     let forces: f64 = packing.contacts.iter().map(|c| c.normal_force).sum();
     let unbalanced = net / packing.grains() as f64 / (forces / packing.contacts.len() as f64);
-    close("the unbalanced force", seen.unbalanced, unbalanced, 1e-4)?;
+    // Another program may know the mean force from its stress alone.
+    close("the unbalanced force", seen.unbalanced, unbalanced, engine.program().map_or(1e-6, |_| 1e-4))?;
     holds(seen.contacts as usize == packing.contacts.len(), || {
         format!("{} contacts, {} in the packing", seen.contacts, packing.contacts.len())
     })?;
@@ -373,8 +374,8 @@ fn observing_is_free(bench: &Bench<'_>) -> Result<(), String> {
     }
     let (left, right) = (state(&*plain)?, state(&*watched)?);
     let largest = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max);
-    let still = vec![Vec3::zeros(); left.grains()];
-    let off = largest(&left.velocities, &right.velocities) / largest(&left.velocities, &still);
+    let speed = left.velocities.iter().map(|v| v.amax()).fold(0.0, f64::max);
+    let off = largest(&left.velocities, &right.velocities) / speed;
     let is_rounding = plain.program().is_some() && left.ids == right.ids && off < 1e-8;
     holds(left == right || is_rounding, || format!("velocities of the observed run differ by {off:e}"))
 }

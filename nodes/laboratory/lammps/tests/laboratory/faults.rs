@@ -2,32 +2,11 @@
 
 use super::agreement::PRESSED;
 use super::lammps;
-use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Mat3, Packing};
 use grainlab_dem::{Compute, EngineSettings};
 use grainlab_experiment::{Dem, EngineFactory, ExperimentError};
 use grainlab_lammps::Lammps;
 use std::time::Duration;
-
-/// Two grains that touch, at rest.
-fn pair() -> Packing {
-    Packing {
-        step: 0,
-        time: 0.0,
-        time_step: 1e-8,
-        cell: Cell::cube(1e-3).unwrap(),
-        deformation: Mat3::identity(),
-        ids: vec![0, 1],
-        radii: vec![1e-4; 2],
-        positions: vec![Vec3::new(4e-4, 5e-4, 5e-4), Vec3::new(5.999e-4, 5e-4, 5e-4)],
-        velocities: vec![Vec3::zeros(); 2],
-        spins: vec![Vec3::zeros(); 2],
-        contacts: Vec::new(),
-        material: Material::GLASS,
-        law: ContactLaw::default(),
-        friction: 0.0,
-    }
-}
 
 fn settings() -> EngineSettings {
     EngineSettings { skin: 1e-5, ..EngineSettings::default() }
@@ -36,7 +15,7 @@ fn settings() -> EngineSettings {
 /// The error of a start and 10 steps with this command in place of `lmp`.
 fn error(command: &str, limit: Duration) -> ExperimentError {
     let lammps = Lammps { command: command.to_owned(), time_limit: limit };
-    let started = lammps.start(&pair(), &settings(), &[0.0; 6], &Compute::default());
+    let started = lammps.start(&PRESSED, &settings(), &[0.0; 6], &Compute::default());
     started.and_then(|mut engine| engine.run(10).map(drop)).unwrap_err()
 }
 
