@@ -59,7 +59,7 @@ pub(crate) struct Args {
     /// frame of the cell
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 1, default_value = "0,0,1")]
     axis: Vec<f64>,
-    /// Relative residual at which the stiffness solve stops [default: 1e-9]
+    /// Relative residual at which the stiffness solve stops [default: 1e-9; 1e-5 from 50,000 grains, an error below 1e-6 of C11]
     #[arg(long, value_name = "REL")]
     tolerance: Option<f64>,
     /// Method of the stiffness
@@ -142,10 +142,7 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     let axis = axis.map(|v| v / v.amax()).filter(|v| v.norm().is_finite());
     let axis = axis.ok_or_else(|| Failure::usage("--axis takes three finite numbers, not all of them 0"))?;
     let settings = grainlab_micromechanics::Settings::default();
-    let tolerance = args.tolerance.unwrap_or(settings.tolerance);
-    if !(1e-13..=1e-2).contains(&tolerance) {
-        return Err(Failure::usage(format!("--tolerance {tolerance} is out of range: 1e-13 to 1e-2")));
-    }
+    in_range("tolerance", args.tolerance, "from 1e-13 to 1e-2", |t| (1e-13..=1e-2).contains(&t))?;
     let amplitude = args.amplitude.unwrap_or(StrainProbe::default().amplitude);
     in_range("amplitude", Some(amplitude), "a strain, more than 0 and at most 0.01", |a| {
         a > 0.0 && a <= 0.01
@@ -164,5 +161,5 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     };
     let probe =
         (args.method == Method::Probe).then(|| StrainProbe { amplitude, ..measure::explicit(springs) });
-    Ok(grainlab_micromechanics::Settings { axis, tolerance, springs, probe, ..settings })
+    Ok(grainlab_micromechanics::Settings { axis, tolerance: args.tolerance, springs, probe, ..settings })
 }

@@ -12,13 +12,15 @@ use grainlab_core::results::{
 };
 use grainlab_core::{Packing, Vec3, min_contacts, symmetry};
 
+/// Grains from which the default tolerance is larger.
+const LARGE: usize = 50_000;
+
 /// Settings of the measurement of a packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2]. The default leaves an error of
-    /// about 1e-14 in C at z = 5.3. A larger one overestimates C, the more so the closer the network is to
-    /// isostaticity (z = 4).
-    pub tolerance: f64,
+    /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2]; None: [`Settings::tolerance_for`]. A larger one
+    /// overestimates C, the more so the closer the network is to isostaticity (z = 4). The error is stated with the stiffness.
+    pub tolerance: Option<f64>,
     /// Maximum number of iterations of the solve.
     pub max_iterations: u32,
     /// Axis of ε, the P4 coefficient, the ratios γ/Δ, and the moduli taken from the stiffness
@@ -35,7 +37,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            tolerance: 1e-9,
+            tolerance: None,
             max_iterations: 20_000,
             axis: Vec3::z(),
             springs: Springs::Carried,
@@ -110,7 +112,7 @@ fn elasticity(
         return not_jammed(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
     }
     let network = SpringNetwork::new(view, settings.springs)?;
-    let found = relaxed_stiffness(&network, settings.tolerance, settings.max_iterations)?;
+    let found = relaxed_stiffness(&network, settings.tolerance_for(grains), settings.max_iterations)?;
     let Some(found) = found else {
         return not_jammed(NotJammed::Floppy { contacts: network.contacts() });
     };
@@ -148,11 +150,17 @@ fn elasticity(
 }
 
 impl Settings {
+    /// The residual for so many grains: that of the settings, else 1e-9, which leaves an error of about 1e-14 in C at z = 5.3, and
+    /// 1e-5 from 50,000 grains, which takes a third of the time and leaves less than 1e-6.
+    pub fn tolerance_for(&self, grains: usize) -> f64 {
+        self.tolerance.unwrap_or(if grains < LARGE { 1e-9 } else { 1e-5 })
+    }
+
     /// The axis as a unit vector, if every setting is in range.
     fn check(&self) -> Result<Vec3, MicroError> {
-        if !(1e-13..=1e-2).contains(&self.tolerance) {
+        if let Some(value) = self.tolerance.filter(|t| !(1e-13..=1e-2).contains(t)) {
             let requirement = "between 1e-13 and 1e-2";
-            return Err(MicroError::Setting { name: "tolerance", value: self.tolerance, requirement });
+            return Err(MicroError::Setting { name: "tolerance", value, requirement });
         }
         let length = self.axis.norm();
         if !(length > 0.0 && length.is_finite()) {

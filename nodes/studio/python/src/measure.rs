@@ -13,7 +13,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-fn settings(axis: [f64; 3], springs: &str, tolerance: f64) -> PyResult<Settings> {
+fn settings(axis: [f64; 3], springs: &str, tolerance: Option<f64>) -> PyResult<Settings> {
     Ok(Settings {
         axis: Vec3::from(axis),
         springs: match springs {
@@ -32,13 +32,13 @@ fn settings(axis: [f64; 3], springs: &str, tolerance: f64) -> PyResult<Settings>
 
 /// Everything that `grainlab analyze` reports of a packing, by key.
 #[pyfunction]
-#[pyo3(signature = (packing, *, axis=[0.0, 0.0, 1.0], springs="carried", tolerance=1e-9))]
+#[pyo3(signature = (packing, *, axis=[0.0, 0.0, 1.0], springs="carried", tolerance=None))]
 pub(crate) fn analyze<'py>(
     py: Python<'py>,
     packing: &Bound<'py, PyPacking>,
     axis: [f64; 3],
     springs: &str,
-    tolerance: f64,
+    tolerance: Option<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let settings = settings(axis, springs, tolerance)?;
     let (packing, position) = (packing.get().packing(), packing.get().position());
@@ -49,19 +49,19 @@ pub(crate) fn analyze<'py>(
 
 /// The stiffness of the contact network, Pa, shape `(6, 6)`: relaxed, or affine (Voigt).
 #[pyfunction]
-#[pyo3(signature = (packing, *, affine=false, springs="carried", tolerance=1e-9))]
+#[pyo3(signature = (packing, *, affine=false, springs="carried", tolerance=None))]
 pub(crate) fn stiffness<'py>(
     py: Python<'py>,
     packing: &Bound<'py, PyPacking>,
     affine: bool,
     springs: &str,
-    tolerance: f64,
+    tolerance: Option<f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let settings = settings([0.0, 0.0, 1.0], springs, tolerance)?;
     let packing = packing.get().packing();
     let solve = || {
         let network = SpringNetwork::new(&PackingView::new(packing)?, settings.springs)?;
-        relaxed_stiffness(&network, settings.tolerance, settings.max_iterations)
+        relaxed_stiffness(&network, settings.tolerance_for(packing.grains()), settings.max_iterations)
     };
     let found = py.detach(solve).map_err(error::physics)?;
     let found =

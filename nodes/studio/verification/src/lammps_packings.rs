@@ -32,7 +32,7 @@ pub struct Reference {
 
 /// The rows of the packing of equal spheres, which has its contact forces.
 pub fn equal_spheres(packing: &Packing, reference: &Reference) -> Result<Vec<Row>, VerificationError> {
-    let settings = Settings { tolerance: 1e-12, ..Settings::default() };
+    let settings = Settings { tolerance: Some(1e-12), ..Settings::default() };
     let report =
         analyze(packing, &settings).map_err(|e| VerificationError::Measurement(e.to_string()))?.report;
     let found = from_positions(packing)?;

@@ -56,7 +56,7 @@ fn a_repeated_packing_is_a_packing_with_the_same_contacts() {
 #[test]
 fn a_repeated_packing_has_the_stress_and_the_stiffness_of_the_packing() {
     let packing = sample::anisotropic();
-    let settings = grainlab_micromechanics::Settings { tolerance: 1e-8, ..Default::default() };
+    let settings = grainlab_micromechanics::Settings { tolerance: Some(1e-8), ..Default::default() };
     let one = *grainlab_micromechanics::analyze(&packing, &settings).unwrap().report.stiffness().unwrap();
     let expected = stress(&packing).tensor.matrix();
     for indices in PLANES {

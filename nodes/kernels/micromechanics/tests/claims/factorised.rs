@@ -47,7 +47,7 @@ fn stacked(motions: &[GrainDofs<6>]) -> DMatrix<f64> {
 
 /// Returns the iterations of a solve that agrees with the factorisation.
 fn agree(packing: &Packing, springs: Springs) -> u32 {
-    let settings = Settings { springs, tolerance: 1e-10, ..Settings::default() };
+    let settings = Settings { springs, tolerance: Some(1e-10), ..Settings::default() };
     let found = analyze(packing, &settings).unwrap().report.stiffness().copied().unwrap();
     let error = (found.tensor.0 - factorised(packing, springs)).amax() / found.bounds.affine.0.amax();
     // Above the exact one by the square of the residual over the smallest stiffness.

@@ -94,7 +94,7 @@ fn the_same_packing_gives_the_same_bits() {
 fn error_of_the_stiffness_is_second_order_in_the_tolerance_and_from_above() {
     let p = random(60, 1.2, 16);
     let with = |tolerance| {
-        analyze(&p, &Settings { tolerance, ..Settings::default() })
+        analyze(&p, &Settings { tolerance: Some(tolerance), ..Settings::default() })
             .unwrap()
             .report
             .stiffness()

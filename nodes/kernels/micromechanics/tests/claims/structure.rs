@@ -147,7 +147,7 @@ fn a_coincident_pair_and_a_reversed_normal_are_named() {
 fn settings_out_of_range_are_refused_and_an_exhausted_solve_is_an_error() {
     let p = random(40, 1.1, 22);
     for tolerance in [0.0, f64::NAN, 1.0] {
-        let settings = Settings { tolerance, ..Settings::default() };
+        let settings = Settings { tolerance: Some(tolerance), ..Settings::default() };
         assert!(matches!(analyze(&p, &settings), Err(MicroError::Setting { name: "tolerance", .. })));
     }
     for axis in [Vec3::zeros(), Vec3::new(f64::NAN, 0.0, 1.0)] {

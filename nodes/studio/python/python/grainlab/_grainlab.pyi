@@ -180,7 +180,7 @@ def analyze(
     axis: ArrayLike = (0.0, 0.0, 1.0),
     solver: Literal["cg", "direct"] = "cg",
     springs: Literal["carried", "both", "normal"] = "carried",
-    tolerance: float = 1e-9,
+    tolerance: float | None = None,
 ) -> dict[str, Any]:
     """Structure, stress and stiffness: all that ``grainlab analyze`` reports, by key (see :func:`quantities`). Unknown values
     are None, stiffnesses arrays (6, 6), Pa. Springs: "carried" are those that the contacts carry, no tangential ones in a
@@ -192,7 +192,7 @@ def stiffness(
     affine: bool = False,
     solver: Literal["cg", "direct"] = "cg",
     springs: Literal["carried", "both", "normal"] = "carried",
-    tolerance: float = 1e-9,
+    tolerance: float | None = None,
 ) -> NDArray[np.float64]:
     """Stiffness of the contact network, Pa, (6, 6), Voigt order with engineering shear: with relaxation of the grains, or
     affine. Raises PhysicsError if the packing is not jammed."""
