@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -16,6 +17,12 @@ const QUOTED: usize = 8;
 /// Time for a process that has no more input to end by itself.
 const FAREWELL: Duration = Duration::from_secs(2);
 
+/// Variable of the environment by which the processes of a program are found.
+const MARK: &str = "GRAINLAB_ENGINE";
+
+/// Number of programs that this process has started.
+static STARTED: AtomicU32 = AtomicU32::new(0);
+
 /// A running LAMMPS. It ends when this is dropped, and by itself when our process has ended, since its input ends then.
 #[derive(Debug)]
 pub(crate) struct Program {
@@ -25,6 +32,8 @@ pub(crate) struct Program {
     /// The last lines of its output.
     last: VecDeque<String>,
     command: String,
+    /// Entry of the environment of all its processes, and of no others.
+    mark: String,
     limit: Duration,
     questions: u64,
 }
@@ -32,9 +41,12 @@ pub(crate) struct Program {
 impl Program {
     /// Starts `command`, an `lmp` with what starts it (`mpiexec -n 2 lmp`), with a time limit for each answer.
     pub(crate) fn start(command: &str, limit: Duration) -> Result<(Self, EngineProgram), ExperimentError> {
+        let number = STARTED.fetch_add(1, Ordering::Relaxed);
+        let value = format!("{}.{number}", std::process::id());
         let child = Command::new("sh")
             .args(["-c", &format!("exec {command} -nb -nocite -log none -echo none")])
             .env("OMP_NUM_THREADS", std::env::var("OMP_NUM_THREADS").unwrap_or_else(|_| "1".into()))
+            .env(MARK, &value)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -50,8 +62,9 @@ impl Program {
             forward(stderr, lines);
         }
         let input = child.stdin.take();
-        let command = command.to_owned();
-        let mut program = Self { child, input, output, last: VecDeque::new(), command, limit, questions: 0 };
+        let (command, mark) = (command.to_owned(), format!("{MARK}={value}"));
+        let mut program =
+            Self { child, input, output, last: VecDeque::new(), command, mark, limit, questions: 0 };
         let about = program.about()?;
         Ok((program, about))
     }
@@ -135,6 +148,7 @@ impl Program {
                 Err(RecvTimeoutError::Disconnected) => {
                     self.input = None;
                     let status = self.child.wait().map_or_else(|e| e.to_string(), |s| s.to_string());
+                    self.end_rest();
                     return self.failed(&format!("it ended ({status})"));
                 }
             }
@@ -166,15 +180,18 @@ impl Program {
     fn kill(&mut self) {
         self.input = None;
         let id = self.child.id();
-        // mpiexec gives its processes groups of their own, and a hung one does not end with it.
-        let below = descendants(id);
         // srun ends its processes on other hosts where it is asked to end, and leaves them where it is killed.
         signal(&[id], libc::SIGTERM);
         if !self.ends_within(FAREWELL) {
             signal(&[id], libc::SIGKILL);
         }
-        signal(&below, libc::SIGKILL);
         let _ = self.child.wait();
+        self.end_rest();
+    }
+
+    /// Ends what is left of its processes. mpiexec gives them groups of their own, and its end may leave one without a parent.
+    fn end_rest(&self) {
+        signal(&marked(&self.mark), libc::SIGKILL);
     }
 }
 
@@ -183,7 +200,9 @@ impl Drop for Program {
         let Some(mut input) = self.input.take() else { return };
         let _ = input.write_all(b"quit\n");
         drop(input);
-        if !self.ends_within(FAREWELL) {
+        if self.ends_within(FAREWELL) {
+            self.end_rest();
+        } else {
             self.kill();
         }
     }
@@ -196,26 +215,14 @@ fn signal(processes: &[u32], signal: i32) {
     }
 }
 
-/// The processes that this one started, directly or through others.
-fn descendants(root: u32) -> Vec<u32> {
-    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
-    let parents: Vec<(u32, u32)> = entries
-        .filter_map(|entry| {
-            let id = entry.file_name().to_str()?.parse().ok()?;
-            let stat = std::fs::read_to_string(entry.path().join("stat")).ok()?;
-            // After the name in parentheses: the state, and the parent.
-            let parent = stat.rsplit_once(')')?.1.split_whitespace().nth(1)?.parse().ok()?;
-            Some((id, parent))
-        })
-        .collect();
-    let mut found = vec![root];
-    let mut next = 0;
-    while next < found.len() {
-        let of = found[next];
-        found.extend(parents.iter().filter(|(_, parent)| *parent == of).map(|(id, _)| *id));
-        next += 1;
-    }
-    found.split_off(1)
+/// The processes whose environment has this entry.
+fn marked(entry: &str) -> Vec<u32> {
+    let processes = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let is_marked = |id: &u32| {
+        let environment = std::fs::read(format!("/proc/{id}/environ")).unwrap_or_default();
+        environment.split(|byte| *byte == 0).any(|other| other == entry.as_bytes())
+    };
+    processes.filter_map(|process| process.file_name().to_str()?.parse().ok()).filter(is_marked).collect()
 }
 
 /// Sends each line of a stream, in a thread that ends with the stream.

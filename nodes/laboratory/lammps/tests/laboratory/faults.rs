@@ -34,9 +34,12 @@ fn a_program_that_is_missing_or_is_not_lammps_is_named_with_its_last_lines() {
 fn a_program_that_hangs_is_ended_after_the_time_limit_with_all_its_processes() {
     let folder = tempfile::tempdir().unwrap();
     let mark = folder.path().join("alive");
-    let hang = format!("sh -c '(sleep 3; touch {}) & sleep 60' -n", mark.display());
-    let text = error(&hang, Duration::from_millis(300)).to_string();
-    assert!(text.contains("it did not answer within 0 s, and was ended"), "{text}");
+    // Also one whose parent has ended, in a session of its own.
+    for (inner, outer) in [("(", ")"), ("((setsid sh -c \"", "\") &)")] {
+        let hang = format!("sh -c '{inner}sleep 3; touch {}{outer} & sleep 60' -n", mark.display());
+        let text = error(&hang, Duration::from_millis(300)).to_string();
+        assert!(text.contains("it did not answer within 0 s, and was ended"), "{text}");
+    }
     std::thread::sleep(Duration::from_millis(3500));
     assert!(!mark.exists());
 }
