@@ -80,5 +80,5 @@ fn a_run_with_lammps_goes_on_after_one_of_its_processes_ended_and_with_our_engin
     assert!(
         matches!(engines(&run).as_slice(), [first, last] if first.starts_with("lammps") && last == "grainlab")
     );
-    assert!(resumed.stdout.contains("; grainlab from step"), "{}", resumed.stdout);
+    assert!(resumed.stdout.contains("; grainlab, packings from step"), "{}", resumed.stdout);
 }

@@ -39,7 +39,7 @@ pub fn text(s: &Summary, directory: &Path, files: &[&str], program: &str) -> Str
     }
     lines.extend(of_instruments(&s.of_instruments));
     let engines: Vec<String> =
-        s.engines.iter().map(|e| format!("{} from step {}", e.engine, e.from_step)).collect();
+        s.engines.iter().map(|e| format!("{}, packings from step {}", e.engine, e.from_step)).collect();
     lines.extend((!engines.is_empty()).then(|| row("Engine", &engines.join("; "))));
     lines.push(row("Run", &pace(s)));
     let folder = quoted(&directory.display().to_string());
