@@ -59,7 +59,7 @@ pub(crate) struct Args {
     /// frame of the cell
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 1, default_value = "0,0,1")]
     axis: Vec<f64>,
-    /// Relative residual at which the stiffness solve stops [default: 1e-9; 1e-5 from 50,000 grains, an error below 1e-6 of C11]
+    /// Relative residual at which the stiffness solve stops [default: 1e-9; 1e-5 from 50,000 grains]; the error that it leaves is stated
     #[arg(long, value_name = "REL")]
     tolerance: Option<f64>,
     /// Method of the stiffness

@@ -150,8 +150,8 @@ fn elasticity(
 }
 
 impl Settings {
-    /// The residual for so many grains: that of the settings, else 1e-9, which leaves an error of about 1e-14 in C at z = 5.3, and
-    /// 1e-5 from 50,000 grains, which takes a third of the time and leaves less than 1e-6.
+    /// Residual for so many grains: that of the settings, else 1e-9, and 1e-5 from 50,000 grains. At z = 5.3 these leave errors of
+    /// about 1e-14 and 1e-9 of C11; the larger one takes half of the time.
     pub fn tolerance_for(&self, grains: usize) -> f64 {
         self.tolerance.unwrap_or(if grains < LARGE { 1e-9 } else { 1e-5 })
     }

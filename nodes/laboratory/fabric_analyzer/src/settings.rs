@@ -48,8 +48,16 @@ pub struct Settings(pub(crate) grainlab_micromechanics::Settings);
 /// Parameters whose values are in range but invalid. The process then ends with
 /// [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("parameter \"axis\" = {0:?} is not a direction: it must have three components that are not all zero")]
-pub struct SettingsError(pub Vec<f64>);
+pub enum SettingsError {
+    /// The axis has not three components, or only zeros.
+    #[error(
+        "parameter \"axis\" = {0:?} is not a direction: it must have three components that are not all zero"
+    )]
+    Axis(Vec<f64>),
+    /// Finer than double precision allows.
+    #[error("parameter \"tolerance\" = {0:e} is below 1e-13: it must be 1e-13 to 1e-2, or 0 for the default")]
+    Tolerance(f64),
+}
 
 impl TryFrom<&Parameters> for Settings {
     type Error = SettingsError;
@@ -57,7 +65,11 @@ impl TryFrom<&Parameters> for Settings {
     fn try_from(parameters: &Parameters) -> Result<Self, SettingsError> {
         let axis: Vec<f64> = parameters.get("axis");
         let direction = <[f64; 3]>::try_from(axis.as_slice()).ok().map(Vec3::from).filter(|v| v.norm() > 0.0);
-        let axis = direction.ok_or(SettingsError(axis))?;
+        let axis = direction.ok_or(SettingsError::Axis(axis))?;
+        let tolerance = Some(parameters.get("tolerance")).filter(|t: &f64| *t > 0.0);
+        if let Some(too_fine) = tolerance.filter(|t| *t < 1e-13) {
+            return Err(SettingsError::Tolerance(too_fine));
+        }
         let method: String = parameters.get("method");
         let amplitude = parameters.get("amplitude");
         let springs: String = parameters.get("springs");
@@ -69,7 +81,7 @@ impl TryFrom<&Parameters> for Settings {
         };
         let probe = StrainProbe { amplitude, friction, ..StrainProbe::default() };
         Ok(Self(grainlab_micromechanics::Settings {
-            tolerance: Some(parameters.get("tolerance")).filter(|t: &f64| *t > 0.0),
+            tolerance,
             axis,
             springs,
             probe: (method == "probe").then_some(probe),

@@ -140,7 +140,7 @@ fn the_declared_defaults_are_the_typed_ones() {
 }
 
 #[test]
-fn an_axis_that_is_no_direction_is_refused() {
+fn an_axis_that_is_no_direction_and_a_tolerance_that_is_too_fine_are_refused() {
     let set = |axis: &str| {
         let args = ["--ros-args", "-p", axis].map(String::from);
         let (ros, _) = RosArgs::parse(&args).unwrap();
@@ -152,4 +152,6 @@ fn an_axis_that_is_no_direction_is_refused() {
     for axis in ["axis:=[0, 0, 0]", "axis:=[1, 0]"] {
         assert!(set(axis).unwrap_err().to_string().contains("not a direction"), "{axis}");
     }
+    assert!(set("tolerance:=0.0").is_ok() && set("tolerance:=1e-13").is_ok());
+    assert!(set("tolerance:=1e-14").unwrap_err().to_string().contains("1e-14 is below 1e-13"));
 }
