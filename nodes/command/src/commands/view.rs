@@ -6,7 +6,7 @@ use grainlab_console::{Failure, count, print, write_whole};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::{Imported, each};
 use grainlab_report::write_page;
-use grainlab_viewer::{Film, MOST_GRAINS, Picture, Quantity, Size, View, page};
+use grainlab_viewer::{Film, Picture, Quantity, Size, View, page};
 use std::ffi::OsStr;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -94,19 +94,7 @@ fn packings(
     mut take: impl FnMut(Imported) -> ControlFlow<()>,
 ) -> Result<Exit, Failure> {
     let options = args.import.options()?;
-    let mut too_large = None;
-    let warnings = each(file, &options, &mut |imported| {
-        if imported.packing.grains() > MOST_GRAINS {
-            too_large = Some(imported.packing.grains());
-            return ControlFlow::Break(());
-        }
-        take(imported)
-    })
-    .map_err(|e| Failure::failed(e.to_string()))?;
-    if let Some(grains) = too_large {
-        let path = file.display();
-        return Err(Failure::failed(format!("{path}: {grains} grains; a picture has at most {MOST_GRAINS}")));
-    }
+    let warnings = each(file, &options, &mut take).map_err(|e| Failure::failed(e.to_string()))?;
     warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
@@ -141,8 +129,8 @@ fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
             count(film.count(), "state")
         ),
     };
-    let about =
-        format!("{}, {shown}. Positions are exact to 1/65536 of the cell.", count(last.grains(), "grain"));
+    let grains = last.part.clone().unwrap_or_else(|| count(last.grains(), "grain"));
+    let about = format!("{grains}, {shown}. Positions are exact to 1/65536 of what is drawn.");
     let text = page(&name, &about, &name, &states).map_err(Failure::failed)?;
     let path = args.output.clone().unwrap_or_else(|| beside(file));
     write_page(&path, &text).map_err(Failure::failed)?;

@@ -2,7 +2,7 @@
 
 use crate::phase_line::{self, PhaseName, Rest};
 use crate::watch::PhaseReport;
-use grainlab_console::{Pace, Terminal, draw_live_line, erase_live_line, say, say_line};
+use grainlab_console::{Pace, Terminal, draw_live_line, duration, erase_live_line, say, say_line};
 use grainlab_msgs::msg::RunState;
 use std::time::{Duration, Instant};
 
@@ -127,9 +127,17 @@ impl Progress {
     /// A line of a phase that takes long.
     fn go_on(&mut self, step: u64) {
         self.printed_at = Instant::now();
-        let Some(Phase { name: PhaseName { number, of, name }, report, .. }) = &self.phase else { return };
-        let unmet = after(": ", &report.unmet);
-        self.say(&format!("phase {number} of {of}, {name} continues at step {step}{unmet}"));
+        let Some(phase) = &self.phase else { return };
+        let PhaseName { number, of, name } = &phase.name;
+        let rest = match phase.rest() {
+            Rest::Unknown => String::new(),
+            Rest::Share(share, left) => {
+                let left = left.map_or_else(String::new, |s| format!(", about {} left", duration(s)));
+                format!(": {:.0} %{left}", (100.0 * share).floor())
+            }
+            Rest::Unmet(unmet) => format!(": {unmet}"),
+        };
+        self.say(&format!("phase {number} of {of}, {name} continues at step {step}{rest}"));
     }
 
     /// On a terminal, the line of the phase that is over stays.

@@ -69,8 +69,6 @@ pub struct Laboratory {
     pub(crate) heard: Duration,
     /// Number of packings taken for pictures.
     pub(crate) pictured: u64,
-    /// Grains of a packing that is too large for a picture.
-    pub(crate) too_large: Option<usize>,
     /// Messages that do not satisfy the contract.
     pub(crate) refused: u64,
 }
@@ -111,9 +109,7 @@ impl Laboratory {
         let Ok(packing) = Packing::try_from(message) else { return self.refused += 1 };
         self.scene.clone_from(&message.scene);
         self.grains = u32::try_from(packing.grains()).ok();
-        if packing.grains() > grainlab_viewer::MOST_GRAINS {
-            self.too_large = Some(packing.grains());
-        } else if self.timeline.packing(packing) {
+        if self.timeline.packing(packing) {
             self.pictured += 1;
         }
     }

@@ -88,15 +88,9 @@ impl Laboratory {
     /// Why no packing is shown.
     pub(crate) fn no_packing(&self) -> String {
         let published = self.state.as_ref().map_or(0, |s| s.packings);
-        match (self.too_large, published) {
-            (Some(grains), _) => {
-                format!(
-                    "The packing has {grains} grains; a picture has at most {}.",
-                    grainlab_viewer::MOST_GRAINS
-                )
-            }
-            (None, 0) => "No packing has been published yet.".to_owned(),
-            (None, n) => format!(
+        match published {
+            0 => "No packing has been published yet.".to_owned(),
+            n => format!(
                 "{} published, none received by this page. A packing over 2 MB (some 6,000 grains) is sent in parts, which a run \
                  does not repeat for a page that joins later: the next one is shown. All are in the recording.",
                 count(n, "packing")
@@ -193,10 +187,8 @@ mod tests {
 
     #[test]
     fn a_page_without_packings_says_why() {
-        let mut lab = reported("extension", &[]);
+        let lab = reported("extension", &[]);
         assert!(lab.no_packing().starts_with("1 packing published, none received"));
-        lab.too_large = Some(300_000);
-        assert!(lab.no_packing().contains("300000 grains"));
         assert!(Laboratory::new(None, Duration::ZERO).no_packing().contains("No packing has been"));
     }
 }

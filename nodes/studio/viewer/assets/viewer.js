@@ -286,6 +286,8 @@
     new ResizeObserver(() => { resize(full()); draw(); }).observe(stage);
 
     const showRange = () => {
+      hint.hidden = !about.part;
+      hint.textContent = about.part ?? "";
       root.querySelector(".states").hidden = last === 0;
       part("state").max = last;
       part("state").value = now.state;

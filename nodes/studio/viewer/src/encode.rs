@@ -18,6 +18,8 @@ pub(crate) struct About<'a> {
     /// Name of saved pictures.
     name: &'a str,
     grains: usize,
+    /// What part of a packing is drawn, if not all.
+    part: Option<&'a str>,
     /// True for second grains as `u32`.
     wide: bool,
     /// True if every state has ids.
@@ -69,6 +71,7 @@ pub(crate) fn about<'a>(name: &'a str, views: &[&'a View]) -> About<'a> {
     About {
         name,
         grains,
+        part: views.last().and_then(|v| v.part.as_deref()),
         wide: grains > usize::from(u16::MAX),
         ids: has_ids(views),
         first_id: views.first().and_then(|v| v.ids.first()).copied().unwrap_or(0),

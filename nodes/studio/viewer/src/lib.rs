@@ -19,4 +19,4 @@ pub use film::Film;
 pub use page::{SCRIPTS, STYLE, empty_figure, figure, page, states};
 pub use palette::Quantity;
 pub use picture::{Picture, PictureError, Size};
-pub use view::{MOST_GRAINS, View};
+pub use view::View;

@@ -30,8 +30,9 @@ const POSTER: Size = Size { width: 720, height: 540 };
 pub fn figure(name: &str, views: &[&View]) -> Result<Html, PictureError> {
     let Some(last) = views.last() else { return Ok(Html::default()) };
     let poster = STANDARD.encode(Picture::plain(last, Quantity::Coordination, POSTER).png()?);
+    let part = last.part.as_ref().map_or_else(String::new, |part| format!("; {part}"));
     let alt = format!(
-        "{} grains in their periodic cell, coloured by the number of their contacts: {}",
+        "{} grains in their periodic cell, coloured by the number of their contacts: {}{part}",
         last.grains(),
         last.label
     );

@@ -74,6 +74,7 @@ impl Picture {
             pixel.copy_from_slice(&[r, g, b, 255]);
         }
         picture.write(&view.label, [MARGIN, MARGIN]);
+        picture.write(view.part.as_deref().unwrap_or_default(), [MARGIN, MARGIN + LINE]);
         picture.legend(view, quantity);
         picture
     }

@@ -58,7 +58,11 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
         let mut share = ratios(squares, &rho);
         let mut done = *limit;
         for iteration in 0..*limit {
-            let energy = self.back(v, &alpha, &beta);
+            let mut energy = self.back(v, &alpha, &beta);
+            let soft = self.sweeps.leave_out(v, &self.half, &mut self.taken);
+            for l in 0..WIDTH {
+                energy[l] -= soft[l];
+            }
             alpha = ratios(&rho, &energy);
             for l in 0..WIDTH {
                 self.unstable |= G && far[l] && (energy[l] < 0.0 || rho[l] < 0.0);

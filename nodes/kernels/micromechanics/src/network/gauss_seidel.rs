@@ -10,6 +10,7 @@
 
 use super::lanes::{Lanes, Real, WIDTH};
 use super::preconditioner::{Block, generalised_inverse};
+use super::soft_motions::SoftMotion;
 use super::spring_network::{ContactSpring, SpringNetwork};
 
 /// Degrees of freedom of one grain, or the conjugate forces, in the units of the sweeps: rows u_x, u_y, u_z,
@@ -37,6 +38,9 @@ pub(crate) struct Sweeps<T, const G: bool> {
     blocks: Vec<Packed<T>>,
     /// Generalised inverses D⁻¹.
     inverse: Vec<Packed<T>>,
+    /// Forces K w of the soft motions, each up to its end, scaled to wᵀ K w = 1.
+    soft: Vec<(u32, [T; 6])>,
+    soft_ends: Vec<u32>,
     /// Grain of the packing at each place.
     pub(crate) order: Vec<u32>,
     /// Mean stiffness of a block's displacements, N/m.
@@ -102,9 +106,26 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
                 .map(|g| rounded(&generalised_inverse(&blocks[*g as usize]), unit))
                 .collect(),
             blocks: order.iter().map(|g| rounded(&blocks[*g as usize], 1.0 / unit)).collect(),
+            soft: Vec::new(),
+            soft_ends: Vec::new(),
             order,
             unit,
         }
+    }
+
+    /// With K − Σ K w wᵀ K in place of K in [`Sweeps::leave_out`].
+    pub(crate) fn without(mut self, motions: &[SoftMotion]) -> Self {
+        let mut places = vec![0u32; self.order.len()];
+        for (at, grain) in self.order.iter().enumerate() {
+            places[*grain as usize] = at as u32;
+        }
+        for motion in motions {
+            let entries = motion.force.iter();
+            self.soft
+                .extend(entries.map(|(g, f)| (places[*g as usize], f.map(|f| T::of(f / self.unit.sqrt())))));
+            self.soft_ends.push(self.soft.len() as u32);
+        }
+        self
     }
 
     /// Number of grains.
@@ -167,6 +188,42 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
             taken[k] = v.mul_add(rest[k], minus, p[k]);
         }
         (product(v, &self.inverse[g], &rest), taken)
+    }
+
+    /// Takes the forces Σ K w wᵀ K t of the soft motions off `taken`. Returns their work tᵀ Σ K w wᵀ K t.
+    #[inline(always)]
+    pub(crate) fn leave_out<V: Lanes<T = T>>(
+        &self,
+        v: V,
+        t: &[Rows<T>],
+        taken: &mut [Rows<T>],
+    ) -> [f64; WIDTH] {
+        let mut work = [0.0; WIDTH];
+        let mut start = 0;
+        for end in &self.soft_ends {
+            let forces = &self.soft[start..*end as usize];
+            start = *end as usize;
+            let mut share = v.splat(T::ZERO);
+            for (g, force) in forces {
+                let t = load(v, &t[*g as usize]);
+                for k in 0..6 {
+                    share = v.mul_add(v.splat(force[k]), t[k], share);
+                }
+            }
+            for (g, force) in forces {
+                let mut s = load(v, &taken[*g as usize]);
+                for k in 0..6 {
+                    s[k] = v.mul_sub_from(v.splat(force[k]), share, s[k]);
+                }
+                store(v, &s, &mut taken[*g as usize]);
+            }
+            let mut columns = [T::ZERO; WIDTH];
+            v.store(share, &mut columns);
+            for l in 0..WIDTH {
+                work[l] += columns[l].wide() * columns[l].wide();
+            }
+        }
+        work
     }
 
     /// Squared norms of (D + L) r, the residual of K.

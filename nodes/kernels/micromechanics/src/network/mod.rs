@@ -2,7 +2,7 @@
 //!
 //! - [`SpringNetwork`]: grains and springs as an operator for any number of right-hand sides at once
 //! - [`solve()`]: conjugate gradients on the singular operator, preconditioned by symmetric Gauss–Seidel with the grains'
-//!   own blocks ([`generalised_inverse`])
+//!   own blocks ([`generalised_inverse`]); the softest motions of a few neighbours are solved for directly
 //! - [`relaxed_stiffness()`]: C = A − ΞᵀK⁺Ξ/V and its checks
 //! - [`uniform_rotation_stiffness`], [`bulk_reuss_bound`]: closed forms above and below it
 
@@ -12,6 +12,7 @@ mod gauss_seidel;
 mod lanes;
 mod preconditioner;
 mod relaxed_stiffness;
+mod soft_motions;
 mod solve;
 mod spring_network;
 

@@ -12,6 +12,7 @@ use super::conjugate_gradient::{Descent, Goal, Precision};
 use super::gauss_seidel::Sweeps;
 use super::lanes::WIDTH;
 use super::preconditioner::Block;
+use super::soft_motions::{Entries, SoftMotion};
 use super::spring_network::{GrainDofs, SpringNetwork};
 use crate::error::MicroError;
 use nalgebra::Matrix6;
@@ -24,6 +25,10 @@ const DOUBLE: f64 = 1e-13;
 
 /// A round that leaves more than this fraction of a residual did not help.
 const HELPED: f64 = 0.1;
+
+/// Iterations of one round after which the soft motions of the network are found and solved for directly. Networks far from
+/// isostaticity need some thirty.
+const WITHOUT_SOFT: u32 = 100;
 
 /// Maximum number of iterations of one round in single precision. A network that needs more is so close to a
 /// mechanism that rounding errors dominate.
@@ -81,6 +86,8 @@ pub(crate) fn left<const L: usize>(
 struct Refinement<'a, const L: usize> {
     load: &'a [GrainDofs<L>],
     scale: &'a [f64; L],
+    /// Motions solved for directly.
+    soft: &'a [SoftMotion],
     tolerance: f64,
     max_iterations: u32,
     motion: Vec<GrainDofs<L>>,
@@ -95,7 +102,7 @@ struct Refinement<'a, const L: usize> {
 
 impl<'a, const L: usize> Refinement<'a, L> {
     fn new(
-        network: &SpringNetwork,
+        network: &'a SpringNetwork,
         load: &'a [GrainDofs<L>],
         scale: &'a [f64; L],
         tolerance: f64,
@@ -109,6 +116,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
         let mut new = Self {
             load,
             scale,
+            soft: &[],
             tolerance,
             max_iterations,
             motion: zero.clone(),
@@ -138,13 +146,20 @@ impl<'a, const L: usize> Refinement<'a, L> {
     }
 
     /// In single precision, then in double if that does not suffice. `G`: with the prestress term.
-    fn solve<const G: bool>(&mut self, network: &SpringNetwork) -> Result<(), MicroError> {
+    fn solve<const G: bool>(&mut self, network: &'a SpringNetwork) -> Result<(), MicroError> {
         if G && network.diagonal_blocks().iter().any(gives_way) {
             return Err(MicroError::Unstable { residual: self.residual });
         }
         let single = Sweeps::<f32, G>::new(network);
+        if network.soft_motions_found().is_none()
+            && self.rounds(network, &mut Descent::new(&single), SINGLE, WITHOUT_SOFT)
+        {
+            return Ok(());
+        }
+        self.soft = network.soft_motions();
+        let single = single.without(self.soft);
         if !self.rounds(network, &mut Descent::new(&single), SINGLE, SINGLE_ROUND) {
-            let double = Sweeps::<f64, G>::new(network);
+            let double = Sweeps::<f64, G>::new(network).without(self.soft);
             let mut descent = Descent::new(&double);
             self.rounds(network, &mut descent, DOUBLE, u32::MAX);
             let solved = self.residual <= self.tolerance;
@@ -187,7 +202,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
     ) -> bool {
         while self.goes_on() {
             let (before, kept) = (self.residual, self.motion.clone());
-            self.round(descent, reach, most);
+            let done = self.round(descent, reach, most);
             self.renew(network);
             // A NaN does not help either.
             let worse = self.residual.is_nan() || self.residual > before;
@@ -195,15 +210,25 @@ impl<'a, const L: usize> Refinement<'a, L> {
                 self.motion = kept;
                 self.renew(network);
             }
-            if worse || (self.residual > HELPED * before && self.residual > self.tolerance) {
+            let slow = done == most || self.residual > HELPED * before;
+            if worse || (slow && self.residual > self.tolerance) {
                 return false;
             }
         }
         true
     }
 
-    fn round<T: Precision, const G: bool>(&mut self, descent: &mut Descent<T, G>, reach: f64, most: u32) {
+    /// One round, with the number of its iterations.
+    fn round<T: Precision, const G: bool>(
+        &mut self,
+        descent: &mut Descent<T, G>,
+        reach: f64,
+        most: u32,
+    ) -> u32 {
         let sweeps = descent.sweeps;
+        if !self.soft.is_empty() {
+            self.balance_soft();
+        }
         // Rounding leaves a larger residual than the recurrence gives, hence half the tolerance as a margin.
         // The remaining rounds share the remaining reduction evenly.
         let whole = 0.5 * self.tolerance / self.residual;
@@ -228,7 +253,9 @@ impl<'a, const L: usize> Refinement<'a, L> {
             }
         }
         let limit = most.min(self.max_iterations - self.iterations);
-        self.iterations += T::run(descent, &Goal { squares, targets, limit });
+        let iterations = T::run(descent, &Goal { squares, targets, limit });
+        self.iterations += iterations;
+        let before: Vec<[f64; L]> = self.soft.iter().map(|s| shares(&s.force, &self.motion)).collect();
         for (at, grain) in sweeps.order.iter().enumerate() {
             let found = &descent.motion[at];
             for (row, found) in self.motion[*grain as usize].iter_mut().zip(found) {
@@ -236,6 +263,44 @@ impl<'a, const L: usize> Refinement<'a, L> {
                     row[l] += found[l].wide() * (norms[l] / sweeps.unit);
                 }
             }
+        }
+        // The soft motions follow what was added: x − w wᵀ K x.
+        for (soft, before) in self.soft.iter().zip(before) {
+            let after = shares(&soft.force, &self.motion);
+            add(&mut self.motion, &soft.motion, &std::array::from_fn(|l| before[l] - after[l]));
+        }
+        iterations
+    }
+
+    /// Moves the soft motions w so that their forces are balanced: x + w wᵀ (load − K x).
+    fn balance_soft(&mut self) {
+        for soft in self.soft {
+            let loads = shares(&soft.motion, self.load);
+            let images = shares(&soft.motion, &self.image);
+            let more = std::array::from_fn(|l| if self.scale[l] > 0.0 { loads[l] - images[l] } else { 0.0 });
+            add(&mut self.motion, &soft.motion, &more);
+            add(&mut self.image, &soft.force, &more);
+        }
+        self.look();
+    }
+}
+
+/// Products of `entries` with each column of `x`.
+fn shares<const L: usize>(entries: &Entries, x: &[GrainDofs<L>]) -> [f64; L] {
+    let mut shares = [0.0; L];
+    for (grain, entry) in entries {
+        for (k, row) in x[*grain as usize].iter().enumerate() {
+            (0..L).for_each(|l| shares[l] += entry[k] * row[l]);
+        }
+    }
+    shares
+}
+
+/// Adds `entries` times `factors` to the columns of `x`.
+fn add<const L: usize>(x: &mut [GrainDofs<L>], entries: &Entries, factors: &[f64; L]) {
+    for (grain, entry) in entries {
+        for (k, row) in x[*grain as usize].iter_mut().enumerate() {
+            (0..L).for_each(|l| row[l] += entry[k] * factors[l]);
         }
     }
 }

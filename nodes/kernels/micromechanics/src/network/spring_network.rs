@@ -10,10 +10,12 @@
 //! that of the packing ([`LeftOut`](grainlab_core::results::LeftOut)).
 
 use super::preconditioner::Block;
+use super::soft_motions::{SoftMotion, soft_motions};
 use crate::error::MicroError;
 use crate::view::PackingView;
 use grainlab_core::Stiffness;
 use nalgebra::Matrix6;
+use std::sync::OnceLock;
 
 /// Displacement (m) and scaled rotation φ = θ a (m) of one grain, rows u_x, u_y, u_z, φ_x, φ_y, φ_z, for `L`
 /// loads at once; or the conjugate forces and scaled torques (N).
@@ -88,6 +90,8 @@ pub struct SpringNetwork {
     /// Grains along a space-filling curve.
     pub(crate) order: Vec<u32>,
     prestressed: bool,
+    /// Found at the first solve that needs them.
+    soft: OnceLock<Vec<SoftMotion>>,
 }
 
 impl SpringNetwork {
@@ -134,6 +138,7 @@ impl SpringNetwork {
             spin_scale,
             order,
             prestressed: false,
+            soft: OnceLock::new(),
         };
         if kind == Springs::PrestressedNormal { network.with_prestress(view) } else { Ok(network) }
     }
@@ -154,12 +159,23 @@ impl SpringNetwork {
         }
         self.springs.retain(|s| view.carries_force(s.i, s.j));
         self.prestressed = true;
+        self.soft = OnceLock::new();
         Ok(self)
     }
 
     /// True if the prestress term is included.
     pub fn prestressed(&self) -> bool {
         self.prestressed
+    }
+
+    /// Motions that are solved for directly, if a solve has needed them.
+    pub(super) fn soft_motions_found(&self) -> Option<&[SoftMotion]> {
+        self.soft.get().map(Vec::as_slice)
+    }
+
+    /// The same, found now if they were not.
+    pub(super) fn soft_motions(&self) -> &[SoftMotion] {
+        self.soft.get_or_init(|| soft_motions(self))
     }
 
     /// True if no contact has a tangential spring.
@@ -308,6 +324,27 @@ impl ContactSpring {
             (0..3).map(|k| w[k][row] * f[k][column] + d[k][row] * h[k][column]).sum()
         };
         std::array::from_fn(|row| std::array::from_fn(|column| sum(row, column)))
+    }
+
+    /// Forces on grain i, by row, under the motions of grain j, by column, N/m.
+    pub(super) fn coupling(&self) -> Block {
+        let (w, d) = (self.relative(&UNIT, &ZERO), self.apart(&UNIT, &ZERO));
+        let (v, e) = (self.relative(&ZERO, &UNIT), self.apart(&ZERO, &UNIT));
+        let (f, h) = (self.force(&v), self.turned(&e));
+        let sum = |row: usize, column: usize| {
+            (0..3).map(|k| w[k][row] * f[k][column] + d[k][row] * h[k][column]).sum()
+        };
+        std::array::from_fn(|row| std::array::from_fn(|column| sum(row, column)))
+    }
+
+    /// Work (J) and forces (N) on i and j under their motions `a` and `b`.
+    pub(super) fn response(&self, a: &GrainDofs<1>, b: &GrainDofs<1>) -> (f64, GrainDofs<1>, GrainDofs<1>) {
+        let (w, d) = (self.relative(a, b), self.apart(a, b));
+        let (f, h) = (self.force(&w), self.turned(&d));
+        let work = (0..3).map(|k| w[k][0] * f[k][0] + d[k][0] * h[k][0]).sum();
+        let mut both = [[[0.0]; 6]; 2];
+        Self { i: 0, j: 1, ..*self }.scatter(&f, &h, &mut both);
+        (work, both[0], both[1])
     }
 
     /// Levers of scaled rotations φ of i and j: (R − δ/2)/a with a the [`SpringNetwork::spin_scale`].
