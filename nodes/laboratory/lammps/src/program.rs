@@ -11,8 +11,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Lines of output that an error quotes.
-const QUOTED: usize = 8;
+/// Lines of output that an error quotes at most.
+const QUOTED: usize = 16;
 
 /// Time for a process that has no more input to end by itself.
 const FAREWELL: Duration = Duration::from_secs(2);
@@ -47,6 +47,9 @@ impl Program {
             .args(["-c", &format!("exec {command} -nb -nocite -log none -echo none")])
             .env("OMP_NUM_THREADS", std::env::var("OMP_NUM_THREADS").unwrap_or_else(|_| "1".into()))
             .env(MARK, &value)
+            // srun would also fill the pipes of the other processes, which nobody reads; and wait for the rest of a failed step.
+            .env("SLURM_STDINMODE", "0")
+            .env("SLURM_KILL_BAD_EXIT", "1")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -159,7 +162,9 @@ impl Program {
     fn failed<T>(&self, what: &str) -> Result<T, ExperimentError> {
         let lines: Vec<&str> =
             self.last.iter().map(|l| l.trim()).filter(|l| !l.is_empty() && !l.contains("^^")).collect();
-        let from = lines.iter().position(|l| l.contains("ERROR")).unwrap_or(lines.len().saturating_sub(3));
+        // Errors of LAMMPS and of MPI.
+        let begins = |l: &&str| l.contains("ERROR") || l.starts_with("Abort(");
+        let from = lines.iter().position(begins).unwrap_or(lines.len().saturating_sub(3));
         let lines = &lines[from..];
         let quoted = if lines.is_empty() { String::new() } else { format!(": {}", lines.join(" | ")) };
         let reason = format!("`{}`: {what}{quoted}", self.command);

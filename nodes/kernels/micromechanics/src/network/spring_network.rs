@@ -173,7 +173,7 @@ impl SpringNetwork {
         self.soft.get().map(Vec::as_slice)
     }
 
-    /// The same, found now if they were not.
+    /// Those motions, found now if no solve has needed them.
     pub(super) fn soft_motions(&self) -> &[SoftMotion] {
         self.soft.get_or_init(|| soft_motions(self))
     }
