@@ -135,7 +135,9 @@ impl DemSimulator {
         }
         let began = bus.now();
         let result = self.run.advance(rate);
-        self.computing += bus.now().saturating_sub(began);
+        let now = bus.now();
+        self.advance = (now.saturating_sub(began), now);
+        self.computing += self.advance.0;
         result
     }
 

@@ -82,6 +82,8 @@ pub struct DemSimulator {
     pub(crate) began: Duration,
     pub(crate) first_step: u64,
     pub(crate) computing: Duration,
+    /// Duration and end of the last advance of the run.
+    pub(crate) advance: (Duration, Duration),
     /// Wall time from the first request to the latest applied answer.
     pub(crate) wall: Duration,
     pub(crate) next_beat: Duration,
@@ -159,6 +161,7 @@ impl DemSimulator {
             began: now,
             first_step: run.engine().steps(),
             computing: Duration::ZERO,
+            advance: (Duration::ZERO, now),
             wall: Duration::ZERO,
             next_beat: now,
             awaited: String::new(),
@@ -264,6 +267,7 @@ impl Node for DemSimulator {
         }
         let next = match self.stage {
             Stage::Starting => self.start(bus, now),
+            Stage::Running if self.send_queue.goes_first(now, self.advance) => Ok(Next::Wait(HOLD)),
             Stage::Running => self.exchange(bus, now),
             Stage::Finished => self.wait_after_end(bus),
         }?;

@@ -2,10 +2,17 @@
 
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, PublisherId};
 use std::collections::VecDeque;
+use std::time::Duration;
 
 /// Number of packings, of megabytes each, that may be queued behind the one in transit before the run waits for the
 /// readers.
 const QUEUED_PACKINGS: usize = 2;
+
+/// Duration of an exchange from which a packing in transit goes first.
+const SLOW: Duration = Duration::from_millis(20);
+
+/// Longest time for which a reader that takes no part of a packing delays an exchange.
+const SLOW_READER: Duration = Duration::from_millis(250);
 
 #[derive(Debug)]
 enum Item {
@@ -106,6 +113,14 @@ impl SendQueue {
         self.under_way || !self.behind.is_empty()
     }
 
+    /// True while readers take parts of a large packing and the next exchange would take long, as the last advance did (its duration
+    /// and its end): parts pass between exchanges alone, and a million grains have thousands of them. Readers that take none
+    /// delay an exchange by an eighth of its time.
+    pub(crate) fn goes_first(&self, now: Duration, (took, ended): (Duration, Duration)) -> bool {
+        let last = self.packings.last_progress().filter(|_| self.under_way && took > SLOW);
+        last.is_some_and(|last| now.saturating_sub(last.max(ended)) < (took / 8).min(SLOW_READER))
+    }
+
     /// Sends all queued messages now, for a process that is about to end: the last packing replaces one in transit.
     pub(crate) fn flush(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
         self.packings.hurry();
@@ -132,7 +147,6 @@ mod tests {
     use grainlab_msgs::topics;
     use grainlab_node_kit::BULK_LIMIT;
     use grainlab_node_kit::{BulkSubscription, Demand, Hub, MemoryBus, Names, SubscriptionId};
-    use std::time::Duration;
 
     /// A simulator's bus with its queue, and a reader of everything.
     struct Bench {
@@ -214,6 +228,36 @@ mod tests {
         assert!(bench.queue.is_under_way() && !bench.queue.is_empty());
         bench.until_empty();
         assert_eq!(bench.received, ["r4", "p1", "s2", "p3"]);
+    }
+
+    #[test]
+    fn a_packing_in_transit_goes_before_a_slow_exchange_while_readers_take_it() {
+        let mut bench = Bench::new();
+        bench.look();
+        bench.queue.push_packing(body(1, 30 * BULK_LIMIT));
+        bench.deliver();
+        let (slow, fast) = (Duration::from_secs(4), Duration::from_millis(1));
+        let began = bench.hub.now();
+        let mut parts = 0;
+        while bench.queue.goes_first(bench.hub.now(), (slow, began)) {
+            assert!(!bench.queue.goes_first(bench.hub.now(), (fast, began)), "a fast exchange does not wait");
+            bench.deliver();
+            bench.look();
+            parts += 1;
+        }
+        assert!(!bench.queue.is_under_way(), "after {parts} looks");
+        assert_eq!(bench.received, ["p1"]);
+        // A reader that is busy.
+        bench.queue.push_packing(body(2, 30 * BULK_LIMIT));
+        bench.deliver();
+        bench.look();
+        let began = bench.hub.now();
+        while bench.queue.goes_first(bench.hub.now(), (slow, began)) {
+            bench.deliver();
+            bench.hub.advance(Duration::from_millis(1));
+        }
+        let waited = bench.hub.now() - began;
+        assert!(bench.queue.is_under_way() && waited < Duration::from_millis(500), "{waited:?}");
     }
 
     #[test]

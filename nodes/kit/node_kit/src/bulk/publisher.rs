@@ -141,6 +141,11 @@ impl BulkPublisher {
         POLL_PERIOD
     }
 
+    /// Last time at which an active reader that lacks parts of the latest message took one; `None` without such a reader.
+    pub fn last_progress(&self) -> Option<Duration> {
+        self.sender.last_progress()
+    }
+
     /// Number of active readers that lack parts of the latest message.
     pub fn waited_for(&self) -> usize {
         self.sender.waited_for()

@@ -200,6 +200,12 @@ impl Sender {
         lacking || (now.saturating_sub(self.offered) < FIRST_CREDIT_LIMIT && unheard())
     }
 
+    /// Last time at which one of them took a part.
+    pub(super) fn last_progress(&self) -> Option<Duration> {
+        let count = self.shape.map_or(0, |shape| shape.count);
+        self.readers.values().filter(|r| r.active && r.next < count).map(|r| r.progress).max()
+    }
+
     /// Number of active readers with missing parts.
     pub(super) fn waited_for(&self) -> usize {
         let count = self.shape.map_or(0, |shape| shape.count);
