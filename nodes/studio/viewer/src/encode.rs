@@ -18,7 +18,7 @@ pub(crate) struct About<'a> {
     /// Name of saved pictures.
     name: &'a str,
     grains: usize,
-    /// What part of a packing is drawn, if not all.
+    /// Description of the part that is drawn, if that is not all.
     part: Option<&'a str>,
     /// True for second grains as `u32`.
     wide: bool,

@@ -14,7 +14,7 @@ const FARTHEST: i32 = 2;
 pub struct View {
     /// Name of the state, as readers see it.
     pub label: String,
-    /// What part of the packing is drawn, for readers; None for all.
+    /// Description of the part of the packing that is drawn; None for all of it.
     pub part: Option<String>,
     /// The periodic cell, or the corner of it that is drawn.
     pub(crate) cell: Cell,

@@ -1,7 +1,7 @@
 //! C = A − ΞᵀK⁺Ξ/V and its checks.
 
 use super::bounds::uniform_rotation_stiffness;
-use super::solve::{Solution, left, solve};
+use super::solve::{Solution, Solver, left};
 use super::spring_network::{GrainDofs, SpringNetwork};
 use crate::error::MicroError;
 use grainlab_core::Stiffness;
@@ -64,10 +64,11 @@ pub fn relaxed_stiffness(
     let affine = network.affine_stiffness();
     let scale = affine.0.amax();
     let (loads, norms) = network.affine_loads();
+    let solver = Solver::new(network);
     // The difference of the two is xᵀr/V; x grows with the softest modes, which takes the factor.
     let limit = 1e3 * tolerance;
     let at = |tolerance: f64| {
-        let solution = solve(network, &loads, &norms, tolerance, max_iterations)?;
+        let solution = solver.solve(&loads, &norms, tolerance, max_iterations)?;
         let (relaxed, by_stress) = network.stiffness_with(&solution.motion);
         let relative = (relaxed - by_stress).amax() / scale;
         Ok::<_, MicroError>((solution, relaxed, relative))
@@ -99,7 +100,7 @@ pub fn relaxed_stiffness(
             return Err(MicroError::OutOfBounds { what, eigenvalue });
         }
     }
-    let error = error_left(network, &loads, &norms, &solution, max_iterations);
+    let error = error_left(network, &solver, &loads, &norms, &solution, max_iterations);
     let stddev = error.map(|error| error.max(ROUNDING * scale));
     Ok(Some(NetworkStiffness {
         relaxed: Stiffness(relaxed),
@@ -115,6 +116,7 @@ pub fn relaxed_stiffness(
 /// Where they cannot be solved for, they are taken to be as large as the motions.
 fn error_left(
     network: &SpringNetwork,
+    solver: &Solver<'_>,
     loads: &[GrainDofs<6>],
     norms: &[f64; 6],
     solution: &Solution<6>,
@@ -127,7 +129,7 @@ fn error_left(
         x.iter().zip(y).map(|(x, y)| (0..6).map(|k| x[k][l] * y[k][l]).sum::<f64>()).sum()
     };
     let tolerance = (CORRECTED * solution.residual).max(FINEST);
-    let energies: [f64; 6] = match solve(network, &rest, norms, tolerance, max_iterations) {
+    let energies: [f64; 6] = match solver.solve(&rest, norms, tolerance, max_iterations) {
         Ok(error) => std::array::from_fn(|l| square(&error.motion, &rest, l).max(0.0)),
         Err(_) => std::array::from_fn(|l| {
             (square(&solution.motion, &solution.motion, l) * square(&rest, &rest, l)).sqrt()

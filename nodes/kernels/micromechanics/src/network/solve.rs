@@ -12,10 +12,11 @@ use super::conjugate_gradient::{Descent, Goal, Precision};
 use super::gauss_seidel::Sweeps;
 use super::lanes::WIDTH;
 use super::preconditioner::Block;
-use super::soft_motions::{Entries, SoftMotion};
+use super::soft_motions::{Entries, SoftMotion, soft_motions};
 use super::spring_network::{GrainDofs, SpringNetwork};
 use crate::error::MicroError;
 use nalgebra::Matrix6;
+use std::cell::OnceCell;
 
 /// A round reduces the residual by this much at most in single precision (10⁻⁷ relative rounding)…
 const SINGLE: f64 = 3e-6;
@@ -61,14 +62,38 @@ pub fn solve<const L: usize>(
     tolerance: f64,
     max_iterations: u32,
 ) -> Result<Solution<L>, MicroError> {
-    const { assert!(L <= WIDTH) }
-    let mut refinement = Refinement::new(network, load, scale, tolerance, max_iterations)?;
-    if network.prestressed() {
-        refinement.solve::<true>(network)?;
-    } else {
-        refinement.solve::<false>(network)?;
+    Solver::new(network).solve(load, scale, tolerance, max_iterations)
+}
+
+/// Solves with one network, whose soft motions are found once.
+pub(super) struct Solver<'a> {
+    network: &'a SpringNetwork,
+    /// Found by the first solve that needs them.
+    soft: OnceCell<Vec<SoftMotion>>,
+}
+
+impl<'a> Solver<'a> {
+    pub(super) fn new(network: &'a SpringNetwork) -> Self {
+        Self { network, soft: OnceCell::new() }
     }
-    refinement.solution()
+
+    /// See [`solve()`] for arguments and errors.
+    pub(super) fn solve<const L: usize>(
+        &self,
+        load: &[GrainDofs<L>],
+        scale: &[f64; L],
+        tolerance: f64,
+        max_iterations: u32,
+    ) -> Result<Solution<L>, MicroError> {
+        const { assert!(L <= WIDTH) }
+        let mut refinement = Refinement::new(self.network, load, scale, tolerance, max_iterations)?;
+        if self.network.prestressed() {
+            refinement.solve::<true>(self)?;
+        } else {
+            refinement.solve::<false>(self)?;
+        }
+        refinement.solution()
+    }
 }
 
 /// Loads less the forces that answer a motion, where there is a scale.
@@ -102,7 +127,7 @@ struct Refinement<'a, const L: usize> {
 
 impl<'a, const L: usize> Refinement<'a, L> {
     fn new(
-        network: &'a SpringNetwork,
+        network: &SpringNetwork,
         load: &'a [GrainDofs<L>],
         scale: &'a [f64; L],
         tolerance: f64,
@@ -146,17 +171,18 @@ impl<'a, const L: usize> Refinement<'a, L> {
     }
 
     /// In single precision, then in double if that does not suffice. `G`: with the prestress term.
-    fn solve<const G: bool>(&mut self, network: &'a SpringNetwork) -> Result<(), MicroError> {
+    fn solve<const G: bool>(&mut self, solver: &'a Solver<'_>) -> Result<(), MicroError> {
+        let network = solver.network;
         if G && network.diagonal_blocks().iter().any(gives_way) {
             return Err(MicroError::Unstable { residual: self.residual });
         }
         let single = Sweeps::<f32, G>::new(network);
-        if network.soft_motions_found().is_none()
+        if solver.soft.get().is_none()
             && self.rounds(network, &mut Descent::new(&single), SINGLE, WITHOUT_SOFT)
         {
             return Ok(());
         }
-        self.soft = network.soft_motions();
+        self.soft = solver.soft.get_or_init(|| soft_motions(network));
         let single = single.without(self.soft);
         if !self.rounds(network, &mut Descent::new(&single), SINGLE, SINGLE_ROUND) {
             let double = Sweeps::<f64, G>::new(network).without(self.soft);

@@ -10,12 +10,10 @@
 //! that of the packing ([`LeftOut`](grainlab_core::results::LeftOut)).
 
 use super::preconditioner::Block;
-use super::soft_motions::{SoftMotion, soft_motions};
 use crate::error::MicroError;
 use crate::view::PackingView;
 use grainlab_core::Stiffness;
 use nalgebra::Matrix6;
-use std::sync::OnceLock;
 
 /// Displacement (m) and scaled rotation φ = θ a (m) of one grain, rows u_x, u_y, u_z, φ_x, φ_y, φ_z, for `L`
 /// loads at once; or the conjugate forces and scaled torques (N).
@@ -90,8 +88,6 @@ pub struct SpringNetwork {
     /// Grains along a space-filling curve.
     pub(crate) order: Vec<u32>,
     prestressed: bool,
-    /// Found at the first solve that needs them.
-    soft: OnceLock<Vec<SoftMotion>>,
 }
 
 impl SpringNetwork {
@@ -138,7 +134,6 @@ impl SpringNetwork {
             spin_scale,
             order,
             prestressed: false,
-            soft: OnceLock::new(),
         };
         if kind == Springs::PrestressedNormal { network.with_prestress(view) } else { Ok(network) }
     }
@@ -159,23 +154,12 @@ impl SpringNetwork {
         }
         self.springs.retain(|s| view.carries_force(s.i, s.j));
         self.prestressed = true;
-        self.soft = OnceLock::new();
         Ok(self)
     }
 
     /// True if the prestress term is included.
     pub fn prestressed(&self) -> bool {
         self.prestressed
-    }
-
-    /// Motions that are solved for directly, if a solve has needed them.
-    pub(super) fn soft_motions_found(&self) -> Option<&[SoftMotion]> {
-        self.soft.get().map(Vec::as_slice)
-    }
-
-    /// Those motions, found now if no solve has needed them.
-    pub(super) fn soft_motions(&self) -> &[SoftMotion] {
-        self.soft.get_or_init(|| soft_motions(self))
     }
 
     /// True if no contact has a tangential spring.
