@@ -81,7 +81,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
         .within(Range::Choice(&["", "grainlab", "lammps"])),
         ParameterSpec::new(
             "engine_command",
-            "lmp",
+            LAMMPS_COMMAND,
             "for lammps: the program with what starts it, as in mpiexec -n 4 lmp",
         ),
         ParameterSpec::new("engine_time_limit", 300.0, "for lammps: longest time of an exchange, s")
@@ -92,6 +92,12 @@ pub fn parameters() -> Vec<ParameterSpec> {
             .within(Range::Choice(&["best", "scalar", "avx2", "avx512"])),
     ]
 }
+
+/// Default of `engine_command`.
+const LAMMPS_COMMAND: &str = "lmp";
+
+/// Longest time limit, a year: clocks overflow beyond some.
+const LONGEST_LIMIT: Duration = Duration::from_secs(365 * 86_400);
 
 /// The parameters, typed.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,6 +151,9 @@ impl Settings {
             log::warn!("the run continues with the engine {wanted}; its last packing was made by {recorded}");
         }
         match wanted {
+            OURS if self.lammps.command != LAMMPS_COMMAND => {
+                Err("engine_command is given, and the engine is grainlab: name that of the command (--engine lammps)".into())
+            }
             OURS => Ok(Arc::new(Dem)),
             grainlab_lammps::NAME => Ok(Arc::new(self.lammps.clone())),
             other => Err(format!(
@@ -195,7 +204,7 @@ impl From<&Parameters> for Settings {
             next_request: 0,
             lammps: Lammps {
                 command: parameters.get("engine_command"),
-                time_limit: seconds("engine_time_limit"),
+                time_limit: seconds("engine_time_limit").min(LONGEST_LIMIT),
             },
             threads: NonZeroUsize::new(count("threads") as usize),
             simd: parameters.get::<String>("simd").parse().ok(),

@@ -1,6 +1,6 @@
 //! One run of LAMMPS as an engine.
 
-use crate::exchange::{Exchange, FIRST_STEP, OBSERVED};
+use crate::exchange::{Exchange, FIRST_STEP, HOLD, OBSERVED};
 use crate::files::{CONTACT_COLUMNS, Dumps, GRAIN_COLUMNS, data_file};
 use crate::folder::Folder;
 use crate::frame::{Affine, Frame};
@@ -49,7 +49,7 @@ struct Saved {
 
 /// The commands that read a restart file. A style that is named again evaluates the reach of its forces anew.
 fn read_restart(path: &Path) -> String {
-    format!("read_restart {}\npair_style granular\n", path.display())
+    format!("read_restart \"{}\"\npair_style granular\n{HOLD}", path.display())
 }
 
 impl EngineFactory for Lammps {
@@ -166,7 +166,7 @@ impl Running {
         self.frame = self.checked_frame(&packing.cell)?;
         self.spin = Vec3::zeros();
         let path = self.folder.write("start.data", data_file(packing, &self.frame).as_bytes())?;
-        let read = format!("atom_style sphere\nread_data {}\npair_style granular\n", path.display());
+        let read = format!("atom_style sphere\nread_data \"{}\"\npair_style granular\n", path.display());
         self.set_up(&read)?;
         // Velocities half a step before the positions become those at the positions.
         let (half, frictional) = (0.5 * self.known.time_step, self.settings.friction > 0.0);
@@ -183,7 +183,8 @@ impl Running {
             commands += "set group all omega v_wx v_wy v_wz\n";
         }
         self.link().program.tell(&commands)?;
-        self.observe()
+        self.observe()?;
+        self.link().program.tell(HOLD)
     }
 
     /// Returns to a saved state.
@@ -339,7 +340,8 @@ impl ParticleEngine for Running {
             self.link().program.tell(&commands)?;
         }
         self.survey()?;
-        self.observe()
+        self.observe()?;
+        self.link().program.tell(&format!("unfix held\n{HOLD}"))
     }
 
     fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), ExperimentError> {
@@ -414,9 +416,13 @@ impl ParticleEngine for Running {
         let (grains, contacts) = (self.folder.file("grains.dump"), self.folder.file("contacts.dump"));
         let mut link = self.link();
         let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
+        // Forces of a packing are those without dashpots.
+        let elastic = EngineSettings { damping: 0.0, ..self.settings };
+        let [elastic, own] = [&elastic, &self.settings].map(|s| pair_coeff(&self.known.material, s));
+        let (elastic, own) = (elastic?, own?);
         let commands = format!(
-            "{observe}run 0 post no\nwrite_dump all custom {} {GRAIN_COLUMNS} modify format float %.17g\n\
-             write_dump all local {} {CONTACT_COLUMNS} modify format float %.17g\n",
+            "{observe}pair_coeff * * {elastic}\nrun 0 post no\nwrite_dump all custom \"{}\" {GRAIN_COLUMNS} modify format float %.17g\n\
+             write_dump all local \"{}\" {CONTACT_COLUMNS} modify format float %.17g\npair_coeff * * {own}\n",
             grains.display(),
             contacts.display()
         );
@@ -436,7 +442,8 @@ impl ParticleEngine for Running {
         // LAMMPS goes on from the file, too: a run that is resumed from it then has the same rounding errors.
         let again = self.commands(&read_restart(&path))?;
         let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, FIRST_STEP);
-        link.program.tell(&format!("write_restart {}\n{again}{observe}run 0 post no\n", path.display()))?;
+        link.program
+            .tell(&format!("write_restart \"{}\"\n{again}{observe}run 0 post no\n", path.display()))?;
         link.program.ask([])?;
         link.at = FIRST_STEP;
         let restart = std::fs::read(&path).or_else(|e| refused(format!("{}: {e}", path.display())))?;

@@ -14,6 +14,10 @@ const DRAG: f64 = 0.05;
 /// Number of the first step in LAMMPS: more than any exchange has steps.
 pub(crate) const FIRST_STEP: u64 = 1_000_000_000;
 
+/// Keeps the forces of the last step for the next exchange, also in a restart file: a state that is read in between evaluates
+/// others.
+pub(crate) const HOLD: &str = "fix held all store/state 0 fx fy fz\n";
+
 /// Some steps at one strain rate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exchange<'a> {
@@ -86,11 +90,7 @@ impl Exchange<'_> {
             // A deforming box is set at the end of a step. One step ahead, it is that of the positions at which forces are evaluated,
             // except at the beginning: there the forces of the step before are used again.
             let ahead = self.from.edges + self.affine.first * self.from.edges * self.dt;
-            let _ = writeln!(
-                before,
-                "fix held all store/state 0 fx fy fz\nchange_box all {} units box",
-                edges(&ahead)
-            );
+            let _ = writeln!(before, "change_box all {} units box", edges(&ahead));
             for (k, axis) in AXES.into_iter().enumerate() {
                 let _ = writeln!(before, "variable h{axis} atom f_held[{}]-f{axis}", k + 1);
             }
@@ -114,14 +114,11 @@ impl Exchange<'_> {
         }
         before += &Self::observe(&self.affine.last, self.dt, self.at + u64::from(self.steps));
         let _ = writeln!(before, "run {} post no", self.steps);
-        let mut after = String::new();
+        let mut after = format!("unfix held\n{HOLD}");
         if !is_fixed {
             after += &Self::change_velocities(1.0, &-self.affine.last);
-            let _ = writeln!(
-                after,
-                "unfix box\nunfix hold\nunfix held\nchange_box all {} units box",
-                edges(&self.to.edges)
-            );
+            let _ =
+                writeln!(after, "unfix box\nunfix hold\nchange_box all {} units box", edges(&self.to.edges));
         }
         (before, after, now)
     }
