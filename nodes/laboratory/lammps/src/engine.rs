@@ -4,7 +4,7 @@ use crate::exchange::{Exchange, FIRST_STEP, HOLD, OBSERVED};
 use crate::files::{CONTACT_COLUMNS, Dumps, GRAIN_COLUMNS, data_file};
 use crate::folder::Folder;
 use crate::frame::{Affine, Frame};
-use crate::law::{check_law, check_scene, check_settings, pair_coeff};
+use crate::law::{MOST_FRICTION, check_law, check_scene, check_settings, pair_coeff};
 use crate::program::Program;
 use crate::refusal::{NAME, refused};
 use crate::survey::{Load, Survey};
@@ -170,7 +170,7 @@ impl Running {
         self.set_up(&read)?;
         // Velocities half a step before the positions become those at the positions.
         let (half, frictional) = (0.5 * self.known.time_step, self.settings.friction > 0.0);
-        let mut commands = String::new();
+        let mut commands = "run 0 post no\n".to_owned();
         for axis in ["x", "y", "z"] {
             commands += &format!("variable v{axis} atom v{axis}+f{axis}*({half:e})/mass\n");
         }
@@ -184,7 +184,7 @@ impl Running {
         }
         self.link().program.tell(&commands)?;
         self.observe()?;
-        self.link().program.tell(HOLD)
+        self.link().program.tell(&format!("run 0 post no\n{HOLD}"))
     }
 
     /// Returns to a saved state.
@@ -195,11 +195,8 @@ impl Running {
         };
         let path = self.folder.write("present.restart", own_state.get(at + 1..).unwrap_or_default())?;
         self.spin = saved.spin.into();
-        // Without dashpots the mean stress is that of the overlaps in the packing.
-        let (expected, settings) = (self.seen, self.settings);
-        self.settings.damping = 0.0;
+        let expected = self.seen;
         self.set_up(&read_restart(&path))?;
-        self.settings = settings;
         let [found, wanted] = [&self.seen, &expected].map(|seen| (seen.contacts, seen.stress.tensor.mean()));
         if found.0 != wanted.0 || (found.1 - wanted.1).abs() > 1e-6 * wanted.1.abs() {
             return refused(format!(
@@ -207,7 +204,6 @@ impl Running {
                 found.0, found.1, wanted.0, wanted.1
             ));
         }
-        self.set_up(&read_restart(&path))?;
         // To the last digit, so that requests are repeated with the same bytes.
         self.seen = Observables {
             stress: Stress { tensor: SymTensor::from_voigt(saved.stress), asymmetry: saved.asymmetry },
@@ -261,11 +257,21 @@ impl Running {
 
     /// Evaluates forces at the present state, and observes it.
     fn observe(&mut self) -> Result<(), ExperimentError> {
+        let (elastic, own) = self.laws()?;
         let mut link = self.link();
         let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
-        link.program.tell(&format!("{observe}run 0 post no\n"))?;
+        link.program.tell(&format!("{observe}pair_coeff * * {elastic}\nrun 0 post no\n"))?;
         drop(link);
-        self.take_observables("")
+        self.take_observables(&format!("pair_coeff * * {own}\n"))
+    }
+
+    /// The law for a look at a state, and that of the run. LAMMPS cuts tangential springs at the Coulomb limit also where no step
+    /// is made, by the velocities of that moment. Without a limit and dashpots a look changes nothing, and finds elastic forces.
+    fn laws(&self) -> Result<(String, String), ExperimentError> {
+        let friction = if self.settings.friction > 0.0 { MOST_FRICTION } else { 0.0 };
+        let elastic = EngineSettings { damping: 0.0, friction, ..self.settings };
+        let law = |settings| pair_coeff(&self.known.material, settings);
+        Ok((law(&elastic)?, law(&self.settings)?))
     }
 
     /// Reads what was observed at the last step, and sends the commands after it.
@@ -341,7 +347,7 @@ impl ParticleEngine for Running {
         }
         self.survey()?;
         self.observe()?;
-        self.link().program.tell(&format!("unfix held\n{HOLD}"))
+        self.link().program.tell(&format!("run 0 post no\nunfix held\n{HOLD}"))
     }
 
     fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), ExperimentError> {
@@ -416,10 +422,7 @@ impl ParticleEngine for Running {
         let (grains, contacts) = (self.folder.file("grains.dump"), self.folder.file("contacts.dump"));
         let mut link = self.link();
         let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
-        // Forces of a packing are those without dashpots.
-        let elastic = EngineSettings { damping: 0.0, ..self.settings };
-        let [elastic, own] = [&elastic, &self.settings].map(|s| pair_coeff(&self.known.material, s));
-        let (elastic, own) = (elastic?, own?);
+        let (elastic, own) = self.laws()?;
         let commands = format!(
             "{observe}pair_coeff * * {elastic}\nrun 0 post no\nwrite_dump all custom \"{}\" {GRAIN_COLUMNS} modify format float %.17g\n\
              write_dump all local \"{}\" {CONTACT_COLUMNS} modify format float %.17g\npair_coeff * * {own}\n",
@@ -440,10 +443,12 @@ impl ParticleEngine for Running {
         let path = self.folder.file("present.restart");
         let mut link = self.link();
         // LAMMPS goes on from the file, too: a run that is resumed from it then has the same rounding errors.
-        let again = self.commands(&read_restart(&path))?;
+        let (again, (elastic, own)) = (self.commands(&read_restart(&path))?, self.laws()?);
         let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, FIRST_STEP);
-        link.program
-            .tell(&format!("write_restart \"{}\"\n{again}{observe}run 0 post no\n", path.display()))?;
+        link.program.tell(&format!(
+            "write_restart \"{}\"\n{again}{observe}pair_coeff * * {elastic}\nrun 0 post no\npair_coeff * * {own}\n",
+            path.display()
+        ))?;
         link.program.ask([])?;
         link.at = FIRST_STEP;
         let restart = std::fs::read(&path).or_else(|e| refused(format!("{}: {e}", path.display())))?;

@@ -8,6 +8,9 @@ use grainlab_experiment::ExperimentError;
 use grainlab_scene::{GasMethod, PhaseKind, Scene};
 use std::f64::consts::PI;
 
+/// Friction coefficient at which no contact slides.
+pub(crate) const MOST_FRICTION: f64 = 1e4;
+
 /// Refuses a scene with a part that LAMMPS does not have.
 ///
 /// # Errors
@@ -60,7 +63,7 @@ pub(crate) fn check_settings(settings: &EngineSettings) -> Result<(), Experiment
 }
 
 fn check(place: &str, friction: f64, damping: f64) -> Result<(), ExperimentError> {
-    if !(0.0..=1e4).contains(&friction) {
+    if !(0.0..=MOST_FRICTION).contains(&friction) {
         return refused(format!("{place}friction {friction}: 0 to 10000; without sliding, take 10000"));
     }
     restitution(place, damping).map(drop)
