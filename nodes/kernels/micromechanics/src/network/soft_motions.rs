@@ -66,7 +66,7 @@ pub(crate) fn soft_motions(network: &SpringNetwork) -> Vec<SoftMotion> {
 
 struct Search<'a> {
     network: &'a SpringNetwork,
-    /// Contacts of grain g with other grains: `contacts[first[g]..first[g + 1]]`.
+    /// Contacts of grain g: `contacts[first[g]..first[g + 1]]`.
     contacts: Vec<u32>,
     first: Vec<usize>,
     /// Blocks D⁻½, with zero in place of the inverse of zero.
@@ -77,10 +77,12 @@ impl<'a> Search<'a> {
     fn new(network: &'a SpringNetwork) -> Self {
         let springs = network.contact_springs();
         let mut ends: Vec<(u32, u32)> = Vec::with_capacity(2 * springs.len());
-        for (c, s) in springs.iter().enumerate().filter(|(_, s)| s.i != s.j) {
+        for (c, s) in springs.iter().enumerate() {
             ends.extend([(s.i, c as u32), (s.j, c as u32)]);
         }
         ends.sort_unstable();
+        // A contact with an own image once.
+        ends.dedup();
         let mut first = vec![0; network.grains() + 1];
         ends.iter().for_each(|(grain, _)| first[*grain as usize + 1] += 1);
         for g in 0..network.grains() {
@@ -158,7 +160,8 @@ impl<'a> Search<'a> {
         let place: BTreeMap<u32, usize> = cluster.iter().enumerate().map(|(at, g)| (*g, 6 * at)).collect();
         let mut matrix = DMatrix::identity(6 * cluster.len(), 6 * cluster.len());
         for (grain, row) in &place {
-            for s in self.contacts(*grain).filter(|s| s.i == *grain) {
+            // D has the contacts with own images.
+            for s in self.contacts(*grain).filter(|s| s.i == *grain && s.j != *grain) {
                 if let Some(column) = place.get(&s.j) {
                     let coupling = self.coupling(s);
                     let mut upper = matrix.fixed_view_mut::<6, 6>(*row, *column);

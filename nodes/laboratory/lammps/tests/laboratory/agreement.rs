@@ -113,6 +113,37 @@ fn in_a_deforming_cell_the_difference_falls_in_proportion_to_the_time_step() {
     assert!(off[2] < 1e-5, "{off:?}");
 }
 
+/// Expected: a packing and a state that are saved between exchanges change nothing, also where contacts slide, and
+/// the packing has the elastic forces.
+#[test]
+fn a_run_is_the_same_with_and_without_saved_states() {
+    let Some(lammps) = lammps(1) else { return };
+    let settings = settings(0.3, 0.3, 4e-8);
+    let (start, rate) = (shaken(4e-8), [-30.0, 15.0, 15.0, 0.0, 40.0, 0.0]);
+    let run = |saves: bool| {
+        let mut engine = lammps.start(&start, &settings, &[0.0; 6], &Compute::default()).unwrap();
+        engine.begin_phase(&settings).unwrap();
+        engine.set_rate(&rate).unwrap();
+        for _ in 0..30 {
+            engine.run(20).unwrap();
+            if saves {
+                engine.packing(Mat3::identity()).unwrap();
+                engine.own_state().unwrap();
+            }
+        }
+        (engine.observables().unwrap().stress.tensor.matrix(), engine.packing(Mat3::identity()).unwrap())
+    };
+    let ((saved, packing), (plain, _)) = (run(true), run(false));
+    assert!(difference(&plain, &saved) < 1e-9, "{:e}", difference(&plain, &saved));
+    let slides = |c: &&grainlab_core::Contact| c.tangential_force.norm() > 0.28 * c.normal_force;
+    let sliding = packing.contacts.iter().filter(slides).count();
+    assert!(sliding >= 10, "{sliding}");
+    assert!(packing.contacts.iter().all(|c| {
+        let elastic = packing.material.normal_force(packing.effective_radius(c), c.overlap);
+        (c.normal_force / elastic - 1.0).abs() < 1e-9
+    }));
+}
+
 /// Expected: one dashpot at any fraction of critical damping, while the grains approach and while they separate.
 #[test]
 fn two_spheres_rebound_with_the_same_speed() {
