@@ -143,6 +143,7 @@ impl Settings {
         let made_by = from.and_then(|(_, run_state)| engine_program(run_state));
         let recorded = made_by.as_ref().map_or(OURS, |program| program.name.as_str());
         let wanted = if self.engine.is_empty() { recorded } else { &self.engine };
+        let is_new = from.is_none_or(|(_, run_state)| run_state.is_empty());
         // A gas is ours under any engine.
         let is_changed = |(packing, run_state): (&Packing, &[u8])| {
             !run_state.is_empty() && wanted != recorded && !packing.contacts.is_empty()
@@ -151,7 +152,8 @@ impl Settings {
             log::warn!("the run continues with the engine {wanted}; its last packing was made by {recorded}");
         }
         match wanted {
-            OURS if self.lammps.command != LAMMPS_COMMAND => {
+            // A run that continues with another engine keeps its arguments.
+            OURS if is_new && self.lammps.command != LAMMPS_COMMAND => {
                 Err("engine_command is given, and the engine is grainlab: name that of the command (--engine lammps)".into())
             }
             OURS => Ok(Arc::new(Dem)),
