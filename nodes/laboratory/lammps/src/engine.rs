@@ -38,6 +38,7 @@ impl Default for Lammps {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Saved {
+    version: u32,
     spin: [f64; 3],
     stress: [f64; 6],
     asymmetry: f64,
@@ -46,6 +47,9 @@ struct Saved {
     tangent: Option<[f64; 6]>,
     survey: Survey,
 }
+
+/// Version of a saved state. From 2 on its restart file has the forces of the last step.
+const VERSION: u32 = 2;
 
 /// The commands that read a restart file. A style that is named again evaluates the reach of its forces anew.
 fn read_restart(path: &Path) -> String {
@@ -190,7 +194,9 @@ impl Running {
     /// Returns to a saved state.
     fn read_restart(&mut self, own_state: &[u8]) -> Result<(), ExperimentError> {
         let at = own_state.iter().position(|b| *b == b'\n').unwrap_or(own_state.len());
-        let Ok(saved) = serde_json::from_slice::<Saved>(&own_state[..at]) else {
+        let saved =
+            serde_json::from_slice::<Saved>(&own_state[..at]).ok().filter(|saved| saved.version == VERSION);
+        let Some(saved) = saved else {
             return refused("the saved state is damaged, or of another version");
         };
         let path = self.folder.write("present.restart", own_state.get(at + 1..).unwrap_or_default())?;
@@ -454,6 +460,7 @@ impl ParticleEngine for Running {
         let restart = std::fs::read(&path).or_else(|e| refused(format!("{}: {e}", path.display())))?;
         let seen = &self.seen;
         let saved = Saved {
+            version: VERSION,
             spin: self.spin.into(),
             stress: seen.stress.tensor.voigt(),
             asymmetry: seen.stress.asymmetry,

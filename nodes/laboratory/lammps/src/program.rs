@@ -47,7 +47,8 @@ impl Program {
             .args(["-c", &format!("exec {command} -nb -nocite -log none -echo none")])
             .env("OMP_NUM_THREADS", std::env::var("OMP_NUM_THREADS").unwrap_or_else(|_| "1".into()))
             .env(MARK, &value)
-            // srun would also fill the pipes of the other processes, which nobody reads; and wait for the rest of a failed step.
+            // By default srun copies the input to all processes, of which only the first reads it; when the pipe of another one is
+            // full, the run hangs. And it does not end the other processes if one fails.
             .env("SLURM_STDINMODE", "0")
             .env("SLURM_KILL_BAD_EXIT", "1")
             .stdin(Stdio::piped())

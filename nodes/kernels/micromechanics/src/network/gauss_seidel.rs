@@ -73,10 +73,7 @@ struct Half<T> {
 impl<T: Real, const G: bool> Sweeps<T, G> {
     pub(crate) fn new(network: &SpringNetwork) -> Self {
         let order = network.order.clone();
-        let mut places = vec![0u32; order.len()];
-        for (at, grain) in order.iter().enumerate() {
-            places[*grain as usize] = at as u32;
-        }
+        let places = places(&order);
         let blocks = network.diagonal_blocks();
         let traces: f64 = blocks.iter().map(|b| b[0][0] + b[1][1] + b[2][2]).sum();
         let unit = if traces > 0.0 { traces / (3 * blocks.len()) as f64 } else { 1.0 };
@@ -115,10 +112,7 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
 
     /// With K − Σ K w wᵀ K in place of K in [`Sweeps::leave_out`].
     pub(crate) fn without(mut self, motions: &[SoftMotion]) -> Self {
-        let mut places = vec![0u32; self.order.len()];
-        for (at, grain) in self.order.iter().enumerate() {
-            places[*grain as usize] = at as u32;
-        }
+        let places = places(&self.order);
         for motion in motions {
             let entries = motion.force.iter();
             self.soft
@@ -268,6 +262,13 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
     fn later(&self, g: usize) -> &[Half<T>] {
         &self.springs[self.first[g] as usize..self.first[g + 1] as usize]
     }
+}
+
+/// Place of each grain, for the grain at each place.
+fn places(order: &[u32]) -> Vec<u32> {
+    let mut places = vec![0; order.len()];
+    order.iter().zip(0u32..).for_each(|(grain, at)| places[*grain as usize] = at);
+    places
 }
 
 impl<T: Real> Half<T> {
