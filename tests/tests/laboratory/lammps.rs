@@ -34,6 +34,26 @@ fn last_report(run: &Path) -> msg::PackingReport {
 }
 
 #[test]
+fn lammps_ends_with_a_killed_run_and_its_files_are_removed() {
+    let Some(command) = two_processes() else { return };
+    let lab = Lab::new();
+    let scene = golden("scenes/pressed.toml");
+    let given = ["launch", "--one-process", "--engine", "lammps", "--engine-command", &command, "--scene"];
+    let launcher = lab.start(&[given.as_slice(), &[&scene.to_string_lossy()]].concat());
+    let begins = format!("grainlab-lammps-{}-", launcher.pid());
+    let files = || {
+        let all = std::fs::read_dir(std::env::temp_dir()).unwrap().flatten();
+        all.filter(|entry| entry.file_name().to_string_lossy().starts_with(&begins)).count()
+    };
+    until("LAMMPS has its first packing", || lab.recorded() > 60);
+    let processes = below(launcher.pid());
+    assert!(files() == 1 && processes.len() > 2);
+    launcher.signal(libc::SIGKILL);
+    until("processes of LAMMPS end", || !processes.iter().any(|pid| runs(*pid)));
+    until("files are removed", || files() == 0);
+}
+
+#[test]
 fn a_run_with_lammps_goes_on_after_one_of_its_processes_ended_and_with_our_engine() {
     let Some(command) = two_processes() else { return };
     let scene = golden("scenes/pressed.toml");

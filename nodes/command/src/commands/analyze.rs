@@ -11,6 +11,7 @@ use crate::offline_recording::OfflineRecording;
 use grainlab_console::{Failure, Format, print};
 use grainlab_core::Vec3;
 use grainlab_core::results::QUANTITIES;
+use grainlab_micromechanics::TOLERANCES;
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::StrainProbe;
 use grainlab_msgs::topics;
@@ -142,7 +143,7 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     let axis = axis.map(|v| v / v.amax()).filter(|v| v.norm().is_finite());
     let axis = axis.ok_or_else(|| Failure::usage("--axis takes three finite numbers, not all of them 0"))?;
     let settings = grainlab_micromechanics::Settings::default();
-    in_range("tolerance", args.tolerance, "from 1e-13 to 1e-2", |t| (1e-13..=1e-2).contains(&t))?;
+    in_range("tolerance", args.tolerance, "from 1e-13 to 1e-5", |t| TOLERANCES.contains(&t))?;
     let amplitude = args.amplitude.unwrap_or(StrainProbe::default().amplitude);
     in_range("amplitude", Some(amplitude), "a strain, more than 0 and at most 0.01", |a| {
         a > 0.0 && a <= 0.01

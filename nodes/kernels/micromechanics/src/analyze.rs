@@ -11,14 +11,19 @@ use grainlab_core::results::{
     ElasticStiffness, Elasticity, NotJammed, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
 };
 use grainlab_core::{Packing, Vec3, min_contacts, symmetry};
+use std::ops::RangeInclusive;
 
 /// Grains from which the default tolerance is larger.
 const LARGE: usize = 50_000;
 
+/// Tolerances of a measurement. Above, a solve may end before it has found the softest motions of a network near isostaticity, and
+/// then states too small an error.
+pub const TOLERANCES: RangeInclusive<f64> = 1e-13..=1e-5;
+
 /// Settings of the measurement of a packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2]; None: [`Settings::tolerance_for`]. A larger one
+    /// Relative residual at which the stiffness solve stops, in [`TOLERANCES`]; None: [`Settings::tolerance_for`]. A larger one
     /// overestimates C, the more so the closer the network is to isostaticity (z = 4). The error is stated with the stiffness.
     pub tolerance: Option<f64>,
     /// Maximum number of iterations of the solve.
@@ -112,7 +117,7 @@ fn elasticity(
         return not_jammed(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
     }
     let network = SpringNetwork::new(view, settings.springs)?;
-    let found = relaxed_stiffness(&network, settings.tolerance_for(grains), settings.max_iterations)?;
+    let found = relaxed_stiffness(&network, settings.tolerance_for(grains)?, settings.max_iterations)?;
     let Some(found) = found else {
         return not_jammed(NotJammed::Floppy { contacts: network.contacts() });
     };
@@ -152,16 +157,22 @@ fn elasticity(
 impl Settings {
     /// Residual for so many grains: that of the settings, else 1e-9, and 1e-5 from 50,000 grains. At z = 5.3 these leave errors of
     /// about 1e-14 and 1e-9 of C11; the larger one takes half of the time.
-    pub fn tolerance_for(&self, grains: usize) -> f64 {
-        self.tolerance.unwrap_or(if grains < LARGE { 1e-9 } else { 1e-5 })
+    ///
+    /// # Errors
+    /// One that is not in [`TOLERANCES`].
+    pub fn tolerance_for(&self, grains: usize) -> Result<f64, MicroError> {
+        let value = self.tolerance.unwrap_or(if grains < LARGE { 1e-9 } else { 1e-5 });
+        if TOLERANCES.contains(&value) {
+            Ok(value)
+        } else {
+            let requirement = "between 1e-13 and 1e-5";
+            Err(MicroError::Setting { name: "tolerance", value, requirement })
+        }
     }
 
     /// The axis as a unit vector, if every setting is in range.
     fn check(&self) -> Result<Vec3, MicroError> {
-        if let Some(value) = self.tolerance.filter(|t| !(1e-13..=1e-2).contains(t)) {
-            let requirement = "between 1e-13 and 1e-2";
-            return Err(MicroError::Setting { name: "tolerance", value, requirement });
-        }
+        self.tolerance_for(0)?;
         let length = self.axis.norm();
         if !(length > 0.0 && length.is_finite()) {
             let requirement = "a finite vector longer than zero";

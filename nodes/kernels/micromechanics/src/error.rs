@@ -52,7 +52,8 @@ pub enum MicroError {
     /// The linear solve did not reach its tolerance.
     #[error(
         "stiffness solve reached a relative residual of {residual:e} after {iterations} iterations, {tolerance:e} was \
-         asked for (a network near isostaticity converges slowly); raise the tolerance"
+         asked for (a network near isostaticity converges slowly, one with chains of grains on two contacts perhaps not at all); raise \
+         the tolerance, to 1e-5 at most"
     )]
     NotConverged {
         /// The worst relative residual of the columns.

@@ -19,7 +19,7 @@ mod sampling_tolerance;
 pub mod structure;
 mod view;
 
-pub use analyze::{Analysis, Settings, analyze};
+pub use analyze::{Analysis, Settings, TOLERANCES, analyze};
 pub use equilibrium::unbalanced_force_ratio;
 pub use error::{MicroError, ProbeError};
 pub use sampling_tolerance::sampling_tolerance;

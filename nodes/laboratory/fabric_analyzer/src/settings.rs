@@ -1,6 +1,7 @@
 //! The parameters of the node.
 
 use grainlab_core::Vec3;
+use grainlab_micromechanics::TOLERANCES;
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::StrainProbe;
 use grainlab_node_kit::{ParameterSpec, Parameters, Range};
@@ -15,7 +16,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
             0.0,
             "relative residual at which the stiffness solve stops, from 1e-13, 1; 0: 1e-9, and 1e-5 from 50,000 grains",
         )
-        .within(Range::Double { min: 0.0, max: 1e-2 }),
+        .within(Range::Double { min: 0.0, max: *TOLERANCES.end() }),
         ParameterSpec::new(
             "axis",
             axis,
@@ -55,7 +56,7 @@ pub enum SettingsError {
     )]
     Axis(Vec<f64>),
     /// Finer than double precision allows.
-    #[error("parameter \"tolerance\" = {0:e} is below 1e-13: it must be 1e-13 to 1e-2, or 0 for the default")]
+    #[error("parameter \"tolerance\" = {0:e} is below 1e-13: it must be 1e-13 to 1e-5, or 0 for the default")]
     Tolerance(f64),
 }
 
@@ -67,7 +68,7 @@ impl TryFrom<&Parameters> for Settings {
         let direction = <[f64; 3]>::try_from(axis.as_slice()).ok().map(Vec3::from).filter(|v| v.norm() > 0.0);
         let axis = direction.ok_or(SettingsError::Axis(axis))?;
         let tolerance = Some(parameters.get("tolerance")).filter(|t: &f64| *t > 0.0);
-        if let Some(too_fine) = tolerance.filter(|t| *t < 1e-13) {
+        if let Some(too_fine) = tolerance.filter(|t| t < TOLERANCES.start()) {
             return Err(SettingsError::Tolerance(too_fine));
         }
         let method: String = parameters.get("method");

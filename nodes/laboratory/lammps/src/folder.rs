@@ -2,7 +2,7 @@
 
 use crate::refusal::refused;
 use grainlab_experiment::ExperimentError;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A folder of this process alone, which is removed with it.
@@ -18,6 +18,10 @@ impl Folder {
             Ok(()) => Ok(Self(path)),
             Err(e) => refused(format!("no folder for temporary files: {}: {e}", path.display())),
         }
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
     }
 
     pub(crate) fn file(&self, name: &str) -> PathBuf {

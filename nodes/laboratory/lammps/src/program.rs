@@ -1,12 +1,12 @@
 //! The process of LAMMPS, its pipe, and its end.
 
+use crate::folder::Folder;
 use crate::refusal::refused;
 use grainlab_experiment::{EngineProgram, ExperimentError};
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -17,11 +17,12 @@ const QUOTED: usize = 16;
 /// Time for a process that has no more input to end by itself.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// Variable of the environment by which the processes of a program are found.
+/// Variable of the environment with the folder of a program, by which its processes are found.
 const MARK: &str = "GRAINLAB_ENGINE";
 
-/// Number of programs that this process has started.
-static STARTED: AtomicU32 = AtomicU32::new(0);
+/// Commands of a scene that need a package or a version of LAMMPS.
+const NEEDS: &str = "atom_style sphere\nregion all block 0 1 0 1 0 1\ncreate_box 1 all\npair_style granular\n\
+     pair_coeff * * hertz/material 1 0.5 0.2 tangential linear_nohistory 0 0 damping coeff_restitution limit_damping\n";
 
 /// A running LAMMPS. It ends when this is dropped, and by itself when our process has ended, since its input ends then.
 #[derive(Debug)]
@@ -39,14 +40,21 @@ pub(crate) struct Program {
 }
 
 impl Program {
-    /// Starts `command`, an `lmp` with what starts it (`mpiexec -n 2 lmp`), with a time limit for each answer.
-    pub(crate) fn start(command: &str, limit: Duration) -> Result<(Self, EngineProgram), ExperimentError> {
-        let number = STARTED.fetch_add(1, Ordering::Relaxed);
-        let value = format!("{}.{number}", std::process::id());
+    /// Starts `command`, an `lmp` with what starts it (`mpiexec -n 2 lmp`), with a time limit for each answer. With its end the
+    /// folder is removed, also after the end of our process.
+    pub(crate) fn start(
+        command: &str,
+        limit: Duration,
+        folder: &Folder,
+    ) -> Result<(Self, EngineProgram), ExperimentError> {
+        // The trap keeps the shell until a program that is asked to end has ended.
+        let script = format!(
+            "trap : TERM; {command} -nb -nocite -log none -echo none; code=$?; rm -rf \"${MARK}\"; exit $code"
+        );
         let child = Command::new("sh")
-            .args(["-c", &format!("exec {command} -nb -nocite -log none -echo none")])
+            .args(["-c", &script])
             .env("OMP_NUM_THREADS", std::env::var("OMP_NUM_THREADS").unwrap_or_else(|_| "1".into()))
-            .env(MARK, &value)
+            .env(MARK, folder.path())
             // By default srun copies the input to all processes, of which only the first reads it; when the pipe of another one is
             // full, the run hangs. And it does not end the other processes if one fails.
             .env("SLURM_STDINMODE", "0")
@@ -66,7 +74,7 @@ impl Program {
             forward(stderr, lines);
         }
         let input = child.stdin.take();
-        let (command, mark) = (command.to_owned(), format!("{MARK}={value}"));
+        let (command, mark) = (command.to_owned(), format!("{MARK}={}", folder.path().display()));
         let mut program =
             Self { child, input, output, last: VecDeque::new(), command, mark, limit, questions: 0 };
         let about = program.about()?;
@@ -75,7 +83,7 @@ impl Program {
 
     /// Version and number of processes.
     fn about(&mut self) -> Result<EngineProgram, ExperimentError> {
-        self.tell("info communication\nregion all block 0 1 0 1 0 1\ncreate_box 1 all\n")?;
+        self.tell(&format!("{NEEDS}info communication\n"))?;
         let mut ranks = None;
         let version = self.answer("$(version)", |line| {
             let count = line.strip_prefix("Nprocs = ").and_then(|rest| rest.split(',').next());
@@ -146,7 +154,7 @@ impl Program {
                     let limit = self.limit.as_secs_f64();
                     self.kill();
                     return self.failed(&format!(
-                        "it did not answer within {limit:.0} s, and was ended (parameter engine_time_limit)"
+                        "it did not answer within {limit} s, and was ended (parameter engine_time_limit)"
                     ));
                 }
                 Err(RecvTimeoutError::Disconnected) => {
@@ -185,14 +193,11 @@ impl Program {
 
     fn kill(&mut self) {
         self.input = None;
-        let id = self.child.id();
         // srun ends its processes on other hosts where it is asked to end, and leaves them where it is killed.
-        signal(&[id], libc::SIGTERM);
-        if !self.ends_within(FAREWELL) {
-            signal(&[id], libc::SIGKILL);
-        }
-        let _ = self.child.wait();
+        signal(&marked(&self.mark), libc::SIGTERM);
+        let _ = self.ends_within(FAREWELL);
         self.end_rest();
+        let _ = self.child.wait();
     }
 
     /// Ends what is left of its processes. mpiexec gives them groups of their own, and its end may leave one without a parent.

@@ -61,7 +61,7 @@ pub(crate) fn stiffness<'py>(
     let packing = packing.get().packing();
     let solve = || {
         let network = SpringNetwork::new(&PackingView::new(packing)?, settings.springs)?;
-        relaxed_stiffness(&network, settings.tolerance_for(packing.grains()), settings.max_iterations)
+        relaxed_stiffness(&network, settings.tolerance_for(packing.grains())?, settings.max_iterations)
     };
     let found = py.detach(solve).map_err(error::physics)?;
     let found =

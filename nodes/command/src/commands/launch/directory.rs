@@ -56,7 +56,7 @@ pub(super) fn refuse_another(directory: &Path, scene: &SceneText, order: &Order)
         let line = |text: &str| text.lines().nth(first).unwrap_or_default().trim().to_owned();
         format!("another scene (line {}: `{}`, not `{}`)", first + 1, line(&known), line(&scene.text))
     } else if !Order::read(directory)?.contains(order) {
-        "another seed, launch file or arguments, or fewer recorded messages".to_owned()
+        "another seed, launch file, engine or arguments, or fewer recorded messages".to_owned()
     } else {
         return Ok(());
     };
