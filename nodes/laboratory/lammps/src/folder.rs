@@ -13,10 +13,20 @@ impl Folder {
     pub(crate) fn new() -> Result<Self, ExperimentError> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("grainlab-lammps-{}-{number}", std::process::id()));
+        let parent = std::env::temp_dir();
+        if parent.to_string_lossy().contains('"') {
+            return refused(format!(
+                "TMPDIR is {}: commands of LAMMPS have no names with a \"",
+                parent.display()
+            ));
+        }
+        let path = parent.join(format!("grainlab-lammps-{}-{number}", std::process::id()));
         match std::fs::create_dir(&path) {
             Ok(()) => Ok(Self(path)),
-            Err(e) => refused(format!("no folder for temporary files: {}: {e}", path.display())),
+            Err(e) => refused(format!(
+                "no folder for temporary files: {}: {e}; the variable TMPDIR names its place",
+                path.display()
+            )),
         }
     }
 

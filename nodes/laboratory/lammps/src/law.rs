@@ -76,7 +76,7 @@ fn check(place: &str, friction: f64, damping: f64) -> Result<(), ExperimentError
 fn restitution(place: &str, damping: f64) -> Result<f64, ExperimentError> {
     let s = 2.0 * damping * 0.3f64.sqrt();
     if !(0.0..0.999).contains(&s) {
-        return refused(format!("{place}damping {damping}: 0 to 0.91, which is a restitution of 0"));
+        return refused(format!("{place}damping {damping}: 0 to 0.911, where the restitution falls to 0"));
     }
     Ok((-PI * s / (1.0 - s * s).sqrt()).exp())
 }

@@ -19,6 +19,7 @@
 
 mod engine;
 mod exchange;
+mod factory;
 mod files;
 mod folder;
 mod frame;
@@ -27,6 +28,6 @@ mod program;
 mod refusal;
 mod survey;
 
-pub use engine::Lammps;
+pub use factory::Lammps;
 pub use law::check_scene;
 pub use refusal::NAME;

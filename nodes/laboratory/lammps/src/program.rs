@@ -7,12 +7,15 @@ use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 /// Lines of output that an error quotes at most.
 const QUOTED: usize = 16;
+
+/// Lines of output that wait to be read at most.
+const WAITING: usize = 1000;
 
 /// Time for a process that has no more input to end by itself.
 const FAREWELL: Duration = Duration::from_secs(2);
@@ -47,9 +50,12 @@ impl Program {
         limit: Duration,
         folder: &Folder,
     ) -> Result<(Self, EngineProgram), ExperimentError> {
+        if command.trim().is_empty() {
+            return refused("engine_command is empty; it names the program, as in 'mpiexec -n 4 lmp'");
+        }
         // The trap keeps the shell until a program that is asked to end has ended.
         let script = format!(
-            "trap : TERM; {command} -nb -nocite -log none -echo none; code=$?; rm -rf \"${MARK}\"; exit $code"
+            "trap : TERM\n{command} -nb -nocite -log none -echo none\ncode=$?\nrm -rf \"${MARK}\"\nexit $code"
         );
         let child = Command::new("sh")
             .args(["-c", &script])
@@ -66,12 +72,13 @@ impl Program {
             .process_group(0)
             .spawn();
         let mut child = child.or_else(|error| refused(format!("`{command}` cannot be started: {error}")))?;
-        let (lines, output) = channel();
+        let (lines, output) = sync_channel(WAITING);
         if let Some(stdout) = child.stdout.take() {
-            forward(stdout, lines.clone());
+            forward(stdout, "", lines.clone());
         }
         if let Some(stderr) = child.stderr.take() {
-            forward(stderr, lines);
+            // Answers are on the standard output alone.
+            forward(stderr, " ", lines);
         }
         let input = child.stdin.take();
         let (command, mark) = (command.to_owned(), format!("{MARK}={}", folder.path().display()));
@@ -124,7 +131,9 @@ impl Program {
         let asked = self.input.as_mut().is_some_and(|input| input.write_all(question.as_bytes()).is_ok());
         let (mut end, mut reported) = (Instant::now() + self.limit, false);
         loop {
-            match self.output.recv_timeout(end.saturating_duration_since(Instant::now())) {
+            let left = end.saturating_duration_since(Instant::now());
+            let line = self.output.recv_timeout(left);
+            match if left.is_zero() { Err(RecvTimeoutError::Timeout) } else { line } {
                 Ok(line) => {
                     if let Some(words) = line.strip_prefix(&mark).filter(|_| asked) {
                         return Ok(words.split_whitespace().map(str::to_owned).collect());
@@ -169,8 +178,12 @@ impl Program {
 
     /// The error, with the last lines of output.
     fn failed<T>(&self, what: &str) -> Result<T, ExperimentError> {
-        let lines: Vec<&str> =
-            self.last.iter().map(|l| l.trim()).filter(|l| !l.is_empty() && !l.contains("^^")).collect();
+        let lines: Vec<&str> = self
+            .last
+            .iter()
+            .map(|l| l.trim())
+            .filter(|l| !l.is_empty() && !l.contains("^^") && !is_step(l))
+            .collect();
         // Errors of LAMMPS and of MPI.
         let begins = |l: &&str| l.contains("ERROR") || l.starts_with("Abort(");
         let from = lines.iter().position(begins).unwrap_or(lines.len().saturating_sub(3));
@@ -202,6 +215,11 @@ impl Program {
 
     /// Ends what is left of its processes. mpiexec gives them groups of their own, and its end may leave one without a parent.
     fn end_rest(&self) {
+        // The group has also what has cleared its environment.
+        if let Ok(group) = i32::try_from(self.child.id()) {
+            // SAFETY: killpg takes two integers.
+            unsafe { libc::killpg(group, libc::SIGKILL) };
+        }
         signal(&marked(&self.mark), libc::SIGKILL);
     }
 }
@@ -236,13 +254,18 @@ fn marked(entry: &str) -> Vec<u32> {
     processes.filter_map(|process| process.file_name().to_str()?.parse().ok()).filter(is_marked).collect()
 }
 
+/// True for a line of the table of steps.
+fn is_step(line: &str) -> bool {
+    line == "Step" || line.parse::<u64>().is_ok()
+}
+
 /// Sends each line of a stream, in a thread that ends with the stream.
-fn forward(stream: impl Read + Send + 'static, lines: Sender<String>) {
+fn forward(stream: impl Read + Send + 'static, before: &'static str, lines: SyncSender<String>) {
     thread::spawn(move || {
         let mut stream = BufReader::new(stream);
         let mut bytes = Vec::new();
         while stream.read_until(b'\n', &mut bytes).is_ok_and(|read| read > 0) {
-            let line = String::from_utf8_lossy(&bytes).trim_end().to_owned();
+            let line = format!("{before}{}", String::from_utf8_lossy(&bytes).trim_end());
             bytes.clear();
             if lines.send(line).is_err() {
                 return;

@@ -72,5 +72,10 @@ pub(super) fn run(directory: &Path, engine: &EngineOptions, output: Output) -> R
             plan.arguments.extend(["--ros-args".to_owned(), "-p".to_owned(), given]);
         }
     }
-    conduct(plans, medium(order.one_process)?, &directory, &scene, output)
+    let ended = conduct(plans, medium(order.one_process)?, &directory, &scene, output);
+    // A run that refuses another engine keeps its own.
+    if order != known && matches!(ended, Ok(Exit::Usage)) {
+        known.keep(&directory)?;
+    }
+    ended
 }

@@ -9,7 +9,7 @@ use grainlab_core::contact::ContactSprings;
 use grainlab_core::lanes::{LaneVec3, Lanes};
 
 /// A contact that overlaps by more than this fraction of the smaller diameter is outside Hertz's law.
-const OVERLAP_LIMIT: f64 = 0.1;
+pub const OVERLAP_LIMIT: f64 = 0.1;
 
 /// The contacts of one chunk.
 pub(super) struct ChunkContacts<'a, S> {

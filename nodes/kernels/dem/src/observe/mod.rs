@@ -1,6 +1,6 @@
 //! Observation of the present contacts: stress, tangent stiffness, force balance; and the running energy balance.
 
-mod contact_sums;
+pub(crate) mod contact_sums;
 mod contact_works;
 pub(crate) mod energy;
 pub(crate) mod energy_meter;

@@ -67,7 +67,10 @@ impl fmt::Display for Range {
             Range::Double { min, max } if max.is_infinite() => write!(f, "at least {min}"),
             Range::Double { min, max } => write!(f, "{min} to {max}"),
             Range::Positive => write!(f, "greater than 0 and finite"),
-            Range::Choice(allowed) => write!(f, "one of {}", allowed.join(", ")),
+            Range::Choice(allowed) => {
+                let named: Vec<&str> = allowed.iter().copied().filter(|name| !name.is_empty()).collect();
+                write!(f, "one of {}", named.join(", "))
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::agreement::PRESSED;
 use super::lammps;
-use grainlab_core::{Mat3, Packing};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_dem::{Compute, EngineSettings};
 use grainlab_experiment::{Dem, EngineFactory, ExperimentError};
 use grainlab_lammps::Lammps;
@@ -45,6 +45,24 @@ fn a_program_that_hangs_is_ended_after_the_time_limit_with_all_its_processes() {
 }
 
 #[test]
+fn a_program_that_prints_without_end_is_ended_after_the_time_limit() {
+    let text = error("exec yes;", Duration::from_millis(300)).to_string();
+    assert!(text.contains("it did not answer within 0.3 s, and was ended"), "{text}");
+}
+
+#[test]
+fn the_first_time_step_after_a_gas_is_that_of_contacts_and_not_a_mean_free_time() {
+    let Some(lammps) = lammps(1) else { return };
+    let cell = Cell::new(1.5 * PRESSED.cell.matrix()).unwrap();
+    let positions = PRESSED.positions.iter().map(|x| 1.5 * x).collect();
+    let velocities = vec![Vec3::new(3.0, 0.0, 0.0); PRESSED.grains()];
+    let gas =
+        Packing { cell, positions, velocities, contacts: Vec::new(), time_step: 1e-5, ..PRESSED.clone() };
+    let engine = lammps.start(&gas, &settings(), &[0.0; 6], &Compute::default()).unwrap();
+    assert!(engine.time_step() < 1e-6, "{:e}", engine.time_step());
+}
+
+#[test]
 fn an_error_of_lammps_is_quoted_and_ends_the_engine() {
     let Some(lammps) = lammps(1) else { return };
     // In place of the command that sets the time step.
@@ -66,6 +84,8 @@ fn tangential_forces_of_another_engine_are_refused_and_those_of_lammps_are_conti
     engine.run(50).unwrap();
     let (packing, own_state) = (engine.packing(Mat3::identity()).unwrap(), engine.own_state().unwrap());
     assert!(packing.contacts.iter().any(|c| c.tangential_force.norm() > 0.1 * c.normal_force));
+    // Read twice, a state has the same bytes: a recording has it once.
+    assert!(engine.packing(Mat3::identity()).unwrap() == packing && engine.own_state().unwrap() == own_state);
     // By its restart file, with all springs.
     let mut again =
         lammps.resume(&packing, &own_state, &settings, &engine.rate(), &Compute::default()).unwrap();
