@@ -1,6 +1,6 @@
 //! The command line.
 
-use crate::commands::{analyze, bag, completions, invert, launch, man, probe, run, scene};
+use crate::commands::{analyze, bag, completions, invert, launch, man, pick, probe, run, scene};
 #[cfg(feature = "studio")]
 use crate::commands::{calibrate, campaign, report, reproduce, verify, view};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -43,6 +43,8 @@ enum Command {
     Invert(invert::Args),
     /// Measure packings from files: structure, stress and the full stiffness.
     Analyze(analyze::Args),
+    /// Pick arrivals in records of an oscilloscope: speeds of long waves, with errors.
+    Pick(pick::Args),
     /// Send waves through packings from files: their speeds, and the moduli that follow.
     Probe(probe::Args),
     /// Print completions of this command line for a shell.
@@ -100,6 +102,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Bag(command)) => bag::run(&command),
         Some(Command::Invert(args)) => invert::run(&args),
         Some(Command::Analyze(args)) => analyze::run(&args),
+        Some(Command::Pick(args)) => pick::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),
         Some(Command::Completions(args)) => completions::run(&args, Cli::command()),
         Some(Command::Man(args)) => man::run(&args, Cli::command()),

@@ -11,6 +11,7 @@ pub(crate) mod invert;
 pub(crate) mod launch;
 pub(crate) mod man;
 pub(crate) mod packings;
+pub(crate) mod pick;
 pub(crate) mod probe;
 #[cfg(feature = "studio")]
 pub(crate) mod report;

@@ -33,6 +33,9 @@ pub enum AcousticsError {
         /// Direction of propagation.
         direction: [f64; 3],
     },
+    /// A record without an arrival.
+    #[error("no arrival: {0}")]
+    NoArrival(String),
     /// The sample is too short for the wave.
     #[error(
         "{copies} repetitions of the packing are a path of {path:.4e} m, and {needed:.4e} m are needed: the wave in the opposite \

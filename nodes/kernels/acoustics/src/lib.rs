@@ -21,6 +21,7 @@ mod instrument;
 mod measure;
 mod noise;
 mod ray;
+pub mod record;
 mod sample;
 mod settings;
 mod supercell;

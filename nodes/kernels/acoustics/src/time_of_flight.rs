@@ -16,10 +16,10 @@ mod line;
 mod measurement;
 mod path_plan;
 mod phase_velocity;
-mod pick;
+pub(crate) mod pick;
 mod settings;
 mod slab;
-mod spectrum;
+pub(crate) mod spectrum;
 mod wave_path;
 
 pub use arrival::Arrivals;

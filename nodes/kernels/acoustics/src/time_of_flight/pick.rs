@@ -40,15 +40,19 @@ pub(crate) struct Picker {
 impl Picker {
     /// For traces of `samples` samples at the sampling rate `rate`, Hz.
     pub(crate) fn new(pick: ArrivalPick, burst: Burst, rate: f64, samples: usize) -> Self {
-        let finer = ((FINE * burst.frequency / rate).ceil().max(1.0) as usize).next_power_of_two();
-        let spectrum = Spectrum::new(samples, finer);
         let length = burst.duration() * rate;
         let sent: Vec<f64> = (0..length.ceil() as usize).map(|k| burst.at(k as f64 / rate)).collect();
-        let band = spectrum.shape(&sent);
-        let low = |f: f64| (-0.5 * (f * rate / (1.5 * burst.frequency)).powi(2)).exp();
+        Self::of(pick, &sent, length, burst.frequency / rate, samples)
+    }
+
+    /// For a signal `sent` of the duration `burst` (samples) and the centre frequency `frequency` (samples⁻¹).
+    pub(crate) fn of(pick: ArrivalPick, sent: &[f64], burst: f64, frequency: f64, samples: usize) -> Self {
+        let finer = ((FINE * frequency).ceil().max(1.0) as usize).next_power_of_two();
+        let spectrum = Spectrum::new(samples, finer);
+        let band = spectrum.shape(sent);
+        let low = |f: f64| (-0.5 * (f / (1.5 * frequency)).powi(2)).exp();
         let low = spectrum.frequencies().map(low).collect();
-        let period = rate * finer as f64 / burst.frequency;
-        Self { pick, spectrum, band, low, finer, burst: length, period }
+        Self { pick, spectrum, band, low, finer, burst, period: finer as f64 / frequency }
     }
 
     /// The arrival at each receiver, in samples after the first sample. For a correlation: the first receiver's peak

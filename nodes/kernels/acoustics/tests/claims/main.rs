@@ -6,6 +6,7 @@ mod golden_packing;
 mod instrument;
 mod modes;
 mod picks;
+mod records;
 mod sample;
 mod stated_errors;
 mod supercell;

@@ -1,0 +1,50 @@
+//! A record with what was picked in it.
+
+use super::list::Row;
+use grainlab_acoustics::record::{Picks, Record};
+use grainlab_console::{Failure, write_whole};
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
+use std::path::Path;
+
+/// Draws a record into a folder, which is made.
+pub(super) fn drawn(folder: &Path, row: &Row, record: &Record, picked: &Picks) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(Failure::at(folder))?;
+    let stem = Path::new(&row.file).with_extension("").to_string_lossy().replace(['/', '\\'], "-");
+    let path = folder.join(format!("{:03}-{stem}.svg", row.line));
+    write_whole(&path, figure(row, record, picked).svg(Theme::Light)).map_err(Failure::at(&path))
+}
+
+fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {
+    let time = |k: f64| 1e6 * (k - record.quiet as f64) / record.sample_rate;
+    let offset = record.source[..record.quiet].iter().sum::<f64>() / record.quiet as f64;
+    let largest = record.source.iter().fold(0.0, |most: f64, s| most.max((s - offset).abs()));
+    let line = |colour: Option<usize>, values: &mut dyn Iterator<Item = f64>, up: f64| Series {
+        colour,
+        line: Some(Line::Straight),
+        points: values.enumerate().map(|(k, v)| Point::at(time(k as f64), v + up)).collect(),
+        ..Series::default()
+    };
+    let source = line(None, &mut record.source.iter().map(|s| (s - offset) / largest), 1.2);
+    let receiver = line(Some(0), &mut picked.receiver.iter().copied(), -1.2);
+    let mark = |(k, p): (usize, &grainlab_acoustics::record::Pick)| Series {
+        colour: Some(k + 1),
+        marker: Some(Marker::of(k)),
+        line: Some(Line::Straight),
+        points: [-2.4, 0.0].map(|y| Point::at(1e6 * (p.time + row.passage.delay), y)).into(),
+        ..Series::default()
+    };
+    let best = picked.picks[picked.recommended];
+    let entries = |(k, p): (usize, &grainlab_acoustics::record::Pick)| {
+        let star = if k == picked.recommended { " *" } else { "" };
+        let speed = Entry::Note(format!("{:.1} +- {:.1} m/s{star}", p.speed, p.speed_stddev));
+        [Entry::Colour(k + 1, p.method.word().into()), speed]
+    };
+    Figure {
+        title: format!("{}: {:.1} +- {:.1} m/s", row.file, best.speed, best.speed_stddev),
+        subtitle: "above the source, below the receiver without offset and crosstalk; lines: arrival of long waves by each pick".into(),
+        x: Axis::linear("time after the start of the source, µs"),
+        y: Axis::linear("signal over its largest"),
+        series: [source, receiver].into_iter().chain(picked.picks.iter().enumerate().map(mark)).collect(),
+        legend: picked.picks.iter().enumerate().flat_map(entries).collect(),
+    }
+}

@@ -1,0 +1,72 @@
+//! The file of a record: lines of text, then lines of numbers.
+
+use super::list::Row;
+use grainlab_acoustics::record::Record;
+use grainlab_console::Failure;
+
+/// Deviation of a time from even spacing, in samples, that rounding of the file may cause.
+const UNEVEN: f64 = 0.5;
+
+/// Signal of the source over its largest, at which it starts.
+const STARTS: f64 = 0.02;
+
+/// The record of a row.
+pub(super) fn read(row: &Row) -> Result<Record, Failure> {
+    let text = std::fs::read(&row.path).map_err(Failure::at(&row.path))?;
+    parsed(&String::from_utf8_lossy(&text), row)
+        .map_err(|fault| Failure::usage(format!("{}: {fault}", row.path.display())))
+}
+
+fn parsed(text: &str, row: &Row) -> Result<Record, String> {
+    let mut rows: Vec<[f64; 3]> = Vec::new();
+    for (line, text) in text.lines().enumerate() {
+        match numbers(text, &row.columns) {
+            Some(found) => rows.push(found),
+            None if rows.is_empty() || text.trim().is_empty() => {}
+            None => return Err(format!("line {}: {text:?} is not a time with two samples", line + 1)),
+        }
+    }
+    if rows.len() < 2 {
+        let [time, source, receiver] = row.columns.map(|c| c + 1);
+        return Err(format!("there are no lines of numbers in the columns {time}, {source} and {receiver}"));
+    }
+    let last = rows.len() - 1;
+    let interval = (rows[last][0] - rows[0][0]) / last as f64;
+    if interval.is_nan() || interval <= 0.0 {
+        return Err("the times do not increase".to_owned());
+    }
+    let off = |(k, row): (usize, &[f64; 3])| ((row[0] - rows[0][0]) / interval - k as f64).abs();
+    let worst = rows.iter().enumerate().map(off).fold(0.0, f64::max);
+    if worst > UNEVEN {
+        return Err(format!("the times are not evenly spaced: one is {worst:.1} samples from its place"));
+    }
+    let source: Vec<f64> = rows.iter().map(|r| r[1]).collect();
+    let receiver = rows.iter().map(|r| r[2]).collect();
+    Ok(Record { sample_rate: 1.0 / (interval * row.unit), quiet: quiet(&source), source, receiver })
+}
+
+/// The numbers of a line, which commas, semicolons, tabs or spaces separate; with semicolons, commas are decimal points.
+fn numbers(line: &str, columns: &[usize; 3]) -> Option<[f64; 3]> {
+    let cell = |cells: &[&str], c: usize| cells.get(c)?.trim().trim_matches('"').parse::<f64>().ok();
+    let all =
+        |cells: &[&str]| Some([cell(cells, columns[0])?, cell(cells, columns[1])?, cell(cells, columns[2])?]);
+    if line.contains(';') {
+        let with_points = line.replace(',', ".");
+        return all(&with_points.split(';').collect::<Vec<_>>());
+    }
+    let separator = [',', '\t'].into_iter().find(|s| line.contains(*s));
+    match separator {
+        Some(separator) => all(&line.split(separator).collect::<Vec<_>>()),
+        None => all(&line.split_whitespace().collect::<Vec<_>>()),
+    }
+}
+
+/// Number of samples before the source starts, less one in eight for what precedes its threshold.
+fn quiet(source: &[f64]) -> usize {
+    let mut sorted = source.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let rest = sorted[sorted.len() / 2];
+    let largest = source.iter().fold(0.0, |most: f64, s| most.max((s - rest).abs()));
+    let start = source.iter().position(|s| (s - rest).abs() > STARTS * largest).unwrap_or(0);
+    start - start / 8
+}

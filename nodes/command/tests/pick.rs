@@ -1,0 +1,100 @@
+//! `grainlab pick`: speeds from the files of an oscilloscope.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn grainlab(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grainlab"));
+    command.args(arguments).current_dir(folder).stdin(Stdio::null()).output().unwrap()
+}
+
+/// A sine of two periods of 10 kHz under a window, `late` seconds after time 0.
+fn burst(time: f64, late: f64) -> f64 {
+    let u = (time - late) * 10e3 / 2.0 - 0.5;
+    if u.abs() < 0.5 {
+        (std::f64::consts::PI * u).cos().powi(2) * (4.0 * std::f64::consts::PI * u).sin()
+    } else {
+        0.0
+    }
+}
+
+/// The lines of a wave that arrives after `late` seconds, in columns that `line` makes.
+fn file(folder: &Path, name: &str, late: f64, line: impl Fn(f64, f64, f64) -> String) {
+    let one = |k: i32| {
+        let time = f64::from(k - 200) * 1e-6;
+        // Hum with the frequency of the source.
+        let ripple = 0.01 * (f64::from(k * k % 97) / 48.5 - 1.0);
+        line(time, 5.0 * burst(time, 0.0), burst(time, late) + ripple) + "\n"
+    };
+    let text: String = (0..1200).map(one).collect();
+    std::fs::write(folder.join(name), format!("Model,SDS1104\nSource,CH1,CH2\nSecond,Volt,Volt\n{text}"))
+        .unwrap();
+}
+
+fn records(folder: &Path) {
+    file(folder, "p.csv", 0.1 / 500.0, |t, s, r| format!("{t:e},{s:.5},{r:.5}"));
+    // Decimal commas, times in microseconds, the receiver first.
+    let german = |t: f64, s: f64, r: f64| format!("{:.3};{r:.5};{s:.5}", 1e6 * t).replace('.', ",");
+    file(folder, "s.csv", 0.1 / 300.0, german);
+    std::fs::write(
+        folder.join("records.csv"),
+        "file,mode,direction,distance,diameter,source_column,receiver_column,time_unit,pressure_pa,density\n\
+         p.csv,p,along,0.1,1e-4,2,3,s,1e5,1550\ns.csv,s,along,0.1,1e-4,3,2,us,1e5,1550\n",
+    )
+    .unwrap();
+}
+
+#[test]
+fn records_become_the_speeds_that_the_inversion_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    records(folder.path());
+    let out = grainlab(
+        folder.path(),
+        &["pick", "records.csv", "--out", "speeds.csv", "--plot", "picked", "--format", "csv"],
+    );
+    assert_eq!(out.status.code(), Some(0), "{}", String::from_utf8_lossy(&out.stderr));
+    let text = std::fs::read_to_string(folder.path().join("speeds.csv")).unwrap();
+    assert_eq!(text.as_bytes(), out.stdout);
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let column = |name: &str| header.iter().position(|h| h == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    for (row, truth) in rows.iter().zip([500.0, 300.0]) {
+        let [speed, sigma] = ["speed", "speed_sigma"].map(|name| row[column(name)].parse::<f64>().unwrap());
+        assert!((speed - truth).abs() < 3.0 * sigma && sigma < 0.03 * truth, "{speed} +- {sigma} of {truth}");
+        assert_eq!(&row[column("pressure_pa")], "1e5");
+    }
+    assert_eq!(std::fs::read_dir(folder.path().join("picked")).unwrap().count(), 2);
+    let read = grainlab(
+        folder.path(),
+        &["invert", "--speeds", "speeds.csv", "--grain-shear-modulus", "29e9", "--poisson", "0.2"],
+    );
+    assert_eq!(read.status.code(), Some(0), "{}", String::from_utf8_lossy(&read.stderr));
+}
+
+#[test]
+fn a_fault_is_named_with_its_file_and_line_and_a_refused_record_keeps_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    records(folder.path());
+    let table = |text: &str| std::fs::write(folder.path().join("t.csv"), text).unwrap();
+    let refused = |code: i32, words: &[&str]| {
+        let out = grainlab(folder.path(), &["pick", "t.csv"]);
+        let text =
+            format!("{}{}", String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
+        assert_eq!(out.status.code(), Some(code), "{text}");
+        words.iter().for_each(|word| assert!(text.contains(word), "{word}: {text}"));
+    };
+    table("file,distance\np.csv,0.1\n");
+    refused(2, &["t.csv", "no column \"diameter\""]);
+    table("file,distance,diameter,distence_sigma\n");
+    refused(2, &["\"distence_sigma\" is not known"]);
+    table("file,distance,diameter\np.csv,ten,1e-4\n");
+    refused(2, &["line 2", "distance is \"ten\""]);
+    table("file,distance,diameter\np.csv,-0.1,1e-4\n");
+    refused(4, &["p.csv: ", "distance = -1e-1"]);
+    table("file,distance,diameter,receiver_column\np.csv,0.1,1e-4,7\n");
+    refused(2, &["p.csv", "no lines of numbers in the columns 1, 2 and 7"]);
+    file(folder.path(), "silent.csv", 1.0, |t, s, r| format!("{t:e},{s},{r}"));
+    table("file,distance,diameter\nsilent.csv,0.1,1e-4\np.csv,0.1,1e-4\n");
+    refused(4, &["silent.csv: no arrival", "p.csv", "1 of 2 records have no speed"]);
+}

@@ -1,0 +1,211 @@
+//! Records without offset and without crosstalk, of unit height.
+
+use super::passage::{Passage, Record};
+use crate::error::{AcousticsError, setting};
+use crate::time_of_flight::spectrum::Spectrum;
+
+/// Share of the energy of a source before and after its duration.
+const TAIL: f64 = 0.005;
+
+/// Least samples per period, records and quiet samples.
+const LEAST_PER_PERIOD: f64 = 4.0;
+const LEAST_SAMPLES: usize = 32;
+pub(super) const LEAST_QUIET: usize = 8;
+
+/// Least number of equal samples in a row, at an end of the range, of a signal that is cut there.
+const CUT: usize = 3;
+
+/// Least correlation of an arrival with its source over that of noise, whose largest of a hundred is about 3.
+const STANDS_OUT: f64 = 5.5;
+
+/// Crosstalk below this fraction of the arrival is left in the record.
+const AUDIBLE: f64 = 0.02;
+
+/// Least part of the energy of a wave that is not also of the crosstalk.
+const APART: f64 = 0.3;
+
+/// A source and a receiver with one arrival. Times are in samples.
+#[derive(Clone, Debug)]
+pub(super) struct Cleaned {
+    pub(super) source: Vec<f64>,
+    pub(super) receiver: Vec<f64>,
+    /// Crosstalk over the arrival.
+    pub(super) crosstalk: f64,
+    /// Delay and sign of the arrival, by correlation alone.
+    pub(super) delay: f64,
+    pub(super) reversed: bool,
+    /// Root mean square of the noise of the receiver.
+    pub(super) noise: f64,
+    /// Correlation with the source, without crosstalk, over that of noise.
+    pub(super) stands_out: f64,
+    pub(super) is_cut: bool,
+}
+
+/// Band of a source: its duration (samples), and the mean frequency of its energy (samples⁻¹).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Band {
+    pub(super) from: usize,
+    pub(super) duration: f64,
+    pub(super) frequency: f64,
+}
+
+impl Band {
+    pub(super) fn of(source: &[f64]) -> Self {
+        let total: f64 = source.iter().map(|s| s * s).sum();
+        let mut sum = 0.0;
+        let share: Vec<f64> = source
+            .iter()
+            .map(|s| {
+                sum += s * s / total;
+                sum
+            })
+            .collect();
+        let from = share.partition_point(|s| *s < TAIL);
+        let to = share.partition_point(|s| *s < 1.0 - TAIL);
+        let spectrum = Spectrum::new(source.len(), 1);
+        Self { from, duration: (to - from + 1) as f64, frequency: centre(&spectrum, source) }
+    }
+}
+
+/// Mean frequency of the energy of a signal, samples⁻¹.
+pub(super) fn centre(spectrum: &Spectrum, signal: &[f64]) -> f64 {
+    let lines = spectrum.of(signal);
+    let energies = spectrum.frequencies().zip(&lines).map(|(f, s)| (f, s.norm_sqr()));
+    let (moment, energy) = energies.fold((0.0, 0.0), |(m, e), (f, s)| (m + f * s, e + s));
+    moment / energy
+}
+
+impl Cleaned {
+    /// A computed record with this arrival, and the sign, crosstalk and noise of this one.
+    pub(super) fn with(
+        &self,
+        arrival: &[f64],
+        quiet: usize,
+        reversed: Option<bool>,
+        mut random: impl FnMut() -> f64,
+    ) -> Self {
+        let scale = largest(&self.receiver) / largest(arrival);
+        let (sign, talk) = (if self.reversed { -scale } else { scale }, self.crosstalk * scale);
+        let receiver =
+            arrival.iter().zip(&self.source).map(|(a, s)| sign * a + talk * s + self.noise * random());
+        separated(self.source.clone(), receiver.collect(), quiet, reversed, self.is_cut)
+    }
+}
+
+/// Checks and cleans a record.
+pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Cleaned, Band), AcousticsError> {
+    let positive = |x: f64| x.is_finite() && x > 0.0;
+    let none = |x: f64| x.is_finite() && x >= 0.0;
+    setting("sample_rate", record.sample_rate, positive(record.sample_rate), "more than 0 and finite")?;
+    setting("distance", passage.distance, positive(passage.distance), "more than 0 and finite")?;
+    setting("diameter", passage.diameter, positive(passage.diameter), "more than 0 and finite")?;
+    setting(
+        "distance_sigma",
+        passage.distance_stddev,
+        none(passage.distance_stddev),
+        "0 or more and finite",
+    )?;
+    setting("delay_sigma", passage.delay_stddev, none(passage.delay_stddev), "0 or more and finite")?;
+    setting("delay", passage.delay, passage.delay.is_finite(), "finite")?;
+    let samples = record.source.len();
+    setting("samples", samples as f64, samples >= LEAST_SAMPLES, "32 or more")?;
+    let same = record.receiver.len() == samples;
+    setting("samples of the receiver", record.receiver.len() as f64, same, "as many as of the source")?;
+    for value in record.source.iter().chain(&record.receiver) {
+        setting("samples", *value, value.is_finite(), "finite")?;
+    }
+    let enough = (LEAST_QUIET..samples).contains(&record.quiet);
+    setting(
+        "samples before the source starts",
+        record.quiet as f64,
+        enough,
+        "8 or more: offset and noise are theirs",
+    )?;
+    let source = centred(&record.source, record.quiet);
+    let height = largest(&source);
+    setting("largest sample of the source", height, height > 0.0, "more than its offset")?;
+    let source: Vec<f64> = source.iter().map(|s| s / height).collect();
+    let band = Band::of(&source);
+    let per_period = 1.0 / band.frequency;
+    setting("samples per period of the source", per_period, per_period >= LEAST_PER_PERIOD, "4 or more")?;
+    let receiver = centred(&record.receiver, record.quiet);
+    let height = largest(&receiver);
+    setting("largest sample of the receiver", height, height > 0.0, "more than its offset")?;
+    let receiver: Vec<f64> = receiver.iter().map(|s| s / height).collect();
+    let is_cut = is_cut(&receiver);
+    let found = separated(source, receiver, record.quiet, passage.reversed, is_cut);
+    if found.stands_out.is_nan() || found.stands_out < STANDS_OUT {
+        return Err(AcousticsError::NoArrival(format!(
+            "the correlation with the source is {:.1} times that of noise, and {STANDS_OUT} are needed",
+            found.stands_out
+        )));
+    }
+    Ok((found, band))
+}
+
+/// A signal less its mean before the source starts.
+fn centred(signal: &[f64], quiet: usize) -> Vec<f64> {
+    let offset = signal[..quiet].iter().sum::<f64>() / quiet as f64;
+    signal.iter().map(|s| s - offset).collect()
+}
+
+pub(super) fn largest(signal: &[f64]) -> f64 {
+    signal.iter().fold(0.0, |most: f64, s| most.max(s.abs()))
+}
+
+fn is_cut(signal: &[f64]) -> bool {
+    let (low, high) = signal.iter().fold((0.0, 0.0), |(l, h): (f64, f64), s| (l.min(*s), h.max(*s)));
+    let at = |end: f64| signal.windows(CUT).any(|w| w.iter().all(|s| *s == end) && end != 0.0);
+    at(low) || at(high)
+}
+
+/// The arrival of a source whose crosstalk has no delay, by the delay and sign that both together explain the record best with.
+fn separated(
+    source: Vec<f64>,
+    receiver: Vec<f64>,
+    quiet: usize,
+    reversed: Option<bool>,
+    is_cut: bool,
+) -> Cleaned {
+    let spectrum = Spectrum::new(source.len(), 1);
+    let (sent, got) = (spectrum.of(&source), spectrum.of(&receiver));
+    let (cross, auto) = (spectrum.correlation(&got, &sent), spectrum.correlation(&sent, &sent));
+    let zero = cross.len() / 2;
+    let energy = auto[zero].re;
+    let mixed = cross[zero].re / energy;
+    // The part of a wave that is not also crosstalk.
+    let explained = |k: usize| {
+        let apart = 1.0 - (auto[k].norm() / energy).powi(2);
+        let left = cross[k] - auto[k] * mixed;
+        (left / apart, if apart > APART { left.norm_sqr() / apart } else { 0.0 })
+    };
+    let last = (zero + source.len()).min(cross.len() - 1);
+    let coarse =
+        (zero + 1..last).max_by(|a, b| explained(*a).1.total_cmp(&explained(*b).1)).unwrap_or(zero + 1);
+    // The crest of either sign next to the peak of the envelope.
+    let real = |k: usize| explained(k).0.re;
+    let reach = 0.6 / centre(&spectrum, &source);
+    let near = |k: &usize| (*k as f64 - coarse as f64).abs() <= reach && explained(*k).1 > 0.0;
+    let crest = |sign: f64| {
+        (zero + 1..last)
+            .filter(near)
+            .max_by(|a, b| (sign * real(*a)).total_cmp(&(sign * real(*b))))
+            .unwrap_or(coarse)
+    };
+    let is_reversed = reversed.unwrap_or_else(|| -real(crest(-1.0)) > real(crest(1.0)));
+    let sign = if is_reversed { -1.0 } else { 1.0 };
+    let at = crest(sign);
+    let height = real(at) / energy;
+    let crosstalk = mixed - height * auto[at].re / energy;
+    let over = crosstalk / height.abs();
+    let taken = if over.abs() > AUDIBLE { crosstalk } else { 0.0 };
+    let receiver: Vec<f64> = receiver.iter().zip(&source).map(|(r, s)| sign * (r - taken * s)).collect();
+    let noise = (receiver[..quiet].iter().map(|r| r * r).sum::<f64>() / quiet as f64).sqrt();
+    // Variance of the correlation of noise, by its spectrum before the source starts: it may be hum.
+    let before = spectrum.of(&receiver[..quiet]);
+    let lines = before.iter().zip(&sent).map(|(noise, sent)| noise.norm_sqr() * sent.norm_sqr());
+    let variance = lines.sum::<f64>() / (quiet * sent.len()) as f64;
+    let stands_out = (explained(coarse).1 / variance).sqrt();
+    let delay = at as f64 - zero as f64;
+    Cleaned { source, receiver, crosstalk: over, delay, reversed: is_reversed, noise, stands_out, is_cut }
+}

@@ -1,0 +1,170 @@
+//! Picks with their bias and error.
+
+use super::cleaned::{Cleaned, cleaned, largest};
+use super::forward::Path;
+use super::passage::{Passage, Record};
+use crate::error::AcousticsError;
+use crate::noise::Noise;
+use crate::time_of_flight::ArrivalPick;
+use crate::time_of_flight::pick::Picker;
+use grainlab_core::WaveMethod;
+use rayon::prelude::*;
+
+/// Number of computed records.
+const COPIES: u64 = 64;
+
+/// Maximum fraction of them without an arrival.
+const MAX_LOST: f64 = 0.25;
+
+/// Rounds in which the time at which the bias is found follows the time without it.
+const ROUNDS: usize = 2;
+
+/// Difference of two picks, in standard deviations, above which they contradict each other.
+const APART: f64 = 3.0;
+
+/// Place of the noise of copies.
+const PLACE: u64 = u64::MAX - 2;
+
+/// The travel time of long waves by one pick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pick {
+    /// The feature that was picked.
+    pub method: WaveMethod,
+    /// Travel time, without that of the system and without the bias, s.
+    pub time: f64,
+    /// Standard deviation of the time, s.
+    pub time_stddev: f64,
+    /// Bias that was taken off: the feature arrives this much later than long waves, s.
+    pub bias: f64,
+    /// Speed of long waves, m/s.
+    pub speed: f64,
+    /// Standard deviation of the speed, m/s, with those of the distance and of the delay.
+    pub speed_stddev: f64,
+}
+
+/// The picks of a record, and what was found of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picks {
+    /// The picks that found an arrival.
+    pub picks: Vec<Pick>,
+    /// Index of the one with the least error.
+    pub recommended: usize,
+    /// Reasons of the picks that found none.
+    pub missing: Vec<(WaveMethod, String)>,
+    /// Mean frequency of the source, Hz.
+    pub frequency: f64,
+    /// Distance over the wavelength at that frequency.
+    pub wavelengths: f64,
+    /// Largest sample of the arrival over the noise.
+    pub signal_to_noise: f64,
+    /// True if the receiver shows the wave with the opposite sign.
+    pub reversed: bool,
+    /// Crosstalk over the arrival.
+    pub crosstalk: f64,
+    /// The amplifier cut the largest samples of the receiver.
+    pub is_cut: bool,
+    /// True if two picks are further apart than their errors allow; the errors are then as large as the difference.
+    pub contradictory: bool,
+    /// The receiver without offset and crosstalk, with the sign of the source, of unit height.
+    pub receiver: Vec<f64>,
+}
+
+/// Picks the arrival in `record` by every feature. `seed` is that of the computed records.
+///
+/// # Errors
+/// Numbers out of range, and a record without an arrival that stands out of its noise by any pick.
+pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, AcousticsError> {
+    let (found, band) = cleaned(record, passage)?;
+    let samples = found.source.len();
+    let system = passage.delay * record.sample_rate;
+    let pickers = [ArrivalPick::FirstArrival, ArrivalPick::CrossCorrelation, ArrivalPick::Peak].map(|pick| {
+        let sent = &found.source[band.from..(band.from + band.duration as usize).min(samples)];
+        (pick.method(), Picker::of(pick, sent, band.duration, band.frequency, samples))
+    });
+    let delay = |of: &Cleaned, picker: &Picker| {
+        let height = largest(&of.receiver);
+        let receiver: Vec<f64> = of.receiver.iter().map(|r| r / height).collect();
+        let times = picker.times(&[&of.source, &receiver], of.noise / height)?;
+        Ok::<f64, String>(times[1] - times[0])
+    };
+    let observed = pickers.each_ref().map(|(_, picker)| delay(&found, picker));
+    let mut time = (found.delay - system).max(1.0);
+    let kind = (passage.distance / passage.diameter, passage.longitudinal);
+    let path = Path::between(&found.source, &found.receiver, &band, kind);
+    let mut picks = Vec::new();
+    let mut missing = Vec::new();
+    for _ in 0..ROUNDS {
+        let copy = |k: u64| {
+            let mut random = Noise::at(seed, &[PLACE, k]);
+            let arrival = path.arrival(time, system, &path.drawn(&mut random));
+            let copy = found.with(&arrival, record.quiet, passage.reversed, || random.next());
+            pickers.each_ref().map(|(_, picker)| delay(&copy, picker).ok())
+        };
+        let copies: Vec<[Option<f64>; 3]> = (0..COPIES).into_par_iter().map(copy).collect();
+        picks.clear();
+        missing.clear();
+        for (k, observed) in observed.iter().enumerate() {
+            let method = pickers[k].0;
+            let errors: Vec<f64> = copies.iter().filter_map(|c| c[k]).map(|t| t - system - time).collect();
+            let lost = 1.0 - errors.len() as f64 / COPIES as f64;
+            match observed {
+                Ok(_) if lost > MAX_LOST => missing.push((method, "the noise is too large".to_owned())),
+                Ok(late) => picks.push(pick(method, late - system, &errors, record.sample_rate, passage)),
+                Err(reason) => missing.push((method, reason.clone())),
+            }
+        }
+        picks.retain(|p: &Pick| p.time > 0.0);
+        let Some(best) = least(&picks) else { break };
+        time = picks[best].time * record.sample_rate;
+    }
+    let Some(recommended) = least(&picks) else {
+        let reason = missing.first().map_or("it does not come after the source".to_owned(), |m| m.1.clone());
+        return Err(AcousticsError::NoArrival(reason));
+    };
+    let best = picks[recommended];
+    let apart = |p: &Pick| (p.time - best.time).abs();
+    let contradictory = picks.iter().any(|p| apart(p) > APART * p.time_stddev.hypot(best.time_stddev));
+    if contradictory {
+        let most = picks.iter().map(apart).fold(0.0, f64::max);
+        for p in &mut picks {
+            *p = Pick { time_stddev: p.time_stddev.hypot(most), ..*p }.with_speed(passage);
+        }
+    }
+    let best = picks[recommended];
+    let frequency = band.frequency * record.sample_rate;
+    Ok(Picks {
+        recommended,
+        missing,
+        frequency,
+        wavelengths: best.time * frequency,
+        signal_to_noise: largest(&found.receiver) / found.noise,
+        reversed: found.reversed,
+        crosstalk: found.crosstalk,
+        is_cut: found.is_cut,
+        contradictory,
+        receiver: found.receiver,
+        picks,
+    })
+}
+
+fn least(picks: &[Pick]) -> Option<usize> {
+    (0..picks.len()).min_by(|a, b| picks[*a].time_stddev.total_cmp(&picks[*b].time_stddev))
+}
+
+/// A pick of a feature that is `late` (samples), with the errors of the same pick in computed records.
+fn pick(method: WaveMethod, late: f64, errors: &[f64], rate: f64, passage: &Passage) -> Pick {
+    let n = errors.len() as f64;
+    let bias = errors.iter().sum::<f64>() / n;
+    let variance = errors.iter().map(|e| (e - bias).powi(2)).sum::<f64>() / (n - 1.0);
+    let (time, time_stddev) = ((late - bias) / rate, (variance * (1.0 + 1.0 / n)).sqrt() / rate);
+    Pick { method, time, time_stddev, bias: bias / rate, speed: 0.0, speed_stddev: 0.0 }.with_speed(passage)
+}
+
+impl Pick {
+    fn with_speed(self, passage: &Passage) -> Self {
+        let speed = passage.distance / self.time;
+        let relative = (self.time_stddev.hypot(passage.delay_stddev) / self.time)
+            .hypot(passage.distance_stddev / passage.distance);
+        Self { speed, speed_stddev: relative * speed, ..self }
+    }
+}

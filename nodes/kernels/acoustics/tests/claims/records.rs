@@ -1,0 +1,108 @@
+//! Tests of travel times from the records of a source and a receiver, on synthetic records.
+
+use grainlab_acoustics::AcousticsError;
+use grainlab_acoustics::record::{Passage, Picks, Record, picks};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::SeedableRng;
+use std::f64::consts::{PI, TAU};
+
+const SPEED: f64 = 300.0;
+const DISTANCE: f64 = 0.1;
+const FREQUENCY: f64 = 10e3;
+const RATE: f64 = 1e6;
+const QUIET: usize = 200;
+const SAMPLES: usize = 1200;
+
+/// A sine of two periods under a Hann window, `late` seconds after the source starts.
+fn burst(sample: usize, late: f64) -> f64 {
+    let u = ((sample as f64 - QUIET as f64) / RATE - late) * FREQUENCY / 2.0 - 0.5;
+    if u.abs() < 0.5 { (PI * u).cos().powi(2) * (2.0 * TAU * u).sin() } else { 0.0 }
+}
+
+fn passage() -> Passage {
+    Passage {
+        distance: DISTANCE,
+        distance_stddev: 0.0,
+        delay: 2e-6,
+        delay_stddev: 0.0,
+        reversed: None,
+        // 300 grains per wavelength: no dispersion.
+        diameter: 1e-4,
+        longitudinal: Some(true),
+    }
+}
+
+/// The records of a path without dispersion and near field, with noise and what `change` makes of a sample of the receiver and the source.
+fn recorded(noise: f64, seed: u64, change: impl Fn(f64, f64) -> f64) -> Record {
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    let source: Vec<f64> = (0..SAMPLES).map(|k| 5.0 * burst(k, 0.0)).collect();
+    let mut one = |k: usize| {
+        let random: f64 = StandardNormal.sample(&mut random);
+        change(burst(k, DISTANCE / SPEED + 2e-6) + noise * random, source[k])
+    };
+    let receiver = (0..SAMPLES).map(&mut one).collect();
+    Record { sample_rate: RATE, quiet: QUIET, source, receiver }
+}
+
+fn best(found: &Picks) -> (f64, f64) {
+    let pick = found.picks[found.recommended];
+    (pick.speed, pick.speed_stddev)
+}
+
+#[test]
+fn the_speed_is_found_within_its_error_whatever_the_amplifier_does() {
+    type Change = fn(f64, f64) -> f64;
+    let changes: [(&str, Change); 5] = [
+        ("plain", |r, _| 1e-3 * r),
+        ("offset", |r, _| r + 3.0),
+        ("reversed", |r, _| -r),
+        ("crosstalk", |r, s| r + 0.1 * s),
+        ("cut", |r, _| r.clamp(-0.5, 0.5)),
+    ];
+    for (name, change) in changes {
+        for noise in [0.003, 0.05, 0.2] {
+            let found = picks(&recorded(noise, 7, change), &passage(), 1).unwrap();
+            let (speed, stddev) = best(&found);
+            assert!((speed - SPEED).abs() < 3.0 * stddev, "{name}, {noise}: {speed} +- {stddev}");
+            assert!(stddev < if name == "cut" { 0.1 } else { 0.05 } * SPEED, "{name}, {noise}: {stddev}");
+            assert_eq!(found.reversed, name == "reversed", "{name}, {noise}");
+            assert_eq!(found.is_cut, name == "cut", "{name}, {noise}");
+            assert!(name != "crosstalk" || (found.crosstalk - 0.5).abs() < 0.1, "{}", found.crosstalk);
+        }
+    }
+}
+
+#[test]
+fn a_record_without_an_arrival_is_refused() {
+    for seed in 0..20 {
+        for change in [|_: f64, _: f64| 0.0, |_: f64, s: f64| 0.1 * s] {
+            let mut noise = Pcg64Mcg::seed_from_u64(seed);
+            let mut record = recorded(0.0, seed, change);
+            record.receiver.iter_mut().for_each(|r| {
+                let random: f64 = StandardNormal.sample(&mut noise);
+                *r += 0.01 * random;
+            });
+            let found = picks(&record, &passage(), 1);
+            assert!(
+                matches!(found, Err(AcousticsError::NoArrival(_))),
+                "{seed}: {:?}",
+                found.map(|f| f.picks)
+            );
+        }
+    }
+}
+
+#[test]
+fn a_longer_distance_error_or_delay_error_is_in_the_error_of_the_speed() {
+    let record = recorded(0.01, 3, |r, _| r);
+    let of = |change: fn(&mut Passage)| {
+        let mut passage = passage();
+        change(&mut passage);
+        best(&picks(&record, &passage, 1).unwrap()).1 / SPEED
+    };
+    let plain = of(|_| ());
+    let time = DISTANCE / SPEED;
+    assert!((of(|p| p.distance_stddev = 0.02 * DISTANCE) - 0.02f64.hypot(plain)).abs() < 1e-3);
+    assert!((of(|p| p.delay_stddev = 10e-6) - (10e-6 / time).hypot(plain)).abs() < 1e-3);
+}
