@@ -65,10 +65,8 @@ fn records_become_the_speeds_that_the_inversion_reads() {
         assert_eq!(&row[column("pressure_pa")], "1e5");
     }
     assert_eq!(std::fs::read_dir(folder.path().join("picked")).unwrap().count(), 2);
-    let read = grainlab(
-        folder.path(),
-        &["invert", "--speeds", "speeds.csv", "--grain-shear-modulus", "29e9", "--poisson", "0.2"],
-    );
+    let invert = ["invert", "--speeds", "speeds.csv", "--grain-shear-modulus", "29e9", "--poisson", "0.2"];
+    let read = grainlab(folder.path(), &invert);
     assert_eq!(read.status.code(), Some(0), "{}", String::from_utf8_lossy(&read.stderr));
 }
 
@@ -90,6 +88,8 @@ fn a_fault_is_named_with_its_file_and_line_and_a_refused_record_keeps_the_others
     refused(2, &["\"distence_sigma\" is not known"]);
     table("file,distance,diameter\np.csv,ten,1e-4\n");
     refused(2, &["line 2", "distance is \"ten\""]);
+    table("file,mode,distance,diameter\np.csv,P-wave,0.1,1e-4\n");
+    refused(2, &["line 2", "mode is \"p-wave\"; it must be p, s, sv or sh"]);
     table("file,distance,diameter\np.csv,-0.1,1e-4\n");
     refused(4, &["p.csv: ", "distance = -1e-1"]);
     table("file,distance,diameter,receiver_column\np.csv,0.1,1e-4,7\n");

@@ -168,6 +168,9 @@ fn notes(p: &Picks) -> Vec<String> {
     if p.is_cut {
         notes.push("the amplifier cut the largest samples".into());
     }
+    if !p.signal_to_noise.is_finite() {
+        notes.push("there is no noise before the source starts, so the error has none".into());
+    }
     if p.reversed {
         notes.push("the wave is reversed".into());
     }

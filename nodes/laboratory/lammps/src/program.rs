@@ -132,8 +132,10 @@ impl Program {
         let (mut end, mut reported) = (Instant::now() + self.limit, false);
         loop {
             let left = end.saturating_duration_since(Instant::now());
-            let line = self.output.recv_timeout(left);
-            match if left.is_zero() { Err(RecvTimeoutError::Timeout) } else { line } {
+            // recv_timeout takes a line that waits also without time left, and a program may print without end.
+            let line =
+                if left.is_zero() { Err(RecvTimeoutError::Timeout) } else { self.output.recv_timeout(left) };
+            match line {
                 Ok(line) => {
                     if let Some(words) = line.strip_prefix(&mark).filter(|_| asked) {
                         return Ok(words.split_whitespace().map(str::to_owned).collect());

@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// The columns: what is of the sample and the state; the wave, by an angle to the axis with a mode or by a direction with a
 /// polarization; and the speed.
-const COLUMNS: [&str; 22] = [
+pub(crate) const COLUMNS: [&str; 22] = [
     "sample",
     "pressure_pa",
     "pressure_sigma_pa",

@@ -1,12 +1,13 @@
 //! The table of the records.
 
+use crate::commands::invert::SPEED_COLUMNS;
 use grainlab_acoustics::record::Passage;
 use grainlab_console::Failure;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Columns of a record.
-const OWN: [&str; 11] = [
+const OWN: [&str; 10] = [
     "file",
     "distance",
     "distance_sigma",
@@ -17,31 +18,14 @@ const OWN: [&str; 11] = [
     "source_column",
     "receiver_column",
     "time_unit",
-    "diameter",
 ];
 
-/// Columns of `grainlab invert --speeds` that are copied.
-const COPIED: [&str; 19] = [
-    "sample",
-    "pressure_pa",
-    "pressure_sigma_pa",
-    "density",
-    "density_sigma",
-    "grain_density",
-    "phi",
-    "diameter",
-    "roughness",
-    "roughness_sigma",
-    "direction",
-    "angle_deg",
-    "mode",
-    "direction_x",
-    "direction_y",
-    "direction_z",
-    "polarization_x",
-    "polarization_y",
-    "polarization_z",
-];
+/// Columns of `grainlab invert --speeds` that the picks fill in; the others are copied.
+const PICKED: [&str; 3] = ["frequency", "speed", "speed_sigma"];
+
+fn is_copied(name: &str) -> bool {
+    SPEED_COLUMNS.contains(&name) && !PICKED.contains(&name)
+}
 
 /// One row of the table.
 #[derive(Clone, Debug)]
@@ -74,12 +58,10 @@ fn parsed(text: &str, folder: &Path) -> Result<Vec<Row>, String> {
     let header: Vec<String> =
         reader.headers().map_err(|e| e.to_string())?.iter().map(str::to_lowercase).collect();
     for (k, name) in header.iter().enumerate() {
-        if !OWN.contains(&name.as_str()) && !COPIED.contains(&name.as_str()) {
-            return Err(format!(
-                "column {name:?} is not known: {}, or {}",
-                OWN.join(", "),
-                COPIED.join(", ")
-            ));
+        if !OWN.contains(&name.as_str()) && !is_copied(name) {
+            let known = SPEED_COLUMNS.iter().filter(|name| is_copied(name)).chain(&OWN);
+            let known: Vec<&str> = known.copied().collect();
+            return Err(format!("column {name:?} is not known; columns are {}", known.join(", ")));
         }
         if header[..k].contains(name) {
             return Err(format!("column {name:?} is there twice"));
@@ -121,6 +103,12 @@ fn row(line: u64, header: &[String], cells: &BTreeMap<&str, &str>, folder: &Path
         Some("reversed") => Some(true),
         Some(other) => return Err(format!("polarity is {other:?}; it must be normal or reversed, or empty")),
     };
+    let longitudinal = match cells.get("mode").map(|mode| mode.to_lowercase()).as_deref() {
+        None => None,
+        Some("p") => Some(true),
+        Some("s" | "sv" | "sh") => Some(false),
+        Some(other) => return Err(format!("mode is {other:?}; it must be p, s, sv or sh, or empty")),
+    };
     let unit = match cells.get("time_unit").copied().unwrap_or("s") {
         "s" => 1.0,
         "ms" => 1e-3,
@@ -128,7 +116,7 @@ fn row(line: u64, header: &[String], cells: &BTreeMap<&str, &str>, folder: &Path
         other => return Err(format!("time_unit is {other:?}; it must be s, ms or us")),
     };
     let file = cells.get("file").ok_or("file is missing")?.to_string();
-    let copied = header.iter().filter(|name| COPIED.contains(&name.as_str()));
+    let copied = header.iter().filter(|name| is_copied(name));
     Ok(Row {
         line,
         path: folder.join(&file),
@@ -140,7 +128,7 @@ fn row(line: u64, header: &[String], cells: &BTreeMap<&str, &str>, folder: &Path
             delay_stddev: number("delay_sigma")?.unwrap_or(0.0),
             reversed,
             diameter: needed("diameter")?,
-            longitudinal: cells.get("mode").map(|mode| mode.eq_ignore_ascii_case("p")),
+            longitudinal,
         },
         columns: [column("time_column", 1)?, column("source_column", 2)?, column("receiver_column", 3)?],
         unit,

@@ -7,10 +7,10 @@ use crate::time_of_flight::spectrum::Spectrum;
 /// Share of the energy of a source before and after its duration.
 const TAIL: f64 = 0.005;
 
-/// Least samples per period, records and quiet samples.
+/// Least number of samples per period, of a record, and before the source starts.
 const LEAST_PER_PERIOD: f64 = 4.0;
 const LEAST_SAMPLES: usize = 32;
-pub(super) const LEAST_QUIET: usize = 8;
+const LEAST_QUIET: usize = 8;
 
 /// Least number of equal samples in a row, at an end of the range, of a signal that is cut there.
 const CUT: usize = 3;
@@ -52,14 +52,11 @@ pub(super) struct Band {
 impl Band {
     pub(super) fn of(source: &[f64]) -> Self {
         let total: f64 = source.iter().map(|s| s * s).sum();
-        let mut sum = 0.0;
-        let share: Vec<f64> = source
-            .iter()
-            .map(|s| {
-                sum += s * s / total;
-                sum
-            })
-            .collect();
+        let grown = |sum: &mut f64, s: &f64| {
+            *sum += s * s / total;
+            Some(*sum)
+        };
+        let share: Vec<f64> = source.iter().scan(0.0, grown).collect();
         let from = share.partition_point(|s| *s < TAIL);
         let to = share.partition_point(|s| *s < 1.0 - TAIL);
         let spectrum = Spectrum::new(source.len(), 1);
