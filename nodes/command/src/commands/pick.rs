@@ -165,6 +165,18 @@ fn notes(p: &Picks) -> Vec<String> {
     if p.crosstalk.abs() > 0.05 {
         notes.push(format!("crosstalk of {:.0} % of the arrival was taken off", 100.0 * p.crosstalk.abs()));
     }
+    let [alike, expected] = p.alike;
+    if expected - alike > 0.1 {
+        notes.push(format!(
+            "the arrival does not have the shape of the source after this path (correlation {alike:.2}, expected {expected:.2}): transducers ring, or \
+             waves overlap; part of a period is in the error"
+        ));
+    }
+    if p.sign_doubt > 0.3 {
+        notes.push(
+            "a wave of the opposite sign fits almost as well: give the polarity for a smaller error".into(),
+        );
+    }
     if p.is_cut {
         notes.push("the amplifier cut the largest samples".into());
     }

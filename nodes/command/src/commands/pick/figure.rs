@@ -15,9 +15,10 @@ pub(super) fn drawn(folder: &Path, row: &Row, record: &Record, picked: &Picks) -
 }
 
 fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {
-    let time = |k: f64| 1e6 * (k - record.quiet as f64) / record.sample_rate;
-    let offset = record.source[..record.quiet].iter().sum::<f64>() / record.quiet as f64;
+    let offset = record.source[record.quiet.clone()].iter().sum::<f64>() / record.quiet.len() as f64;
     let largest = record.source.iter().fold(0.0, |most: f64, s| most.max((s - offset).abs()));
+    let start = record.source.iter().position(|s| (s - offset).abs() > 0.02 * largest).unwrap_or(0) as f64;
+    let time = |k: f64| 1e6 * (k - start) / record.sample_rate;
     let line = |colour: Option<usize>, values: &mut dyn Iterator<Item = f64>, up: f64| Series {
         colour,
         line: Some(Line::Straight),

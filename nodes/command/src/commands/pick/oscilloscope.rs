@@ -3,6 +3,7 @@
 use super::list::Row;
 use grainlab_acoustics::record::Record;
 use grainlab_console::Failure;
+use std::ops::Range;
 
 /// Deviation of a time from even spacing, in samples, that rounding of the file may cause.
 const UNEVEN: f64 = 0.5;
@@ -41,8 +42,13 @@ fn parsed(text: &str, row: &Row) -> Result<Record, String> {
         return Err(format!("the times are not evenly spaced: one is {worst:.1} samples from its place"));
     }
     let source: Vec<f64> = rows.iter().map(|r| r[1]).collect();
-    let receiver = rows.iter().map(|r| r[2]).collect();
-    Ok(Record { sample_rate: 1.0 / (interval * row.unit), quiet: quiet(&source), source, receiver })
+    let receiver: Vec<f64> = rows.iter().map(|r| r[2]).collect();
+    Ok(Record {
+        sample_rate: 1.0 / (interval * row.unit),
+        quiet: quiet(&source, &receiver),
+        source,
+        receiver,
+    })
 }
 
 /// The numbers of a line, which commas, semicolons, tabs or spaces separate; with semicolons, commas are decimal points.
@@ -61,12 +67,26 @@ fn numbers(line: &str, columns: &[usize; 3]) -> Option<[f64; 3]> {
     }
 }
 
-/// Number of samples before the source starts, less one in eight for what precedes its threshold.
-fn quiet(source: &[f64]) -> usize {
+/// The samples before the source starts, less one in eight for what precedes its threshold; if the record starts with the source, the
+/// sixteenth of the record after the source in which the receiver is quietest.
+fn quiet(source: &[f64], receiver: &[f64]) -> Range<usize> {
     let mut sorted = source.to_vec();
     sorted.sort_by(f64::total_cmp);
     let rest = sorted[sorted.len() / 2];
     let largest = source.iter().fold(0.0, |most: f64, s| most.max((s - rest).abs()));
-    let start = source.iter().position(|s| (s - rest).abs() > STARTS * largest).unwrap_or(0);
-    start - start / 8
+    let is_on = |s: &f64| (s - rest).abs() > STARTS * largest;
+    let start = source.iter().position(is_on).unwrap_or(0);
+    let part = source.len() / 16;
+    if start > 8 || part < 8 {
+        return 0..start - start / 8;
+    }
+    let end = source.iter().rposition(is_on).unwrap_or(0) + 1;
+    let scatter = |from: &usize| {
+        let samples = &receiver[*from..from + part];
+        let mean = samples.iter().sum::<f64>() / part as f64;
+        samples.iter().map(|s| (s - mean).powi(2)).sum::<f64>()
+    };
+    let places = (end..source.len().saturating_sub(part)).step_by(part);
+    let quietest = places.min_by(|a, b| scatter(a).total_cmp(&scatter(b))).unwrap_or(0);
+    quietest..quietest + part
 }

@@ -3,6 +3,8 @@
 use super::passage::{Passage, Record};
 use crate::error::{AcousticsError, setting};
 use crate::time_of_flight::spectrum::Spectrum;
+use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 
 /// Share of the energy of a source before and after its duration.
 const TAIL: f64 = 0.005;
@@ -24,6 +26,21 @@ const AUDIBLE: f64 = 0.02;
 /// Least part of the energy of a wave that is not also of the crosstalk.
 const APART: f64 = 0.3;
 
+/// Correlation of the first wave over that of the largest: a compression wave has none before it, a shear wave has weaker ones.
+const FIRST: [f64; 2] = [0.03, 0.4];
+
+/// Correlation of what is left of the crosstalk, over that of the crosstalk, while the source lasts.
+const LEFT: f64 = 1.0;
+
+/// Wavelengths of the shortest path: crosstalk that electronics delay cannot be told from a wave of a shorter one.
+const SHORTEST: f64 = 0.75;
+
+/// Durations of the source in which the correlation of the first wave rises to its largest.
+const CLIMB: f64 = 1.25;
+
+/// Durations of the source before and after a wave at which the record fades out, first and last: echoes and later waves follow.
+const FADED: [f64; 2] = [0.25, 0.75];
+
 /// A source and a receiver with one arrival. Times are in samples.
 #[derive(Clone, Debug)]
 pub(super) struct Cleaned {
@@ -39,6 +56,8 @@ pub(super) struct Cleaned {
     /// Correlation with the source, without crosstalk, over that of noise.
     pub(super) stands_out: f64,
     pub(super) is_cut: bool,
+    /// Correlation of the opposite sign over that of the arrival, where the sign is not known.
+    pub(super) opposite: f64,
 }
 
 /// Band of a source: its duration (samples), and the mean frequency of its energy (samples⁻¹).
@@ -47,10 +66,12 @@ pub(super) struct Band {
     pub(super) from: usize,
     pub(super) duration: f64,
     pub(super) frequency: f64,
+    /// Travel time of the system, samples.
+    pub(super) system: f64,
 }
 
 impl Band {
-    pub(super) fn of(source: &[f64]) -> Self {
+    pub(super) fn of(source: &[f64], system: f64) -> Self {
         let total: f64 = source.iter().map(|s| s * s).sum();
         let grown = |sum: &mut f64, s: &f64| {
             *sum += s * s / total;
@@ -60,7 +81,7 @@ impl Band {
         let from = share.partition_point(|s| *s < TAIL);
         let to = share.partition_point(|s| *s < 1.0 - TAIL);
         let spectrum = Spectrum::new(source.len(), 1);
-        Self { from, duration: (to - from + 1) as f64, frequency: centre(&spectrum, source) }
+        Self { from, duration: (to - from + 1) as f64, frequency: centre(&spectrum, source), system }
     }
 }
 
@@ -77,15 +98,16 @@ impl Cleaned {
     pub(super) fn with(
         &self,
         arrival: &[f64],
-        quiet: usize,
-        reversed: Option<bool>,
+        quiet: &Range<usize>,
+        passage: &Passage,
+        band: &Band,
         mut random: impl FnMut() -> f64,
     ) -> Self {
-        let scale = largest(&self.receiver) / largest(arrival);
+        let scale = fitted(&self.receiver, arrival).1;
         let (sign, talk) = (if self.reversed { -scale } else { scale }, self.crosstalk * scale);
         let receiver =
             arrival.iter().zip(&self.source).map(|(a, s)| sign * a + talk * s + self.noise * random());
-        separated(self.source.clone(), receiver.collect(), quiet, reversed, self.is_cut)
+        separated(self.source.clone(), receiver.collect(), quiet, passage, band, self.is_cut)
     }
 }
 
@@ -111,26 +133,27 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Cleaned, Ba
     for value in record.source.iter().chain(&record.receiver) {
         setting("samples", *value, value.is_finite(), "finite")?;
     }
-    let enough = (LEAST_QUIET..samples).contains(&record.quiet);
+    let quiet = record.quiet.clone();
+    let enough = quiet.len() >= LEAST_QUIET && quiet.end <= samples;
     setting(
-        "samples before the source starts",
-        record.quiet as f64,
+        "samples without a signal",
+        quiet.len() as f64,
         enough,
         "8 or more: offset and noise are theirs",
     )?;
-    let source = centred(&record.source, record.quiet);
+    let source = centred(&record.source, &quiet);
     let height = largest(&source);
     setting("largest sample of the source", height, height > 0.0, "more than its offset")?;
     let source: Vec<f64> = source.iter().map(|s| s / height).collect();
-    let band = Band::of(&source);
+    let band = Band::of(&source, passage.delay * record.sample_rate);
     let per_period = 1.0 / band.frequency;
     setting("samples per period of the source", per_period, per_period >= LEAST_PER_PERIOD, "4 or more")?;
-    let receiver = centred(&record.receiver, record.quiet);
+    let receiver = centred(&record.receiver, &quiet);
     let height = largest(&receiver);
     setting("largest sample of the receiver", height, height > 0.0, "more than its offset")?;
     let receiver: Vec<f64> = receiver.iter().map(|s| s / height).collect();
     let is_cut = is_cut(&receiver);
-    let found = separated(source, receiver, record.quiet, passage.reversed, is_cut);
+    let found = separated(source, receiver, &quiet, passage, &band, is_cut);
     if found.stands_out.is_nan() || found.stands_out < STANDS_OUT {
         return Err(AcousticsError::NoArrival(format!(
             "the correlation with the source is {:.1} times that of noise, and {STANDS_OUT} are needed",
@@ -140,9 +163,9 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Cleaned, Ba
     Ok((found, band))
 }
 
-/// A signal less its mean before the source starts.
-fn centred(signal: &[f64], quiet: usize) -> Vec<f64> {
-    let offset = signal[..quiet].iter().sum::<f64>() / quiet as f64;
+/// A signal less its mean where it is quiet.
+fn centred(signal: &[f64], quiet: &Range<usize>) -> Vec<f64> {
+    let offset = signal[quiet.clone()].iter().sum::<f64>() / quiet.len() as f64;
     signal.iter().map(|s| s - offset).collect()
 }
 
@@ -160,8 +183,9 @@ fn is_cut(signal: &[f64]) -> bool {
 fn separated(
     source: Vec<f64>,
     receiver: Vec<f64>,
-    quiet: usize,
-    reversed: Option<bool>,
+    quiet: &Range<usize>,
+    passage: &Passage,
+    band: &Band,
     is_cut: bool,
 ) -> Cleaned {
     let spectrum = Spectrum::new(source.len(), 1);
@@ -176,33 +200,70 @@ fn separated(
         let left = cross[k] - auto[k] * mixed;
         (left / apart, if apart > APART { left.norm_sqr() / apart } else { 0.0 })
     };
+    // Variance of the correlation of noise, by its spectrum before the source starts: it may be hum.
+    let before = spectrum.of(&receiver[quiet.clone()]);
+    let lines = before.iter().zip(&sent).map(|(noise, sent)| noise.norm_sqr() * sent.norm_sqr());
+    let variance = lines.sum::<f64>() / (quiet.len() * sent.len()) as f64;
     let last = (zero + source.len()).min(cross.len() - 1);
-    let coarse =
-        (zero + 1..last).max_by(|a, b| explained(*a).1.total_cmp(&explained(*b).1)).unwrap_or(zero + 1);
+    let shortest = band.system.max(0.0) + SHORTEST / band.frequency;
+    let start = (zero + shortest as usize).clamp(zero + 1, last - 1);
+    let top = |range: Range<usize>| {
+        range.max_by(|a, b| explained(*a).1.total_cmp(&explained(*b).1)).unwrap_or(start)
+    };
+    let share = FIRST[usize::from(passage.longitudinal != Some(true))];
+    let level = (share.powi(2) * explained(top(start..last)).1).max(STANDS_OUT.powi(2) * variance);
+    let talk = |k: usize| {
+        if ((k - zero) as f64) < CLIMB * band.duration { (LEFT * mixed * energy).powi(2) } else { 0.0 }
+    };
+    let first = (start..last).find(|k| explained(*k).1 > level.max(talk(*k))).unwrap_or(start);
+    let coarse = top(first..(first + (CLIMB * band.duration) as usize).min(last));
     // The crest of either sign next to the peak of the envelope.
     let real = |k: usize| explained(k).0.re;
     let reach = 0.6 / centre(&spectrum, &source);
     let near = |k: &usize| (*k as f64 - coarse as f64).abs() <= reach && explained(*k).1 > 0.0;
     let crest = |sign: f64| {
-        (zero + 1..last)
+        (start..last)
             .filter(near)
             .max_by(|a, b| (sign * real(*a)).total_cmp(&(sign * real(*b))))
             .unwrap_or(coarse)
     };
-    let is_reversed = reversed.unwrap_or_else(|| -real(crest(-1.0)) > real(crest(1.0)));
+    let is_reversed = passage.reversed.unwrap_or_else(|| -real(crest(-1.0)) > real(crest(1.0)));
     let sign = if is_reversed { -1.0 } else { 1.0 };
     let at = crest(sign);
     let height = real(at) / energy;
+    let opposite = if passage.reversed.is_none() { -real(crest(-sign)) / real(at) } else { 0.0 };
     let crosstalk = mixed - height * auto[at].re / energy;
     let over = crosstalk / height.abs();
     let taken = if over.abs() > AUDIBLE { crosstalk } else { 0.0 };
-    let receiver: Vec<f64> = receiver.iter().zip(&source).map(|(r, s)| sign * (r - taken * s)).collect();
-    let noise = (receiver[..quiet].iter().map(|r| r * r).sum::<f64>() / quiet as f64).sqrt();
-    // Variance of the correlation of noise, by its spectrum before the source starts: it may be hum.
-    let before = spectrum.of(&receiver[..quiet]);
-    let lines = before.iter().zip(&sent).map(|(noise, sent)| noise.norm_sqr() * sent.norm_sqr());
-    let variance = lines.sum::<f64>() / (quiet * sent.len()) as f64;
+    let noise = (receiver[quiet.clone()].iter().map(|r| r * r).sum::<f64>() / quiet.len() as f64).sqrt();
+    let middle = (band.from + at - zero) as f64 + 0.5 * band.duration;
+    let kept = |k: usize| {
+        let [flat, far] = FADED.map(|part| (0.5 + part) * band.duration);
+        let off = ((k as f64 - middle).abs() - flat) / (far - flat);
+        (FRAC_PI_2 * off.clamp(0.0, 1.0)).cos().powi(2)
+    };
+    let clean = |(k, (r, s)): (usize, (&f64, &f64))| kept(k) * sign * (r - taken * s);
+    let receiver: Vec<f64> = receiver.iter().zip(&source).enumerate().map(clean).collect();
     let stands_out = (explained(coarse).1 / variance).sqrt();
     let delay = at as f64 - zero as f64;
-    Cleaned { source, receiver, crosstalk: over, delay, reversed: is_reversed, noise, stands_out, is_cut }
+    Cleaned {
+        source,
+        receiver,
+        crosstalk: over,
+        delay,
+        reversed: is_reversed,
+        noise,
+        stands_out,
+        is_cut,
+        opposite: opposite.max(0.0),
+    }
+}
+
+/// Largest correlation of two signals, at most 1, and the factor of the other that is nearest to the one.
+pub(super) fn fitted(one: &[f64], other: &[f64]) -> (f64, f64) {
+    let spectrum = Spectrum::new(one.len(), 1);
+    let correlation = spectrum.correlation(&spectrum.of(one), &spectrum.of(other));
+    let square = |signal: &[f64]| signal.iter().map(|s| s * s).sum::<f64>();
+    let both = correlation.iter().map(|c| c.re).fold(0.0, f64::max);
+    (both / (square(one) * square(other)).sqrt(), both / square(other))
 }

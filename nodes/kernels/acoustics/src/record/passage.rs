@@ -1,12 +1,14 @@
 //! Records of one wave, and the path between source and receiver.
 
+use std::ops::Range;
+
 /// Records of a source and a receiver at the same times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// Sampling rate, Hz.
     pub sample_rate: f64,
-    /// Number of samples before the source starts, which give offset and noise.
-    pub quiet: usize,
+    /// Samples in which neither source nor receiver has a signal, which give offset and noise: those before the source starts.
+    pub quiet: Range<usize>,
     /// Signal that drives the source, in any unit.
     pub source: Vec<f64>,
     /// Signal of the receiver, in any unit.

@@ -1,6 +1,6 @@
 //! Picks with their bias and error.
 
-use super::cleaned::{Cleaned, cleaned, largest};
+use super::cleaned::{Cleaned, cleaned, fitted, largest};
 use super::forward::Path;
 use super::passage::{Passage, Record};
 use crate::error::AcousticsError;
@@ -21,6 +21,13 @@ const ROUNDS: usize = 2;
 
 /// Difference of two picks, in standard deviations, above which they contradict each other.
 const APART: f64 = 3.0;
+
+/// Delay of the features of a wave whose shape is not that of the computed ones, and its standard deviation: periods over the
+/// difference of the correlations. Transducers that ring, and later waves, delay them.
+const UNLIKE: [f64; 2] = [1.0, 1.5];
+
+/// Error where the opposite sign fits as well, periods.
+const HALF: f64 = 0.5;
 
 /// Place of the noise of copies.
 const PLACE: u64 = u64::MAX - 2;
@@ -63,6 +70,10 @@ pub struct Picks {
     pub crosstalk: f64,
     /// The amplifier cut the largest samples of the receiver.
     pub is_cut: bool,
+    /// Correlation of the arrival with a computed one, and the mean of those of computed records.
+    pub alike: [f64; 2],
+    /// Probability in doubt of the sign, from 0 to 1, where it is not given.
+    pub sign_doubt: f64,
     /// True if two picks are further apart than their errors allow; the errors are then as large as the difference.
     pub contradictory: bool,
     /// The receiver without offset and crosstalk, with the sign of the source, of unit height.
@@ -91,21 +102,29 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
     let mut time = (found.delay - system).max(1.0);
     let kind = (passage.distance / passage.diameter, passage.longitudinal);
     let path = Path::between(&found.source, &found.receiver, &band, kind);
+    let typical = path.typical();
     let mut picks = Vec::new();
     let mut missing = Vec::new();
+    let (mut alike, mut opposite) = ([1.0; 2], 0.0);
     for _ in 0..ROUNDS {
+        let expected = path.arrival(time, system, &typical);
         let copy = |k: u64| {
             let mut random = Noise::at(seed, &[PLACE, k]);
             let arrival = path.arrival(time, system, &path.drawn(&mut random));
-            let copy = found.with(&arrival, record.quiet, passage.reversed, || random.next());
-            pickers.each_ref().map(|(_, picker)| delay(&copy, picker).ok())
+            let copy = found.with(&arrival, &record.quiet, passage, &band, || random.next());
+            let times = pickers.each_ref().map(|(_, picker)| delay(&copy, picker).ok());
+            (times, fitted(&copy.receiver, &expected).0, copy.opposite)
         };
-        let copies: Vec<[Option<f64>; 3]> = (0..COPIES).into_par_iter().map(copy).collect();
+        let copies: Vec<([Option<f64>; 3], f64, f64)> = (0..COPIES).into_par_iter().map(copy).collect();
+        let mean =
+            |of: fn(&([Option<f64>; 3], f64, f64)) -> f64| copies.iter().map(of).sum::<f64>() / COPIES as f64;
+        alike = [fitted(&found.receiver, &expected).0, mean(|c| c.1)];
+        opposite = mean(|c| c.2);
         picks.clear();
         missing.clear();
         for (k, observed) in observed.iter().enumerate() {
             let method = pickers[k].0;
-            let errors: Vec<f64> = copies.iter().filter_map(|c| c[k]).map(|t| t - system - time).collect();
+            let errors: Vec<f64> = copies.iter().filter_map(|c| c.0[k]).map(|t| t - system - time).collect();
             let lost = 1.0 - errors.len() as f64 / COPIES as f64;
             match observed {
                 Ok(_) if lost > MAX_LOST => missing.push((method, "the noise is too large".to_owned())),
@@ -117,6 +136,14 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         let Some(best) = least(&picks) else { break };
         time = picks[best].time * record.sample_rate;
     }
+    let period = 1.0 / (band.frequency * record.sample_rate);
+    let unlike = (alike[1] - alike[0]).max(0.0) * period;
+    let sign_doubt = ((found.opposite - opposite) / (1.0 - opposite)).clamp(0.0, 1.0);
+    for p in &mut picks {
+        let time_stddev = p.time_stddev.hypot(UNLIKE[1] * unlike).hypot(HALF * sign_doubt * period);
+        *p = Pick { time: p.time - UNLIKE[0] * unlike, time_stddev, ..*p }.with_speed(passage);
+    }
+    picks.retain(|p: &Pick| p.time > 0.0);
     let Some(recommended) = least(&picks) else {
         let reason = missing.first().map_or("it does not come after the source".to_owned(), |m| m.1.clone());
         return Err(AcousticsError::NoArrival(reason));
@@ -142,6 +169,8 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         crosstalk: found.crosstalk,
         is_cut: found.is_cut,
         contradictory,
+        alike,
+        sign_doubt,
         receiver: found.receiver,
         picks,
     })

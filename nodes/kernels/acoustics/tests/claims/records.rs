@@ -1,11 +1,14 @@
 //! Tests of travel times from the records of a source and a receiver, on synthetic records.
 
+use flate2::read::GzDecoder;
 use grainlab_acoustics::AcousticsError;
 use grainlab_acoustics::record::{Passage, Picks, Record, picks};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
+use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
+use std::io::Read;
 
 const SPEED: f64 = 300.0;
 const DISTANCE: f64 = 0.1;
@@ -42,7 +45,7 @@ fn recorded(noise: f64, seed: u64, change: impl Fn(f64, f64) -> f64) -> Record {
         change(burst(k, DISTANCE / SPEED + 2e-6) + noise * random, source[k])
     };
     let receiver = (0..SAMPLES).map(&mut one).collect();
-    Record { sample_rate: RATE, quiet: QUIET, source, receiver }
+    Record { sample_rate: RATE, quiet: 0..QUIET, source, receiver }
 }
 
 fn best(found: &Picks) -> (f64, f64) {
@@ -104,4 +107,73 @@ fn a_longer_distance_error_or_delay_error_is_in_the_error_of_the_speed() {
     let plain = of(|_| ());
     assert!((of(|p| p.distance_stddev = 0.02 * DISTANCE) - 0.02f64.hypot(plain)).abs() < 1e-3);
     assert!((of(|p| p.delay_stddev = 10e-6) - (10e-6 * SPEED / DISTANCE).hypot(plain)).abs() < 1e-3);
+}
+
+/// One record of `tests/golden/waves`, with the true speed.
+struct Golden {
+    speed: f64,
+    record: Record,
+    passage: Passage,
+}
+
+/// The records of waves in 20 packings, with the burst that the source sent.
+fn golden() -> Vec<Golden> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/golden/waves/traces.csv.gz");
+    let mut text = String::new();
+    GzDecoder::new(std::fs::File::open(path).unwrap()).read_to_string(&mut text).unwrap();
+    let one = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [speed, diameter, frequency, rate, start, distance] =
+            std::array::from_fn(|k| cells[k + 2].parse::<f64>().unwrap());
+        let receiver: Vec<f64> = cells[8].split(' ').map(|s| s.parse::<f64>().unwrap() / 1e4).collect();
+        let burst = |k: usize| {
+            let u = (start + k as f64 / rate) * frequency / 2.0 - 0.5;
+            if u.abs() < 0.5 { (PI * u).cos().powi(2) * (2.0 * TAU * u).sin() } else { 0.0 }
+        };
+        let source = (0..receiver.len()).map(burst).collect();
+        let longitudinal = Some(cells[1] == "p");
+        let passage =
+            Passage { distance, delay: 0.0, diameter, longitudinal, reversed: Some(false), ..passage() };
+        let quiet = 0..(-start * rate) as usize;
+        Golden { speed, record: Record { sample_rate: rate, quiet, source, receiver }, passage }
+    };
+    text.lines().skip(1).map(one).collect()
+}
+
+/// The wave between the arrivals of P and S that a point source adds to S (Aki and Richards, eq. 4.23).
+fn near_field(of: &Golden, k: usize) -> f64 {
+    let time = of.passage.distance / of.speed * of.record.sample_rate;
+    let (from, width) = (time / 1.6, time * (1.0 - 1.0 / 1.6) / 60.0);
+    let part = |i: usize| {
+        let tau = from + (i as f64 + 0.5) * width;
+        k.checked_sub(tau as usize).map_or(0.0, |k| tau * width * of.record.source[k])
+    };
+    (0..60).map(part).sum::<f64>() / time.powi(2)
+}
+
+#[test]
+fn stated_errors_hold_for_waves_in_packings_with_noise_near_field_crosstalk_and_an_amplifier() {
+    let pick = |n: usize, case: usize, of: &Golden| {
+        let Golden { speed, record, passage } = of;
+        let (mut record, mut passage) = (record.clone(), *passage);
+        let mut random = Pcg64Mcg::seed_from_u64((8 * n + case) as u64);
+        let (noise, source) = ([0.002, 0.05, 0.2, 0.02, 0.02, 0.02, 0.02][case], record.source.clone());
+        for (k, r) in record.receiver.iter_mut().enumerate() {
+            let gauss: f64 = StandardNormal.sample(&mut random);
+            *r += noise * gauss;
+            match case {
+                3 => *r += 0.5 * source[k],
+                4 => *r = 0.3 - *r,
+                5 => *r = r.clamp(-0.5, 0.5),
+                6 if passage.longitudinal == Some(false) => *r -= near_field(of, k),
+                _ => {}
+            }
+        }
+        passage.reversed = passage.reversed.filter(|_| case != 4);
+        let (found, stddev) = best(&picks(&record, &passage, 1).unwrap());
+        ((found - speed) / stddev).abs() < 1.96
+    };
+    let all: Vec<bool> = golden().par_iter().enumerate().map(|(n, of)| pick(n, n % 7, of)).collect();
+    let inside = all.iter().filter(|inside| **inside).count() as f64 / all.len() as f64;
+    assert!((0.925..=0.975).contains(&inside), "{inside} of {}", all.len());
 }
