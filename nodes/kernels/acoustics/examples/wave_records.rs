@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let waves = measure(&packing, &Settings { survey: Survey::Minimal, ..Settings::default() })?.waves;
         let diameter = 2.0 * packing.radii.iter().sum::<f64>() / packing.radii.len() as f64;
         for (indices, normal) in [([0, 0, 1], Vec3::z()), ([1, 0, 0], Vec3::x())] {
-            let direction = Ray::normal(&packing.cell, indices)?;
+            let direction = Ray::normal(&packing.cell, indices).ok_or("the cell has no such plane")?;
             for motion in [Vec3::z(), Vec3::x()] {
                 let of = |a: &Vec3, b: &Vec3| a.dot(b).abs() > 0.99;
                 let found = waves
