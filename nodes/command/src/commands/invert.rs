@@ -8,6 +8,7 @@
 //! - [`prior`]: priors; [`drawn`], [`evidence`], [`predictive`]: draws from the posterior, marginal likelihoods, and the data
 //!   against their prediction
 //! - [`speed_table`]: measured wave speeds; [`series`]: what they say with an unknown contact; [`speeds`]: the moduli that fit them
+//! - `plan`: speeds before they are measured
 //! - [`judge`]: results against the truth in a table
 //! - [`calibrations`]: by name
 
@@ -20,6 +21,7 @@ mod evidence;
 mod explain;
 mod inputs;
 mod judge;
+mod plan;
 mod predictive;
 mod print;
 mod prior;
@@ -86,6 +88,14 @@ density_sigma. Rows of one sample share its contacts and its preparation; all sa
 --grain-shear-modulus and --poisson, and under isotropic stress. The sigmas of pressure and density are those of an error that all rows share.
 Unknown columns are refused. With --contact hertz, a file without pressure_pa is given to the models of smooth spheres.
 
+A --plan has pressures (Pa) and error (of each speed, relative), [[speeds]] with mode, and angles in degrees to the axis if they are known
+(each with its own pressures and error, if they differ), and, if wanted, diameter and roughness (m), further_pressures at which one more
+speed could be measured, and [want] with a sigma of z, eps, eps_stiffness, stiffness_ratio or level. Samples are drawn from the prior:
+    error = 0.01
+    pressures = [1e5, 4e5]
+    speeds = [{mode = \"p\", angles = [0, 90]}, {mode = \"s\", angles = [0], error = 0.02}]
+    want = {z = 0.2}
+
 The status of other answers is ok, extrapolated (outside the range of the model, or not all of its unknowns), contradictory (the data contradict each
 other or the model) or unknown (no answer); the column reason has the notes of an estimate. The exit code is 4 where the recommended
 answer is contradictory or unknown, or a model refuses the moduli, and 2 where an input is missing or invalid.";
@@ -104,7 +114,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PA", conflicts_with = "table")]
     theta: Option<f64>,
     /// Confining pressure, Pa, positive in compression
-    #[arg(long, value_name = "PA", required_unless_present_any = ["table", "print_prior", "speeds"], conflicts_with = "table")]
+    #[arg(long, value_name = "PA", required_unless_present_any = ["table", "print_prior", "speeds", "plan"], conflicts_with = "table")]
     pressure: Option<f64>,
     /// Standard deviation of the pressure, Pa
     #[arg(long, value_name = "PA", requires = "pressure", default_value_t = 0.0)]
@@ -137,6 +147,10 @@ pub(crate) struct Args {
     /// standard input
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["table", "g12", "g13", "theta", "c11", "c33", "c13"])]
     speeds: Option<PathBuf>,
+    /// Expected errors of z, eps and contacts by speeds that are planned, as described below, the speed that would help most, and the
+    /// errors that are wanted
+    #[arg(long, value_name = "PLAN.toml", conflicts_with_all = ["table", "speeds", "g12", "g13", "theta", "c11", "c33", "c13", "pressure"])]
+    plan: Option<PathBuf>,
     /// Contact law of the grains: free for --speeds, hertz for moduli [default: these]
     #[arg(long, value_enum, value_name = "LAW")]
     contact: Option<Contact>,
@@ -243,10 +257,21 @@ fn plot_file(_: &Args) -> Option<&Path> {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let of_series =
-        args.contact.unwrap_or(if args.speeds.is_some() { Contact::Free } else { Contact::Hertz });
+    let of_series = args.contact.unwrap_or(if args.speeds.is_some() || args.plan.is_some() {
+        Contact::Free
+    } else {
+        Contact::Hertz
+    });
     if args.print_prior && of_series != Contact::Hertz {
         print(&series::prior(args.prior.as_deref())?.to_toml())?;
+        return Ok(Exit::Done);
+    }
+    if let Some(path) = &args.plan {
+        let prior = of_series.of(&series::prior(args.prior.as_deref())?);
+        let inputs = args.series_inputs()?;
+        // No error depends on the density.
+        let inputs = Inputs { density: inputs.density.or(Some(1500.0)), ..inputs };
+        plan::run(path, &inputs, &prior, of_series.text(), args.format)?;
         return Ok(Exit::Done);
     }
     let speeds = args.speeds.as_deref().map(speed_table::read).transpose()?;
@@ -400,8 +425,8 @@ impl Args {
         Ok(state)
     }
 
-    /// Infers the samples of a file of speeds, whose contacts are not known.
-    fn series(&self, name: &str, lines: &[SpeedLine], contact: Contact) -> Result<Exit, Failure> {
+    /// Inputs of samples whose contacts are not known.
+    fn series_inputs(&self) -> Result<Inputs, Failure> {
         self.defaults()?;
         let of_models = [
             ("--model", !self.model.is_empty()),
@@ -421,14 +446,7 @@ impl Args {
             "is for smooth spheres at one pressure: give --contact hertz, and no column pressure_pa",
         )?;
         refuse(&[("--phi", self.phi.is_some())], "is a column of --speeds")?;
-        let has_pressure = lines.iter().all(|l| l.pressure_pa.is_some());
-        let has_density = lines.iter().all(|l| l.density.or(l.grain_density).is_some());
-        let in_columns = [
-            ("--pressure", has_pressure && self.pressure.is_some()),
-            ("--density", has_density && self.density.is_some()),
-        ];
-        refuse(&in_columns, "is in a column of every row")?;
-        let inputs = Inputs {
+        Ok(Inputs {
             pressure: self.pressure,
             density: self.density,
             pressure_sigma: self.pressure_sigma,
@@ -439,7 +457,19 @@ impl Args {
             size_spread: self.size_spread,
             grains: self.grains,
             error: self.error,
-        };
+        })
+    }
+
+    /// Infers the samples of a file of speeds, whose contacts are not known.
+    fn series(&self, name: &str, lines: &[SpeedLine], contact: Contact) -> Result<Exit, Failure> {
+        let inputs = self.series_inputs()?;
+        let has_pressure = lines.iter().all(|l| l.pressure_pa.is_some());
+        let has_density = lines.iter().all(|l| l.density.or(l.grain_density).is_some());
+        let in_columns = [
+            ("--pressure", has_pressure && self.pressure.is_some()),
+            ("--density", has_density && self.density.is_some()),
+        ];
+        refuse(&in_columns, "is in a column of every row")?;
         let prior = series::prior(self.prior.as_deref())?;
         series::run(name, lines, &inputs, contact, &prior, (self.format, plot_file(self)))
     }

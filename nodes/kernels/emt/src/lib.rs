@@ -100,8 +100,8 @@ pub use prior::{Density, Prior, PriorError};
 pub use registry::{free_contact, model, models, recommended};
 pub use series::{
     ContactCorrections, ContactKind, ContactPrior, Interval, LawEstimate, LeftOut, PreparationPrior,
-    PressureEstimate, RowEstimate, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode,
-    SpeedSeries, infer_series,
+    PressureEstimate, RowEstimate, SampleValues, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow,
+    SpeedMode, SpeedSeries, infer_series, series_stddev, simulate_series,
 };
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

@@ -8,6 +8,7 @@
 //! - `sample`: the speeds; `prior`: what is known before them; `gain`: contact laws by their stiffness over pressure
 //! - `forward`: speeds and their slopes; `corrections`: contacts that the laws were not learned from; `component`: a normal approximation of the posterior for each cell of the prior;
 //!   `draws`: their correction by importance sampling
+//! - `plan`: experiments before they are made
 //! - `check`: pressures and rows left out, contradictions; `estimate`: what is stated; `single`: of
 //!   one pressure, for the model `free-contact`
 
@@ -18,6 +19,7 @@ mod draws;
 mod estimate;
 mod forward;
 mod gain;
+mod plan;
 mod prior;
 mod sample;
 mod single;
@@ -30,6 +32,7 @@ pub use estimate::{
     Interval, LawEstimate, PressureEstimate, RowEstimate, Sensitivity, SeriesEstimate, infer_series,
 };
 pub use gain::ContactKind;
+pub use plan::{SampleValues, series_stddev, simulate_series};
 pub use prior::{ContactPrior, PreparationPrior, SeriesPrior};
 pub use sample::{SeriesRow, SpeedMode, SpeedSeries};
 pub(crate) use single::SingleEstimate;

@@ -27,7 +27,7 @@ pub(crate) enum Contact {
 
 impl Contact {
     /// The prior with this contact.
-    fn of(self, prior: &SeriesPrior) -> SeriesPrior {
+    pub(super) fn of(self, prior: &SeriesPrior) -> SeriesPrior {
         match self {
             Self::Free => prior.clone(),
             Self::Hertz => prior.of_law(ContactKind::Hertz),
@@ -37,7 +37,7 @@ impl Contact {
     }
 
     /// Text in the first line of an answer.
-    fn text(self) -> &'static str {
+    pub(super) fn text(self) -> &'static str {
         match self {
             Self::Free => {
                 "free (laboratory): the contact law, k_t/k_n and the level of the moduli are inferred"

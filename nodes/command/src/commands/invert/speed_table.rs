@@ -143,6 +143,19 @@ fn checked(header: &StringRecord) -> Result<(), String> {
     Ok(())
 }
 
+/// A row without a speed, as a table would have it; `extra` are further columns.
+pub(super) fn planned(
+    pressure: f64,
+    mode: &str,
+    angle: Option<f64>,
+    extra: &[(&str, Option<f64>)],
+) -> Result<SpeedLine, String> {
+    let cell = |value: Option<f64>| value.map(|v| v.to_string()).unwrap_or_default();
+    let names = ["pressure_pa", "mode", "angle_deg"].into_iter().chain(extra.iter().map(|(name, _)| *name));
+    let first = [cell(Some(pressure)), mode.to_owned(), cell(angle)].into_iter();
+    row(&names.collect(), &first.chain(extra.iter().map(|(_, value)| cell(*value))).collect())
+}
+
 fn row(header: &StringRecord, record: &StringRecord) -> Result<SpeedLine, String> {
     if record.len() != header.len() {
         return Err(format!("{} cells under {} columns", record.len(), header.len()));

@@ -4,6 +4,7 @@ use super::component::{Component, Mixture, cells};
 use super::draws::normal;
 use super::forward::Forward;
 use super::gain::ContactKind;
+use super::plan::{series_stddev, simulate_series};
 use super::prior::SeriesPrior;
 use super::sample::{SeriesRow, SpeedMode, SpeedSeries};
 use crate::calibration::Calibration;
@@ -49,40 +50,10 @@ fn template(has_directions: bool) -> SpeedSeries {
 /// A sample from the prior, with the place of its z, k_t/k_n, ε and ε weighted by stiffness among the draws.
 fn simulated(series: &mut SpeedSeries, prior: &SeriesPrior, random: &mut Random) -> Vec<f64> {
     let network = Calibration::builtin("grainlab").unwrap().network.as_ref().unwrap();
-    let forward = Forward::new(series, network, prior);
-    let all = cells(&forward, prior, series.ln_crossover);
-    let mut left = random.uniform();
-    let chosen = all.iter().find(|c| {
-        left -= c.ln_prior.exp();
-        left <= 0.0
-    });
-    let Component { kind, preparation, normal: of, .. } = chosen.unwrap_or(&all[0]);
-    let mut left = random.uniform();
-    let noise = prior.noises().into_iter().find(|[_, w]| {
-        left -= w;
-        left <= 0.0
-    });
-    let noise = noise.map_or(1.0, |[n, _]| n);
-    let unknowns = loop {
-        let unknowns = &of.0 + &of.2 * normal(random, of.0.len());
-        if unknowns[forward.ratio()] > forward.lowest_ratio() {
-            break unknowns;
-        }
-    };
-    let at = forward.about(*kind, *preparation, &unknowns);
-    let m = forward.rows.len();
-    let cholesky = Cholesky::new(forward.unexplained(&at, m, noise)).unwrap();
-    let off = cholesky.l() * normal(random, m);
-    let mut truth = vec![forward.z(&unknowns)[3], unknowns[forward.ratio()].min(forward.mindlin)];
-    if forward.has_eps {
-        let (with, variance) = forward.with_eps_stiffness(&at, 3, m);
-        let left = variance - with.dot(&cholesky.solve(&with));
-        let own = with.dot(&cholesky.solve(&off)) + left.sqrt() * random.normal::<1>()[0];
-        truth.extend([forward.eps_of(&unknowns)[3], forward.eps_stiffness(*kind, &unknowns)[3] + own]);
-    }
-    for (j, given) in forward.given.clone().into_iter().enumerate() {
-        series.rows[given].speed = Some((at.ln_speed[j] + off[j]).exp());
-    }
+    let seed = (random.uniform() * 1e9) as u64;
+    let of = simulate_series(series, network, prior, None, seed).unwrap();
+    let of_eps = of.eps.get(3).into_iter().chain(of.eps_stiffness.get(3));
+    let truth: Vec<f64> = [&of.z[3], &of.stiffness_ratio].into_iter().chain(of_eps).copied().collect();
     let mixture = Mixture::of(Forward::new(series, network, prior), series.ln_crossover);
     let (draws, _) = mixture.draws((random.uniform() * 1e9) as u64);
     let mut found = Vec::new();
@@ -211,5 +182,40 @@ fn an_ensemble_sampler_finds_the_same_posterior() {
             (mean - their_mean).abs() < 0.1 * stddev && (stddev / their_stddev - 1.0).abs() < 0.1,
             "{found}"
         );
+    }
+}
+
+/// Root mean squares of 200 standard deviations and of the errors of 200 other experiments by the whole inversion.
+#[test]
+fn planned_errors_are_those_of_experiments() {
+    let network = Calibration::builtin("grainlab").unwrap().network.as_ref().unwrap();
+    let prior = SeriesPrior::builtin();
+    let rms = |all: &[f64]| (all.iter().map(|x| x * x).sum::<f64>() / all.len() as f64).sqrt();
+    let mut series = template(true);
+    series.rows.retain(|row| row.pressure == 150e3);
+    let mut planned = |seed| {
+        simulate_series(&mut series, network, prior, Some(1.0), seed).unwrap();
+        let [found, _] = series_stddev(&series, network, prior).unwrap();
+        [found.z[0], found.eps[0], found.eps_stiffness[0], found.stiffness_ratio, found.level]
+    };
+    let planned: Vec<[f64; 5]> = (0..200).map(&mut planned).collect();
+    let mut error = |seed| {
+        let truth = simulate_series(&mut series, network, prior, Some(1.0), seed).unwrap();
+        let found = super::estimate::infer_series(&series, network, prior).unwrap();
+        let at = found.pressures[0];
+        let [eps, eps_stiffness] = [at.eps.unwrap(), at.eps_stiffness.unwrap()];
+        [
+            at.z.mean - truth.z[0],
+            eps.mean - truth.eps[0],
+            eps_stiffness.mean - truth.eps_stiffness[0],
+            found.stiffness_ratio.mean - truth.stiffness_ratio,
+            found.level.mean - truth.level,
+        ]
+    };
+    let errors: Vec<[f64; 5]> = (1000..1200).map(&mut error).collect();
+    for k in 0..5 {
+        let of = |all: &[[f64; 5]]| rms(&all.iter().map(|a| a[k]).collect::<Vec<_>>());
+        let ratio = of(&planned) / of(&errors);
+        assert!((0.9..=1.1).contains(&ratio), "{k}: {ratio}");
     }
 }

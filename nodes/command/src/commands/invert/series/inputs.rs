@@ -37,7 +37,7 @@ const DENSITIES: [f64; 2] = [200.0, 10_000.0];
 
 impl Inputs {
     /// The speeds of one sample, and what was assumed of it; or the first fault, with its line and column.
-    pub(super) fn series(&self, lines: &[SpeedLine]) -> Result<(SpeedSeries, Vec<String>), String> {
+    pub(crate) fn series(&self, lines: &[SpeedLine]) -> Result<(SpeedSeries, Vec<String>), String> {
         const GRAINS: &str = "--grain-shear-modulus PA and --poisson NU: the material of the grains is needed (glass: 29e9 and 0.2, quartz: 44e9 and 0.08)";
         let shear_modulus = self.grain_shear_modulus.ok_or(GRAINS)?;
         let poisson_ratio = self.poisson.ok_or(GRAINS)?;

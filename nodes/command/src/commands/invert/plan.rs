@@ -1,0 +1,334 @@
+//! What planned speeds are expected to determine, before any is measured.
+
+use super::series::inputs::Inputs;
+use super::speed_table::{SpeedLine, planned};
+use grainlab_console::{CsvText, Failure, Format, Table, fixed, say};
+use grainlab_emt::{
+    Calibration, EmtError, SampleValues, SeriesPrior, SpeedSeries, series_stddev, simulate_series,
+};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Numbers of simulated samples, of the plan and for each comparison.
+const SAMPLES: usize = 200;
+const COMPARED: usize = 40;
+
+/// Factors of the planned errors that are compared.
+const FACTORS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
+
+/// Modes and angles of one more speed, degrees.
+const FURTHER: [(&str, Option<f64>); 6] = [
+    ("p", Some(0.0)),
+    ("p", Some(45.0)),
+    ("p", Some(90.0)),
+    ("s", Some(0.0)),
+    ("sv", Some(45.0)),
+    ("sh", Some(90.0)),
+];
+
+/// The file of a plan.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Plan {
+    pressures: Vec<f64>,
+    error: f64,
+    #[serde(default)]
+    further_pressures: Vec<f64>,
+    diameter: Option<f64>,
+    roughness: Option<f64>,
+    speeds: Vec<Planned>,
+    #[serde(default)]
+    want: BTreeMap<String, f64>,
+}
+
+/// Speeds of one mode.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Planned {
+    mode: String,
+    angles: Option<Vec<f64>>,
+    pressures: Option<Vec<f64>>,
+    error: Option<f64>,
+}
+
+/// A quantity with its expected error.
+#[derive(Clone, Debug, Serialize)]
+struct Quantity {
+    /// Name in `[want]`.
+    name: &'static str,
+    pressure_pa: Option<f64>,
+    /// Standard deviation before the speeds.
+    prior_sigma: f64,
+    /// Root mean square of the standard deviations over the samples, with their 10 and 90 % quantiles.
+    sigma: f64,
+    low: f64,
+    high: f64,
+    /// The sigma with the errors of the speeds times the factors of the answer.
+    sigma_by_error: Vec<f64>,
+}
+
+/// One more speed, and the sigmas with it.
+#[derive(Debug, Serialize)]
+struct Further {
+    mode: String,
+    angle_deg: Option<f64>,
+    pressure_pa: f64,
+    sigma: Vec<f64>,
+}
+
+/// The answer to a plan.
+#[derive(Debug, Serialize)]
+struct Answer {
+    speeds: usize,
+    samples: usize,
+    error_factors: [f64; 5],
+    quantities: Vec<Quantity>,
+    further: Vec<Further>,
+    /// Sentences: the best further speed, the errors that are wanted, assumptions.
+    notes: Vec<String>,
+}
+
+/// Kinds of quantities.
+const KINDS: [&str; 5] = ["z", "eps", "eps_stiffness", "stiffness_ratio", "level"];
+
+impl Answer {
+    fn places(&self, name: &str) -> Vec<usize> {
+        let all = self.quantities.iter().enumerate();
+        all.filter(|(_, q)| q.name == name).map(|(k, _)| k).collect()
+    }
+
+    /// Relative change of the sigma of a quantity by one more speed, its mean over the pressures.
+    fn change(&self, by: &Further, name: &str) -> Option<f64> {
+        let of = self.places(name);
+        let left = of.iter().map(|k| (by.sigma[*k] / self.quantities[*k].sigma).ln()).sum::<f64>();
+        (!of.is_empty()).then(|| (left / of.len() as f64).exp() - 1.0)
+    }
+}
+
+/// Names and pressures of the quantities, in the order of [`flat`].
+fn names(pressures: &[f64], has_eps: bool) -> Vec<(&'static str, Option<f64>)> {
+    let at = |name| pressures.iter().map(move |p| (name, Some(*p)));
+    let eps = at("eps").chain(at("eps_stiffness")).filter(|_| has_eps);
+    at("z").chain(eps).chain([("stiffness_ratio", None), ("level", None)]).collect()
+}
+
+fn flat(of: &SampleValues) -> Vec<f64> {
+    of.z.iter()
+        .chain(&of.eps)
+        .chain(&of.eps_stiffness)
+        .copied()
+        .chain([of.stiffness_ratio, of.level])
+        .collect()
+}
+
+/// A line of the plan with the relative error of its speed.
+type Wave = (SpeedLine, f64);
+
+fn waves(plan: &Plan) -> Result<Vec<Wave>, String> {
+    let extra = [("diameter", plan.diameter), ("roughness", plan.roughness)];
+    let mut all = Vec::new();
+    for (n, of) in plan.speeds.iter().enumerate() {
+        let error = of.error.unwrap_or(plan.error);
+        if !(error > 0.0 && error < 0.5) {
+            return Err(format!("error = {error} must be relative, from 0 to 0.5: 0.01 is one percent"));
+        }
+        let angles = of.angles.clone().map_or(vec![None], |a| a.into_iter().map(Some).collect());
+        for pressure in of.pressures.as_ref().unwrap_or(&plan.pressures) {
+            for angle in &angles {
+                let line = planned(*pressure, &of.mode, *angle, &extra);
+                all.push((line.map_err(|fault| format!("[[speeds]] number {}: {fault}", n + 1))?, error));
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The waves that are not planned yet.
+fn further(plan: &Plan, planned_waves: &[Wave]) -> Result<Vec<(Further, Wave)>, String> {
+    let extra = [("diameter", plan.diameter), ("roughness", plan.roughness)];
+    let has_angle = plan.speeds.iter().any(|s| s.angles.is_some());
+    let modes = FURTHER.into_iter().filter(|(_, angle)| has_angle || *angle == Some(0.0));
+    let modes: Vec<_> = modes.map(|(mode, angle)| (mode, angle.filter(|_| has_angle))).collect();
+    let mut all = Vec::new();
+    for pressure in plan.pressures.iter().chain(&plan.further_pressures) {
+        for (mode, angle) in &modes {
+            let line = planned(*pressure, mode, *angle, &extra)?;
+            let is_there = |(l, _): &Wave| l.wave == line.wave && l.pressure_pa == line.pressure_pa;
+            if !planned_waves.iter().any(is_there) {
+                let mode = (*mode).to_owned();
+                let of = Further { mode, angle_deg: *angle, pressure_pa: *pressure, sigma: Vec::new() };
+                all.push((of, (line, plan.error)));
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The sigmas of one experiment after another; those of the prior first.
+type Sigmas = (Vec<f64>, Vec<Vec<f64>>);
+
+/// Runs a plan.
+pub(super) fn run(
+    path: &Path,
+    inputs: &Inputs,
+    prior: &SeriesPrior,
+    contact: &str,
+    format: Format,
+) -> Result<(), Failure> {
+    let name = path.display();
+    let usage = |fault: String| Failure::usage(format!("{name}: {fault}"));
+    let text = std::fs::read_to_string(path).map_err(Failure::at(path))?;
+    let plan: Plan = toml::from_str(&text).map_err(|e| usage(e.to_string()))?;
+    let network = Calibration::builtin("grainlab").and_then(|c| c.network.as_ref());
+    let network = network.ok_or_else(|| Failure::failed("the built-in calibration has no network"))?;
+    let planned_waves = waves(&plan).map_err(usage)?;
+    let mut others = further(&plan, &planned_waves).map_err(usage)?;
+    let all: Vec<Wave> = planned_waves.iter().cloned().chain(others.iter().map(|(_, w)| w.clone())).collect();
+    let lines: Vec<SpeedLine> = all.iter().map(|(line, _)| line.clone()).collect();
+    let (whole, assumed) = inputs.series(&lines).map_err(usage)?;
+    // The sigmas with some of the waves, with the errors times a factor.
+    let wrong = |e: EmtError| usage(e.to_string());
+    let sigmas = |chosen: &[usize], factor: f64, samples: usize| -> Result<Sigmas, Failure> {
+        let mut series = whole.clone();
+        series.rows.iter_mut().zip(&all).for_each(|(row, (_, error))| row.stddev = factor * error);
+        let one = |seed: usize| {
+            let mut made = series.clone();
+            simulate_series(&mut made, network, prior, Some(1.0), seed as u64)?;
+            let rows = chosen.iter().map(|n| made.rows[*n]).collect();
+            let [found, before] = series_stddev(&SpeedSeries { rows, ..made }, network, prior)?;
+            Ok((flat(&before), flat(&found)))
+        };
+        let all: Vec<(Vec<f64>, Vec<f64>)> =
+            (0..samples).into_par_iter().map(one).collect::<Result<_, EmtError>>().map_err(wrong)?;
+        Ok((all[0].0.clone(), all.into_iter().map(|(_, found)| found).collect()))
+    };
+    let own: Vec<usize> = (0..planned_waves.len()).collect();
+    let (before, base) = sigmas(&own, 1.0, SAMPLES)?;
+    // The same samples, so that ratios have little noise.
+    let few = rms(&base[..COMPARED]);
+    let scaled = |found: &[Vec<f64>]| -> Vec<f64> {
+        rms(found).iter().zip(&few).zip(rms(&base)).map(|((found, few), base)| base * found / few).collect()
+    };
+    let mut by_error = Vec::new();
+    for factor in FACTORS {
+        by_error.push(if factor == 1.0 { rms(&base) } else { scaled(&sigmas(&own, factor, COMPARED)?.1) });
+    }
+    let pressures = SpeedSeries { rows: whole.rows[..own.len()].to_vec(), ..whole.clone() }.pressures();
+    let names = names(&pressures, before.len() > pressures.len() + 2);
+    let quantity = |(k, (name, pressure_pa)): (usize, &(&'static str, Option<f64>))| {
+        let mut each: Vec<f64> = base.iter().map(|s| s[k]).collect();
+        each.sort_by(f64::total_cmp);
+        let sigma_by_error = by_error.iter().map(|s| s[k]).collect();
+        let (sigma, low, high) = (rms(&base)[k], each[SAMPLES / 10], each[SAMPLES - 1 - SAMPLES / 10]);
+        Quantity { name, pressure_pa: *pressure_pa, prior_sigma: before[k], sigma, low, high, sigma_by_error }
+    };
+    let quantities: Vec<Quantity> = names.iter().enumerate().map(quantity).collect();
+    for (n, (of, _)) in others.iter_mut().enumerate() {
+        let with: Vec<usize> = own.iter().copied().chain([own.len() + n]).collect();
+        let found = sigmas(&with, 1.0, COMPARED)?.1;
+        // Quantities of the plan alone: another pressure adds some, and a first direction ε.
+        let mine = SpeedSeries { rows: with.iter().map(|n| whole.rows[*n]).collect(), ..whole.clone() };
+        let theirs = super::plan::names(&mine.pressures(), found[0].len() > mine.pressures().len() + 2);
+        let place = |of: &(&str, Option<f64>)| theirs.iter().position(|t| t == of);
+        let mine: Vec<Vec<f64>> =
+            found.iter().map(|s| names.iter().filter_map(place).map(|k| s[k]).collect()).collect();
+        of.sigma = scaled(&mine);
+    }
+    let mut answer = Answer {
+        speeds: own.len(),
+        samples: SAMPLES,
+        error_factors: FACTORS,
+        quantities,
+        further: others.into_iter().map(|(of, _)| of).collect(),
+        notes: assumed,
+    };
+    answer.notes.splice(0..0, sentences(&answer, &plan.want).map_err(usage)?);
+    say!("grainlab: contact: {contact}");
+    format.print(&answer, || csv(&answer), || table(&answer))
+}
+
+/// Root mean square of each quantity.
+fn rms(all: &[Vec<f64>]) -> Vec<f64> {
+    let mean = |k: usize| all.iter().map(|s| s[k] * s[k]).sum::<f64>() / all.len() as f64;
+    (0..all[0].len()).map(|k| mean(k).sqrt()).collect()
+}
+
+fn of_wave(of: &Further) -> String {
+    let angle = of.angle_deg.map_or(String::new(), |a| format!(" at {a} degrees"));
+    format!("{}{angle}, {} kPa", of.mode, of.pressure_pa / 1e3)
+}
+
+/// The further speed that helps each quantity most, and the errors that are wanted.
+fn sentences(answer: &Answer, want: &BTreeMap<String, f64>) -> Result<Vec<String>, String> {
+    let mut notes = Vec::new();
+    for name in KINDS {
+        let change = |f: &Further| answer.change(f, name).unwrap_or(0.0);
+        let best = answer.further.iter().min_by(|a, b| change(a).total_cmp(&change(b)));
+        if let Some(best) = best.filter(|f| change(f) < 0.0) {
+            let (wave, change) = (of_wave(best), 100.0 * change(best));
+            notes.push(format!("one more speed helps {name} most at: {wave} ({change:.0} % of its sigma)"));
+        }
+    }
+    for (name, sigma) in want {
+        let of = answer.places(name);
+        if of.is_empty() {
+            return Err(format!(
+                "[want] {name}: it must be one of z, eps and eps_stiffness (with angles), stiffness_ratio and level"
+            ));
+        }
+        // The largest factor with which every pressure has the wanted sigma.
+        let worst: Vec<f64> = (0..FACTORS.len())
+            .map(|f| of.iter().map(|k| answer.quantities[*k].sigma_by_error[f]).fold(0.0, f64::max))
+            .collect();
+        let last = worst.iter().rposition(|s| s <= sigma);
+        notes.push(match last {
+            None => format!(
+                "{name} +- {sigma} is not reached: it would be +- {} with {} of these errors; measure more speeds",
+                fixed(Some(worst[0]), 3),
+                FACTORS[0]
+            ),
+            Some(f) if f + 1 == FACTORS.len() => format!("{name} +- {sigma} needs no better errors than {} times these", FACTORS[f]),
+            Some(f) => {
+                let part = (sigma / worst[f]).ln() / (worst[f + 1] / worst[f]).ln();
+                format!("{name} +- {sigma} needs errors of {:.2} times these", FACTORS[f] * (FACTORS[f + 1] / FACTORS[f]).powf(part))
+            }
+        });
+    }
+    Ok(notes)
+}
+
+fn csv(answer: &Answer) -> String {
+    let mut text = CsvText::default();
+    text.row(["quantity", "pressure_pa", "prior_sigma", "sigma", "low", "high"]);
+    for q in &answer.quantities {
+        text.cell(q.name);
+        for value in [q.pressure_pa, Some(q.prior_sigma), Some(q.sigma), Some(q.low), Some(q.high)] {
+            text.number(value);
+        }
+        text.end();
+    }
+    text.finish()
+}
+
+fn table(answer: &Answer) -> String {
+    let label =
+        |q: &Quantity| q.pressure_pa.map_or(q.name.to_owned(), |p| format!("{}, {} kPa", q.name, p / 1e3));
+    let number = |v: f64| fixed(Some(v), 3);
+    let mut all = Table::new(["sigma of", "prior", "expected", "10 %", "90 %"]);
+    let mut errors = Table::new(["errors times", "0.25", "0.5", "1", "2", "4"]);
+    for q in &answer.quantities {
+        all.row([label(q), number(q.prior_sigma), number(q.sigma), number(q.low), number(q.high)]);
+        errors.row([label(q)].into_iter().chain(q.sigma_by_error.iter().map(|s| number(*s))));
+    }
+    let mut more = Table::new(["one more speed, change of sigma in %"].into_iter().chain(KINDS));
+    for f in &answer.further {
+        let change = |name| fixed(answer.change(f, name).map(|c| 100.0 * c), 0);
+        more.row([of_wave(f)].into_iter().chain(KINDS.map(change)));
+    }
+    let head =
+        format!("{} speeds, in {} simulated samples from the prior\n\n", answer.speeds, answer.samples);
+    let notes: String = answer.notes.iter().map(|n| format!("{n}\n")).collect();
+    head + &all.text() + "\n" + &errors.text() + "\n" + &more.text() + "\n" + &notes
+}
