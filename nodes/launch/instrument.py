@@ -80,6 +80,18 @@ class Instrument:
         return self.until(matching, seconds, f"no answer to {speeds.name!r} came back within {seconds:.0f} s")[0]
 
 
+def show(sent, found):
+    """Prints the estimates of each model."""
+    print(f"{sent.name}\n{'inferred by':<17} {'k':>15} {'z':>15} {'eps':>17}  status")
+    for e in found.estimates:
+        sigma = lambda i: e.covariance[i]**0.5 if e.covariance else float("nan")
+        values = [(e.k, 0), (e.z, 12), (e.eps, 18)]
+        cells = [f"{v[0]:.4f} +- {sigma(i):.4f}" if v else "-" for v, i in values]
+        print(f"{e.model:<17} {cells[0]:>15} {cells[1]:>15} {cells[2]:>17}  {STATUS[e.status]}")
+        print("".join(f"    {warning}\n" for warning in e.warnings), end="")
+    sys.stdout.flush()
+
+
 def main():
     sent = measurement()
     found = Instrument().infer(sent)
@@ -90,13 +102,7 @@ def main():
         reasons = dict.fromkeys(w for e in unknown for w in e.warnings)
         print(f"{sent.name}: no estimate: " + "\n".join(reasons), file=sys.stderr)
         sys.exit(4)
-    print(f"{sent.name}\n{'inferred by':<17} {'k':>15} {'z':>15} {'eps':>17}  status")
-    for e in found.estimates:
-        sigma = lambda i: e.covariance[i]**0.5 if e.covariance else float("nan")
-        values = [(e.k, 0), (e.z, 12), (e.eps, 18)]
-        cells = [f"{v[0]:.4f} +- {sigma(i):.4f}" if v else "-" for v, i in values]
-        print(f"{e.model:<17} {cells[0]:>15} {cells[1]:>15} {cells[2]:>17}  {STATUS[e.status]}")
-        print("".join(f"    {warning}\n" for warning in e.warnings), end="")
+    show(sent, found)
 
 
 if __name__ == "__main__":

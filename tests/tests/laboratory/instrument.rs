@@ -103,6 +103,34 @@ fn an_instrument_of_another_vendor_that_a_launch_file_lists_is_of_the_run_and_re
     assert_eq!(answers[0], microstructure_of_speeds(&sent[0], &Settings::default()).message);
 }
 
+#[test]
+fn records_that_are_written_into_a_folder_are_picked_and_inverted_when_a_state_is_complete() {
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    let _node = lab.start(&["run", "emt_inversion"]);
+    let (from, folder) = (here("golden/beads"), lab.folder().join("records"));
+    std::fs::create_dir(&folder).unwrap();
+    let late = "p90-250kPa.csv";
+    for file in std::fs::read_dir(&from).unwrap().map(|f| f.unwrap().file_name()) {
+        if file != late {
+            std::fs::copy(from.join(&file), folder.join(&file)).unwrap();
+        }
+    }
+    let script = here("../nodes/launch/record_instrument.py");
+    let mut command = Command::new(&python);
+    command.arg(&script).arg(&folder).args(["--grain-shear-modulus", "29e9", "--poisson", "0.2", "--once"]);
+    let writer = std::thread::spawn(move || {
+        std::thread::sleep(std::time::Duration::from_secs(5));
+        std::fs::copy(from.join(late), folder.join(late)).unwrap();
+    });
+    let ended = peer(&lab, command.env("GRAINLAB", grainlab()));
+    writer.join().unwrap();
+    let states: Vec<&str> = ended.stdout.lines().filter(|l| l.starts_with("beads ")).collect();
+    assert_eq!(states, ["beads 50e3 Pa", "beads 250e3 Pa"], "{}", ended.stdout);
+    let estimates = ended.stdout.lines().filter(|l| l.starts_with("free-contact") && l.ends_with("ok"));
+    assert_eq!(estimates.count(), 2, "{}", ended.stdout);
+}
+
 /// The distinct messages of a topic of a recording.
 fn decoded<T: Message>(run: &Path, topic: &str) -> Vec<T> {
     distinct(run, topic).iter().map(|body| from_cdr(body).unwrap()).collect()

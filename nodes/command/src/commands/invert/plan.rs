@@ -18,6 +18,9 @@ const COMPARED: usize = 40;
 /// Factors of the planned errors that are compared.
 const FACTORS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
+/// Relative change of a sigma that simulated samples tell from none.
+const WORTH: f64 = 0.03;
+
 /// Modes and angles of one more speed, degrees.
 const FURTHER: [(&str, Option<f64>); 6] = [
     ("p", Some(0.0)),
@@ -266,9 +269,14 @@ fn sentences(answer: &Answer, want: &BTreeMap<String, f64>) -> Result<Vec<String
     for name in KINDS {
         let change = |f: &Further| answer.change(f, name).unwrap_or(0.0);
         let best = answer.further.iter().min_by(|a, b| change(a).total_cmp(&change(b)));
-        if let Some(best) = best.filter(|f| change(f) < 0.0) {
-            let (wave, change) = (of_wave(best), 100.0 * change(best));
-            notes.push(format!("one more speed helps {name} most at: {wave} ({change:.0} % of its sigma)"));
+        match best.filter(|_| !answer.places(name).is_empty()) {
+            Some(best) if change(best) < -WORTH => notes.push(format!(
+                "one more speed helps {name} most at: {} ({:.0} % of its sigma)",
+                of_wave(best),
+                100.0 * change(best)
+            )),
+            Some(_) => notes.push(format!("no single speed more lowers the sigma of {name} by 3 %")),
+            None => {}
         }
     }
     for (name, sigma) in want {
