@@ -79,7 +79,7 @@ class Records:
                 table.flush()
                 command = [os.environ.get("GRAINLAB", "grainlab"), "pick", table.name, "--format", "json"]
                 ended = subprocess.run(command, capture_output=True, text=True)
-            refused = {"refused": ended.stderr.strip(), "picks": []}
+            refused = {"refused": ended.stderr.strip(), "picks": [], "notes": []}
             self.picked[key] = (stamp, json.loads(ended.stdout)[0] if ended.stdout else refused)
         return self.picked[key][1]
 
@@ -114,7 +114,7 @@ def main():
     while True:
         for name, picked in records.poll():
             for row, found in picked:
-                print("".join(f"{row['file']}: {note}\n" for note in found.get("notes", [])), end="")
+                print("".join(f"{row['file']}: {note}\n" for note in found["notes"]), end="")
             try:
                 sent = message(name, picked, options)
             except (KeyError, ValueError) as fault:

@@ -40,7 +40,7 @@ enum Command {
     #[command(subcommand)]
     Bag(bag::BagCommand),
     /// Infer the microstructure from moduli: coordination and anisotropy with uncertainty.
-    Invert(invert::Args),
+    Invert(Box<invert::Args>),
     /// Measure packings from files: structure, stress and the full stiffness.
     Analyze(analyze::Args),
     /// Pick arrivals in records of an oscilloscope: speeds of long waves, with errors.

@@ -83,13 +83,13 @@ fn a_fault_is_named_with_its_file_and_line_and_a_refused_record_keeps_the_others
         words.iter().for_each(|word| assert!(text.contains(word), "{word}: {text}"));
     };
     table("file,distance\np.csv,0.1\n");
-    refused(2, &["t.csv", "no column \"diameter\""]);
+    refused(2, &["t.csv", "no column diameter; columns are file, distance"]);
     table("file,distance,diameter,distence_sigma\n");
-    refused(2, &["\"distence_sigma\" is not known"]);
+    refused(2, &["column distence_sigma is unknown (did you mean distance_sigma?)"]);
     table("file,distance,diameter\np.csv,ten,1e-4\n");
-    refused(2, &["line 2", "distance is \"ten\""]);
+    refused(2, &["line 2", "column distance: \"ten\" is not a number"]);
     table("file,mode,distance,diameter\np.csv,P-wave,0.1,1e-4\n");
-    refused(2, &["line 2", "mode is \"p-wave\"; it must be p, s, sv or sh"]);
+    refused(2, &["line 2", "mode is \"P-wave\"; it must be one of p, s, sv, sh"]);
     table("file,distance,diameter\np.csv,-0.1,1e-4\n");
     refused(4, &["p.csv: ", "distance = -1e-1"]);
     table("file,distance,diameter,receiver_column\np.csv,0.1,1e-4,7\n");

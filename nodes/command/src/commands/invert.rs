@@ -45,8 +45,8 @@ use print::Printer;
 pub(super) use rows::Rows;
 use series::Contact;
 use series::inputs::Inputs;
-pub(super) use speed_table::COLUMNS as SPEED_COLUMNS;
 use speed_table::SpeedLine;
+pub(super) use speed_table::{COLUMNS as SPEED_COLUMNS, checked_header, not_a_number};
 pub(super) use state::State;
 use std::path::{Path, PathBuf};
 

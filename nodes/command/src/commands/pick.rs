@@ -12,7 +12,7 @@ use grainlab_acoustics::record::{Pick, Picks, picks};
 use grainlab_console::{CsvText, Failure, Format, Table, fixed, say, write_whole};
 use grainlab_node_kit::Exit;
 use list::Row;
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -58,54 +58,29 @@ pub(crate) struct Args {
     format: Format,
 }
 
-/// One record and its picks, as JSON has them.
-#[derive(Debug, Serialize)]
-struct Found {
-    file: String,
-    line: u64,
-    /// Reason why there is no speed.
-    refused: Option<String>,
-    picks: Vec<OnePick>,
-    recommended: Option<&'static str>,
-    frequency: Option<f64>,
-    wavelengths: Option<f64>,
-    signal_to_noise: Option<f64>,
-    notes: Vec<String>,
-}
-
-/// A pick in SI units.
-#[derive(Debug, Serialize)]
-struct OnePick {
-    method: &'static str,
-    time: f64,
-    time_sigma: f64,
-    bias: f64,
-    speed: f64,
-    speed_sigma: f64,
-}
+/// A row with its picks, or the reason why it has none.
+type Found = (Row, Result<Picks, String>);
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let rows = list::read(&args.records)?;
-    let mut all = Vec::new();
-    for row in &rows {
-        let record = oscilloscope::read(row)?;
+    let mut all: Vec<Found> = Vec::new();
+    for row in list::read(&args.records)? {
+        let record = oscilloscope::read(&row)?;
         let picked = picks(&record, &row.passage, args.seed);
         if let (Some(folder), Ok(picked)) = (&args.plot, &picked) {
-            drawn(folder, row, &record, picked)?;
+            drawn(folder, &row, &record, picked)?;
         }
         all.push((row, picked.map_err(|e| e.to_string())));
     }
-    let found: Vec<Found> = all.iter().map(|(row, picked)| Found::of(row, picked.as_ref())).collect();
+    let refused = all.iter().filter(|(_, picked)| picked.is_err()).count();
     if let Some(path) = &args.out {
         write_whole(path, speeds(&all)).map_err(Failure::at(path))?;
-        let count = all.iter().filter(|(_, picked)| picked.is_ok()).count();
-        say!("grainlab: {} speeds are written to {}", count, path.display());
+        say!("grainlab: {} speeds are written to {}", all.len() - refused, path.display());
     }
-    args.format.print(&found, || speeds(&all), || text(&all, &found))?;
-    let refused = found.iter().filter(|f| f.refused.is_some()).count();
+    let values: Vec<Value> = all.iter().map(value).collect();
+    args.format.print(&values, || speeds(&all), || text(&all))?;
     if refused > 0 {
-        say!("grainlab: {refused} of {} records have no speed", found.len());
+        say!("grainlab: {refused} of {} records have no speed", all.len());
         return Ok(Exit::PhysicsInvalid);
     }
     Ok(Exit::Done)
@@ -124,28 +99,24 @@ fn drawn(
     Err(Failure::usage("--plot needs the studio: build with its feature"))
 }
 
-impl Found {
-    fn of(row: &Row, picked: Result<&Picks, &String>) -> Self {
-        let one = |p: &Pick| OnePick {
-            method: p.method.word(),
-            time: p.time,
-            time_sigma: p.time_stddev,
-            bias: p.bias,
-            speed: p.speed,
-            speed_sigma: p.speed_stddev,
-        };
-        let known = picked.ok();
-        Self {
-            file: row.file.clone(),
-            line: row.line,
-            refused: picked.err().cloned(),
-            picks: known.map(|p| p.picks.iter().map(one).collect()).unwrap_or_default(),
-            recommended: known.map(|p| p.picks[p.recommended].method.word()),
-            frequency: known.map(|p| p.frequency),
-            wavelengths: known.map(|p| p.wavelengths),
-            signal_to_noise: known.map(|p| p.signal_to_noise),
-            notes: known.map(notes).unwrap_or_default(),
+/// A record in JSON, in SI units.
+fn value((row, picked): &Found) -> Value {
+    let one = |p: &Pick| json!({"method": p.method.word(), "time": p.time, "time_sigma": p.time_stddev, "bias": p.bias, "speed": p.speed, "speed_sigma": p.speed_stddev});
+    match picked {
+        Err(reason) => {
+            json!({"file": row.file, "line": row.line, "refused": reason, "picks": [], "notes": []})
         }
+        Ok(p) => json!({
+            "file": row.file,
+            "line": row.line,
+            "refused": null,
+            "picks": p.picks.iter().map(one).collect::<Vec<_>>(),
+            "recommended": p.picks[p.recommended].method.word(),
+            "frequency": p.frequency,
+            "wavelengths": p.wavelengths,
+            "signal_to_noise": p.signal_to_noise,
+            "notes": notes(p),
+        }),
     }
 }
 
@@ -190,7 +161,7 @@ fn notes(p: &Picks) -> Vec<String> {
 }
 
 /// The table that `grainlab invert --speeds` reads.
-fn speeds(all: &[(&Row, Result<Picks, String>)]) -> String {
+fn speeds(all: &[Found]) -> String {
     let names: Vec<&str> =
         all.first().map(|(row, _)| row.copied.iter().map(|(n, _)| n.as_str()).collect()).unwrap_or_default();
     let mut csv = CsvText::default();
@@ -208,36 +179,36 @@ fn speeds(all: &[(&Row, Result<Picks, String>)]) -> String {
     csv.finish()
 }
 
-fn text(all: &[(&Row, Result<Picks, String>)], found: &[Found]) -> String {
+fn text(all: &[Found]) -> String {
     let mut table = Table::new(["record", "pick", "time/us", "+-", "bias", "m/s", "+-", "waves", "S/N"]);
+    let mut said = String::new();
     for (row, picked) in all {
-        let Ok(picked) = picked else {
-            table.row([&row.file, "refused", "-", "-", "-", "-", "-", "-", "-"]);
-            continue;
+        let file = &row.file;
+        let picked = match picked {
+            Ok(picked) => picked,
+            Err(reason) => {
+                table.row([file, "refused", "-", "-", "-", "-", "-", "-", "-"]);
+                said += &format!("{file}: {reason}\n");
+                continue;
+            }
         };
+        said.extend(notes(picked).iter().map(|note| format!("{file}: {note}\n")));
         for (k, p) in picked.picks.iter().enumerate() {
-            let best = k == picked.recommended;
-            let name = format!("{}{}", p.method.word(), if best { " *" } else { "" });
+            let star = if k == picked.recommended { " *" } else { "" };
             let us = |t: f64| fixed(Some(1e6 * t), 2);
-            let of_record = |v: f64| if k == 0 { fixed(Some(v), 1) } else { String::new() };
+            let of_record = |text: String| if k == 0 { text } else { String::new() };
             table.row([
-                if k == 0 { row.file.clone() } else { String::new() },
-                name,
+                of_record(file.clone()),
+                p.method.word().to_owned() + star,
                 us(p.time),
                 us(p.time_stddev),
                 us(p.bias),
                 fixed(Some(p.speed), 1),
                 fixed(Some(p.speed_stddev), 1),
-                of_record(picked.wavelengths),
-                of_record(picked.signal_to_noise),
+                of_record(fixed(Some(picked.wavelengths), 1)),
+                of_record(fixed(Some(picked.signal_to_noise), 1)),
             ]);
         }
     }
-    let mut text = table.text() + "* recommended: the least error\n";
-    for f in found {
-        for note in f.refused.iter().chain(&f.notes) {
-            text += &format!("{}: {note}\n", f.file);
-        }
-    }
-    text
+    table.text() + "* recommended: the least error\n" + &said
 }

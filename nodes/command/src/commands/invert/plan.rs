@@ -1,4 +1,4 @@
-//! What planned speeds are expected to determine, before any is measured.
+//! Errors that planned speeds are expected to have, before any is measured.
 
 use super::series::inputs::Inputs;
 use super::speed_table::{SpeedLine, planned};
@@ -209,7 +209,7 @@ pub(super) fn run(
     };
     let own: Vec<usize> = (0..planned_waves.len()).collect();
     let (before, base) = sigmas(&own, 1.0, SAMPLES)?;
-    // The same samples, so that ratios have little noise.
+    // One set of samples, so that ratios have little noise.
     let few = rms(&base[..COMPARED]);
     let scaled = |found: &[Vec<f64>]| -> Vec<f64> {
         rms(found).iter().zip(&few).zip(rms(&base)).map(|((found, few), base)| base * found / few).collect()

@@ -104,7 +104,7 @@ fn parsed(text: &str) -> Result<Vec<SpeedLine>, String> {
         .flexible(true)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
     let header = reader.headers().map_err(|e| e.to_string())?.clone();
-    checked(&header)?;
+    checked_header(&header, &COLUMNS, &["speed"])?;
     let mut lines = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| e.to_string())?;
@@ -121,26 +121,27 @@ fn parsed(text: &str) -> Result<Vec<SpeedLine>, String> {
     Ok(lines)
 }
 
-/// Refuses unknown columns, and columns that are there twice.
-fn checked(header: &StringRecord) -> Result<(), String> {
+/// Refuses a header with unknown columns, columns that are there twice, and without one that is needed.
+pub(crate) fn checked_header(header: &StringRecord, columns: &[&str], needed: &[&str]) -> Result<(), String> {
+    let known = || columns.join(", ");
     for (at, column) in header.iter().enumerate() {
         if header.iter().take(at).any(|other| other == column) {
             return Err(format!("column {column} is there twice"));
         }
-        if COLUMNS.contains(&column) {
+        if columns.contains(&column) {
             continue;
         }
-        let hint = match slips::meant(column, &COLUMNS) {
+        let hint = match slips::meant(column, columns) {
             _ if column.contains([';', '\t']) => "; the separator must be a comma".to_owned(),
             Some(meant) => format!(" (did you mean {meant}?)"),
             None => String::new(),
         };
-        return Err(format!("column {column} is unknown{hint}; columns are {}", COLUMNS.join(", ")));
+        return Err(format!("column {column} is unknown{hint}; columns are {}", known()));
     }
-    if !header.iter().any(|column| column == "speed") {
-        return Err(format!("there is no column speed; columns are {}", COLUMNS.join(", ")));
+    match needed.iter().find(|name| !header.iter().any(|column| column == **name)) {
+        Some(missing) => Err(format!("there is no column {missing}; columns are {}", known())),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// A row without a speed, as a table would have it; `extra` are further columns.
@@ -228,7 +229,7 @@ fn way(row: &SpeedLine) -> Result<Option<(Vec3, Vec3)>, String> {
 }
 
 /// The cell that could not be read.
-fn not_a_number(error: &csv::Error, header: &StringRecord, record: &StringRecord) -> String {
+pub(crate) fn not_a_number(error: &csv::Error, header: &StringRecord, record: &StringRecord) -> String {
     let at = match error.kind() {
         csv::ErrorKind::Deserialize { err, .. } => err.field().map_or(0, |field| field as usize),
         _ => 0,

@@ -1,9 +1,10 @@
 //! The table of the records.
 
-use crate::commands::invert::SPEED_COLUMNS;
+use crate::commands::invert::{SPEED_COLUMNS, checked_header, not_a_number};
 use grainlab_acoustics::record::Passage;
 use grainlab_console::Failure;
-use std::collections::BTreeMap;
+use serde::Deserialize;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 /// Columns of a record.
@@ -23,8 +24,21 @@ const OWN: [&str; 10] = [
 /// Columns of `grainlab invert --speeds` that the picks fill in; the others are copied.
 const PICKED: [&str; 3] = ["frequency", "speed", "speed_sigma"];
 
-fn is_copied(name: &str) -> bool {
-    SPEED_COLUMNS.contains(&name) && !PICKED.contains(&name)
+/// The cells of a row that are not only copied.
+#[derive(Deserialize)]
+struct Cells {
+    file: String,
+    distance: f64,
+    distance_sigma: Option<f64>,
+    diameter: f64,
+    delay: Option<f64>,
+    delay_sigma: Option<f64>,
+    polarity: Option<String>,
+    mode: Option<String>,
+    time_column: Option<NonZeroUsize>,
+    source_column: Option<NonZeroUsize>,
+    receiver_column: Option<NonZeroUsize>,
+    time_unit: Option<String>,
 }
 
 /// One row of the table.
@@ -55,28 +69,19 @@ fn parsed(text: &str, folder: &Path) -> Result<Vec<Row>, String> {
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
-    let header: Vec<String> =
-        reader.headers().map_err(|e| e.to_string())?.iter().map(str::to_lowercase).collect();
-    for (k, name) in header.iter().enumerate() {
-        if !OWN.contains(&name.as_str()) && !is_copied(name) {
-            let known = SPEED_COLUMNS.iter().filter(|name| is_copied(name)).chain(&OWN);
-            let known: Vec<&str> = known.copied().collect();
-            return Err(format!("column {name:?} is not known; columns are {}", known.join(", ")));
-        }
-        if header[..k].contains(name) {
-            return Err(format!("column {name:?} is there twice"));
-        }
-    }
-    if let Some(missing) = ["file", "distance", "diameter"].iter().find(|n| !header.iter().any(|h| h == *n)) {
-        return Err(format!("there is no column {missing:?}"));
-    }
+    let header = reader.headers().map_err(|e| e.to_string())?.clone();
+    let copied: Vec<&str> = SPEED_COLUMNS.into_iter().filter(|name| !PICKED.contains(name)).collect();
+    checked_header(&header, &[&OWN[..], &copied].concat(), &["file", "distance", "diameter"])?;
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| e.to_string())?;
         let line = record.position().map_or(0, csv::Position::line);
-        let cells: BTreeMap<&str, &str> =
-            header.iter().map(String::as_str).zip(&record).filter(|(_, c)| !c.is_empty()).collect();
-        rows.push(row(line, &header, &cells, folder).map_err(|fault| format!("line {line}: {fault}"))?);
+        let cells = record.deserialize(Some(&header)).map_err(|e| not_a_number(&e, &header, &record));
+        let mut row =
+            cells.and_then(|c| row(line, c, folder)).map_err(|fault| format!("line {line}: {fault}"))?;
+        let all = header.iter().zip(&record).filter(|(name, _)| copied.contains(name));
+        row.copied = all.map(|(name, cell)| (name.to_owned(), cell.to_owned())).collect();
+        rows.push(row);
     }
     if rows.is_empty() {
         return Err("there is no record below the header".to_owned());
@@ -84,56 +89,37 @@ fn parsed(text: &str, folder: &Path) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-fn row(line: u64, header: &[String], cells: &BTreeMap<&str, &str>, folder: &Path) -> Result<Row, String> {
-    let number = |name: &str| match cells.get(name) {
-        None => Ok(None),
-        Some(cell) => cell.parse().map(Some).map_err(|_| format!("{name} is {cell:?}; it must be a number")),
-    };
-    let needed = |name: &str| number(name)?.ok_or_else(|| format!("{name} is missing"));
-    let column = |name: &str, default: usize| match cells.get(name) {
-        None => Ok(default - 1),
-        Some(cell) => {
-            let found = cell.parse::<usize>().ok().filter(|n| *n > 0).map(|n| n - 1);
-            found.ok_or_else(|| format!("{name} is {cell:?}; it must be a number of a column, from 1"))
-        }
-    };
-    let reversed = match cells.get("polarity").copied() {
-        None => None,
-        Some("normal") => Some(false),
-        Some("reversed") => Some(true),
-        Some(other) => return Err(format!("polarity is {other:?}; it must be normal or reversed, or empty")),
-    };
-    let longitudinal = match cells.get("mode").map(|mode| mode.to_lowercase()).as_deref() {
-        None => None,
-        Some("p") => Some(true),
-        Some("s" | "sv" | "sh") => Some(false),
-        Some(other) => return Err(format!("mode is {other:?}; it must be p, s, sv or sh, or empty")),
-    };
-    let unit = match cells.get("time_unit").copied().unwrap_or("s") {
-        "s" => 1.0,
-        "ms" => 1e-3,
-        "us" => 1e-6,
-        other => return Err(format!("time_unit is {other:?}; it must be s, ms or us")),
-    };
-    let file = cells.get("file").ok_or("file is missing")?.to_string();
-    let copied = header.iter().filter(|name| is_copied(name));
+/// The value of a word, which may be in capital letters.
+fn word<T: Copy>(name: &str, cell: Option<&String>, words: &[(&str, T)]) -> Result<Option<T>, String> {
+    let Some(cell) = cell else { return Ok(None) };
+    let found = words.iter().find(|(word, _)| cell.eq_ignore_ascii_case(word)).map(|(_, value)| Some(*value));
+    let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+    found.ok_or_else(|| format!("{name} is {cell:?}; it must be one of {}, or empty", known.join(", ")))
+}
+
+fn row(line: u64, cells: Cells, folder: &Path) -> Result<Row, String> {
+    let modes = [("p", true), ("s", false), ("sv", false), ("sh", false)];
+    let column = |of: Option<NonZeroUsize>, default: usize| of.map_or(default, NonZeroUsize::get) - 1;
     Ok(Row {
         line,
-        path: folder.join(&file),
-        file,
+        path: folder.join(&cells.file),
         passage: Passage {
-            distance: needed("distance")?,
-            distance_stddev: number("distance_sigma")?.unwrap_or(0.0),
-            delay: number("delay")?.unwrap_or(0.0),
-            delay_stddev: number("delay_sigma")?.unwrap_or(0.0),
-            reversed,
-            diameter: needed("diameter")?,
-            longitudinal,
+            distance: cells.distance,
+            distance_stddev: cells.distance_sigma.unwrap_or(0.0),
+            delay: cells.delay.unwrap_or(0.0),
+            delay_stddev: cells.delay_sigma.unwrap_or(0.0),
+            reversed: word("polarity", cells.polarity.as_ref(), &[("normal", false), ("reversed", true)])?,
+            diameter: cells.diameter,
+            longitudinal: word("mode", cells.mode.as_ref(), &modes)?,
         },
-        columns: [column("time_column", 1)?, column("source_column", 2)?, column("receiver_column", 3)?],
-        unit,
-        copied: copied
-            .map(|name| (name.clone(), cells.get(name.as_str()).unwrap_or(&"").to_string()))
-            .collect(),
+        columns: [
+            column(cells.time_column, 1),
+            column(cells.source_column, 2),
+            column(cells.receiver_column, 3),
+        ],
+        unit: word("time_unit", cells.time_unit.as_ref(), &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6)])?
+            .unwrap_or(1.0),
+        file: cells.file,
+        copied: Vec::new(),
     })
 }

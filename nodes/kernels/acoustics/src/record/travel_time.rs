@@ -113,18 +113,18 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
             let arrival = path.arrival(time, system, &path.drawn(&mut random));
             let copy = found.with(&arrival, &record.quiet, passage, &band, || random.next());
             let times = pickers.each_ref().map(|(_, picker)| delay(&copy, picker).ok());
-            (times, fitted(&copy.receiver, &expected).0, copy.opposite)
+            (times, [fitted(&copy.receiver, &expected).0, copy.opposite])
         };
-        let copies: Vec<([Option<f64>; 3], f64, f64)> = (0..COPIES).into_par_iter().map(copy).collect();
-        let mean =
-            |of: fn(&([Option<f64>; 3], f64, f64)) -> f64| copies.iter().map(of).sum::<f64>() / COPIES as f64;
-        alike = [fitted(&found.receiver, &expected).0, mean(|c| c.1)];
-        opposite = mean(|c| c.2);
+        let (copies, shapes): (Vec<[Option<f64>; 3]>, Vec<[f64; 2]>) =
+            (0..COPIES).into_par_iter().map(copy).unzip();
+        let mean = |k: usize| shapes.iter().map(|shape| shape[k]).sum::<f64>() / COPIES as f64;
+        alike = [fitted(&found.receiver, &expected).0, mean(0)];
+        opposite = mean(1);
         picks.clear();
         missing.clear();
         for (k, observed) in observed.iter().enumerate() {
             let method = pickers[k].0;
-            let errors: Vec<f64> = copies.iter().filter_map(|c| c.0[k]).map(|t| t - system - time).collect();
+            let errors: Vec<f64> = copies.iter().filter_map(|c| c[k]).map(|t| t - system - time).collect();
             let lost = 1.0 - errors.len() as f64 / COPIES as f64;
             match observed {
                 Ok(_) if lost > MAX_LOST => missing.push((method, "the noise is too large".to_owned())),
