@@ -22,6 +22,7 @@ The table has a row for each record, as CSV with a header:
   distance                                   between the tips of source and receiver, m; distance_sigma
   diameter                                   mean diameter of the grains, m: waves of some ten diameters are slower than long ones
   delay                                      travel time of the system, source and receiver face to face, s [0]; delay_sigma
+  lowpass, highpass, filter_order            of the receiver's electronics: Hz of -3 dB, and number of poles (Butterworth) [none, none, 1]
   polarity                                   normal or reversed: how the receiver shows a wave when both are face to face [not known]
   time_column, source_column, receiver_column  numbers of the columns in the file [1, 2, 3]
   time_unit                                  s, ms or us [s]

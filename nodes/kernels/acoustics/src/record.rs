@@ -7,6 +7,7 @@
 //! which a pair of records does not determine, are drawn from what packings and point sources have.
 
 mod cleaned;
+mod filter;
 mod forward;
 mod passage;
 mod travel_time;

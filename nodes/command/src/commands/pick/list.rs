@@ -8,12 +8,15 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 /// Columns of a record.
-const OWN: [&str; 10] = [
+const OWN: [&str; 13] = [
     "file",
     "distance",
     "distance_sigma",
     "delay",
     "delay_sigma",
+    "lowpass",
+    "highpass",
+    "filter_order",
     "polarity",
     "time_column",
     "source_column",
@@ -33,6 +36,9 @@ struct Cells {
     diameter: f64,
     delay: Option<f64>,
     delay_sigma: Option<f64>,
+    lowpass: Option<f64>,
+    highpass: Option<f64>,
+    filter_order: Option<u32>,
     polarity: Option<String>,
     mode: Option<String>,
     time_column: Option<NonZeroUsize>,
@@ -108,6 +114,9 @@ fn row(line: u64, cells: Cells, folder: &Path) -> Result<Row, String> {
             distance_stddev: cells.distance_sigma.unwrap_or(0.0),
             delay: cells.delay.unwrap_or(0.0),
             delay_stddev: cells.delay_sigma.unwrap_or(0.0),
+            lowpass: cells.lowpass,
+            highpass: cells.highpass,
+            filter_order: cells.filter_order.unwrap_or(1),
             reversed: word("polarity", cells.polarity.as_ref(), &[("normal", false), ("reversed", true)])?,
             diameter: cells.diameter,
             longitudinal: word("mode", cells.mode.as_ref(), &modes)?,

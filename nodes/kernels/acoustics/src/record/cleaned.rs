@@ -1,5 +1,6 @@
 //! Records without offset and without crosstalk, of unit height.
 
+use super::filter::filtered;
 use super::passage::{Passage, Record};
 use crate::error::{AcousticsError, setting};
 use crate::time_of_flight::spectrum::Spectrum;
@@ -113,19 +114,23 @@ impl Cleaned {
 
 /// Checks and cleans a record.
 pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Cleaned, Band), AcousticsError> {
-    let positive = |x: f64| x.is_finite() && x > 0.0;
-    let none = |x: f64| x.is_finite() && x >= 0.0;
-    setting("sample_rate", record.sample_rate, positive(record.sample_rate), "more than 0 and finite")?;
-    setting("distance", passage.distance, positive(passage.distance), "more than 0 and finite")?;
-    setting("diameter", passage.diameter, positive(passage.diameter), "more than 0 and finite")?;
-    setting(
-        "distance_sigma",
-        passage.distance_stddev,
-        none(passage.distance_stddev),
-        "0 or more and finite",
-    )?;
-    setting("delay_sigma", passage.delay_stddev, none(passage.delay_stddev), "0 or more and finite")?;
+    for (name, value) in [
+        ("sample_rate", Some(record.sample_rate)),
+        ("distance", Some(passage.distance)),
+        ("diameter", Some(passage.diameter)),
+        ("lowpass", passage.lowpass),
+        ("highpass", passage.highpass),
+    ] {
+        let is_positive = value.is_none_or(|v| v.is_finite() && v > 0.0);
+        setting(name, value.unwrap_or(0.0), is_positive, "more than 0 and finite")?;
+    }
+    for (name, value) in [("distance_sigma", passage.distance_stddev), ("delay_sigma", passage.delay_stddev)]
+    {
+        setting(name, value, value.is_finite() && value >= 0.0, "0 or more and finite")?;
+    }
     setting("delay", passage.delay, passage.delay.is_finite(), "finite")?;
+    let order = passage.filter_order;
+    setting("filter_order", f64::from(order), (1..=8).contains(&order), "from 1 to 8")?;
     let samples = record.source.len();
     setting("samples", samples as f64, samples >= LEAST_SAMPLES, "32 or more")?;
     let same = record.receiver.len() == samples;
@@ -141,7 +146,7 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Cleaned, Ba
         enough,
         "8 or more: offset and noise are theirs",
     )?;
-    let source = centred(&record.source, &quiet);
+    let source = filtered(&centred(&record.source, &quiet), record.sample_rate, passage);
     let height = largest(&source);
     setting("largest sample of the source", height, height > 0.0, "more than its offset")?;
     let source: Vec<f64> = source.iter().map(|s| s / height).collect();

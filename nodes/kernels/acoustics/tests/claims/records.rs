@@ -29,6 +29,9 @@ fn passage() -> Passage {
         distance_stddev: 0.0,
         delay: 2e-6,
         delay_stddev: 0.0,
+        lowpass: None,
+        highpass: None,
+        filter_order: 1,
         reversed: None,
         // 300 grains per wavelength: no dispersion.
         diameter: 1e-4,
@@ -107,6 +110,25 @@ fn a_longer_distance_error_or_delay_error_is_in_the_error_of_the_speed() {
     let plain = of(|_| ());
     assert!((of(|p| p.distance_stddev = 0.02 * DISTANCE) - 0.02f64.hypot(plain)).abs() < 1e-3);
     assert!((of(|p| p.delay_stddev = 10e-6) - (10e-6 * SPEED / DISTANCE).hypot(plain)).abs() < 1e-3);
+}
+
+#[test]
+fn filters_of_the_receiver_that_are_given_do_not_delay_the_wave() {
+    let mut record = recorded(0.003, 5, |r, _| r);
+    // One pole each at 8 kHz, by the differential equations.
+    let (rate, mut low, mut slow) = (TAU * 8e3 / RATE, 0.0, 0.0);
+    for r in &mut record.receiver {
+        low += rate * (*r - low);
+        slow += rate * (low - slow);
+        *r = low - slow;
+    }
+    let with = |edge: Option<f64>| {
+        picks(&record, &Passage { lowpass: edge, highpass: edge, ..passage() }, 1).unwrap()
+    };
+    let error = |found: &Picks| best(found).0 / SPEED - 1.0;
+    assert!(error(&with(Some(8e3))).abs() < 0.01, "{}", error(&with(Some(8e3))));
+    let low = Passage { lowpass: Some(8e3), ..passage() };
+    assert!(error(&picks(&record, &low, 1).unwrap()).abs() > 0.01);
 }
 
 /// One record of `tests/golden/waves`, with the true speed.
