@@ -91,10 +91,12 @@ fn a_fault_is_named_with_its_file_and_line_and_a_refused_record_keeps_the_others
     table("file,mode,distance,diameter\np.csv,P-wave,0.1,1e-4\n");
     refused(2, &["line 2", "mode is \"P-wave\"; it must be one of p, s, sv, sh"]);
     table("file,distance,diameter\np.csv,-0.1,1e-4\n");
-    refused(4, &["p.csv: ", "distance = -1e-1"]);
+    refused(2, &["line 2: distance is -0.1", "5 diameters or more"]);
     table("file,distance,diameter,receiver_column\np.csv,0.1,1e-4,7\n");
     refused(2, &["p.csv", "no lines of numbers in the columns 1, 2 and 7"]);
     file(folder.path(), "silent.csv", 1.0, |t, s, r| format!("{t:e},{s},{r}"));
     table("file,distance,diameter\nsilent.csv,0.1,1e-4\np.csv,0.1,1e-4\n");
     refused(4, &["silent.csv: no arrival", "p.csv", "1 of 2 records have no speed"]);
+    table("file,distance,diameter\nnone.csv,0.1,1e-4\np.csv,0.1,1e-4\n");
+    refused(2, &["none.csv: No such file", "cross_correlation *", "1 of 2 records could not be read"]);
 }

@@ -26,7 +26,8 @@ The table has a row for each record, as CSV with a header:
   polarity                                   normal or reversed: how the receiver shows a wave when both are face to face [not known]
   time_column, source_column, receiver_column  numbers of the columns in the file [1, 2, 3]
   time_unit                                  s, ms or us [s]
-  sample, mode, direction, angle_deg, pressure_pa, density, ...  are copied to the output: columns of `grainlab invert --speeds`
+  sample, mode, direction, angle_deg, pressure_pa, density, ...  are copied to the output: columns of `grainlab invert --speeds`.
+                                             Of mode p the first wave is picked, of the others the first strong one
 
 Every record is picked by its first break, its peak and its cross-correlation with the source. The same is done with computed records of a
 path of known speed, with the source, loss, noise and crosstalk of the record, and drawn dispersion and near field: their mean error is
@@ -65,13 +66,18 @@ type Found = (Row, Result<Picks, String>);
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut all: Vec<Found> = Vec::new();
+    let mut unread = 0;
     for row in list::read(&args.records)? {
-        let record = oscilloscope::read(&row)?;
-        let picked = picks(&record, &row.passage, args.seed);
-        if let (Some(folder), Ok(picked)) = (&args.plot, &picked) {
-            drawn(folder, &row, &record, picked)?;
+        let record = oscilloscope::read(&row);
+        unread += usize::from(record.is_err());
+        let picked = record.and_then(|record| {
+            let picked = picks(&record, &row.passage, args.seed).map_err(|e| e.to_string())?;
+            Ok((record, picked))
+        });
+        if let (Some(folder), Ok((record, picked))) = (&args.plot, &picked) {
+            drawn(folder, &row, record, picked)?;
         }
-        all.push((row, picked.map_err(|e| e.to_string())));
+        all.push((row, picked.map(|(_, picked)| picked)));
     }
     let refused = all.iter().filter(|(_, picked)| picked.is_err()).count();
     if let Some(path) = &args.out {
@@ -80,6 +86,15 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let values: Vec<Value> = all.iter().map(value).collect();
     args.format.print(&values, || speeds(&all), || text(&all))?;
+    if args.format == Format::Csv {
+        remarks(&all).iter().for_each(|remark| say!("grainlab: {remark}"));
+    }
+    if unread > 0 {
+        let count = all.len();
+        return Err(Failure::usage(format!(
+            "{unread} of {count} records could not be read, {refused} have no speed"
+        )));
+    }
     if refused > 0 {
         say!("grainlab: {refused} of {} records have no speed", all.len());
         return Ok(Exit::PhysicsInvalid);
@@ -116,48 +131,42 @@ fn value((row, picked): &Found) -> Value {
             "frequency": p.frequency,
             "wavelengths": p.wavelengths,
             "signal_to_noise": p.signal_to_noise,
-            "notes": notes(p),
+            "notes": notes(row, p),
         }),
     }
 }
 
 /// Properties of a record that its reader should know.
-fn notes(p: &Picks) -> Vec<String> {
+fn notes(row: &Row, p: &Picks) -> Vec<String> {
     let mut notes: Vec<String> =
         p.missing.iter().map(|(method, why)| format!("no {}: {why}", method.word())).collect();
-    if p.contradictory {
-        notes.push("the picks contradict each other: their difference is in the error".into());
-    }
-    if p.wavelengths < 2.0 {
-        notes.push(format!(
-            "the path is {:.1} wavelengths long: the near field of the source reaches the receiver",
-            p.wavelengths
-        ));
-    }
-    if p.crosstalk.abs() > 0.05 {
-        notes.push(format!("crosstalk of {:.0} % of the arrival was taken off", 100.0 * p.crosstalk.abs()));
-    }
     let [alike, expected] = p.alike;
-    if expected - alike > 0.1 {
-        notes.push(format!(
-            "the arrival does not have the shape of the source after this path (correlation {alike:.2}, expected {expected:.2}): transducers ring, or \
-             waves overlap; part of a period is in the error"
-        ));
-    }
-    if p.sign_doubt > 0.3 {
-        notes.push(
-            "a wave of the opposite sign fits almost as well: give the polarity for a smaller error".into(),
-        );
-    }
-    if p.is_cut {
-        notes.push("the amplifier cut the largest samples".into());
-    }
-    if !p.signal_to_noise.is_finite() {
-        notes.push("there is no noise before the source starts, so the error has none".into());
-    }
-    if p.reversed {
-        notes.push("the wave is reversed".into());
-    }
+    let cases = [
+        (
+            row.passage.longitudinal.is_none(),
+            "mode is not given: the wave may be P or S, and weak waves before it were passed over",
+        ),
+        (p.contradictory, "the picks contradict each other: their difference is in the error"),
+        (
+            p.wavelengths < 2.0,
+            "the path is shorter than 2 wavelengths: the near field of the source reaches the receiver",
+        ),
+        (p.crosstalk.abs() > 1.0, "crosstalk larger than the arrival was taken off"),
+        ((0.05..=1.0).contains(&p.crosstalk.abs()), "crosstalk was taken off"),
+        (
+            expected - alike > 0.1,
+            "the arrival does not have the shape of the source (transducers ring, or waves overlap): part of a period is in the error, which \
+             similar records share",
+        ),
+        (p.sign_doubt > 0.3, "the opposite sign fits almost as well: give the polarity for a smaller error"),
+        (p.is_cut, "the amplifier cut the largest samples"),
+        (
+            !p.signal_to_noise.is_finite(),
+            "there is no noise where both signals are quiet, so the error has none",
+        ),
+        (p.reversed, "the wave is reversed"),
+    ];
+    notes.extend(cases.into_iter().filter(|(holds, _)| *holds).map(|(_, note)| note.to_owned()));
     notes
 }
 
@@ -182,18 +191,12 @@ fn speeds(all: &[Found]) -> String {
 
 fn text(all: &[Found]) -> String {
     let mut table = Table::new(["record", "pick", "time/us", "+-", "bias", "m/s", "+-", "waves", "S/N"]);
-    let mut said = String::new();
     for (row, picked) in all {
         let file = &row.file;
-        let picked = match picked {
-            Ok(picked) => picked,
-            Err(reason) => {
-                table.row([file, "refused", "-", "-", "-", "-", "-", "-", "-"]);
-                said += &format!("{file}: {reason}\n");
-                continue;
-            }
+        let Ok(picked) = picked else {
+            table.row([file, "refused", "-", "-", "-", "-", "-", "-", "-"]);
+            continue;
         };
-        said.extend(notes(picked).iter().map(|note| format!("{file}: {note}\n")));
         for (k, p) in picked.picks.iter().enumerate() {
             let star = if k == picked.recommended { " *" } else { "" };
             let us = |t: f64| fixed(Some(1e6 * t), 2);
@@ -211,5 +214,22 @@ fn text(all: &[Found]) -> String {
             ]);
         }
     }
-    table.text() + "* recommended: the least error\n" + &said
+    let star =
+        if all.iter().any(|(_, picked)| picked.is_ok()) { "* recommended: the least error\n" } else { "" };
+    let remarks: String = remarks(all).iter().map(|remark| format!("{remark}\n")).collect();
+    table.text() + star + &remarks
+}
+
+/// Reasons and notes, each with the files that it is about.
+fn remarks(all: &[Found]) -> Vec<String> {
+    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
+    for (row, picked) in all {
+        for note in picked.as_ref().map_or_else(|reason| vec![reason.clone()], |p| notes(row, p)) {
+            match found.iter_mut().find(|(text, _)| *text == note) {
+                Some((_, files)) => files.push(&row.file),
+                None => found.push((note, vec![&row.file])),
+            }
+        }
+    }
+    found.into_iter().map(|(note, files)| format!("{}: {note}", files.join(", "))).collect()
 }

@@ -131,11 +131,21 @@ type Wave = (SpeedLine, f64);
 
 fn waves(plan: &Plan) -> Result<Vec<Wave>, String> {
     let extra = [("diameter", plan.diameter), ("roughness", plan.roughness)];
+    for (name, is_empty) in [("pressures", plan.pressures.is_empty()), ("speeds", plan.speeds.is_empty())] {
+        if is_empty {
+            return Err(format!("{name} is empty"));
+        }
+    }
+    if let Some((name, sigma)) = plan.want.iter().find(|(_, sigma)| !(**sigma > 0.0 && sigma.is_finite())) {
+        return Err(format!("[want] {name} = {sigma} must be a sigma, more than 0"));
+    }
     let mut all = Vec::new();
     for (n, of) in plan.speeds.iter().enumerate() {
         let error = of.error.unwrap_or(plan.error);
         if !(error > 0.0 && error < 0.5) {
-            return Err(format!("error = {error} must be relative, from 0 to 0.5: 0.01 is one percent"));
+            return Err(format!(
+                "error = {error} must be relative, more than 0 and less than 0.5: 0.01 is one percent"
+            ));
         }
         let angles = of.angles.clone().map_or(vec![None], |a| a.into_iter().map(Some).collect());
         for pressure in of.pressures.as_ref().unwrap_or(&plan.pressures) {
@@ -190,7 +200,8 @@ pub(super) fn run(
     let mut others = further(&plan, &planned_waves).map_err(usage)?;
     let all: Vec<Wave> = planned_waves.iter().cloned().chain(others.iter().map(|(_, w)| w.clone())).collect();
     let lines: Vec<SpeedLine> = all.iter().map(|(line, _)| line.clone()).collect();
-    let (whole, assumed) = inputs.series(&lines).map_err(usage)?;
+    let (whole, assumed) =
+        inputs.series(&lines).map_err(|fault| usage(fault.replace("line 0: column ", "")))?;
     // The sigmas with some of the waves, with the errors times a factor.
     let wrong = |e: EmtError| usage(e.to_string());
     let sigmas = |chosen: &[usize], factor: f64, samples: usize| -> Result<Sigmas, Failure> {
@@ -208,6 +219,11 @@ pub(super) fn run(
         Ok((all[0].0.clone(), all.into_iter().map(|(_, found)| found).collect()))
     };
     let own: Vec<usize> = (0..planned_waves.len()).collect();
+    say!("grainlab: contact: {contact}");
+    say!(
+        "grainlab: {} inversions of simulated samples follow",
+        SAMPLES + (FACTORS.len() - 1 + others.len()) * COMPARED
+    );
     let (before, base) = sigmas(&own, 1.0, SAMPLES)?;
     // One set of samples, so that ratios have little noise.
     let few = rms(&base[..COMPARED]);
@@ -248,7 +264,6 @@ pub(super) fn run(
         notes: assumed,
     };
     answer.notes.splice(0..0, sentences(&answer, &plan.want).map_err(usage)?);
-    say!("grainlab: contact: {contact}");
     format.print(&answer, || csv(&answer), || table(&answer))
 }
 
@@ -294,7 +309,7 @@ fn sentences(answer: &Answer, want: &BTreeMap<String, f64>) -> Result<Vec<String
         notes.push(match last {
             None => format!(
                 "{name} +- {sigma} is not reached: it would be +- {} with {} of these errors; measure more speeds",
-                fixed(Some(worst[0]), 3),
+                fixed(Some(worst[0]), 4),
                 FACTORS[0]
             ),
             Some(f) if f + 1 == FACTORS.len() => format!("{name} +- {sigma} needs no better errors than {} times these", FACTORS[f]),
@@ -338,5 +353,6 @@ fn table(answer: &Answer) -> String {
     let head =
         format!("{} speeds, in {} simulated samples from the prior\n\n", answer.speeds, answer.samples);
     let notes: String = answer.notes.iter().map(|n| format!("{n}\n")).collect();
-    head + &all.text() + "\n" + &errors.text() + "\n" + &more.text() + "\n" + &notes
+    let more = if answer.further.is_empty() { String::new() } else { more.text() + "\n" };
+    head + &all.text() + "\n" + &errors.text() + "\n" + &more + &notes
 }

@@ -3,7 +3,7 @@
 use super::list::Row;
 use grainlab_acoustics::record::{Picks, Record};
 use grainlab_console::{Failure, write_whole};
-use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
+use grainlab_page::plot::{Axis, Entry, Figure, Line, Point, Series, Theme};
 use std::path::Path;
 
 /// Draws a record into a folder, which is made.
@@ -18,20 +18,29 @@ fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {
     let offset = record.source[record.quiet.clone()].iter().sum::<f64>() / record.quiet.len() as f64;
     let largest = record.source.iter().fold(0.0, |most: f64, s| most.max((s - offset).abs()));
     let start = record.source.iter().position(|s| (s - offset).abs() > 0.02 * largest).unwrap_or(0) as f64;
-    let time = |k: f64| 1e6 * (k - start) / record.sample_rate;
-    let line = |colour: Option<usize>, values: &mut dyn Iterator<Item = f64>, up: f64| Series {
+    let line = |colour: Option<usize>, rate: f64, values: &mut dyn Iterator<Item = f64>, up: f64| Series {
         colour,
         line: Some(Line::Straight),
-        points: values.enumerate().map(|(k, v)| Point::at(time(k as f64), v + up)).collect(),
+        points: values
+            .enumerate()
+            .map(|(k, v)| {
+                Point::at(1e6 * (k as f64 / rate - start / record.sample_rate), v.clamp(-2.0, 2.0) + up)
+            })
+            .collect(),
         ..Series::default()
     };
-    let source = line(None, &mut record.source.iter().map(|s| (s - offset) / largest), 1.2);
-    let receiver = line(Some(0), &mut picked.receiver.iter().copied(), -1.2);
+    let source =
+        line(None, record.sample_rate, &mut record.source.iter().map(|s| (s - offset) / largest), 1.2);
+    let receiver = line(Some(0), picked.sample_rate, &mut picked.receiver.iter().copied(), -1.2);
     let mark = |(k, p): (usize, &grainlab_acoustics::record::Pick)| Series {
         colour: Some(k + 1),
-        marker: Some(Marker::of(k)),
         line: Some(Line::Straight),
-        points: [-2.4, 0.0].map(|y| Point::at(1e6 * (p.time + row.passage.delay), y)).into(),
+        points: {
+            let (at, low) = (p.time + row.passage.delay, -2.4 - 0.2 * k as f64);
+            let wide = 1.96 * p.time_stddev;
+            let corners = [(at, 0.0), (at, low), (at - wide, low), (at + wide, low)];
+            corners.map(|(time, y)| Point::at(1e6 * time, y)).into()
+        },
         ..Series::default()
     };
     let best = picked.picks[picked.recommended];
@@ -42,9 +51,9 @@ fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {
     };
     Figure {
         title: format!("{}: {:.1} +- {:.1} m/s", row.file, best.speed, best.speed_stddev),
-        subtitle: "above the source, below the receiver without offset and crosstalk; lines: arrival of long waves by each pick".into(),
+        subtitle: "above the source, below the receiver without offset and crosstalk; lines: arrival of long waves by each pick, with 95 % intervals".into(),
         x: Axis::linear("time after the start of the source, µs"),
-        y: Axis::linear("signal over its largest"),
+        y: Axis::linear("signal over the largest of the source, of the arrival"),
         series: [source, receiver].into_iter().chain(picked.picks.iter().enumerate().map(mark)).collect(),
         legend: picked.picks.iter().enumerate().flat_map(entries).collect(),
     }

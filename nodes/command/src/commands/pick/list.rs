@@ -4,7 +4,6 @@ use crate::commands::invert::{SPEED_COLUMNS, checked_header, not_a_number};
 use grainlab_acoustics::record::Passage;
 use grainlab_console::Failure;
 use serde::Deserialize;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 /// Columns of a record.
@@ -41,9 +40,9 @@ struct Cells {
     filter_order: Option<u32>,
     polarity: Option<String>,
     mode: Option<String>,
-    time_column: Option<NonZeroUsize>,
-    source_column: Option<NonZeroUsize>,
-    receiver_column: Option<NonZeroUsize>,
+    time_column: Option<usize>,
+    source_column: Option<usize>,
+    receiver_column: Option<usize>,
     time_unit: Option<String>,
 }
 
@@ -105,7 +104,17 @@ fn word<T: Copy>(name: &str, cell: Option<&String>, words: &[(&str, T)]) -> Resu
 
 fn row(line: u64, cells: Cells, folder: &Path) -> Result<Row, String> {
     let modes = [("p", true), ("s", false), ("sv", false), ("sh", false)];
-    let column = |of: Option<NonZeroUsize>, default: usize| of.map_or(default, NonZeroUsize::get) - 1;
+    let numbers = [(cells.time_column, 1), (cells.source_column, 2), (cells.receiver_column, 3)];
+    let columns = numbers.map(|(given, default)| given.unwrap_or(default));
+    if columns.contains(&0) {
+        return Err("time_column, source_column and receiver_column count from 1".to_owned());
+    }
+    if cells.diameter > 0.2 || cells.distance < 5.0 * cells.diameter {
+        let (distance, diameter) = (cells.distance, cells.diameter);
+        return Err(format!(
+            "distance is {distance} and diameter {diameter}: m, and 5 diameters or more, are expected"
+        ));
+    }
     Ok(Row {
         line,
         path: folder.join(&cells.file),
@@ -121,11 +130,7 @@ fn row(line: u64, cells: Cells, folder: &Path) -> Result<Row, String> {
             diameter: cells.diameter,
             longitudinal: word("mode", cells.mode.as_ref(), &modes)?,
         },
-        columns: [
-            column(cells.time_column, 1),
-            column(cells.source_column, 2),
-            column(cells.receiver_column, 3),
-        ],
+        columns: columns.map(|c| c - 1),
         unit: word("time_unit", cells.time_unit.as_ref(), &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6)])?
             .unwrap_or(1.0),
         file: cells.file,

@@ -2,7 +2,6 @@
 
 use super::list::Row;
 use grainlab_acoustics::record::Record;
-use grainlab_console::Failure;
 use std::ops::Range;
 
 /// Deviation of a time from even spacing, in samples, that rounding of the file may cause.
@@ -12,10 +11,9 @@ const UNEVEN: f64 = 0.5;
 const STARTS: f64 = 0.02;
 
 /// The record of a row.
-pub(super) fn read(row: &Row) -> Result<Record, Failure> {
-    let text = std::fs::read(&row.path).map_err(Failure::at(&row.path))?;
+pub(super) fn read(row: &Row) -> Result<Record, String> {
+    let text = std::fs::read(&row.path).map_err(|e| e.to_string())?;
     parsed(&String::from_utf8_lossy(&text), row)
-        .map_err(|fault| Failure::usage(format!("{}: {fault}", row.path.display())))
 }
 
 fn parsed(text: &str, row: &Row) -> Result<Record, String> {
@@ -53,7 +51,9 @@ fn parsed(text: &str, row: &Row) -> Result<Record, String> {
 
 /// The numbers of a line, which commas, semicolons, tabs or spaces separate; with semicolons, commas are decimal points.
 fn numbers(line: &str, columns: &[usize; 3]) -> Option<[f64; 3]> {
-    let cell = |cells: &[&str], c: usize| cells.get(c)?.trim().trim_matches('"').parse::<f64>().ok();
+    let cell = |cells: &[&str], c: usize| {
+        cells.get(c)?.trim().trim_matches('"').parse::<f64>().ok().filter(|v| v.is_finite())
+    };
     let all =
         |cells: &[&str]| Some([cell(cells, columns[0])?, cell(cells, columns[1])?, cell(cells, columns[2])?]);
     if line.contains(';') {

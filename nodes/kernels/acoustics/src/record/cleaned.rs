@@ -15,6 +15,13 @@ const LEAST_PER_PERIOD: f64 = 4.0;
 const LEAST_SAMPLES: usize = 32;
 const LEAST_QUIET: usize = 8;
 
+/// Number of samples per period that show the shape of a signal.
+const ENOUGH_PER_PERIOD: f64 = 40.0;
+
+/// First sample of a source over its largest, and its sum over that of the magnitudes, above which the record is refused.
+const STARTED: f64 = 0.2;
+const ONE_SIDED: f64 = 0.5;
+
 /// Least number of equal samples in a row, at an end of the range, of a signal that is cut there.
 const CUT: usize = 3;
 
@@ -30,11 +37,16 @@ const APART: f64 = 0.3;
 /// Correlation of the first wave over that of the largest: a compression wave has none before it, a shear wave has weaker ones.
 const FIRST: [f64; 2] = [0.03, 0.4];
 
-/// Correlation of what is left of the crosstalk, over that of the crosstalk, while the source lasts.
-const LEFT: f64 = 1.0;
+/// Rate at which what is left of crosstalk decays after the source, over its duration.
+const FADES: f64 = 2.0;
 
 /// Wavelengths of the shortest path: crosstalk that electronics delay cannot be told from a wave of a shorter one.
 const SHORTEST: f64 = 0.75;
+
+/// Periods before and after the crest of a wave in which its onset is looked for; before a compression wave, everywhere.
+const BEFORE: f64 = 2.0;
+const AFTER: f64 = 0.6;
+const EARLY: f64 = 0.25;
 
 /// Durations of the source in which the correlation of the first wave rises to its largest.
 const CLIMB: f64 = 1.25;
@@ -47,6 +59,8 @@ const FADED: [f64; 2] = [0.25, 0.75];
 pub(super) struct Cleaned {
     pub(super) source: Vec<f64>,
     pub(super) receiver: Vec<f64>,
+    /// The receiver with what precedes and follows the arrival.
+    pub(super) clear: Vec<f64>,
     /// Crosstalk over the arrival.
     pub(super) crosstalk: f64,
     /// Delay and sign of the arrival, by correlation alone.
@@ -59,6 +73,10 @@ pub(super) struct Cleaned {
     pub(super) is_cut: bool,
     /// Correlation of the opposite sign over that of the arrival, where the sign is not known.
     pub(super) opposite: f64,
+    /// Time of the onset after that of the source.
+    pub(super) onset: f64,
+    /// Signal in the two periods before the onset, over that after it.
+    pub(super) early: f64,
 }
 
 /// Band of a source: its duration (samples), and the mean frequency of its energy (samples⁻¹).
@@ -139,23 +157,23 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Cleaned, Ba
         setting("samples", *value, value.is_finite(), "finite")?;
     }
     let quiet = record.quiet.clone();
-    let enough = quiet.len() >= LEAST_QUIET && quiet.end <= samples;
-    setting(
-        "samples without a signal",
-        quiet.len() as f64,
-        enough,
-        "8 or more: offset and noise are theirs",
-    )?;
-    let source = filtered(&centred(&record.source, &quiet), record.sample_rate, passage);
+    let source = filtered(&centred(&record.source, &quiet)?, record.sample_rate, passage);
     let height = largest(&source);
-    setting("largest sample of the source", height, height > 0.0, "more than its offset")?;
     let source: Vec<f64> = source.iter().map(|s| s / height).collect();
+    let refused = |reason: &str| Err(AcousticsError::NoArrival(reason.to_owned()));
+    if source[0].abs() > STARTED {
+        return refused("the record begins after its source: record the source from its start");
+    }
+    if source.iter().sum::<f64>().abs() > ONE_SIDED * source.iter().map(|s| s.abs()).sum::<f64>() {
+        return refused(
+            "the source has one sign, so that its wave cannot be told from crosstalk: send a sine or a burst",
+        );
+    }
     let band = Band::of(&source, passage.delay * record.sample_rate);
     let per_period = 1.0 / band.frequency;
     setting("samples per period of the source", per_period, per_period >= LEAST_PER_PERIOD, "4 or more")?;
-    let receiver = centred(&record.receiver, &quiet);
+    let receiver = centred(&record.receiver, &quiet)?;
     let height = largest(&receiver);
-    setting("largest sample of the receiver", height, height > 0.0, "more than its offset")?;
     let receiver: Vec<f64> = receiver.iter().map(|s| s / height).collect();
     let is_cut = is_cut(&receiver);
     let found = separated(source, receiver, &quiet, passage, &band, is_cut);
@@ -168,10 +186,31 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Cleaned, Ba
     Ok((found, band))
 }
 
+/// A record of fewer samples, each the mean of some, where it has many more in a period of its source than its shape needs.
+pub(super) fn thinned(record: &Record) -> Result<Record, AcousticsError> {
+    let period = 1.0 / Band::of(&centred(&record.source, &record.quiet)?, 0.0).frequency;
+    let each = (period / ENOUGH_PER_PERIOD) as usize;
+    if each < 2 {
+        return Ok(record.clone());
+    }
+    let mean = |of: &[f64]| of.chunks_exact(each).map(|c| c.iter().sum::<f64>() / each as f64).collect();
+    let quiet = record.quiet.start.div_ceil(each)..record.quiet.end / each;
+    let sample_rate = record.sample_rate / each as f64;
+    Ok(Record { sample_rate, quiet, source: mean(&record.source), receiver: mean(&record.receiver) })
+}
+
 /// A signal less its mean where it is quiet.
-fn centred(signal: &[f64], quiet: &Range<usize>) -> Vec<f64> {
-    let offset = signal[quiet.clone()].iter().sum::<f64>() / quiet.len() as f64;
-    signal.iter().map(|s| s - offset).collect()
+fn centred(signal: &[f64], quiet: &Range<usize>) -> Result<Vec<f64>, AcousticsError> {
+    let part = signal.get(quiet.clone()).filter(|part| part.len() >= LEAST_QUIET);
+    let requirement = "8 or more: offset and noise are theirs";
+    setting("samples without a signal", quiet.len() as f64, part.is_some(), requirement)?;
+    let offset = part.unwrap_or_default().iter().sum::<f64>() / quiet.len() as f64;
+    let centred: Vec<f64> = signal.iter().map(|s| s - offset).collect();
+    if largest(&centred) > 0.0 {
+        Ok(centred)
+    } else {
+        Err(AcousticsError::NoArrival("a signal is constant".to_owned()))
+    }
 }
 
 pub(super) fn largest(signal: &[f64]) -> f64 {
@@ -209,19 +248,28 @@ fn separated(
     let before = spectrum.of(&receiver[quiet.clone()]);
     let lines = before.iter().zip(&sent).map(|(noise, sent)| noise.norm_sqr() * sent.norm_sqr());
     let variance = lines.sum::<f64>() / (quiet.len() * sent.len()) as f64;
-    let last = (zero + source.len()).min(cross.len() - 1);
+    // The whole wave is in the record.
+    let end = source.len() as f64 - band.from as f64 - band.duration;
+    let last = (zero + end.max(2.0) as usize).min(cross.len() - 1);
     let shortest = band.system.max(0.0) + SHORTEST / band.frequency;
     let start = (zero + shortest as usize).clamp(zero + 1, last - 1);
     let top = |range: Range<usize>| {
         range.max_by(|a, b| explained(*a).1.total_cmp(&explained(*b).1)).unwrap_or(start)
     };
-    let share = FIRST[usize::from(passage.longitudinal != Some(true))];
-    let level = (share.powi(2) * explained(top(start..last)).1).max(STANDS_OUT.powi(2) * variance);
+    let is_p = passage.longitudinal == Some(true);
+    let most = explained(top(start..last)).1;
     let talk = |k: usize| {
-        if ((k - zero) as f64) < CLIMB * band.duration { (LEFT * mixed * energy).powi(2) } else { 0.0 }
+        let later = ((k - zero) as f64 / band.duration - CLIMB).max(0.0);
+        (mixed * energy * (-FADES * later).exp()).powi(2)
     };
-    let first = (start..last).find(|k| explained(*k).1 > level.max(talk(*k))).unwrap_or(start);
-    let coarse = top(first..(first + (CLIMB * band.duration) as usize).min(last));
+    let wave = |share: f64| {
+        let level = (share.powi(2) * most).max(STANDS_OUT.powi(2) * variance);
+        let first = (start..last).find(|k| explained(*k).1 > level.max(talk(*k)))?;
+        Some(top(first..(first + (CLIMB * band.duration) as usize).min(last)))
+    };
+    let strong = wave(FIRST[1]);
+    let weak = if is_p { wave(FIRST[0]) } else { strong };
+    let (strong, coarse) = (strong.unwrap_or(start), weak.unwrap_or(start));
     // The crest of either sign next to the peak of the envelope.
     let real = |k: usize| explained(k).0.re;
     let reach = 0.6 / centre(&spectrum, &source);
@@ -247,13 +295,27 @@ fn separated(
         let off = ((k as f64 - middle).abs() - flat) / (far - flat);
         (FRAC_PI_2 * off.clamp(0.0, 1.0)).cos().powi(2)
     };
-    let clean = |(k, (r, s)): (usize, (&f64, &f64))| kept(k) * sign * (r - taken * s);
-    let receiver: Vec<f64> = receiver.iter().zip(&source).enumerate().map(clean).collect();
-    let stands_out = (explained(coarse).1 / variance).sqrt();
+    let mut receiver: Vec<f64> = receiver.iter().zip(&source).map(|(r, s)| sign * (r - taken * s)).collect();
+    // A compression wave is the first that arrives; what precedes a shear wave by more is not its own.
+    let period = 1.0 / band.frequency;
+    let crest_of_strong = (band.from + strong - zero) as f64 + 0.5 * band.duration;
+    let before = if is_p { (band.from + start - zero) as f64 } else { crest_of_strong - BEFORE * period };
+    let onset = onset(&receiver, before.max(0.0) as usize, (crest_of_strong + AFTER * period) as usize)
+        - band.from as f64;
+    let crest_of = |from: f64, to: f64| {
+        largest(receiver.get(from.max(0.0) as usize..to.max(0.0) as usize).unwrap_or_default())
+    };
+    let began = onset + band.from as f64;
+    let early =
+        crest_of(began - BEFORE * period, began - EARLY * period) / crest_of(began, began + band.duration);
+    let clear = receiver.clone();
+    receiver.iter_mut().enumerate().for_each(|(k, r)| *r *= kept(k));
+    let stands_out = weak.map_or(0.0, |k| (explained(k).1 / variance).sqrt());
     let delay = at as f64 - zero as f64;
     Cleaned {
         source,
         receiver,
+        clear,
         crosstalk: over,
         delay,
         reversed: is_reversed,
@@ -261,7 +323,29 @@ fn separated(
         stands_out,
         is_cut,
         opposite: opposite.max(0.0),
+        onset,
+        early: if early.is_finite() { early } else { 0.0 },
     }
+}
+
+/// The sample between two places that divides them best into a part of small and a part of large variance (Maeda's AIC, 1985).
+fn onset(signal: &[f64], from: usize, to: usize) -> f64 {
+    let part = &signal[from.min(signal.len())..to.clamp(from, signal.len())];
+    let n = part.len();
+    let sums: Vec<f64> = std::iter::once(0.0)
+        .chain(part.iter().scan(0.0, |sum, s| {
+            *sum += s * s;
+            Some(*sum)
+        }))
+        .collect();
+    let of = |k: usize| {
+        let (early, late) = (k as f64, (n - k) as f64);
+        early * (sums[k] / early).ln() + late * ((sums[n] - sums[k]) / late).ln()
+    };
+    let margin = LEAST_QUIET;
+    (margin..n.saturating_sub(margin))
+        .min_by(|a, b| of(*a).total_cmp(&of(*b)))
+        .map_or(f64::NAN, |k| (from + k) as f64)
 }
 
 /// Largest correlation of two signals, at most 1, and the factor of the other that is nearest to the one.

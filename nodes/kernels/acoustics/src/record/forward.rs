@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 /// Relative difference of ρ v² at the wave number q from that of long waves, over (q × mean diameter)²: mean and standard deviation of
 /// packings, for P, S, and one of both.
-const BEND: [(f64, f64); 3] = [(0.65, 0.15), (0.35, 0.12), (0.5, 0.2)];
+const BEND: [(f64, f64); 3] = [(0.65, 0.17), (0.35, 0.14), (0.5, 0.2)];
 
 /// Speed of P over that of S, which the near field lies between.
 const FASTER: f64 = 1.6;

@@ -26,9 +26,9 @@ pub struct Passage {
     pub delay: f64,
     /// Standard deviation of the delay, s.
     pub delay_stddev: f64,
-    /// Frequencies of −3 dB of the low pass and of the high pass of the receiver's electronics, Hz; `None`: there is none.
+    /// Frequency of −3 dB of the low pass of the receiver's electronics, Hz; `None`: there is none.
     pub lowpass: Option<f64>,
-    /// As [`Passage::lowpass`].
+    /// Frequency of −3 dB of the high pass of the receiver's electronics, Hz; `None`: there is none.
     pub highpass: Option<f64>,
     /// Number of poles of each (Butterworth), from 1 to 8.
     pub filter_order: u32,

@@ -1,6 +1,6 @@
 //! Picks with their bias and error.
 
-use super::cleaned::{Cleaned, cleaned, fitted, largest};
+use super::cleaned::{Cleaned, cleaned, fitted, largest, thinned};
 use super::forward::Path;
 use super::passage::{Passage, Record};
 use crate::error::AcousticsError;
@@ -26,8 +26,22 @@ const APART: f64 = 3.0;
 /// difference of the correlations. Transducers that ring, and later waves, delay them.
 const UNLIKE: [f64; 2] = [1.0, 1.5];
 
+/// As [`UNLIKE`], of the onset, and its least error, periods: that of readings by eye.
+const ONSET: [f64; 2] = [0.3, 0.75];
+const BY_EYE: f64 = 0.15;
+
+/// Error of a shear wave with a signal just before it, periods over the ratio of both signals.
+const EARLIER: f64 = 2.0;
+
+/// Excess of that ratio over that of computed records which noise causes.
+const CHANCE: f64 = 0.05;
+
 /// Error where the opposite sign fits as well, periods.
 const HALF: f64 = 0.5;
+
+/// Least length of a path, wavelengths, and speeds of waves in packings of grains, m/s.
+const SHORTEST: f64 = 0.5;
+const SPEEDS: std::ops::Range<f64> = 1.0..1e4;
 
 /// Place of the noise of copies.
 const PLACE: u64 = u64::MAX - 2;
@@ -76,7 +90,9 @@ pub struct Picks {
     pub sign_doubt: f64,
     /// True if two picks are further apart than their errors allow; the errors are then as large as the difference.
     pub contradictory: bool,
-    /// The receiver without offset and crosstalk, with the sign of the source, of unit height.
+    /// Sampling rate of the receiver as it was picked, Hz.
+    pub sample_rate: f64,
+    /// The receiver without offset and crosstalk, with the sign of the source, over the largest sample of the arrival.
     pub receiver: Vec<f64>,
 }
 
@@ -85,6 +101,7 @@ pub struct Picks {
 /// # Errors
 /// Numbers out of range, and a record without an arrival that stands out of its noise by any pick.
 pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, AcousticsError> {
+    let record = &thinned(record)?;
     let (found, band) = cleaned(record, passage)?;
     let samples = found.source.len();
     let system = passage.delay * record.sample_rate;
@@ -92,34 +109,42 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         let sent = &found.source[band.from..(band.from + band.duration as usize).min(samples)];
         (pick.method(), Picker::of(pick, sent, band.duration, band.frequency, samples))
     });
-    let delay = |of: &Cleaned, picker: &Picker| {
+    let delay = |of: &Cleaned, (method, picker): &(WaveMethod, Picker)| {
+        if *method == WaveMethod::FirstArrival {
+            return if of.onset.is_finite() {
+                Ok(of.onset)
+            } else {
+                Err("there is no onset before it".to_owned())
+            };
+        }
         let height = largest(&of.receiver);
         let receiver: Vec<f64> = of.receiver.iter().map(|r| r / height).collect();
         let times = picker.times(&[&of.source, &receiver], of.noise / height)?;
         Ok::<f64, String>(times[1] - times[0])
     };
-    let observed = pickers.each_ref().map(|(_, picker)| delay(&found, picker));
+    let observed = pickers.each_ref().map(|picker| delay(&found, picker));
     let mut time = (found.delay - system).max(1.0);
     let kind = (passage.distance / passage.diameter, passage.longitudinal);
     let path = Path::between(&found.source, &found.receiver, &band, kind);
     let typical = path.typical();
     let mut picks = Vec::new();
     let mut missing = Vec::new();
-    let (mut alike, mut opposite) = ([1.0; 2], 0.0);
+    let (mut alike, mut opposite, mut early) = ([1.0; 2], 0.0, 0.0);
     for _ in 0..ROUNDS {
         let expected = path.arrival(time, system, &typical);
         let copy = |k: u64| {
             let mut random = Noise::at(seed, &[PLACE, k]);
             let arrival = path.arrival(time, system, &path.drawn(&mut random));
             let copy = found.with(&arrival, &record.quiet, passage, &band, || random.next());
-            let times = pickers.each_ref().map(|(_, picker)| delay(&copy, picker).ok());
-            (times, [fitted(&copy.receiver, &expected).0, copy.opposite])
+            let times = pickers.each_ref().map(|picker| delay(&copy, picker).ok());
+            (times, [fitted(&copy.receiver, &expected).0, copy.opposite, copy.early])
         };
-        let (copies, shapes): (Vec<[Option<f64>; 3]>, Vec<[f64; 2]>) =
+        let (copies, shapes): (Vec<[Option<f64>; 3]>, Vec<[f64; 3]>) =
             (0..COPIES).into_par_iter().map(copy).unzip();
         let mean = |k: usize| shapes.iter().map(|shape| shape[k]).sum::<f64>() / COPIES as f64;
         alike = [fitted(&found.receiver, &expected).0, mean(0)];
         opposite = mean(1);
+        early = found.early - mean(2);
         picks.clear();
         missing.clear();
         for (k, observed) in observed.iter().enumerate() {
@@ -140,8 +165,21 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
     let unlike = (alike[1] - alike[0]).max(0.0) * period;
     let sign_doubt = ((found.opposite - opposite) / (1.0 - opposite)).clamp(0.0, 1.0);
     for p in &mut picks {
-        let time_stddev = p.time_stddev.hypot(UNLIKE[1] * unlike).hypot(HALF * sign_doubt * period);
-        *p = Pick { time: p.time - UNLIKE[0] * unlike, time_stddev, ..*p }.with_speed(passage);
+        let (part, doubt) = match p.method {
+            WaveMethod::FirstArrival => (ONSET, BY_EYE * period),
+            _ => (UNLIKE, HALF * sign_doubt * period),
+        };
+        let early = if passage.longitudinal == Some(true) {
+            0.0
+        } else {
+            EARLIER * (early - CHANCE).max(0.0) * period
+        };
+        let time_stddev = p.time_stddev.hypot(part[1] * unlike).hypot(doubt).hypot(early);
+        *p = Pick { time: p.time - part[0] * unlike, time_stddev, ..*p }.with_speed(passage);
+    }
+    // An onset is found in any signal: the wave is that of another pick.
+    if picks.iter().all(|p| p.method == WaveMethod::FirstArrival) {
+        picks.clear();
     }
     picks.retain(|p: &Pick| p.time > 0.0);
     let Some(recommended) = least(&picks) else {
@@ -158,12 +196,26 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         }
     }
     let best = picks[recommended];
+    let wavelengths = best.time * band.frequency * record.sample_rate;
+    let per_grain = wavelengths * passage.diameter / passage.distance;
+    let refusal = match best {
+        _ if wavelengths < SHORTEST => Some(format!("its path would be {wavelengths:.1} wavelengths long")),
+        _ if per_grain > 0.5 => Some(format!("its wavelength would be {:.1} diameters", 1.0 / per_grain)),
+        p if !SPEEDS.contains(&p.speed) => {
+            Some(format!("its speed would be {:.1e} m/s; check the units", p.speed))
+        }
+        p if p.speed_stddev > 0.5 * p.speed => Some("the error is more than half of the speed".to_owned()),
+        _ => None,
+    };
+    if let Some(refusal) = refusal {
+        return Err(AcousticsError::NoArrival(refusal));
+    }
     let frequency = band.frequency * record.sample_rate;
     Ok(Picks {
         recommended,
         missing,
         frequency,
-        wavelengths: best.time * frequency,
+        wavelengths,
         signal_to_noise: largest(&found.receiver) / found.noise,
         reversed: found.reversed,
         crosstalk: found.crosstalk,
@@ -171,7 +223,8 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         contradictory,
         alike,
         sign_doubt,
-        receiver: found.receiver,
+        sample_rate: record.sample_rate,
+        receiver: found.clear.iter().map(|r| r / largest(&found.receiver)).collect(),
         picks,
     })
 }

@@ -344,6 +344,9 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
             "z of the bulk modulus and z of the shear modulus differ by {worst:.1} standard deviations where they differ most; 3 contradict"
         ));
     }
+    if has(true) != has(false) {
+        notes.push("only one mode was measured: z follows from its level and its growth with pressure, which contacts and preparation change too, and no other mode tests it".to_owned());
+    }
     notes.push("errors of the grain modulus and the density, and rounder or sharper grains, would look the same as this stiffness".to_owned());
     notes.push("isotropic stress is assumed; validated on simulated spheres; on samples, predictions of speeds were tested, and z was not".to_owned());
     notes
