@@ -5,11 +5,20 @@
 //! amount of its own. So every pick is repeated in records that are computed for a path of known speed (`forward`), with the same source
 //! signal, loss and noise: the mean difference is its bias, which is taken off, and the scatter its error. Dispersion and near field,
 //! which a pair of records does not determine, are drawn from what packings and point sources have.
+//!
+//! Real records have trains of waves, of transducers that ring and of echoes. The first wave is picked and the others are faded out
+//! (`separated`); a shape that is not that of the computed arrivals, a sign that fits no better than the other, and a signal
+//! just before a shear wave make the error larger. The onset is least affected by them.
+//!
+//! - `passage`: a record and its path; `cleaned`: checks, offset; `filter`: electronics; `band`: duration and frequency of the source
+//! - `separated`: the arrival without crosstalk; `forward`: computed records; `travel_time`: picks with bias and error
 
+mod band;
 mod cleaned;
 mod filter;
 mod forward;
 mod passage;
+mod separated;
 mod travel_time;
 
 pub use passage::{Passage, Record};

@@ -1,6 +1,6 @@
 //! Records that are computed for a path of known speed.
 
-use super::cleaned::{Band, centre};
+use super::band::{Band, centre};
 use crate::noise::Noise;
 use crate::time_of_flight::spectrum::{Analytic, Spectrum};
 use std::f64::consts::TAU;

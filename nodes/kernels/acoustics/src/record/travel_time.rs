@@ -1,8 +1,9 @@
 //! Picks with their bias and error.
 
-use super::cleaned::{Cleaned, cleaned, fitted, largest, thinned};
+use super::cleaned::{cleaned, thinned};
 use super::forward::Path;
 use super::passage::{Passage, Record};
+use super::separated::{Separated, fitted, largest};
 use crate::error::AcousticsError;
 use crate::noise::Noise;
 use crate::time_of_flight::ArrivalPick;
@@ -109,7 +110,7 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         let sent = &found.source[band.from..(band.from + band.duration as usize).min(samples)];
         (pick.method(), Picker::of(pick, sent, band.duration, band.frequency, samples))
     });
-    let delay = |of: &Cleaned, (method, picker): &(WaveMethod, Picker)| {
+    let delay = |of: &Separated, (method, picker): &(WaveMethod, Picker)| {
         if *method == WaveMethod::FirstArrival {
             return if of.onset.is_finite() {
                 Ok(of.onset)
