@@ -20,7 +20,7 @@ The table has a row for each record, as CSV with a header:
 
   file                                       of an oscilloscope: CSV, by its path from the table; text above the numbers is skipped
   distance                                   between the tips of source and receiver, m; distance_sigma
-  diameter                                   mean diameter of the grains, m: waves of some ten diameters are slower than long ones
+  diameter                                   mean diameter of the grains, m; the path has 5 diameters or more
   delay                                      travel time of the system, source and receiver face to face, s [0]; delay_sigma
   lowpass, highpass, filter_order            of the receiver's electronics: Hz of -3 dB, and number of poles (Butterworth) [none, none, 1]
   polarity                                   normal or reversed: how the receiver shows a wave when both are face to face [not known]
@@ -31,7 +31,8 @@ The table has a row for each record, as CSV with a header:
 
 Every record is picked by its first break, its peak and its cross-correlation with the source. The same is done with computed records of a
 path of known speed, with the source, loss, noise and crosstalk of the record, and drawn dispersion and near field: their mean error is
-the bias that is taken off, their scatter the error. Recommended is the pick with the least error. The speed is that of long waves.
+the bias, their scatter the error. Printed are the time of long waves, which is the one that was read less the bias (us), the standard deviations (+-),
+the speed of long waves, the path over the wavelength (waves) and the arrival over the noise (S/N). Recommended is the pick with the least error.
 
 Examples:
   Speeds, and what was picked:
@@ -222,14 +223,15 @@ fn text(all: &[Found]) -> String {
 
 /// Reasons and notes, each with the files that it is about.
 fn remarks(all: &[Found]) -> Vec<String> {
-    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
+    let name = |row: &Row| row.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut found: Vec<(String, Vec<String>)> = Vec::new();
     for (row, picked) in all {
         for note in picked.as_ref().map_or_else(|reason| vec![reason.clone()], |p| notes(row, p)) {
             match found.iter_mut().find(|(text, _)| *text == note) {
-                Some((_, files)) => files.push(&row.file),
-                None => found.push((note, vec![&row.file])),
+                Some((_, files)) => files.push(name(row)),
+                None => found.push((note, vec![name(row)])),
             }
         }
     }
-    found.into_iter().map(|(note, files)| format!("{}: {note}", files.join(", "))).collect()
+    found.into_iter().map(|(note, files)| format!("{note}: {}", files.join(", "))).collect()
 }

@@ -136,16 +136,17 @@ fn waves(plan: &Plan) -> Result<Vec<Wave>, String> {
             return Err(format!("{name} is empty"));
         }
     }
+    if let Some(name) = plan.want.keys().find(|name| !KINDS.contains(&name.as_str())) {
+        return Err(format!("[want] {name}: it must be one of {}", KINDS.join(", ")));
+    }
     if let Some((name, sigma)) = plan.want.iter().find(|(_, sigma)| !(**sigma > 0.0 && sigma.is_finite())) {
         return Err(format!("[want] {name} = {sigma} must be a sigma, more than 0"));
     }
     let mut all = Vec::new();
     for (n, of) in plan.speeds.iter().enumerate() {
         let error = of.error.unwrap_or(plan.error);
-        if !(error > 0.0 && error < 0.5) {
-            return Err(format!(
-                "error = {error} must be relative, more than 0 and less than 0.5: 0.01 is one percent"
-            ));
+        if !(1e-5..0.5).contains(&error) {
+            return Err(format!("error = {error} must be relative, from 1e-5 to 0.5: 0.01 is one percent"));
         }
         let angles = of.angles.clone().map_or(vec![None], |a| a.into_iter().map(Some).collect());
         for pressure in of.pressures.as_ref().unwrap_or(&plan.pressures) {
@@ -297,9 +298,7 @@ fn sentences(answer: &Answer, want: &BTreeMap<String, f64>) -> Result<Vec<String
     for (name, sigma) in want {
         let of = answer.places(name);
         if of.is_empty() {
-            return Err(format!(
-                "[want] {name}: it must be one of z, eps and eps_stiffness (with angles), stiffness_ratio and level"
-            ));
+            return Err(format!("[want] {name}: it is determined by angles, which the speeds lack"));
         }
         // The largest factor with which every pressure has the wanted sigma.
         let worst: Vec<f64> = (0..FACTORS.len())
@@ -312,10 +311,10 @@ fn sentences(answer: &Answer, want: &BTreeMap<String, f64>) -> Result<Vec<String
                 fixed(Some(worst[0]), 4),
                 FACTORS[0]
             ),
-            Some(f) if f + 1 == FACTORS.len() => format!("{name} +- {sigma} needs no better errors than {} times these", FACTORS[f]),
+            Some(f) if f + 1 == FACTORS.len() => format!("{name} +- {sigma} allows errors of {} times these, or larger ones", FACTORS[f]),
             Some(f) => {
                 let part = (sigma / worst[f]).ln() / (worst[f + 1] / worst[f]).ln();
-                format!("{name} +- {sigma} needs errors of {:.2} times these", FACTORS[f] * (FACTORS[f + 1] / FACTORS[f]).powf(part))
+                format!("{name} +- {sigma} allows errors of at most {:.2} times these", FACTORS[f] * (FACTORS[f + 1] / FACTORS[f]).powf(part))
             }
         });
     }

@@ -39,6 +39,8 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Separated, 
         setting(name, value, value.is_finite() && value >= 0.0, "0 or more and finite")?;
     }
     setting("delay", passage.delay, passage.delay.is_finite(), "finite")?;
+    let passes = passage.lowpass.zip(passage.highpass).is_none_or(|(low, high)| high <= low);
+    setting("highpass", passage.highpass.unwrap_or(0.0), passes, "at most lowpass")?;
     let order = passage.filter_order;
     setting("filter_order", f64::from(order), (1..=8).contains(&order), "from 1 to 8")?;
     let samples = record.source.len();

@@ -202,6 +202,9 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
     let refusal = match best {
         _ if wavelengths < SHORTEST => Some(format!("its path would be {wavelengths:.1} wavelengths long")),
         _ if per_grain > 0.5 => Some(format!("its wavelength would be {:.1} diameters", 1.0 / per_grain)),
+        p if band.from as f64 + (p.time + passage.delay) * record.sample_rate > samples as f64 => {
+            Some("it would come after the end of the record".to_owned())
+        }
         p if !SPEEDS.contains(&p.speed) => {
             Some(format!("its speed would be {:.1e} m/s; check the units", p.speed))
         }
