@@ -44,8 +44,12 @@ def wave(row):
     if text not in named and not is_number(text):
         raise ValueError(f"{row['file']}: angle_deg is {text!r}; degrees from the axis are needed")
     sine, cosine = (f(math.radians(named.get(text) if text in named else float(text))) for f in (math.sin, math.cos))
-    motions = {"p": (sine, 0.0, cosine), "sh": (0.0, 1.0, 0.0)}
-    return Vector3(sine, 0.0, cosine), Vector3(*motions.get(row.get("mode", "s").lower(), (cosine, 0.0, -sine)))
+    in_plane = (cosine, 0.0, -sine)
+    motions = {"p": (sine, 0.0, cosine), "sh": (0.0, 1.0, 0.0), "sv": in_plane, "s": in_plane}
+    mode = row.get("mode", "").lower()
+    if mode not in motions or (mode == "s" and abs(sine) > 1e-3):
+        raise ValueError(f"{row['file']}: mode is {mode!r}; p, sv or sh is needed, or s along the axis")
+    return Vector3(sine, 0.0, cosine), Vector3(*motions[mode])
 
 
 class Records:
