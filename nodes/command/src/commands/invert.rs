@@ -269,8 +269,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(path) = &args.plan {
         let prior = of_series.of(&series::prior(args.prior.as_deref())?);
         let inputs = args.series_inputs()?;
+        let in_file = [("--error", args.error.is_some()), ("--plot", plot_file(args).is_some())];
+        refuse(&in_file, "is not for --plan: the file has the errors, and the answer no figure")?;
         // No error depends on the density.
-        let inputs = Inputs { density: inputs.density.or(Some(1500.0)), ..inputs };
+        let inputs = Inputs { density: Some(1500.0), ..inputs };
         plan::run(path, &inputs, &prior, of_series.text(), args.format)?;
         return Ok(Exit::Done);
     }

@@ -118,12 +118,7 @@ fn names(pressures: &[f64], has_eps: bool) -> Vec<(&'static str, Option<f64>)> {
 }
 
 fn flat(of: &SampleValues) -> Vec<f64> {
-    of.z.iter()
-        .chain(&of.eps)
-        .chain(&of.eps_stiffness)
-        .copied()
-        .chain([of.stiffness_ratio, of.level])
-        .collect()
+    [&of.z[..], &of.eps, &of.eps_stiffness, &[of.stiffness_ratio, of.level]].concat()
 }
 
 /// A line of the plan with the relative error of its speed.
@@ -136,11 +131,13 @@ fn waves(plan: &Plan) -> Result<Vec<Wave>, String> {
             return Err(format!("{name} is empty"));
         }
     }
-    if let Some(name) = plan.want.keys().find(|name| !KINDS.contains(&name.as_str())) {
-        return Err(format!("[want] {name}: it must be one of {}", KINDS.join(", ")));
-    }
-    if let Some((name, sigma)) = plan.want.iter().find(|(_, sigma)| !(**sigma > 0.0 && sigma.is_finite())) {
-        return Err(format!("[want] {name} = {sigma} must be a sigma, more than 0"));
+    for (name, sigma) in &plan.want {
+        if !(KINDS.contains(&name.as_str()) && *sigma > 0.0 && sigma.is_finite()) {
+            let kinds = KINDS.join(", ");
+            return Err(format!(
+                "[want] {name} = {sigma}: a sigma, more than 0, of one of {kinds} is expected"
+            ));
+        }
     }
     let mut all = Vec::new();
     for (n, of) in plan.speeds.iter().enumerate() {
@@ -236,7 +233,7 @@ pub(super) fn run(
         by_error.push(if factor == 1.0 { rms(&base) } else { scaled(&sigmas(&own, factor, COMPARED)?.1) });
     }
     let pressures = SpeedSeries { rows: whole.rows[..own.len()].to_vec(), ..whole.clone() }.pressures();
-    let names = names(&pressures, before.len() > pressures.len() + 2);
+    let keys = names(&pressures, before.len() > pressures.len() + 2);
     let quantity = |(k, (name, pressure_pa)): (usize, &(&'static str, Option<f64>))| {
         let mut each: Vec<f64> = base.iter().map(|s| s[k]).collect();
         each.sort_by(f64::total_cmp);
@@ -244,16 +241,16 @@ pub(super) fn run(
         let (sigma, low, high) = (rms(&base)[k], each[SAMPLES / 10], each[SAMPLES - 1 - SAMPLES / 10]);
         Quantity { name, pressure_pa: *pressure_pa, prior_sigma: before[k], sigma, low, high, sigma_by_error }
     };
-    let quantities: Vec<Quantity> = names.iter().enumerate().map(quantity).collect();
+    let quantities: Vec<Quantity> = keys.iter().enumerate().map(quantity).collect();
     for (n, (of, _)) in others.iter_mut().enumerate() {
         let with: Vec<usize> = own.iter().copied().chain([own.len() + n]).collect();
         let found = sigmas(&with, 1.0, COMPARED)?.1;
         // Quantities of the plan alone: another pressure adds some, and a first direction ε.
         let mine = SpeedSeries { rows: with.iter().map(|n| whole.rows[*n]).collect(), ..whole.clone() };
-        let theirs = super::plan::names(&mine.pressures(), found[0].len() > mine.pressures().len() + 2);
+        let theirs = names(&mine.pressures(), found[0].len() > mine.pressures().len() + 2);
         let place = |of: &(&str, Option<f64>)| theirs.iter().position(|t| t == of);
         let mine: Vec<Vec<f64>> =
-            found.iter().map(|s| names.iter().filter_map(place).map(|k| s[k]).collect()).collect();
+            found.iter().map(|s| keys.iter().filter_map(place).map(|k| s[k]).collect()).collect();
         of.sigma = scaled(&mine);
     }
     let mut answer = Answer {

@@ -51,7 +51,7 @@ fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {
     };
     Figure {
         title: format!("{}: {:.1} +- {:.1} m/s", row.file, best.speed, best.speed_stddev),
-        subtitle: "above the source, below the receiver without offset and crosstalk and with the sign of the source; lines: arrival of long waves by each pick, with 95 % intervals".into(),
+        subtitle: "source above, receiver below (no offset, no crosstalk, sign of the source); lines: long waves by each pick, 95 %".into(),
         x: Axis::linear("time after the start of the source, µs"),
         y: Axis::linear("signal over the largest of the source, of the arrival"),
         series: [source, receiver].into_iter().chain(picked.picks.iter().enumerate().map(mark)).collect(),

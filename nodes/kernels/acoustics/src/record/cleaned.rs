@@ -83,7 +83,7 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Separated, 
 /// A record of fewer samples, each the mean of some, where it has many more in a period of its source than its shape needs.
 pub(super) fn thinned(record: &Record) -> Result<Record, AcousticsError> {
     let period = 1.0 / Band::of(&centred(&record.source, &record.quiet)?, 0.0).frequency;
-    let each = (period / ENOUGH_PER_PERIOD) as usize;
+    let each = ((period / ENOUGH_PER_PERIOD) as usize).min(record.quiet.len() / (2 * LEAST_QUIET));
     if each < 2 {
         return Ok(record.clone());
     }

@@ -26,9 +26,9 @@ pub struct Passage {
     pub delay: f64,
     /// Standard deviation of the delay, s.
     pub delay_stddev: f64,
-    /// Frequency of −3 dB of the low pass of the receiver's electronics, Hz; `None`: there is none.
+    /// Cut-off frequency (−3 dB) of the low-pass filter of the receiver, Hz; `None` without such a filter.
     pub lowpass: Option<f64>,
-    /// Frequency of −3 dB of the high pass of the receiver's electronics, Hz; `None`: there is none.
+    /// Cut-off frequency (−3 dB) of the high-pass filter of the receiver, Hz; `None` without such a filter.
     pub highpass: Option<f64>,
     /// Number of poles of each (Butterworth), from 1 to 8.
     pub filter_order: u32,

@@ -87,7 +87,8 @@ pub struct Picks {
     pub is_cut: bool,
     /// Correlation of the arrival with a computed one, and the mean of those of computed records.
     pub alike: [f64; 2],
-    /// Probability in doubt of the sign, from 0 to 1, where it is not given.
+    /// From 0 to 1: the opposite sign fits the receiver no better than in computed records, or as well as the sign that was found. 0
+    /// where the sign is given.
     pub sign_doubt: f64,
     /// True if two picks are further apart than their errors allow; the errors are then as large as the difference.
     pub contradictory: bool,
@@ -112,11 +113,7 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
     });
     let delay = |of: &Separated, (method, picker): &(WaveMethod, Picker)| {
         if *method == WaveMethod::FirstArrival {
-            return if of.onset.is_finite() {
-                Ok(of.onset)
-            } else {
-                Err("there is no onset before it".to_owned())
-            };
+            return Some(of.onset).filter(|t| t.is_finite()).ok_or("there is no onset before it".to_owned());
         }
         let height = largest(&of.receiver);
         let receiver: Vec<f64> = of.receiver.iter().map(|r| r / height).collect();
@@ -164,19 +161,17 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
     }
     let period = 1.0 / (band.frequency * record.sample_rate);
     let unlike = (alike[1] - alike[0]).max(0.0) * period;
-    let sign_doubt = ((found.opposite - opposite) / (1.0 - opposite)).clamp(0.0, 1.0);
+    let sign_doubt = ((found.opposite - opposite) / (1.0 - opposite).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     for p in &mut picks {
         let (part, doubt) = match p.method {
             WaveMethod::FirstArrival => (ONSET, BY_EYE * period),
             _ => (UNLIKE, HALF * sign_doubt * period),
         };
-        let early = if passage.longitudinal == Some(true) {
-            0.0
-        } else {
-            EARLIER * (early - CHANCE).max(0.0) * period
-        };
+        let may_be_s = f64::from(passage.longitudinal != Some(true));
+        let early = may_be_s * EARLIER * (early - CHANCE).max(0.0) * period;
         let time_stddev = p.time_stddev.hypot(part[1] * unlike).hypot(doubt).hypot(early);
-        *p = Pick { time: p.time - part[0] * unlike, time_stddev, ..*p }.with_speed(passage);
+        let late = part[0] * unlike;
+        *p = Pick { time: p.time - late, bias: p.bias + late, time_stddev, ..*p }.with_speed(passage);
     }
     // An onset is found in any signal: the wave is that of another pick.
     if picks.iter().all(|p| p.method == WaveMethod::FirstArrival) {
