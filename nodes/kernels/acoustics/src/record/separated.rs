@@ -2,6 +2,7 @@
 
 use super::band::{Band, centre};
 use super::passage::Passage;
+use crate::time_of_flight::pick::onset;
 use crate::time_of_flight::spectrum::Spectrum;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
@@ -34,9 +35,6 @@ const CLIMB: f64 = 1.25;
 
 /// Durations of the source before and after a wave at which the record fades out, first and last: echoes and later waves follow.
 const FADED: [f64; 2] = [0.25, 0.75];
-
-/// Least number of samples on either side of an onset.
-const MARGIN: usize = 8;
 
 /// A source and a receiver with one arrival. Times are in samples.
 #[derive(Clone, Debug)]
@@ -162,8 +160,8 @@ pub(super) fn separated(
     let period = 1.0 / band.frequency;
     let crest_of_strong = (band.from + strong - zero) as f64 + 0.5 * band.duration;
     let before = if is_p { (band.from + start - zero) as f64 } else { crest_of_strong - BEFORE * period };
-    let onset = onset(&receiver, before.max(0.0) as usize, (crest_of_strong + AFTER * period) as usize)
-        - band.from as f64;
+    let onset = onset(&receiver, before.max(0.0) as usize, (crest_of_strong + AFTER * period) as usize, 0.0);
+    let onset = onset.unwrap_or(f64::NAN) - band.from as f64;
     let crest_of = |from: f64, to: f64| {
         largest(receiver.get(from.max(0.0) as usize..to.max(0.0) as usize).unwrap_or_default())
     };
@@ -188,25 +186,6 @@ pub(super) fn separated(
         onset,
         early: if early.is_finite() { early } else { 0.0 },
     }
-}
-
-/// The sample between two places that divides them best into a part of small and a part of large variance (Maeda's AIC, 1985).
-fn onset(signal: &[f64], from: usize, to: usize) -> f64 {
-    let part = &signal[from.min(signal.len())..to.clamp(from, signal.len())];
-    let n = part.len();
-    let sums: Vec<f64> = std::iter::once(0.0)
-        .chain(part.iter().scan(0.0, |sum, s| {
-            *sum += s * s;
-            Some(*sum)
-        }))
-        .collect();
-    let of = |k: usize| {
-        let (early, late) = (k as f64, (n - k) as f64);
-        early * (sums[k] / early).ln() + late * ((sums[n] - sums[k]) / late).ln()
-    };
-    (MARGIN..n.saturating_sub(MARGIN))
-        .min_by(|a, b| of(*a).total_cmp(&of(*b)))
-        .map_or(f64::NAN, |k| (from + k) as f64)
 }
 
 /// Largest correlation of two signals, at most 1, and the factor of the other that is nearest to the one.

@@ -12,15 +12,18 @@ const FINE: f64 = 64.0;
 /// independent samples of noise the largest does so once in thirty times.
 const STANDS_OUT: f64 = 4.0;
 
-/// Level of the onset of an envelope, over the maximum at the first receiver; higher where the noise requires
-/// it. It is not relative to each receiver's own maximum, because the front of a wave keeps its height where
-/// scattering reduces the peak. It is a level of the envelope and not of the signal, whose first lobe is a
-/// sixth of the next one: dispersion moves that lobe through any lower threshold.
-const ONSET: f64 = 0.1;
+/// Durations of the burst before its peak in which its onset is looked for.
+const BEFORE: f64 = 1.5;
 
-/// Least level of an onset in standard deviations of the noise, and its greatest level over the peak.
-const ONSET_STANDS_OUT: f64 = 4.5;
-const MAX_ONSET: f64 = 0.6;
+/// Amplitude over the maximum at the first receiver below which a trace is zero. It is not relative to each receiver's own maximum, because
+/// the front of a wave keeps its height where scattering reduces the peak.
+const FLOOR: f64 = 0.1;
+
+/// Noise over that maximum which hides an onset.
+const MOST_NOISE: f64 = 0.13;
+
+/// Least number of samples on either side of an onset.
+const MARGIN: usize = 8;
 
 /// Picks arrivals in traces of one length and sampling.
 #[derive(Clone)]
@@ -110,38 +113,42 @@ impl Picker {
         signal.iter().step_by(self.finer).enumerate().map(|(k, s)| s * taper(k as f64 - peak)).collect()
     }
 
-    /// Times at which the envelopes first exceed the same level.
+    /// Onsets before the peaks.
     fn onsets(&self, channels: &[&[f64]], peaks: &[f64], noise: f64) -> Result<Vec<f64>, String> {
         let noise = noise * Spectrum::passed(&self.low);
-        let signals: Vec<Vec<Analytic>> =
-            channels.iter().map(|c| self.spectrum.filtered(c, &self.low)).collect();
         let length = self.burst * self.finer as f64;
-        let within = |peak: f64, signal: &[Analytic]| {
-            let from = (peak - 0.8 * length).max(0.0) as usize;
-            from..((peak + 0.3 * length) as usize).min(signal.len())
-        };
-        let top = |(signal, peak): (&Vec<Analytic>, &f64)| {
-            signal[within(*peak, signal)].iter().map(|s| s.norm()).fold(0.0, f64::max)
-        };
-        let first = signals.iter().zip(peaks).map(top).next().unwrap_or(0.0);
-        let level = (ONSET * first).max(ONSET_STANDS_OUT * noise);
-        if level.is_nan() || level > MAX_ONSET * first {
-            return Err(format!(
-                "the noise hides the onset: its level would be {:.2} of the peak",
-                level / first
-            ));
+        let signals = channels.iter().map(|c| self.spectrum.filtered(c, &self.low));
+        let signals: Vec<Vec<f64>> = signals.map(|s| s.iter().map(|s| s.re).collect()).collect();
+        let largest = |of: &[f64]| of.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+        let first = largest(&signals[0]);
+        if noise > MOST_NOISE * first {
+            return Err(format!("the noise hides the onset: it is {:.2} of the peak", noise / first));
         }
-        let onset = |(signal, peak): (&Vec<Analytic>, &f64)| {
-            let range = within(*peak, signal);
-            let first = range.clone().find(|k| signal[*k].norm() >= level);
-            let first =
-                first.ok_or("the wave decays on its path: it does not reach the level of its onset")?;
-            // Linear interpolation between this sample and the one before.
-            let (a, b) = (signal[first.saturating_sub(1)].norm(), signal[first].norm());
-            Ok(if first > range.start && b > a { first as f64 - (b - level) / (b - a) } else { first as f64 })
+        let found = |(signal, peak): (&Vec<f64>, &f64)| {
+            let from = (peak - BEFORE * length).max(0.0) as usize;
+            onset(signal, from, *peak as usize, FLOOR * first)
+                .ok_or("there is no onset before the peak".to_owned())
         };
-        signals.iter().zip(peaks).map(onset).collect()
+        signals.iter().zip(peaks).map(found).collect()
     }
+}
+
+/// The place between two that divides a signal best into a part of small and a part of large variance (Maeda's AIC, 1985). `floor` is
+/// the amplitude below which a signal is zero.
+pub(crate) fn onset(signal: &[f64], from: usize, to: usize, floor: f64) -> Option<f64> {
+    let part = &signal[from.min(signal.len())..to.clamp(from, signal.len())];
+    let n = part.len();
+    let grown = |sum: &mut f64, s: &f64| {
+        *sum += s * s + floor * floor;
+        Some(*sum)
+    };
+    let sums: Vec<f64> = std::iter::once(0.0).chain(part.iter().scan(0.0, grown)).collect();
+    let of = |k: usize| {
+        let (early, late) = (k as f64, (n - k) as f64);
+        -early * (sums[k] / early).ln() - late * ((sums[n] - sums[k]) / late).ln()
+    };
+    let (place, _) = summit(of, MARGIN..n.saturating_sub(MARGIN))?;
+    Some(from as f64 + place)
 }
 
 /// The delay of the crest of a correlation nearest to `expected`, or to the peak of its envelope.
