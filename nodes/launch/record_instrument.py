@@ -12,7 +12,6 @@ a record was refused, or the answer of a state is contradictory or unknown. GRAI
 import argparse
 import csv
 import json
-import math
 import os
 import subprocess
 import sys
@@ -22,103 +21,84 @@ from pathlib import Path
 
 from instrument import STATUS, Instrument, Vector3, WaveSpeed, WaveSpeeds, show
 
-AXIS = Vector3(0.0, 0.0, 1.0)
-
-
-def is_number(text):
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
-
 
 def number(row, *names):
     """The first of these columns that is not empty, or 0."""
     return next((float(row[n]) for n in names if row.get(n)), 0.0)
 
 
-def wave(row):
-    """Direction and polarization of a record about the axis e3."""
-    named = {"along": 0.0, "across": 90.0}
-    text = row.get("angle_deg") or row.get("direction") or ""
-    if text not in named and not is_number(text):
-        raise ValueError(f"{row['file']}: angle_deg is {text!r}; degrees from the axis are needed")
-    sine, cosine = (f(math.radians(named.get(text) if text in named else float(text))) for f in (math.sin, math.cos))
-    in_plane = (cosine, 0.0, -sine)
-    motions = {"p": (sine, 0.0, cosine), "sh": (0.0, 1.0, 0.0), "sv": in_plane, "s": in_plane}
-    mode = row.get("mode", "").lower()
-    if mode not in motions or (mode == "s" and abs(sine) > 1e-3):
-        raise ValueError(f"{row['file']}: mode is {mode!r}; p, sv or sh is needed, or s along the axis")
-    return Vector3(sine, 0.0, cosine), Vector3(*motions[mode])
-
-
 class Records:
-    """The records of a folder, each picked when it is written."""
+    """The records of a folder, by states: one sample at one pressure."""
 
     def __init__(self, folder):
-        self.folder, self.seen, self.picked, self.sent, self.is_complete = Path(folder), {}, {}, {}, False
+        self.folder, self.seen, self.sent = Path(folder), {}, {}
 
-    def rows(self):
+    def states(self):
+        """Rows of each state, with the sizes and times of their files, None of one that is not there yet."""
         table = self.folder / "records.csv"
         rows = csv.DictReader(table.read_text(encoding="utf-8-sig").splitlines()) if table.exists() else []
-        return [row for row in rows if row.get("file") and None not in row.values()]  # a row that is being written waits
+        states = {}
+        for row in rows:
+            if row.get("file") and None not in row.values():  # a row that is being written waits
+                path = (self.folder / row["file"]).resolve()
+                stamp = (path.stat().st_size, path.stat().st_mtime_ns) if path.exists() else None
+                try:
+                    pressure = number(row, "pressure_pa")
+                except ValueError as fault:
+                    pressure = str(fault)  # `grainlab pick` refuses the row
+                states.setdefault((row.get("sample", ""), pressure), []).append(({**row, "file": str(path)}, stamp))
+        return states
 
     def poll(self):
-        """States whose records are all picked and that changed: name, rows and picks. A file is written when it is the same twice."""
-        states = {}
-        for row in self.rows():
-            pressure = row.get("pressure_pa", "")
-            states.setdefault((row.get("sample", ""), float(pressure) if is_number(pressure) else pressure), []).append(row)
-        picked = {name: [self.pick(row) for row in rows] for name, rows in states.items()}
-        self.is_complete = bool(picked) and all(map(all, picked.values()))
-        for name, picks in picked.items():
-            if all(picks) and self.sent.get(name) != (states[name], picks):
-                self.sent[name] = (states[name], picks)
-                yield name, list(zip(states[name], picks))
+        """States that changed and are complete, each as its rows. A file is written when it is the same twice."""
+        states = self.states()
+        before, self.seen = self.seen, states
+        for state, rows in states.items():
+            if all(stamp for _, stamp in rows) and before.get(state) == rows != self.sent.get(state):
+                self.sent[state] = rows
+                yield [row for row, _ in rows]
 
-    def pick(self, row):
-        """What `grainlab pick` finds of a record; None until the file is written."""
-        path = (self.folder / row["file"]).resolve()
-        if not path.exists():
-            return None
-        stamp = (path.stat().st_size, path.stat().st_mtime_ns)
-        key = json.dumps(row)
-        before, self.seen[key] = self.seen.get(key), stamp
-        if before != stamp:
-            return None
-        if self.picked.get(key, (None,))[0] != stamp:
-            with tempfile.NamedTemporaryFile("w", suffix=".csv", newline="") as table:
-                writer = csv.DictWriter(table, row)
-                writer.writeheader()
-                writer.writerow({**row, "file": path})
-                table.flush()
-                command = [os.environ.get("GRAINLAB", "grainlab"), "pick", table.name, "--format", "json"]
-                ended = subprocess.run(command, capture_output=True, text=True)
-            refused = {"refused": ended.stderr.strip().replace(table.name, "records.csv"), "picks": [], "notes": []}
-            self.picked[key] = (stamp, json.loads(ended.stdout)[0] if ended.stdout else refused)
-        return self.picked[key][1]
+    def is_done(self):
+        return bool(self.seen) and all(self.sent.get(state) == rows for state, rows in self.seen.items())
 
 
-def message(name, picked, options):
-    """The speeds of a state, with the reasons of the records that have none."""
-    first = picked[0][0]
+def picked(rows):
+    """What `grainlab pick` finds of each row."""
+    with tempfile.NamedTemporaryFile("w", suffix=".csv", newline="") as table:
+        writer = csv.DictWriter(table, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
+        table.flush()
+        command = [os.environ.get("GRAINLAB", "grainlab"), "pick", table.name, "--format", "json"]
+        ended = subprocess.run(command, capture_output=True, text=True)
+        if not ended.stdout:
+            raise ValueError(ended.stderr.strip().replace(table.name, "records.csv"))
+        return json.loads(ended.stdout)
+
+
+def message(rows, options):
+    """The speeds of a state, with the reasons of the records that have none and the notes on the others."""
+    first, name = rows[0], lambda row: Path(row["file"]).name
     for column in ["density", "density_sigma", "grain_density", "phi", "pressure_sigma_pa"]:
-        if len({row.get(column) for row, _ in picked}) > 1:
+        if len({row.get(column) for row in rows}) > 1:
             raise ValueError(f"{column} differs between the records of one state")
-    speeds, warnings = [], []
-    for row, found in picked:
-        warnings += [f"{row['file']}: {found['refused']}"] if found["refused"] else []
+    speeds, refused, notes = [], [], []
+    for row, found in zip(rows, picked(rows)):
+        notes += [f"{name(row)}: {note}" for note in found["notes"]]
+        refused += [f"{name(row)}: {found['refused']}"] if found["refused"] else []
         for best in (p for p in found["picks"] if p["method"] == found["recommended"]):
-            direction, polarization = wave(row)
+            if not found["direction"]:
+                raise ValueError(f"{name(row)}: mode and angle_deg are needed, the angle in degrees from the axis")
             speeds.append(WaveSpeed(
-                method=getattr(WaveSpeed, "METHOD_" + best["method"].upper()), direction=direction, polarization=polarization,
-                speed=best["speed"], speed_stddev=best["speed_sigma"], frequency=found["frequency"]))
+                method=getattr(WaveSpeed, "METHOD_" + best["method"].upper()), direction=Vector3(*found["direction"]),
+                polarization=Vector3(*found["polarization"]), speed=best["speed"], speed_stddev=best["speed_sigma"],
+                frequency=found["frequency"]))
     density = number(first, "density") or number(first, "grain_density") * number(first, "phi")
-    return WaveSpeeds(
-        name=f"{name[0]} {first.get('pressure_pa', '')} Pa".strip(), density=density, density_stddev=number(first, "density_sigma"),
-        pressure=number(first, "pressure_pa"), pressure_stddev=number(first, "pressure_sigma_pa"),
-        solid_fraction=number(first, "phi"), axis=AXIS, grain_shear_modulus=options.grain_shear_modulus,
-        grain_poisson_ratio=options.poisson, speeds=speeds, warnings=warnings)
+    return notes, WaveSpeeds(
+        name=f"{first.get('sample', '')} {first.get('pressure_pa', '')} Pa".strip(), density=density,
+        density_stddev=number(first, "density_sigma"), pressure=number(first, "pressure_pa"),
+        pressure_stddev=number(first, "pressure_sigma_pa"), solid_fraction=number(first, "phi"), axis=Vector3(0.0, 0.0, 1.0),
+        grain_shear_modulus=options.grain_shear_modulus, grain_poisson_ratio=options.poisson, speeds=speeds, warnings=refused)
 
 
 def main():
@@ -130,23 +110,21 @@ def main():
     options = parser.parse_args()
     records, instrument, failed = Records(options.folder), Instrument(), False
     while True:
-        for name, picked in records.poll():
-            for row, found in picked:
-                print("".join(f"{row['file']}: {note}\n" for note in found["notes"]), end="")
+        for rows in records.poll():
             try:
-                sent = message(name, picked, options)
-            except (KeyError, ValueError) as fault:
-                print(f"records.csv: {name}: {fault}", file=sys.stderr)
+                notes, sent = message(rows, options)
+            except ValueError as fault:
+                print(f"records.csv: {rows[0].get('sample', '')} {rows[0].get('pressure_pa', '')} Pa: {fault}", file=sys.stderr)
                 failed = True
                 continue
             failed |= bool(sent.warnings)
-            print("".join(f"{warning}\n" for warning in sent.warnings), end="", flush=True)
+            print("".join(f"{line}\n" for line in notes + sent.warnings), end="", flush=True)
             if sent.speeds:
                 found = instrument.infer(sent)
                 statuses = [STATUS[e.status] for e in found.estimates]
                 failed |= "contradictory" in statuses or all(status == "unknown" for status in statuses)
                 show(sent, found)
-        if options.once and records.is_complete:
+        if options.once and records.is_done():
             sys.exit(4 if failed else 0)
         time.sleep(0.5)
 

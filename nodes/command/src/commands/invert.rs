@@ -46,7 +46,7 @@ pub(super) use rows::Rows;
 use series::Contact;
 use series::inputs::Inputs;
 use speed_table::SpeedLine;
-pub(super) use speed_table::{COLUMNS as SPEED_COLUMNS, checked_header, not_a_number};
+pub(super) use speed_table::{COLUMNS as SPEED_COLUMNS, checked_header, not_a_number, row as speed_row};
 pub(super) use state::State;
 use std::path::{Path, PathBuf};
 

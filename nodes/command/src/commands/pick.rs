@@ -92,9 +92,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     if unread > 0 {
         let count = all.len();
-        return Err(Failure::usage(format!(
-            "{unread} of {count} records could not be read, {refused} have no speed"
-        )));
+        let fault = format!("{unread} of {count} records could not be read, {refused} have no speed");
+        return Err(Failure::usage(fault));
     }
     if refused > 0 {
         say!("grainlab: {refused} of {} records have no speed", all.len());
@@ -126,6 +125,8 @@ fn value((row, picked): &Found) -> Value {
         Ok(p) => json!({
             "file": row.file,
             "line": row.line,
+            "direction": row.way.map(|(direction, _)| direction.as_slice().to_vec()),
+            "polarization": row.way.map(|(_, polarization)| polarization.as_slice().to_vec()),
             "refused": null,
             "picks": p.picks.iter().map(one).collect::<Vec<_>>(),
             "recommended": p.picks[p.recommended].method.word(),
@@ -182,9 +183,7 @@ fn speeds(all: &[Found]) -> String {
         let Ok(picked) = picked else { continue };
         let best = picked.picks[picked.recommended];
         row.copied.iter().for_each(|(_, value)| csv.cell(value));
-        csv.number(Some(picked.frequency));
-        csv.number(Some(best.speed));
-        csv.number(Some(best.speed_stddev));
+        [picked.frequency, best.speed, best.speed_stddev].iter().for_each(|value| csv.number(Some(*value)));
         csv.end();
     }
     csv.finish()

@@ -19,7 +19,7 @@
 //! - `calibration`: the constants of the models; the crate `calibration` of the studio learns them from packings
 //! - `moments`, `eq16`, `medium`, `invariants`: the theory that the models share
 //! - `likelihood`, `estimate_likelihood`: the probability of moduli, as a model states it
-//! - `posterior`: draws, evidence, predictive checks and ranks
+//! - `posterior`: draws, evidence and predictive checks
 //! - `prior`, `update`: prior knowledge, and estimates with it
 //! - `series`: speeds of a sample over pressure, whose contacts are not known
 //! - `propagation`: errors to first order
@@ -93,14 +93,12 @@ pub use moments::Moments;
 pub use normal::HALF_WIDTH;
 pub use observation::{INPUTS, Observation};
 pub use point_estimate::{Jacobian, Misfit, PointEstimate};
-pub use posterior::{
-    Check, Draw, Draws, Evidence, ModulusCheck, Posterior, PosteriorSettings, RankHistogram,
-};
+pub use posterior::{Check, Draw, Draws, Evidence, ModulusCheck, Posterior, PosteriorSettings};
 pub use prior::{Density, Prior, PriorError};
 pub use registry::{free_contact, model, models, recommended};
 pub use series::{
     ContactCorrections, ContactKind, ContactPrior, Interval, LawEstimate, LeftOut, PreparationPrior,
-    PressureEstimate, RowEstimate, SampleValues, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow,
+    PressureEstimate, RowEstimate, SampleQuantity, Sensitivity, SeriesEstimate, SeriesPrior, SeriesRow,
     SpeedMode, SpeedSeries, infer_series, series_stddev, simulate_series,
 };
 pub use warning::Warning;

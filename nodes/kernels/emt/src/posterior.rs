@@ -7,7 +7,6 @@
 //!
 //! - [`target`]: likelihood and prior; [`proposal`]: the mixture; [`halton`]: quasi-random points
 //! - [`draws`]: draws; [`evidence`]: the marginal likelihood; [`check`]: the observation against its prediction
-//! - [`ranks`]: whether ranks of true values among draws are uniform; [`simulated`]: ranks of simulated observations
 
 mod check;
 mod draws;
@@ -15,11 +14,9 @@ mod evidence;
 mod halton;
 mod points;
 mod proposal;
-mod ranks;
 mod target;
 
 pub use check::{Check, ModulusCheck};
 pub use draws::{Draw, Draws};
 pub use evidence::Evidence;
 pub use points::{Posterior, PosteriorSettings};
-pub use ranks::RankHistogram;

@@ -32,7 +32,7 @@ pub use estimate::{
     Interval, LawEstimate, PressureEstimate, RowEstimate, Sensitivity, SeriesEstimate, infer_series,
 };
 pub use gain::ContactKind;
-pub use plan::{SampleValues, series_stddev, simulate_series};
+pub use plan::{SampleQuantity, series_stddev, simulate_series};
 pub use prior::{ContactPrior, PreparationPrior, SeriesPrior};
 pub use sample::{SeriesRow, SpeedMode, SpeedSeries};
 pub(crate) use single::SingleEstimate;

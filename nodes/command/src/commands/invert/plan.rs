@@ -4,7 +4,7 @@ use super::series::inputs::Inputs;
 use super::speed_table::{SpeedLine, planned};
 use grainlab_console::{CsvText, Failure, Format, Table, fixed, say};
 use grainlab_emt::{
-    Calibration, EmtError, SampleValues, SeriesPrior, SpeedSeries, series_stddev, simulate_series,
+    Calibration, EmtError, SampleQuantity, SeriesPrior, SpeedSeries, series_stddev, simulate_series,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -110,17 +110,6 @@ impl Answer {
     }
 }
 
-/// Names and pressures of the quantities, in the order of [`flat`].
-fn names(pressures: &[f64], has_eps: bool) -> Vec<(&'static str, Option<f64>)> {
-    let at = |name| pressures.iter().map(move |p| (name, Some(*p)));
-    let eps = at("eps").chain(at("eps_stiffness")).filter(|_| has_eps);
-    at("z").chain(eps).chain([("stiffness_ratio", None), ("level", None)]).collect()
-}
-
-fn flat(of: &SampleValues) -> Vec<f64> {
-    [&of.z[..], &of.eps, &of.eps_stiffness, &[of.stiffness_ratio, of.level]].concat()
-}
-
 /// A line of the plan with the relative error of its speed.
 type Wave = (SpeedLine, f64);
 
@@ -177,8 +166,8 @@ fn further(plan: &Plan, planned_waves: &[Wave]) -> Result<Vec<(Further, Wave)>, 
     Ok(all)
 }
 
-/// The sigmas of one experiment after another; those of the prior first.
-type Sigmas = (Vec<f64>, Vec<Vec<f64>>);
+/// Quantities with their standard deviations in the prior, and these in one simulated experiment after another.
+type Sigmas = (Vec<SampleQuantity>, Vec<Vec<f64>>);
 
 /// Runs a plan.
 pub(super) fn run(
@@ -200,9 +189,9 @@ pub(super) fn run(
     let lines: Vec<SpeedLine> = all.iter().map(|(line, _)| line.clone()).collect();
     let (whole, assumed) =
         inputs.series(&lines).map_err(|fault| usage(fault.replace("line 0: column ", "")))?;
-    // The sigmas with some of the waves, with the errors times a factor.
+    // The sigmas with some of the waves, with the errors times a factor; of these quantities, or of all that the waves determine.
     let wrong = |e: EmtError| usage(e.to_string());
-    let sigmas = |chosen: &[usize], factor: f64, samples: usize| -> Result<Sigmas, Failure> {
+    let sigmas = |chosen: &[usize], factor: f64, samples: usize, of: Option<&[SampleQuantity]>| {
         let mut series = whole.clone();
         series.rows.iter_mut().zip(&all).for_each(|(row, (_, error))| row.stddev = factor * error);
         let one = |seed: usize| {
@@ -210,19 +199,19 @@ pub(super) fn run(
             simulate_series(&mut made, network, prior, Some(1.0), seed as u64)?;
             let rows = chosen.iter().map(|n| made.rows[*n]).collect();
             let [found, before] = series_stddev(&SpeedSeries { rows, ..made }, network, prior)?;
-            Ok((flat(&before), flat(&found)))
+            let at = |q: &SampleQuantity| found.iter().find(|f| (f.name, f.pressure) == (q.name, q.pressure));
+            let found = of.unwrap_or(&before).iter().filter_map(at).map(|f| f.value).collect();
+            Ok((before, found))
         };
-        let all: Vec<(Vec<f64>, Vec<f64>)> =
-            (0..samples).into_par_iter().map(one).collect::<Result<_, EmtError>>().map_err(wrong)?;
-        Ok((all[0].0.clone(), all.into_iter().map(|(_, found)| found).collect()))
+        let all =
+            (0..samples).into_par_iter().map(one).collect::<Result<Vec<_>, EmtError>>().map_err(wrong)?;
+        Ok::<Sigmas, Failure>((all[0].0.clone(), all.into_iter().map(|(_, found)| found).collect()))
     };
     let own: Vec<usize> = (0..planned_waves.len()).collect();
     say!("grainlab: contact: {contact}");
-    say!(
-        "grainlab: {} inversions of simulated samples follow",
-        SAMPLES + (FACTORS.len() - 1 + others.len()) * COMPARED
-    );
-    let (before, base) = sigmas(&own, 1.0, SAMPLES)?;
+    let count = SAMPLES + (FACTORS.len() - 1 + others.len()) * COMPARED;
+    say!("grainlab: {count} inversions of simulated samples follow");
+    let (before, base) = sigmas(&own, 1.0, SAMPLES, None)?;
     // One set of samples, so that ratios have little noise.
     let few = rms(&base[..COMPARED]);
     let scaled = |found: &[Vec<f64>]| -> Vec<f64> {
@@ -230,28 +219,29 @@ pub(super) fn run(
     };
     let mut by_error = Vec::new();
     for factor in FACTORS {
-        by_error.push(if factor == 1.0 { rms(&base) } else { scaled(&sigmas(&own, factor, COMPARED)?.1) });
+        by_error.push(if factor == 1.0 {
+            rms(&base)
+        } else {
+            scaled(&sigmas(&own, factor, COMPARED, None)?.1)
+        });
     }
-    let pressures = SpeedSeries { rows: whole.rows[..own.len()].to_vec(), ..whole.clone() }.pressures();
-    let keys = names(&pressures, before.len() > pressures.len() + 2);
-    let quantity = |(k, (name, pressure_pa)): (usize, &(&'static str, Option<f64>))| {
+    let quantity = |(k, of): (usize, &SampleQuantity)| {
         let mut each: Vec<f64> = base.iter().map(|s| s[k]).collect();
         each.sort_by(f64::total_cmp);
-        let sigma_by_error = by_error.iter().map(|s| s[k]).collect();
-        let (sigma, low, high) = (rms(&base)[k], each[SAMPLES / 10], each[SAMPLES - 1 - SAMPLES / 10]);
-        Quantity { name, pressure_pa: *pressure_pa, prior_sigma: before[k], sigma, low, high, sigma_by_error }
+        Quantity {
+            name: of.name,
+            pressure_pa: of.pressure,
+            prior_sigma: of.value,
+            sigma: rms(&base)[k],
+            low: each[SAMPLES / 10],
+            high: each[SAMPLES - 1 - SAMPLES / 10],
+            sigma_by_error: by_error.iter().map(|s| s[k]).collect(),
+        }
     };
-    let quantities: Vec<Quantity> = keys.iter().enumerate().map(quantity).collect();
-    for (n, (of, _)) in others.iter_mut().enumerate() {
+    let quantities = before.iter().enumerate().map(quantity).collect();
+    for (n, (further, _)) in others.iter_mut().enumerate() {
         let with: Vec<usize> = own.iter().copied().chain([own.len() + n]).collect();
-        let found = sigmas(&with, 1.0, COMPARED)?.1;
-        // Quantities of the plan alone: another pressure adds some, and a first direction ε.
-        let mine = SpeedSeries { rows: with.iter().map(|n| whole.rows[*n]).collect(), ..whole.clone() };
-        let theirs = names(&mine.pressures(), found[0].len() > mine.pressures().len() + 2);
-        let place = |of: &(&str, Option<f64>)| theirs.iter().position(|t| t == of);
-        let mine: Vec<Vec<f64>> =
-            found.iter().map(|s| keys.iter().filter_map(place).map(|k| s[k]).collect()).collect();
-        of.sigma = scaled(&mine);
+        further.sigma = scaled(&sigmas(&with, 1.0, COMPARED, Some(&before))?.1);
     }
     let mut answer = Answer {
         speeds: own.len(),

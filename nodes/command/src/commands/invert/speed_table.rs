@@ -37,7 +37,7 @@ pub(crate) const COLUMNS: [&str; 22] = [
 
 /// One row; lengths in m, speeds in m/s, other units as in the names of the columns.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
-pub(super) struct SpeedLine {
+pub(crate) struct SpeedLine {
     #[serde(skip_deserializing)]
     pub(super) line: u64,
     #[serde(default)]
@@ -66,7 +66,7 @@ pub(super) struct SpeedLine {
     pub(super) speed_sigma: Option<f64>,
     /// Direction and polarization; `None` if the direction is not known.
     #[serde(skip)]
-    pub(super) way: Option<(Vec3, Vec3)>,
+    pub(crate) way: Option<(Vec3, Vec3)>,
     /// The mode in the plane of axis e3 and direction, and the angle between both, rad.
     #[serde(skip, default = "longitudinal")]
     pub(super) wave: (SpeedMode, Option<f64>),
@@ -157,7 +157,8 @@ pub(super) fn planned(
     row(&names.collect(), &first.chain(extra.iter().map(|(_, value)| cell(*value))).collect())
 }
 
-fn row(header: &StringRecord, record: &StringRecord) -> Result<SpeedLine, String> {
+/// A row of a table with this header.
+pub(crate) fn row(header: &StringRecord, record: &StringRecord) -> Result<SpeedLine, String> {
     if record.len() != header.len() {
         return Err(format!("{} cells under {} columns", record.len(), header.len()));
     }

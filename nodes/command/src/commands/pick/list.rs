@@ -1,8 +1,9 @@
 //! The table of the records.
 
-use crate::commands::invert::{SPEED_COLUMNS, checked_header, not_a_number};
+use crate::commands::invert::{SPEED_COLUMNS, checked_header, not_a_number, speed_row};
 use grainlab_acoustics::record::Passage;
 use grainlab_console::Failure;
+use grainlab_core::Vec3;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -54,6 +55,8 @@ pub(super) struct Row {
     pub(super) file: String,
     pub(super) path: PathBuf,
     pub(super) passage: Passage,
+    /// Direction and polarization, where they are given.
+    pub(super) way: Option<(Vec3, Vec3)>,
     /// Numbers of the columns of time, source and receiver, from 0.
     pub(super) columns: [usize; 3],
     /// Unit of the times, s.
@@ -82,8 +85,11 @@ fn parsed(text: &str, folder: &Path) -> Result<Vec<Row>, String> {
         let record = record.map_err(|e| e.to_string())?;
         let line = record.position().map_or(0, csv::Position::line);
         let cells = record.deserialize(Some(&header)).map_err(|e| not_a_number(&e, &header, &record));
-        let mut row =
-            cells.and_then(|c| row(line, c, folder)).map_err(|fault| format!("line {line}: {fault}"))?;
+        let at = |fault| format!("line {line}: {fault}");
+        let mut row = cells.and_then(|c| row(line, c, folder)).map_err(at)?;
+        if row.passage.longitudinal.is_some() {
+            row.way = speed_row(&header, &record).map_err(at)?.way;
+        }
         let all = header.iter().zip(&record).filter(|(name, _)| copied.contains(name));
         row.copied = all.map(|(name, cell)| (name.to_owned(), cell.to_owned())).collect();
         rows.push(row);
@@ -130,6 +136,7 @@ fn row(line: u64, cells: Cells, folder: &Path) -> Result<Row, String> {
             diameter: cells.diameter,
             longitudinal: word("mode", cells.mode.as_ref(), &modes)?,
         },
+        way: None,
         columns: columns.map(|c| c - 1),
         unit: word("time_unit", cells.time_unit.as_ref(), &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6)])?
             .unwrap_or(1.0),

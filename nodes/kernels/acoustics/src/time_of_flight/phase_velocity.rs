@@ -3,7 +3,7 @@
 //! On a path where waves have the slowness s₀ (1 + β ω²), the slope of a pick is s₀ (1 + κ β ω²) at the centre
 //! frequency, with κ depending on the pick: about 1 for a correlation, which follows the crests; about 3 for the peak
 //! of an envelope, which moves with the group velocity; and between for an onset, where long waves arrive first. κ is
-//! found by picking a burst computed for such a path, at the same receivers and with the same noise.
+//! found by picking a burst computed for such a path, at the same receivers.
 
 use super::arrival::Arrivals;
 use super::burst::Burst;
@@ -34,7 +34,7 @@ fn correction_error(pick: ArrivalPick) -> f64 {
     match pick {
         ArrivalPick::CrossCorrelation => 0.1,
         ArrivalPick::Peak => 0.2,
-        ArrivalPick::FirstArrival => 0.5,
+        ArrivalPick::FirstArrival => 1.0,
     }
 }
 
@@ -53,7 +53,7 @@ fn slowed(pick: ArrivalPick) -> f64 {
 const EXACT: f64 = 1e-6;
 
 /// κ of a pick in traces like `trace`, for the slowness `slowness` (s/m) and β ω² near `bend`; 1 if it cannot be found.
-fn kappa(trace: &Trace, noise: f64, cycles: f64, pick: ArrivalPick, slowness: f64, bend: f64) -> f64 {
+fn kappa(trace: &Trace, cycles: f64, pick: ArrivalPick, slowness: f64, bend: f64) -> f64 {
     let burst = Burst { frequency: trace.frequency, cycles };
     let bend = if bend.abs() < SMALL { SMALL } else { bend.clamp(-LARGE, LARGE) };
     let samples = trace.channels[0].samples.len();
@@ -61,10 +61,7 @@ fn kappa(trace: &Trace, noise: f64, cycles: f64, pick: ArrivalPick, slowness: f6
     let channels = sent(&burst, trace, samples, &distances, slowness, bend);
     let channels: Vec<&[f64]> = channels.iter().map(Vec::as_slice).collect();
     let picker = Picker::new(pick, burst, trace.sample_rate, samples);
-    // The level of an onset depends on the noise.
-    let largest = |of: &[f64]| of.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
-    let noise = noise * largest(channels[0]) / largest(&trace.channels[0].samples);
-    let times = picker.times(&channels, noise).or_else(|_| picker.times(&channels, 0.0));
+    let times = picker.times(&channels, 0.0);
     let weights = vec![1.0; distances.len()];
     let line = times.ok().and_then(|t| Line::through(&distances, &t, &weights));
     line.map_or(1.0, |l| (l.slope / trace.sample_rate / slowness - 1.0) / bend)
@@ -161,10 +158,8 @@ fn of_crests(
     let (mut long, mut bend, mut error) = (measured.iter().copied().fold(f64::INFINITY, f64::min), 0.0, 0.0);
     let mut kappas = vec![1.0; traces.len()];
     for _ in 0..3 {
-        let ask = |((t, a), w2): ((&Trace, &Arrivals), &f64)| {
-            kappa(t, a.noise, cycles, pick, long, bend / long * w2)
-        };
-        kappas = traces.iter().zip(arrivals).zip(&squares).map(ask).collect();
+        let ask = |(t, w2): (&Trace, &f64)| kappa(t, cycles, pick, long, bend / long * w2);
+        kappas = traces.iter().zip(&squares).map(ask).collect();
         let places: Vec<f64> = squares.iter().zip(&kappas).map(|(w2, k)| w2 * k).collect();
         let Some(line) = Line::through(&places, &measured, &weights) else { break };
         let total: f64 = weights.iter().sum();

@@ -21,19 +21,34 @@ fn chosen<T>(mut of: impl Iterator<Item = (T, f64)>, random: &mut Random) -> Opt
     .map(|(found, _)| found)
 }
 
-/// Values of a sample that a series of speeds is about.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SampleValues {
-    /// z at each pressure.
-    pub z: Vec<f64>,
-    /// ε at each pressure; empty without directions.
-    pub eps: Vec<f64>,
-    /// ε weighted by contact stiffness at each pressure; empty without directions.
-    pub eps_stiffness: Vec<f64>,
-    /// k_t/k_n of the contacts.
-    pub stiffness_ratio: f64,
-    /// ln of the moduli over those of the contact law.
-    pub level: f64,
+/// A quantity of a sample that a series of speeds is about: `z`, `eps` and `eps_stiffness` (ε weighted by contact stiffness) at each
+/// pressure, ε where directions are known; `stiffness_ratio` (k_t/k_n of the contacts) and `level` (ln of the moduli over those of the
+/// contact law).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleQuantity {
+    /// Name of the quantity.
+    pub name: &'static str,
+    /// Pressure, Pa, of those that depend on it.
+    pub pressure: Option<f64>,
+    /// Value, or standard deviation.
+    pub value: f64,
+}
+
+/// The quantities of a sample from those at each pressure: z, ε and ε weighted by stiffness.
+fn quantities(
+    series: &SpeedSeries,
+    of_pressures: [Vec<f64>; 3],
+    [ratio, level]: [f64; 2],
+) -> Vec<SampleQuantity> {
+    let pressures = series.pressures();
+    let names = ["z", "eps", "eps_stiffness"].into_iter().take(if series.has_directions() { 3 } else { 1 });
+    let at = |(name, values): (&'static str, Vec<f64>)| {
+        let each = pressures.clone().into_iter().zip(values);
+        each.map(move |(p, value)| SampleQuantity { name, pressure: Some(p), value })
+    };
+    let last = [("stiffness_ratio", ratio), ("level", level)];
+    let last = last.map(|(name, value)| SampleQuantity { name, pressure: None, value });
+    names.zip(of_pressures).flat_map(at).chain(last).collect()
 }
 
 /// Draws a sample from the prior and simulates the rows of `series`, whose speeds are set: the true values of the sample. The same seed
@@ -48,7 +63,7 @@ pub fn simulate_series(
     prior: &SeriesPrior,
     noise: Option<f64>,
     seed: u64,
-) -> Result<SampleValues, EmtError> {
+) -> Result<Vec<SampleQuantity>, EmtError> {
     let mut random = Random::new(seed);
     let random = &mut random;
     series.rows.iter_mut().for_each(|row| row.speed = Some(1.0));
@@ -80,17 +95,13 @@ pub fn simulate_series(
         let (with, variance) = forward.with_eps_stiffness(&at, k, m);
         *eps += given(&with, variance);
     }
-    let truth = SampleValues {
-        z: forward.z(&unknowns),
-        eps: forward.eps_of(&unknowns),
-        eps_stiffness,
-        stiffness_ratio: unknowns[forward.ratio()].min(forward.mindlin),
-        level: given(&(Forward::by_level(&at, m) * forward.level), forward.level),
-    };
+    let ratio = unknowns[forward.ratio()].min(forward.mindlin);
+    let level = given(&(Forward::by_level(&at, m) * forward.level), forward.level);
+    let of_pressures = [forward.z(&unknowns), forward.eps_of(&unknowns), eps_stiffness];
     for (j, given) in forward.given.clone().into_iter().enumerate() {
         series.rows[given].speed = Some((at.ln_speed[j] + off[j]).exp());
     }
-    Ok(truth)
+    Ok(quantities(series, of_pressures, [ratio, level]))
 }
 
 /// Standard deviations of what the speeds of `series` determine, and those of the prior.
@@ -101,24 +112,19 @@ pub fn series_stddev(
     series: &SpeedSeries,
     network: &RelaxationCalibration,
     prior: &SeriesPrior,
-) -> Result<[SampleValues; 2], EmtError> {
+) -> Result<[Vec<SampleQuantity>; 2], EmtError> {
     series.check()?;
     let mixture = Mixture::of(Forward::new(series, network, prior), series.ln_crossover);
     if mixture.solutions.is_empty() {
         return Err(EmtError::NotFinite { quantity: "likelihood of the speeds", value: f64::NAN });
     }
-    let count = mixture.forward.count();
-    let has_eps = series.has_directions();
     let of = |draws: &[SeriesDraw]| {
         let stddev =
             |of: &dyn Fn(&SeriesDraw) -> f64| Interval::of(draws.iter().map(|d| (of(d), d.weight))).stddev;
-        SampleValues {
-            z: (0..count).map(|k| stddev(&|d| d.z[k])).collect(),
-            eps: (0..count).filter(|_| has_eps).map(|k| stddev(&|d| d.eps[k])).collect(),
-            eps_stiffness: (0..count).filter(|_| has_eps).map(|k| stddev(&|d| d.eps_stiffness[k])).collect(),
-            stiffness_ratio: stddev(&|d| d.stiffness_ratio),
-            level: stddev(&|d| d.level),
-        }
+        let each =
+            |of: fn(&SeriesDraw) -> &[f64]| (0..of(&draws[0]).len()).map(|k| stddev(&|d| of(d)[k])).collect();
+        let of_pressures = [each(|d| &d.z), each(|d| &d.eps), each(|d| &d.eps_stiffness)];
+        quantities(series, of_pressures, [stddev(&|d| d.stiffness_ratio), stddev(&|d| d.level)])
     };
     Ok([of(&mixture.draws(SEED).0), of(&mixture.of_prior(SEED))])
 }

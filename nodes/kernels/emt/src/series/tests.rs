@@ -52,8 +52,10 @@ fn simulated(series: &mut SpeedSeries, prior: &SeriesPrior, random: &mut Random)
     let network = Calibration::builtin("grainlab").unwrap().network.as_ref().unwrap();
     let seed = (random.uniform() * 1e9) as u64;
     let of = simulate_series(series, network, prior, None, seed).unwrap();
-    let of_eps = of.eps.get(3).into_iter().chain(of.eps_stiffness.get(3));
-    let truth: Vec<f64> = [&of.z[3], &of.stiffness_ratio].into_iter().chain(of_eps).copied().collect();
+    let all = |name: &str| of.iter().filter(|q| q.name == name).map(|q| q.value).collect::<Vec<_>>();
+    let names = ["z", "stiffness_ratio", "eps", "eps_stiffness"];
+    let truth: Vec<f64> =
+        names.iter().filter_map(|name| Some(*all(name).get(3).or(all(name).last())?)).collect();
     let mixture = Mixture::of(Forward::new(series, network, prior), series.ln_crossover);
     let (draws, _) = mixture.draws((random.uniform() * 1e9) as u64);
     let mut found = Vec::new();
@@ -196,25 +198,20 @@ fn planned_errors_are_those_of_experiments() {
     let mut planned = |seed| {
         simulate_series(&mut series, network, prior, Some(1.0), seed).unwrap();
         let [found, _] = series_stddev(&series, network, prior).unwrap();
-        [found.z[0], found.eps[0], found.eps_stiffness[0], found.stiffness_ratio, found.level]
+        found.iter().map(|q| q.value).collect()
     };
-    let planned: Vec<[f64; 5]> = (0..200).map(&mut planned).collect();
+    let planned: Vec<Vec<f64>> = (0..200).map(&mut planned).collect();
     let mut error = |seed| {
         let truth = simulate_series(&mut series, network, prior, Some(1.0), seed).unwrap();
         let found = super::estimate::infer_series(&series, network, prior).unwrap();
         let at = found.pressures[0];
         let [eps, eps_stiffness] = [at.eps.unwrap(), at.eps_stiffness.unwrap()];
-        [
-            at.z.mean - truth.z[0],
-            eps.mean - truth.eps[0],
-            eps_stiffness.mean - truth.eps_stiffness[0],
-            found.stiffness_ratio.mean - truth.stiffness_ratio,
-            found.level.mean - truth.level,
-        ]
+        let means = [at.z.mean, eps.mean, eps_stiffness.mean, found.stiffness_ratio.mean, found.level.mean];
+        truth.iter().zip(means).map(|(truth, mean)| mean - truth.value).collect()
     };
-    let errors: Vec<[f64; 5]> = (1000..1200).map(&mut error).collect();
+    let errors: Vec<Vec<f64>> = (1000..1200).map(&mut error).collect();
     for k in 0..5 {
-        let of = |all: &[[f64; 5]]| rms(&all.iter().map(|a| a[k]).collect::<Vec<_>>());
+        let of = |all: &[Vec<f64>]| rms(&all.iter().map(|a| a[k]).collect::<Vec<_>>());
         let ratio = of(&planned) / of(&errors);
         assert!((0.9..=1.1).contains(&ratio), "{k}: {ratio}");
     }
