@@ -30,6 +30,15 @@ pub struct Qos {
     pub transient_local: bool,
 }
 
+/// In the words of ROS 2.
+impl std::fmt::Display for Qos {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let reliability = if self.reliable { "reliable" } else { "best effort" };
+        let durability = if self.transient_local { "transient local" } else { "volatile" };
+        write!(f, "{reliability}, {durability}, depth {}", self.depth)
+    }
+}
+
 impl Qos {
     /// Streams without losses.
     pub const STREAM: Self = Self { reliable: true, depth: 1000, transient_local: false };

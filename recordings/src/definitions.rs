@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use grainlab_any_message::Schema;
-use grainlab_msgs::TypeInfo;
+use grainlab_msgs::{COMMON, TypeInfo};
 
 use crate::input;
 
 /// Between the definitions of a schema text.
 const SEPARATOR: &str = "================================================================================";
 
-/// The types that this program knows, then those in folders that contain `package/msg/Type.msg`.
+/// The types of this program's nodes, then those in folders that contain `package/msg/Type.msg`, then the common interfaces of ROS 2.
 #[derive(Clone, Debug, Default)]
 pub struct Definitions {
     folders: Vec<PathBuf>,
@@ -47,6 +47,19 @@ impl Definitions {
         }
     }
 
+    /// Full names of all types: messages, and services of the common interfaces.
+    pub fn names(&self) -> BTreeSet<String> {
+        let files = self.folders.iter().flat_map(|folder| files_below(folder));
+        let paths = files.chain(COMMON.iter().map(|(path, _)| PathBuf::from(path)));
+        let known = TypeInfo::all().iter().map(|info| info.type_name.to_owned());
+        known.chain(paths.map(|path| path.with_extension("").to_string_lossy().into_owned())).collect()
+    }
+
+    /// The two texts of a service of the common interfaces: request, `---`, answer.
+    pub fn service(&self, type_name: &str) -> Option<&'static str> {
+        common(&format!("{type_name}.srv"))
+    }
+
     /// The text of the type's own file.
     fn read(&self, type_name: &str) -> Result<Option<String>, String> {
         // A type name from the network is not a path: it has three parts of letters, digits and underscores.
@@ -57,7 +70,7 @@ impl Definitions {
         }
         let file = |folder: &PathBuf| folder.join(format!("{type_name}.msg"));
         let Some(path) = self.folders.iter().map(file).find(|path: &PathBuf| Path::exists(path)) else {
-            return Ok(None);
+            return Ok(common(&format!("{type_name}.msg")).map(str::to_owned));
         };
         let unread = |e| format!("{}: cannot read the definition of a message: {e}", path.display());
         input::text(&path, input::SETTINGS).map(Some).map_err(unread)
@@ -83,6 +96,18 @@ impl Definitions {
         }
         Ok(text)
     }
+}
+
+fn common(file: &str) -> Option<&'static str> {
+    COMMON.iter().find(|(path, _)| *path == file).map(|(_, text)| *text)
+}
+
+/// Paths `package/msg/Type.msg` below a folder.
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let entries = |path: PathBuf| std::fs::read_dir(path).into_iter().flatten().flatten().map(|e| e.path());
+    let files = entries(folder.to_owned()).flat_map(|package| entries(package.join("msg")));
+    let is_message = |path: &PathBuf| path.extension().is_some_and(|e| e == "msg");
+    files.filter(is_message).filter_map(|path| Some(path.strip_prefix(folder).ok()?.to_owned())).collect()
 }
 
 /// Full names of the types of the fields of a definition.

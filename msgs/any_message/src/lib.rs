@@ -3,7 +3,7 @@
 //! - [`Schema`]: the types of a schema text, as MCAP files contain it
 //! - [`Schema::decode`]: bytes to a [`Message`], a tree of [`Value`]s
 //! - [`Schema::compare`]: a definition compared with the one that is wanted, and [`Mapping`]: messages of the one as those of the other
-//! - [`Message::encode`]: values to bytes
+//! - [`Schema::given`]: values that a user writes to a [`Message`], and [`Message::encode`]: values to bytes
 //! - [`Shown`]: a message as JSON, or as the text of `ros2 topic echo`
 //!
 //! Bytes are CDR (XCDR1) of either byte order, with their encapsulation header. No bytes and no schema cause a panic; memory
@@ -21,6 +21,7 @@
 mod cursor;
 mod decode;
 mod encode;
+mod given;
 mod lines;
 mod literals;
 mod mapping;

@@ -11,6 +11,8 @@ pub mod std_msgs;
 pub mod tf2_msgs;
 pub mod visualization_msgs;
 
+pub(crate) mod common;
+
 use crate::TypeInfo;
 
 /// Every type, sorted by name.

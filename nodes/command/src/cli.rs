@@ -8,7 +8,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use grainlab_bench as bench;
 use grainlab_console::Failure;
 #[cfg(feature = "studio")]
-use grainlab_graph::{doctor, node, param, service, topic};
+use grainlab_graph::{doctor, interface, node, param, service, topic};
 use grainlab_node_kit::Exit;
 use std::process::ExitCode;
 
@@ -82,6 +82,9 @@ enum Studio {
     /// List and call services.
     #[command(subcommand)]
     Service(service::Command),
+    /// Show the definitions of message and service types, and the topics of the laboratory.
+    #[command(subcommand)]
+    Interface(interface::Command),
     /// Find what keeps nodes from working together: QoS, types, names, network.
     Doctor(doctor::Args),
     /// Compare with other codes and the literature: one table of numbers, tolerances and verdicts.
@@ -93,7 +96,15 @@ enum Studio {
 
 /// Parses, runs, reports.
 pub(crate) fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = Cli::try_parse().unwrap_or_else(|error| {
+        let words: Vec<String> = std::env::args().skip(1).collect();
+        if let Some(form) = crate::ros2::hint(&words).filter(|_| error.use_stderr()) {
+            _ = error.print();
+            grainlab_console::say!("grainlab: instead of ros2 {}: {form}", words.join(" "));
+            std::process::exit(Exit::Usage as i32);
+        }
+        error.exit()
+    });
     let outcome = match cli.command {
         None => launch::run(&launch::Args::default()),
         Some(Command::Launch(args)) => launch::run(&args),
@@ -127,6 +138,7 @@ fn studio(command: &Studio) -> Result<Exit, Failure> {
         Studio::Node(command) => node::run(command),
         Studio::Param(command) => param::run(command),
         Studio::Service(command) => service::run(command),
+        Studio::Interface(command) => interface::run(command),
         Studio::Doctor(args) => doctor::run(args),
         Studio::Verify(args) => verify::run(args),
         Studio::Bench(command) => bench::run(command),

@@ -5,6 +5,7 @@ use grainlab_msgs::{Qos, Topic, TypeInfo, topics};
 use grainlab_node_kit::{Bus, DdsBus, Demand, Names, Network, Publisher};
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 use system_tests::lab::{LIMIT, Lab, golden, grainlab};
@@ -203,4 +204,32 @@ fn the_doctor_finds_a_network_that_drops_what_discovery_needs() {
     for kind in ["no_multicast", "blocked_ports"] {
         assert!(cut.contains(kind), "{kind} is not in {cut:?}");
     }
+}
+
+#[test]
+fn the_doctor_is_right_about_policies_of_another_dds_that_are_not_sent() {
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    let mut pairs = Command::new(python);
+    let pairs = Process::start(
+        pairs
+            .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/qos_pairs.py"))
+            .env("ROS_DOMAIN_ID", lab.domain.to_string()),
+    );
+    system_tests::lab::until("twelve topics", || lab.run(&["topic", "list", "-c"]).stdout.trim() == "12");
+    let doctor = json(&lab.run(&["doctor", "--format", "json"]));
+    std::thread::sleep(Duration::from_secs(3));
+    pairs.signal(libc::SIGTERM);
+    let matched = json(&pairs.ended(LIMIT));
+    let matched = matched.as_object().unwrap();
+    assert_eq!(matched.values().filter(|m| **m == false).count(), 5, "{matched:?}");
+    for (topic, is_matched) in matched {
+        let named = |f: &Value| f["what"].as_str().unwrap().starts_with(&format!("{topic}: "));
+        let is_wrong = doctor["findings"].as_array().unwrap().iter().any(named);
+        assert_ne!(*is_matched, is_wrong, "{topic}: {doctor}");
+    }
+    let alone = lab.run(&["doctor", "--format", "json"]);
+    let kinds =
+        json(&alone)["findings"].as_array().unwrap().iter().map(|f| f["kind"].clone()).collect::<Vec<_>>();
+    assert!(kinds.contains(&"empty_domain".into()), "{kinds:?}");
 }

@@ -27,6 +27,7 @@ mod recovery;
 mod repeatable;
 mod replay;
 mod report;
+mod ros2_words;
 mod ros_launch;
 mod stopped;
 mod strangers;

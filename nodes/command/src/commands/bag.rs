@@ -31,6 +31,7 @@ pub(crate) enum BagCommand {
     #[cfg(feature = "studio")]
     Export(export::Args),
     /// Complete a recording whose recorder was killed, so that other tools read it.
+    #[command(visible_alias = "reindex")]
     Recover(recover::Args),
     #[cfg(feature = "studio")]
     #[command(flatten)]

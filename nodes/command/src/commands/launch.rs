@@ -42,7 +42,7 @@ The run is stored in recordings/runs/SCENE-SEED-N: the recording, scene.toml, su
 Without ROS_DOMAIN_ID, an unused DDS domain is chosen and printed.";
 
 /// The run to launch.
-#[derive(Debug, Default, clap::Args)]
+#[derive(Clone, Debug, Default, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
     /// Launch file: demo (the laboratory), acoustic (the same with an acoustic probe) or a file in the YAML form of ROS
@@ -96,6 +96,7 @@ fn scene_help() -> String {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let args = &args.with_flags()?;
     let report = !args.no_report;
     let output = Output { format: args.format, verbose: args.verbose, resumed: false, report };
     if let Some(run) = &args.resume {
@@ -154,6 +155,32 @@ fn whole_path(word: &str, file: Option<&Path>) -> String {
     let path = file.filter(|file| !is_built_in && *file == Path::new(word));
     let whole = path.and_then(|path| path.canonicalize().ok());
     whole.map_or_else(|| word.to_owned(), |path| path.to_string_lossy().into_owned())
+}
+
+impl Args {
+    /// `scene:=`, `seed:=` and `out:=` as the flags of these names, which the launcher itself needs.
+    fn with_flags(&self) -> Result<Self, Failure> {
+        let mut args = Self { words: Vec::new(), ..self.clone() };
+        for word in &self.words {
+            match word.split_once(":=") {
+                Some(("scene", value)) if args.scene.is_none() => args.scene = Some(value.to_owned()),
+                Some(("out", value)) if args.out.is_none() && args.run.is_none() => {
+                    args.out = Some(value.into())
+                }
+                Some(("seed", value)) if args.seed.is_none() => {
+                    let fault = |_| Failure::usage(format!("{word}: the seed is a whole number from 0"));
+                    args.seed = Some(value.parse().map_err(fault)?);
+                }
+                Some((name @ ("scene" | "seed" | "out"), _)) => {
+                    return Err(Failure::usage(format!(
+                        "{word}: the flag --{name} or --run is there, too; give one of them"
+                    )));
+                }
+                _ => args.words.push(word.clone()),
+            }
+        }
+        Ok(args)
+    }
 }
 
 #[cfg(feature = "studio")]

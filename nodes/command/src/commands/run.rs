@@ -36,8 +36,13 @@ fn help() -> String {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     pipe::watch();
-    let node = NodeKind::named(&args.node, VIEWERS).map_err(Failure::usage)?;
-    let ros = ros_arguments(&args.rest)?;
+    // `ros2 run` names the package first.
+    let (name, rest) = match (args.node.as_str(), args.rest.split_first()) {
+        ("grainlab", Some((name, rest))) => (name.as_str(), rest),
+        (name, _) => (name, &args.rest[..]),
+    };
+    let node = NodeKind::named(name, VIEWERS).map_err(Failure::usage)?;
+    let ros = ros_arguments(rest)?;
     // Invalid names are refused by the node.
     Names::from_args(node.name(), &ros)
         .map_or(Ok(()), |names| node.check_remaps(&names))

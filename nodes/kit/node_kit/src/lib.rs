@@ -75,7 +75,7 @@ pub use offer::{Offer, type_hash};
 pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
 pub use parameters::{
     FromParameter, IntoParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range,
-    parameter_text, parse_value,
+    parameter_text, parameters_of_file, parse_value,
 };
 pub use peers::{Liveliness, Peer, PeerWatch, SILENCE};
 pub use run::{NodeSpec, drive, run_node};

@@ -84,7 +84,7 @@ pub struct Args {
     #[arg(long, value_name = "S")]
     duration: Option<f64>,
     /// Begin again after the last message
-    #[arg(short, long = "loop")]
+    #[arg(short = 'l', long = "loop")]
     again: bool,
     /// Begin stopped: space continues
     #[arg(short = 'p', long)]

@@ -1,7 +1,7 @@
-//! `grainlab topic`, `node`, `param`, `service` and `doctor`: the ROS graph of a domain, over DDS without a ROS installation.
+//! `grainlab topic`, `node`, `param`, `service`, `interface` and `doctor`: the ROS graph of a domain, over DDS without a ROS installation.
 //!
 //! - `observer`: joins the domain and collects the graph; `graph`: nodes and endpoints; `names`: names on the wire
-//! - `topic`, `node`, `param`, `service`, `doctor`: the commands, one folder each
+//! - `topic`, `node`, `param`, `service`, `interface`, `doctor`: the commands
 //! - `call`: one call of a service; `reports`: what nodes report of themselves; `view`: formats of the output
 //!
 //! The commands belong to no run: what they read holds up no node, and what they set changes no result.
@@ -9,6 +9,7 @@
 mod call;
 pub mod doctor;
 mod graph;
+pub mod interface;
 mod names;
 pub mod node;
 mod observer;

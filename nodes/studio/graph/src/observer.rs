@@ -5,7 +5,7 @@ use crate::names::printable;
 use grainlab_console::Failure;
 use grainlab_msgs::Guid;
 use grainlab_node_kit::{Network, OffTheBus};
-use ros2_client::qos::{Durability, History, WhenFull};
+use ros2_client::qos::{Durability, History, Reliability, WhenFull};
 use ros2_client::{Context, MessageTypeName, Node, NodeName, NodeOptions, QosProfile, Subscription};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -14,8 +14,9 @@ use std::time::{Duration, Instant};
 /// Period at which discovery is looked at.
 const POLL_PERIOD: Duration = Duration::from_millis(20);
 
-/// Time without a change after which the graph counts as complete, and the minimum time.
-const SETTLED_AFTER: Duration = Duration::from_millis(500);
+/// Time without a change after which the graph counts as complete, and after which that of one name does once it is there.
+const QUIET: Duration = Duration::from_secs(2);
+const QUIET_AROUND: Duration = Duration::from_millis(500);
 
 /// `rmw_dds_common/msg/ParticipantEntitiesInfo`: the nodes of one participant. ros2-client's own type hides the endpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,7 +52,7 @@ impl Observer {
     pub(crate) fn join_network(network: Network) -> Result<Self, Failure> {
         let context = network.context().map_err(Failure::failed)?;
         // Several tools may run at once.
-        let name = format!("grainlab_tool_{}", std::process::id());
+        let name = format!("_grainlab_tool_{}", std::process::id());
         let name = NodeName::new("/", &name).map_err(Failure::failed)?;
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
         let mut node = context.new_node(name, options).map_err(Failure::failed)?;
@@ -66,18 +67,34 @@ impl Observer {
         Ok(Self { node, context, announcements, announced: BTreeMap::new(), own })
     }
 
-    /// The graph once it has not changed for half a second, or after `patience` at the latest.
+    /// The graph once it has not changed for two seconds, or after `patience` at the latest.
     pub(crate) fn settled(&mut self, patience: Duration) -> Graph {
+        self.with(patience, |_| false)
+    }
+
+    /// The graph once it has what is asked for and has not changed for half a second; without it, as [`Observer::settled`].
+    pub(crate) fn with(&mut self, patience: Duration, is_there: impl Fn(&Graph) -> bool) -> Graph {
         let start = Instant::now();
-        let (mut seen, mut changed) = (self.fingerprint(), start);
-        while start.elapsed() < patience && changed.elapsed() < SETTLED_AFTER {
+        let (mut seen, mut changed, mut is_found) = (self.fingerprint(), start, false);
+        loop {
+            let quiet = changed.elapsed();
+            if quiet >= QUIET || is_found && quiet >= QUIET_AROUND {
+                return self.graph();
+            }
+            if start.elapsed() >= patience {
+                let seconds = patience.as_secs_f64();
+                grainlab_console::say!(
+                    "grainlab: the graph still changes after {seconds} s (--spin-time): some of it may be missing"
+                );
+                return self.graph();
+            }
             std::thread::sleep(POLL_PERIOD);
             let now = self.fingerprint();
             if now != seen {
                 (seen, changed) = (now, Instant::now());
+                is_found = is_there(&self.graph());
             }
         }
-        self.graph()
     }
 
     fn fingerprint(&mut self) -> (usize, usize, usize) {
@@ -98,7 +115,12 @@ impl Observer {
             let data = &writer.publication_topic_data;
             let guid = writer.writer_proxy.remote_writer_guid.to_bytes();
             let qos = data.qos();
-            Endpoint::new(Guid(guid), &data.topic_name, &data.type_name, true, QosProfile::from(&qos))
+            let mut profile = QosProfile::from(&qos);
+            // A policy that is not sent has its default, which for the reliability of a writer is not that of a reader (RTPS 2.3, table 9.14).
+            if qos.reliability().is_none() {
+                profile.reliability = Reliability::Reliable { when_full: WhenFull::DEFAULT };
+            }
+            Endpoint::new(Guid(guid), &data.topic_name, &data.type_name, true, profile)
                 .announcing(&writer.user_data)
                 .represented(qos.data_representation().map(|all| all.value))
         });

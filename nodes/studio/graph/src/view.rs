@@ -3,9 +3,12 @@
 use crate::graph::Graph;
 use crate::observer::Observer;
 use clap::ValueEnum;
+use grainlab_any_message::Schema;
 use grainlab_console::{Failure, json, print};
 use grainlab_node_kit::Exit;
+use grainlab_recordings::Definitions;
 use serde::Serialize;
+use std::path::PathBuf;
 
 /// Format of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -23,15 +26,23 @@ pub struct Common {
     /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: OutputFormat,
-    /// Time limit of discovery, s
-    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds, allow_negative_numbers = true)]
+    /// Time limit of discovery, which ends when the graph has not changed for 2 s
+    #[arg(long, value_name = "S", default_value_t = 15.0, value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) spin_time: f64,
+    /// There is no daemon: accepted as `ros2` has it.
+    #[arg(long, hide = true)]
+    no_daemon: bool,
 }
 
 impl Common {
     /// The graph of the domain of the environment.
     pub(crate) fn graph(&self) -> Result<Graph, Failure> {
-        Ok(Observer::join()?.settled(self.patience()))
+        self.graph_with(|_| false)
+    }
+
+    /// The graph, which is not waited for any longer when it has what is asked for.
+    pub(crate) fn graph_with(&self, is_there: impl Fn(&Graph) -> bool) -> Result<Graph, Failure> {
+        Ok(Observer::join()?.with(self.patience(), is_there))
     }
 
     pub(crate) fn patience(&self) -> std::time::Duration {
@@ -44,12 +55,32 @@ impl Common {
         value: &T,
         text: impl FnOnce() -> String,
     ) -> Result<Exit, Failure> {
-        print(&match self.format {
-            OutputFormat::Text => text(),
-            OutputFormat::Json => json(value)?,
-        })?;
-        Ok(Exit::Done)
+        shown(self.format, value, text)
     }
+}
+
+/// Prints the value as JSON, or as this text.
+pub(crate) fn shown<T: Serialize + ?Sized>(
+    format: OutputFormat,
+    value: &T,
+    text: impl FnOnce() -> String,
+) -> Result<Exit, Failure> {
+    print(&match format {
+        OutputFormat::Text => text(),
+        OutputFormat::Json => json(value)?,
+    })?;
+    Ok(Exit::Done)
+}
+
+/// The schema of a message type, with its full name: `package/Type` is `package/msg/Type`.
+pub(crate) fn schema(type_name: &str, folders: &[PathBuf]) -> Result<(String, Schema), Failure> {
+    let full = match type_name.split_once('/') {
+        Some((package, name)) if !name.contains('/') => format!("{package}/msg/{name}"),
+        _ => type_name.to_owned(),
+    };
+    let text = Definitions::with_folders(folders).text(&full, "").map_err(Failure::failed)?;
+    let schema = Schema::parse(&full, &text).map_err(Failure::failed)?;
+    Ok((full, schema))
 }
 
 /// A time of at least 0 s, at most a day.

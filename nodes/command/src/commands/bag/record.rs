@@ -13,7 +13,7 @@ use std::time::Duration;
 const EXAMPLES: &str = "\
 Examples:
   grainlab bag record -a -o my_run
-  grainlab bag record --topics stress packing
+  grainlab bag record /stress /packing
   grainlab bag record --regex '/camera/.*' --msg-path my_ws/install/share
   grainlab bag record --snapshot 30 --trigger packing_report -o last_seconds     # or: kill -USR1 PID
 
@@ -35,10 +35,16 @@ pub(crate) struct Args {
     /// Directory to make and record into [default: the next one under recordings/runs]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Topics to record, by name [default: all]
+    #[arg(value_name = "TOPIC", conflicts_with = "topics")]
+    named: Vec<String>,
     #[command(flatten)]
     names: TopicNames,
+    /// Storage of the recording
+    #[arg(short, long, value_name = "KIND", value_parser = ["mcap"], default_value = "mcap")]
+    storage: String,
     /// Record every topic that is not hidden, which is the default
-    #[arg(short, long, conflicts_with_all = ["topics", "regex"])]
+    #[arg(short, long, conflicts_with_all = ["topics", "named", "regex"])]
     all: bool,
     /// Record hidden topics, too: those with a part that begins with an underscore, and /parameter_events
     #[arg(long)]
@@ -99,8 +105,10 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// Topics of the contract, and which others.
 fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
+    let mut names = args.names.clone();
+    names.topics.extend(args.named.iter().cloned());
     let not_recorded = |name: &&String| Topic::by_name(name).is_some_and(|topic| !topic.is_recorded());
-    if let Some(name) = args.names.topics.iter().find(not_recorded) {
+    if let Some(name) = names.topics.iter().find(not_recorded) {
         contract_topics(std::slice::from_ref(name))?;
     }
     if let Some(folder) = args.msg_path.iter().find(|folder| !folder.is_dir()) {
@@ -108,7 +116,7 @@ fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
     }
     let qos = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose()?;
     let others = OtherTopics {
-        names: args.names.clone(),
+        names,
         hidden: args.include_hidden_topics,
         definitions: Definitions::with_folders(&args.msg_path),
         qos: qos.unwrap_or_default(),

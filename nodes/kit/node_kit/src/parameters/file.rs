@@ -25,6 +25,14 @@ pub(super) fn read(path: &Path, node: &str) -> Result<Vec<Given>, ParameterError
     parse(&text, path, node)
 }
 
+/// Names and values of the parameters that the file gives to `node` (fully qualified), in the order of the file.
+///
+/// # Errors
+/// A file that cannot be read, or has nothing for the node.
+pub fn parameters_of_file(path: &Path, node: &str) -> Result<Vec<(String, ParameterValue)>, ParameterError> {
+    Ok(read(path, node)?.into_iter().map(|given| (given.name, given.value)).collect())
+}
+
 fn parse(text: &str, path: &Path, node: &str) -> Result<Vec<Given>, ParameterError> {
     let file_error = |reason: String| ParameterError(format!("{}: {reason}", path.display()));
     let mut sections = Vec::new();

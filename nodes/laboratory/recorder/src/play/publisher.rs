@@ -1,7 +1,7 @@
 //! The publishers of a playback.
 
 use grainlab_console::{Failure, say};
-use grainlab_msgs::{Qos, Topic, topics};
+use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, PublisherId, Wake};
 use grainlab_recordings::{ChannelInfo, QosOverrides, offered_profiles};
 use std::collections::BTreeMap;
@@ -51,7 +51,7 @@ pub(super) fn offer(
         return Ok(Err(format!("its type {:?} is not written as package/msg/Type", channel.ros_type)));
     };
     if row.is_none() && differ {
-        say!("grainlab: {}: its publishers had different QoS; it is offered {}", channel.topic, words(qos));
+        say!("grainlab: {}: its publishers had different QoS; it is offered {qos}", channel.topic);
     }
     let writers = bus.foreign_writers(&topic);
     if let Some(writer) = writers.first() {
@@ -66,13 +66,6 @@ pub(super) fn offer(
         Err(BusError::Name(error)) => Ok(Err(error.to_string())),
         publisher => Ok(Ok(publisher.map_err(Failure::failed)?)),
     }
-}
-
-/// A QoS in the words of ROS 2.
-fn words(qos: Qos) -> String {
-    let reliability = if qos.reliable { "reliable" } else { "best effort" };
-    let durability = if qos.transient_local { "transient local" } else { "volatile" };
-    format!("{reliability}, {durability}, depth {}", qos.depth)
 }
 
 /// Follows the graph for `time`.

@@ -19,8 +19,8 @@ use grainlab_node_kit::{Exit, Network};
 use serde::Serialize;
 use std::time::Duration;
 
-/// Least time of discovery: an empty graph would look healthy.
-const LEAST: Duration = Duration::from_secs(1);
+/// Least time of discovery: a graph that was not waited for would look healthy.
+const LEAST: Duration = Duration::from_secs(3);
 
 /// Arguments of `grainlab doctor`.
 #[derive(Debug, clap::Args)]
@@ -76,8 +76,13 @@ fn of_domain(mut observer: Observer, args: &Args, view: &mut View) -> Result<Vec
     let graph = observer.settled(args.common.patience().max(LEAST));
     let mut findings = endpoints::findings(&graph);
     findings.extend(nodes::findings(&graph));
-    findings.extend(nodes::of_reports(&graph, &latest_reports(&mut observer)?));
+    findings.extend(nodes::of_reports(&graph, &latest_reports(&mut observer, &graph.reporting())?));
     findings.extend(nodes::of_sim_time(&mut observer, &graph)?);
+    if graph.endpoints.is_empty() {
+        let what = format!("nobody takes part in domain {}", view.domain.unwrap_or_default());
+        let advice = "start nodes (grainlab launch), or set the ROS_DOMAIN_ID of those that run";
+        findings.push(Finding::warning("empty_domain", what, advice));
+    }
     view.nodes = graph.nodes.len();
     (view.topics, view.services) = (graph.topics().len(), graph.services().len());
     Ok(findings)

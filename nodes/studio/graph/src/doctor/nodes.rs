@@ -4,7 +4,7 @@ use super::finding::Finding;
 use crate::call::call;
 use crate::graph::{Endpoint, Graph};
 use crate::observer::Observer;
-use crate::reports::LISTEN;
+use crate::reports::LATEST;
 use grainlab_console::Failure;
 use grainlab_node_kit::{Report, run_of};
 use ros2_client::ParameterValue;
@@ -59,7 +59,7 @@ pub(super) fn of_reports(graph: &Graph, heard: &BTreeMap<String, Report>) -> Vec
     let silent = graph.reporting().into_iter().filter(|node| !heard.contains_key(node)).map(|node| {
         Finding::error(
             "silent_node",
-            format!("{node} sent no report for {} s", LISTEN.as_secs_f64()),
+            format!("{node} sent no report for {} s", LATEST.as_secs()),
             "see whether its process is stopped (Ctrl-Z, a debugger), hangs, or was killed less than a minute ago",
         )
     });

@@ -60,7 +60,7 @@ impl View {
 }
 
 pub(super) fn run(node: &str, common: &Common) -> Result<Exit, Failure> {
-    let graph = common.graph()?;
+    let graph = common.graph_with(|graph| find(graph, node).is_ok())?;
     let view = View::of(&graph, find(&graph, node)?);
     common.show(&view, || view.text())
 }

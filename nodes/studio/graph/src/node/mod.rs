@@ -5,6 +5,7 @@ mod state;
 
 pub(crate) use info::find;
 
+use crate::names::is_hidden;
 use crate::view::Common;
 use clap::Subcommand;
 use grainlab_console::Failure;
@@ -15,7 +16,17 @@ use grainlab_node_kit::Exit;
 pub enum Command {
     /// List the nodes of the domain.
     #[command(after_help = "Example:\n  grainlab node list --format json")]
-    List(Common),
+    List {
+        /// Also those whose name begins with an underscore
+        #[arg(short, long)]
+        all: bool,
+        /// Print their number only
+        #[arg(short, long)]
+        count_nodes: bool,
+        /// Format of the output and time limit.
+        #[command(flatten)]
+        common: Common,
+    },
     /// Show the publishers, subscriptions and services of a node.
     #[command(after_help = "Example:\n  grainlab node info /dem_simulator")]
     Info {
@@ -27,7 +38,7 @@ pub enum Command {
     },
     /// Show what each node does or waits for, by its latest report.
     #[command(
-        after_help = "Example:\n  grainlab node state --format json\n\nListens to the reports on /diagnostics for 2.5 s. Exit 1 \
+        after_help = "Example:\n  grainlab node state --format json\n\nListens to the reports on /diagnostics for 2.5 s, of nodes that send none for 15 s. Exit 1 \
                       if a node reports an error, or does not report."
     )]
     State(Common),
@@ -39,9 +50,13 @@ pub enum Command {
 /// With the exit code and the message for the user.
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
-        Command::List(common) => {
+        Command::List { all, count_nodes, common } => {
             let graph = common.graph()?;
-            let names: Vec<&str> = graph.nodes.iter().map(|n| n.name.as_str()).collect();
+            let names = graph.nodes.iter().map(|n| n.name.as_str());
+            let names: Vec<&str> = names.filter(|name| *all || !is_hidden(name)).collect();
+            if *count_nodes {
+                return common.show(&names.len(), || format!("{}\n", names.len()));
+            }
             common.show(&names, || names.iter().map(|name| format!("{name}\n")).collect())
         }
         Command::Info { node, common } => info::run(node, common),

@@ -33,14 +33,14 @@ fn row(report: &Report) -> NodeState {
 pub(super) fn run(common: &Common) -> Result<Exit, Failure> {
     let mut observer = Observer::join()?;
     let graph = observer.settled(common.patience());
-    let heard = latest_reports(&mut observer)?;
+    let heard = latest_reports(&mut observer, &graph.reporting())?;
     let mut rows: BTreeMap<String, NodeState> =
         heard.iter().map(|(node, report)| (node.clone(), row(report))).collect();
     for node in graph.reporting() {
         rows.entry(node.clone()).or_insert_with(|| NodeState {
             node,
             level: "silent",
-            state: "no report: stopped, hanging, or killed less than a minute ago".into(),
+            state: "no report for 15 s: stopped, hanging, or killed less than a minute ago".into(),
             pid: None,
             values: BTreeMap::new(),
         });

@@ -2,6 +2,7 @@
 
 use crate::call::call;
 use crate::graph::Graph;
+use crate::names::absolute;
 use crate::node::find;
 use crate::observer::Observer;
 use crate::view::Common;
@@ -20,15 +21,16 @@ pub(super) struct Client {
 }
 
 impl Client {
-    pub(super) fn new(common: &Common) -> Result<Self, Failure> {
+    pub(super) fn new(common: &Common, is_there: impl Fn(&Graph) -> bool) -> Result<Self, Failure> {
         let mut observer = Observer::join()?;
-        let graph = observer.settled(common.patience());
+        let graph = observer.with(common.patience(), is_there);
         Ok(Self { observer, graph })
     }
 
     /// A connection, and the full name of a node that is there.
     pub(super) fn of(common: &Common, name: &str) -> Result<(Self, String), Failure> {
-        let client = Self::new(common)?;
+        let service = format!("{}/list_parameters", absolute(name));
+        let client = Self::new(common, |graph| graph.services().contains_key(service.as_str()))?;
         let name = find(&client.graph, name)?.name.clone();
         Ok((client, name))
     }

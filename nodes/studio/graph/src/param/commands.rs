@@ -2,21 +2,22 @@
 
 use super::client::Client;
 use super::value::{parse, to_json, to_yaml, type_name};
-use crate::node::find;
 use crate::view::Common;
 use grainlab_console::{Failure, Table};
-use grainlab_node_kit::Exit;
+use grainlab_node_kit::{Exit, parameters_of_file};
 use ros2_client::ParameterValue;
 use serde_json::{Map, json};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 pub(super) fn list(node: Option<&str>, common: &Common) -> Result<Exit, Failure> {
-    let mut client = Client::new(common)?;
-    let nodes = match node {
-        Some(node) => vec![find(&client.graph, node)?.name.clone()],
+    let (mut client, nodes) = match node {
+        Some(node) => Client::of(common, node).map(|(client, name)| (client, vec![name]))?,
         None => {
+            let client = Client::new(common, |_| false)?;
             let all: Vec<String> = client.graph.nodes.iter().map(|n| n.name.clone()).collect();
-            all.into_iter().filter(|node| client.has_parameters(node)).collect()
+            let nodes = all.into_iter().filter(|node| client.has_parameters(node)).collect();
+            (client, nodes)
         }
     };
     let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
@@ -53,6 +54,34 @@ pub(super) fn set(node: &str, parameter: &str, value: &str, common: &Common) -> 
         return Err(Failure::failed(format!("{node} refuses it: {}", result.reason)));
     }
     common.show(&json!({ "successful": true }), || format!("{parameter} set\n"))
+}
+
+pub(super) fn load(node: &str, file: &Path, common: &Common) -> Result<Exit, Failure> {
+    let (mut client, node) = Client::of(common, node)?;
+    let given = parameters_of_file(file, &node).map_err(Failure::usage)?;
+    if given.is_empty() {
+        return Err(Failure::usage(format!("{} has no parameters of {node}", file.display())));
+    }
+    let (mut set, mut refused) = (Vec::new(), Vec::new());
+    let names: Vec<String> = given.iter().map(|(name, _)| name.clone()).collect();
+    // A value that the node has already is not set: most are read-only.
+    let now = client.get(&node, &names)?;
+    for ((name, value), now) in given.into_iter().zip(now) {
+        if to_json(&value) != to_json(&now) {
+            let result = client.set(&node, &name, value)?;
+            match result.successful {
+                true => set.push(name),
+                false => refused.push(format!("{name}: {}", result.reason)),
+            }
+        }
+    }
+    if !refused.is_empty() {
+        return Err(Failure::failed(format!("{node} refuses {}", refused.join("; "))));
+    }
+    common.show(&json!({ "set": set }), || match set.is_empty() {
+        true => "every value is there already\n".to_owned(),
+        false => set.iter().map(|name| format!("{name} set\n")).collect(),
+    })
 }
 
 pub(super) fn describe(node: &str, parameters: &[String], common: &Common) -> Result<Exit, Failure> {

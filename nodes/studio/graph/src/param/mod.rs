@@ -8,6 +8,7 @@ use crate::view::Common;
 use clap::Subcommand;
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
+use std::path::PathBuf;
 
 /// Commands about parameters.
 #[derive(Debug, Subcommand)]
@@ -69,6 +70,20 @@ pub enum Command {
         #[command(flatten)]
         common: Common,
     },
+    /// Set the parameters of a node that a parameter file has.
+    #[command(
+        after_help = "Example:\n  grainlab param load /dem_simulator simulator.yaml\n\nExit 1 if the node refuses one: those that are read-only and \
+                      differ are given at its start, with --params-file."
+    )]
+    Load {
+        /// Name of the node
+        node: String,
+        /// Parameter file, as `dump` prints it
+        file: PathBuf,
+        /// Format of the output and time limit.
+        #[command(flatten)]
+        common: Common,
+    },
 }
 
 /// Runs the command.
@@ -82,5 +97,6 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Set { node, parameter, value, common } => commands::set(node, parameter, value, common),
         Command::Describe { node, parameters, common } => commands::describe(node, parameters, common),
         Command::Dump { node, common } => commands::dump(node, common),
+        Command::Load { node, file, common } => commands::load(node, file, common),
     }
 }

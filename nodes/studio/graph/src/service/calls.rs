@@ -15,13 +15,14 @@ use serde_json::Value;
 /// Arguments of `grainlab service call`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Example:\n  grainlab service call /dem_simulator/list_parameters '{prefixes: [], depth: 0}'"
+    after_help = "Example:\n  grainlab service call /dem_simulator/list_parameters '{prefixes: [], depth: 0}'\n  grainlab service call /recorder/get_parameters rcl_interfaces/srv/GetParameters '{names: [append]}'"
 )]
 pub struct Args {
     /// Name of the service
     service: String,
-    /// Request, as YAML or JSON [default: an empty one]
-    request: Option<String>,
+    /// Type of the service, if given, and the request as YAML or JSON [default: an empty one]
+    #[arg(value_name = "TYPE] [REQUEST", num_args = 0..=2)]
+    words: Vec<String>,
     #[command(flatten)]
     common: Common,
 }
@@ -90,19 +91,30 @@ fn request<Req: Message>(text: &str) -> Result<Req, String> {
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut observer = Observer::join()?;
-    let graph = observer.settled(args.common.patience());
     let service = absolute(&args.service);
+    let is_there = |graph: &Graph| graph.services().contains_key(service.as_str());
+    let graph = observer.with(args.common.patience(), is_there);
     let services = graph.services();
     let Some(kind) = services.get(service.as_str()).and_then(|s| s.first()).map(|s| s.type_name.clone())
     else {
         return Err(unknown("service", &service, services.keys().copied()));
     };
+    let (named, request) = match &args.words[..] {
+        [] => (None, None),
+        // A type has no brace and no space.
+        [one] if one.contains("/srv/") && !one.contains([' ', '{']) => (Some(one), None),
+        [one] => (None, Some(one)),
+        [named, request, ..] => (Some(named), Some(request)),
+    };
+    if let Some(named) = named.filter(|named| **named != kind) {
+        return Err(Failure::usage(format!("{service} has the type {kind}, not {named}")));
+    }
     let empty = match kind.as_str() {
         "rcl_interfaces/srv/ListParameters" => "{prefixes: [], depth: 0}",
         rcl if rcl.starts_with("rcl_interfaces/srv/") => "{names: []}",
         _ => "{}",
     };
-    let request = args.request.as_deref().unwrap_or(empty);
+    let request = request.map_or(empty, String::as_str);
     let call = Call { observer: &mut observer, graph: &graph, service: &service, kind: &kind, request };
     let answer = match kind.as_str() {
         "rcl_interfaces/srv/ListParameters" => {

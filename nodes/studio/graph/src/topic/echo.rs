@@ -1,11 +1,11 @@
 //! `grainlab topic echo`.
 
 use super::listen::Listener;
-use crate::view::{Common, OutputFormat, seconds};
-use grainlab_any_message::{Schema, Shown};
+use super::qos::QosArgs;
+use crate::view::{Common, OutputFormat, schema, seconds};
+use grainlab_any_message::Shown;
 use grainlab_console::{Failure, print_more, say};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::Definitions;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -16,11 +16,17 @@ const DAY: Duration = Duration::from_secs(86_400);
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Examples:\n  grainlab topic echo /stress --once\n  grainlab topic echo /packing --once --full-length --format json\n\n\
-                  With --format json each message is one line. A late reader of a latched topic gets its last messages."
+                  With --format json each message is one line, and so is the value of --field. A late reader of a latched topic gets its last messages."
 )]
 pub struct Args {
     /// Name of the topic
     topic: String,
+    /// Type of its messages [default: that of its publishers, which are waited for]
+    #[arg(value_name = "TYPE")]
+    type_name: Option<String>,
+    /// Print this part of each message only, as in stress.zz or estimates[0].z
+    #[arg(long, value_name = "PATH")]
+    field: Option<String>,
     /// Print one message and end
     #[arg(long, conflicts_with = "count")]
     once: bool,
@@ -40,14 +46,29 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     msg_path: Vec<PathBuf>,
     #[command(flatten)]
+    qos: QosArgs,
+    #[command(flatten)]
     common: Common,
 }
 
+/// A part of a message as a line of JSON, then a line of hyphens.
+fn part(message: &Shown<'_>, path: &str) -> Result<String, Failure> {
+    let whole = serde_json::to_value(message).map_err(Failure::failed)?;
+    let pointer = format!("/{}", path.replace(['.', '['], "/").replace(']', ""));
+    let names =
+        || whole.as_object().into_iter().flat_map(|map| map.keys().cloned()).collect::<Vec<_>>().join(", ");
+    let found = whole.pointer(&pointer);
+    let found = found.ok_or_else(|| {
+        Failure::usage(format!("--field {path}: the message has no such part; its fields are: {}", names()))
+    })?;
+    Ok(format!("{found}\n---\n"))
+}
+
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let mut listener = Listener::open(&args.topic, true, args.common.patience())?;
-    let type_name = listener.topic.info.type_name;
-    let text = Definitions::with_folders(&args.msg_path).text(type_name, "").map_err(Failure::failed)?;
-    let schema = Schema::parse(type_name, &text).map_err(Failure::failed)?;
+    let given = args.type_name.as_deref().map(|given| schema(given, &args.msg_path)).transpose()?;
+    let name = given.as_ref().map(|(name, _)| name.as_str());
+    let mut listener = Listener::open(&args.topic, name, args.qos, true, args.common.patience())?;
+    let (_, schema) = given.map_or_else(|| schema(listener.topic.info.type_name, &args.msg_path), Ok)?;
     let longest = if args.full_length { usize::MAX } else { args.truncate_length };
     let wanted = if args.once { Some(1) } else { args.count };
     let end = Instant::now() + args.duration.map_or(DAY, Duration::from_secs_f64);
@@ -57,6 +78,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             Ok(message) => {
                 let shown = Shown::new(&message).shortened(longest);
                 let read = print_more(&match args.common.format {
+                    _ if args.field.is_some() => part(&shown, args.field.as_deref().unwrap_or_default())?,
                     OutputFormat::Text => format!("{}---\n", shown.text()),
                     OutputFormat::Json => format!("{}\n", shown.json()),
                 })?;

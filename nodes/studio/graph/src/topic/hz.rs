@@ -1,6 +1,7 @@
 //! `grainlab topic hz`, `bw` and `delay`: a line each second, or one result after a fixed time.
 
 use super::listen::Listener;
+use super::qos::QosArgs;
 use super::stream::{Stream, Summary};
 use crate::view::{Common, OutputFormat, seconds};
 use grainlab_console::{Failure, count, fixed, print_more};
@@ -22,6 +23,9 @@ pub struct Window {
     /// Measure for this time and print one result, s [default: a line each second until Ctrl-C]
     #[arg(short, long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     duration: Option<f64>,
+    /// Print a line after this many messages, not each second
+    #[arg(short, long, value_name = "N", conflicts_with = "duration", value_parser = clap::value_parser!(u64).range(2..))]
+    window: Option<u64>,
     #[command(flatten)]
     common: Common,
 }
@@ -65,16 +69,21 @@ fn few(s: &Summary) -> String {
 }
 
 pub(super) fn measure(window: &Window, line: fn(&Summary) -> String) -> Result<Exit, Failure> {
-    let mut listener = Listener::open(&window.topic, false, window.common.patience())?;
+    let mut listener =
+        Listener::open(&window.topic, None, QosArgs::default(), false, window.common.patience())?;
     let stamped = begins_with_header(listener.topic.info.type_name);
-    let each = Duration::from_secs_f64(window.duration.unwrap_or(1.0));
+    let each = Duration::from_secs_f64(window.duration.unwrap_or(if window.window.is_some() {
+        86_400.0
+    } else {
+        1.0
+    }));
     listener.wait_for_publisher(window.common.patience())?;
     let (mut stream, mut begin) = (Stream::default(), Instant::now());
     loop {
         listener.until(Instant::now() + each, |sample| {
             let stamp = stamped.then(|| header_stamp(&sample.body)).flatten();
             stream.add(&sample.info, sample.body.len(), stamp);
-            Ok(true)
+            Ok(window.window.is_none_or(|most| stream.received() < most))
         })?;
         let summary = stream.summary(begin.elapsed().as_secs_f64());
         let read = match window.common.format {

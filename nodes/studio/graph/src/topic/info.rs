@@ -36,8 +36,8 @@ fn view(graph: &Graph, endpoint: &Endpoint) -> EndpointView {
 }
 
 pub(super) fn run(topic: &str, common: &Common) -> Result<Exit, Failure> {
-    let graph = common.graph()?;
     let name = absolute(topic);
+    let graph = common.graph_with(|graph| graph.topics().contains_key(name.as_str()))?;
     let topics = graph.topics();
     let Some(topic) = topics.get(name.as_str()) else {
         return Err(unknown("topic", &name, topics.keys().copied()));
@@ -54,4 +54,13 @@ pub(super) fn run(topic: &str, common: &Common) -> Result<Exit, Failure> {
         }
         format!("{}: {}\n{}", shown.name, shown.types.join(" and "), table.text())
     })
+}
+
+pub(super) fn print_type(topic: &str, common: &Common) -> Result<Exit, Failure> {
+    let name = absolute(topic);
+    let graph = common.graph_with(|graph| graph.topics().contains_key(name.as_str()))?;
+    let topics = graph.topics();
+    let types = topics.get(name.as_str()).map(|topic| topic.types());
+    let types = types.ok_or_else(|| unknown("topic", &name, topics.keys().copied()))?;
+    common.show(&types, || types.iter().map(|name| format!("{name}\n")).collect())
 }

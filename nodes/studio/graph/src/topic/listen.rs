@@ -1,15 +1,19 @@
 //! Subscribes to a topic of any type.
 
-use crate::graph::{is_reliable, is_transient_local};
+use super::qos::QosArgs;
+use crate::graph::{Graph, TopicEntry};
 use crate::names::{absolute, unknown};
 use crate::observer::Observer;
 use grainlab_console::Failure;
-use grainlab_msgs::{Qos, Topic, topics};
+use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{Bus, DdsBus, Demand, Exit, Sample, Source, Wake, tool_bus};
 use std::time::{Duration, Instant};
 
 /// Samples that may wait for this process: a second of the fastest topic.
 const DEPTH: u32 = 20_000;
+
+/// Least time of a look at the graph.
+const LEAST: Duration = Duration::from_millis(100);
 
 /// Packings that may wait for this process.
 const PACKINGS: u32 = 16;
@@ -23,35 +27,52 @@ pub(crate) struct Listener {
 }
 
 impl Listener {
-    /// Finds the topic and its type, and subscribes with what its publishers offer.
+    /// Waits for the topic, and subscribes to it. A type that is given need not be waited for.
     ///
     /// `whole` asks for every sample, latched ones included; else losses are accepted, and no publisher keeps anything for
     /// this process.
-    pub(crate) fn open(name: &str, whole: bool, patience: Duration) -> Result<Self, Failure> {
+    pub(crate) fn open(
+        name: &str,
+        given: Option<&str>,
+        policies: QosArgs,
+        whole: bool,
+        patience: Duration,
+    ) -> Result<Self, Failure> {
         let name = absolute(name);
-        let graph = Observer::join()?.settled(patience);
+        let is_there = |graph: &Graph| graph.topics().contains_key(name.as_str());
+        let mut observer = Observer::join()?;
+        let mut graph = observer.with(patience, is_there);
+        let end = Instant::now() + patience;
+        if given.is_none() && !is_there(&graph) && Instant::now() < end {
+            grainlab_console::say!("grainlab: waiting for {name}, at most {} s", patience.as_secs_f64());
+            while !is_there(&graph) && Instant::now() < end {
+                graph = observer.with(end.saturating_duration_since(Instant::now()).max(LEAST), is_there);
+            }
+        }
         let all = graph.topics();
-        let Some(entry) = all.get(name.as_str()) else {
-            return Err(unknown("topic", &name, all.keys().copied()));
-        };
-        let types = entry.types();
-        let type_name = match types.first() {
-            Some(one) if types.len() == 1 => one,
-            _ => {
+        let entry = all.get(name.as_str());
+        let types = entry.map(TopicEntry::types).unwrap_or_default();
+        let type_name = match (given, types.first()) {
+            (Some(given), Some(one)) if types.len() > 1 || given != *one => {
+                let list = types.into_iter().collect::<Vec<_>>().join(" and ");
+                return Err(Failure::failed(format!("{name} has the type {list}, not {given}")));
+            }
+            (Some(given), _) => given,
+            (None, Some(one)) if types.len() == 1 => one,
+            (None, Some(_)) => {
                 let list = types.into_iter().collect::<Vec<_>>().join(" and ");
                 return Err(Failure::failed(format!("{name} has more than one type: {list}")));
             }
+            (None, None) => return Err(unknown("topic", &name, all.keys().copied())),
         };
-        let offers = |policy: fn(&ros2_client::QosProfile) -> bool| {
-            !entry.publishers.is_empty() && entry.publishers.iter().all(|p| policy(&p.qos))
-        };
-        let reliable = whole && offers(is_reliable);
-        let qos = Qos { reliable, depth: DEPTH, transient_local: reliable && offers(is_transient_local) };
+        let publishers = entry.map(|entry| entry.publishers.as_slice()).unwrap_or_default();
+        let qos = policies.requested(publishers, whole, DEPTH);
+        let reliable = qos.reliable;
         let Some(topic) = Topic::outside_contract(&name, type_name, qos) else {
             return Err(Failure::failed(format!("{name} has the type {type_name}, which is no ROS message")));
         };
-        let mut bus = tool_bus("grainlab_topic")?;
-        let demand = if reliable { Demand::reliable(DEPTH) } else { Demand::best_effort(DEPTH) };
+        let mut bus = tool_bus(&format!("_grainlab_topic_{}", std::process::id()))?;
+        let demand = if reliable { Demand::reliable(qos.depth) } else { Demand::best_effort(qos.depth) };
         let source = match (whole, topic.info == topics::PACKING.info) {
             (true, true) => Source::open(&mut bus, &topic, Demand { depth: PACKINGS, ..demand }),
             _ => bus.subscribe(&topic, demand).map(Source::Samples),

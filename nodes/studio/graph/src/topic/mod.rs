@@ -5,6 +5,8 @@ mod hz;
 mod info;
 mod list;
 mod listen;
+mod publish;
+mod qos;
 mod stream;
 
 use crate::view::Common;
@@ -16,26 +18,48 @@ use grainlab_node_kit::Exit;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// List the topics of the domain.
-    #[command(after_help = "Example:\n  grainlab topic list --types")]
-    List {
-        /// Print the types, and the numbers of publishers and subscriptions
-        #[arg(short = 't', long, visible_alias = "show-types")]
-        types: bool,
+    List(list::Args),
+    /// Show the publishers and subscriptions of a topic, with their QoS.
+    #[command(after_help = "Example:\n  grainlab topic info /stress")]
+    Info {
+        /// Name of the topic
+        topic: String,
+        /// Print the endpoints, which is always done
+        #[arg(short, long)]
+        verbose: bool,
         /// Format of the output and time limit.
         #[command(flatten)]
         common: Common,
     },
-    /// Show the publishers and subscriptions of a topic, with their QoS.
-    #[command(after_help = "Example:\n  grainlab topic info /stress")]
-    Info {
+    /// Print the type of a topic.
+    #[command(after_help = "Example:\n  grainlab topic type /stress")]
+    Type {
         /// Name of the topic
         topic: String,
         /// Format of the output and time limit.
         #[command(flatten)]
         common: Common,
     },
+    /// List the topics of a type.
+    #[command(after_help = "Example:\n  grainlab topic find grainlab_msgs/msg/Stress")]
+    Find {
+        /// Name of the type, package/msg/Type
+        #[arg(value_name = "TYPE")]
+        type_name: String,
+        /// Print their number only
+        #[arg(short, long)]
+        count_topics: bool,
+        /// Also those with a part that begins with an underscore
+        #[arg(long)]
+        include_hidden_topics: bool,
+        /// Format of the output and time limit.
+        #[command(flatten)]
+        common: Common,
+    },
     /// Print the messages of a topic, of any type whose definition is known.
     Echo(echo::Args),
+    /// Publish messages of any type whose definition is known.
+    Pub(publish::Args),
     /// Measure the rate of a topic, and what was lost.
     #[command(
         after_help = "Example:\n  grainlab topic hz /stress --duration 5\n\nThe rate follows from the publishers' sequence \
@@ -56,8 +80,13 @@ pub enum Command {
 /// With the exit code and the message for the user.
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
-        Command::List { types, common } => list::run(*types, common),
-        Command::Info { topic, common } => info::run(topic, common),
+        Command::List(args) => list::run(args),
+        Command::Info { topic, common, .. } => info::run(topic, common),
+        Command::Type { topic, common } => info::print_type(topic, common),
+        Command::Find { type_name, count_topics, include_hidden_topics, common } => {
+            list::find(type_name, *count_topics, *include_hidden_topics, common)
+        }
+        Command::Pub(args) => publish::run(args),
         Command::Echo(args) => echo::run(args),
         Command::Hz(window) => hz::measure(window, hz::rate_line),
         Command::Bw(window) => hz::measure(window, hz::bandwidth_line),

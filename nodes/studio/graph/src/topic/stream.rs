@@ -102,9 +102,14 @@ impl Stream {
         }
     }
 
+    /// Number of samples.
+    pub(super) fn received(&self) -> u64 {
+        self.writers.values().map(|s| s.received).sum()
+    }
+
     /// The statistics of a window of `seconds`.
     pub(super) fn summary(&self, seconds: f64) -> Summary {
-        let received: u64 = self.writers.values().map(|s| s.received).sum();
+        let received = self.received();
         let published: u64 = self.writers.values().map(|s| (s.last.0 - s.first.0 + 1).max(0) as u64).sum();
         let rate = |span: &Span| {
             let time = seconds_between(span.first.1, span.last.1);

@@ -1,0 +1,145 @@
+//! Messages from values that a user writes.
+
+use std::sync::Arc;
+
+use serde_json::Value as Json;
+
+use crate::schema::Schema;
+use crate::types::{Element, FieldType, Length, MessageType, Primitive};
+use crate::value::{Array, Message, Value};
+
+impl Schema {
+    /// The message with these values of fields, as JSON or YAML has them. Fields that are not given have their defaults, or 0, an empty
+    /// text, no elements. Numbers that are not finite are `.inf` and `.nan` of YAML, or the texts that [`Shown::json`](crate::Shown::json) writes.
+    ///
+    /// # Errors
+    /// A value that its field does not hold, or a field that the type does not have: with its path.
+    ///
+    /// ```
+    /// use grainlab_any_message::{Schema, Shown};
+    /// let schema = Schema::parse("p/msg/A", "int8 a\nfloat64[] x\nstring name \"none\"").unwrap();
+    /// let message = schema.given(&serde_json::json!({"a": 3, "x": [1, 2.5]})).unwrap();
+    /// assert_eq!(Shown::new(&message).json(), r#"{"a":3,"x":[1.0,2.5],"name":"none"}"#);
+    /// assert_eq!(schema.given(&serde_json::json!({"a": 300})).unwrap_err(), "a: 300 is not of the type int8");
+    /// ```
+    pub fn given(&self, values: &Json) -> Result<Message, String> {
+        message(self.root(), Some(values))
+            .map_err(|fault| fault.trim_start_matches(['.', ':', ' ']).to_owned())
+    }
+}
+
+fn message(kind: &Arc<MessageType>, given: Option<&Json>) -> Result<Message, String> {
+    let none = serde_json::Map::new();
+    let map = match given {
+        None | Some(Json::Null) => &none,
+        Some(Json::Object(map)) => map,
+        Some(other) => return Err(format!(": {other} is not a map of the fields of {}", kind.name)),
+    };
+    if let Some(name) = map.keys().find(|name| !kind.fields.iter().any(|f| f.name == **name)) {
+        let names: Vec<&str> = kind.fields.iter().map(|f| f.name.as_str()).collect();
+        return Err(format!(": {} has no field {name:?}; its fields are: {}", kind.name, names.join(", ")));
+    }
+    let of = |field: &crate::types::Field| {
+        let default = field.default.as_deref().map(written);
+        value(&field.kind, map.get(&field.name).or(default.as_ref()))
+            .map_err(|fault| format!(".{}{fault}", field.name))
+    };
+    Ok(Message { kind: kind.clone(), values: kind.fields.iter().map(of).collect::<Result<_, _>>()? })
+}
+
+/// A default of a message file.
+fn written(text: &str) -> Json {
+    let plain = text.replace('\'', "\"").replace("True", "true").replace("False", "false");
+    serde_json::from_str(&plain).unwrap_or_else(|_| Json::String(text.to_owned()))
+}
+
+fn value(kind: &FieldType, given: Option<&Json>) -> Result<Value, String> {
+    if kind.length == Length::One {
+        return one(&kind.element, given);
+    }
+    let values = match given {
+        None => &Vec::new(),
+        Some(Json::Array(all)) => all,
+        Some(other) => return Err(wrong(other, kind)),
+    };
+    let count = match kind.length {
+        Length::Fixed(n) if given.is_none() => n as usize,
+        Length::Fixed(n) if values.len() != n as usize => {
+            return Err(format!(": {} values, and {kind} has {n}", values.len()));
+        }
+        Length::Any(Some(most)) if values.len() > most as usize => {
+            return Err(format!(": {} values, and {kind} has at most {most}", values.len()));
+        }
+        _ => values.len(),
+    };
+    let each = |k: usize| one(&kind.element, values.get(k)).map_err(|fault| format!("[{k}]{fault}"));
+    let all = (0..count).map(each).collect::<Result<Vec<_>, _>>()?;
+    Ok(Value::Array(gathered(&kind.element, all)))
+}
+
+fn wrong(given: &Json, kind: &FieldType) -> String {
+    format!(": {given} is not of the type {kind}")
+}
+
+fn one(element: &Element, given: Option<&Json>) -> Result<Value, String> {
+    let found = match element {
+        Element::Message(kind) => return message(kind, given).map(Value::Message),
+        Element::String(most) | Element::WString(most) => {
+            let text = given.map_or(Some(""), Json::as_str);
+            text.filter(|text| most.is_none_or(|most| text.len() <= most as usize))
+                .map(|text| Value::Text(text.into()))
+        }
+        Element::Primitive(kind) => primitive(*kind, given.unwrap_or(&Json::from(0))),
+    };
+    let kind = FieldType { element: element.clone(), length: Length::One };
+    found.ok_or_else(|| wrong(given.unwrap_or(&Json::Null), &kind))
+}
+
+fn primitive(kind: Primitive, given: &Json) -> Option<Value> {
+    let float = || match given.as_str() {
+        Some(text) => text.parse::<f64>().ok().filter(|value| !value.is_finite()),
+        None => given.as_f64(),
+    };
+    let bit = || given.as_u64().filter(|n| *n < 2).map(|n| n == 1);
+    Some(match kind {
+        Primitive::Bool => Value::Bool(given.as_bool().or_else(bit)?),
+        Primitive::I8 => Value::I8(given.as_i64()?.try_into().ok()?),
+        Primitive::U8 => Value::U8(given.as_u64()?.try_into().ok()?),
+        Primitive::I16 => Value::I16(given.as_i64()?.try_into().ok()?),
+        Primitive::U16 => Value::U16(given.as_u64()?.try_into().ok()?),
+        Primitive::I32 => Value::I32(given.as_i64()?.try_into().ok()?),
+        Primitive::U32 => Value::U32(given.as_u64()?.try_into().ok()?),
+        Primitive::I64 => Value::I64(given.as_i64()?),
+        Primitive::U64 => Value::U64(given.as_u64()?),
+        Primitive::F32 => Value::F32(float()? as f32),
+        Primitive::F64 => Value::F64(float()?),
+    })
+}
+
+/// The array of these values, all of one kind.
+fn gathered(element: &Element, all: Vec<Value>) -> Array {
+    macro_rules! of {
+        ($kind:ident) => {
+            Array::$kind(
+                all.into_iter()
+                    .filter_map(|v| if let Value::$kind(v) = v { Some(v) } else { None })
+                    .collect(),
+            )
+        };
+    }
+    match element {
+        Element::Primitive(Primitive::Bool) => of!(Bool),
+        Element::Primitive(Primitive::I8) => of!(I8),
+        Element::Primitive(Primitive::U8) => of!(U8),
+        Element::Primitive(Primitive::I16) => of!(I16),
+        Element::Primitive(Primitive::U16) => of!(U16),
+        Element::Primitive(Primitive::I32) => of!(I32),
+        Element::Primitive(Primitive::U32) => of!(U32),
+        Element::Primitive(Primitive::I64) => of!(I64),
+        Element::Primitive(Primitive::U64) => of!(U64),
+        Element::Primitive(Primitive::F32) => of!(F32),
+        Element::Primitive(Primitive::F64) => of!(F64),
+        Element::String(_) | Element::WString(_) => of!(Text),
+        Element::Message(_) => of!(Message),
+    }
+}
