@@ -37,7 +37,8 @@ mod tests {
     fn a_launch_file_starts_the_nodes_of_the_studio_in_a_build_with_it() {
         for node in ["packing_pictures", "foxglove_bridge"] {
             let text = format!("{}- executable: {{cmd: grainlab run {node}}}\n", BUILT_IN[0].1);
-            let plans = LaunchFile::parse(&text).unwrap().nodes(&BTreeMap::new(), VIEWERS);
+            let plans =
+                LaunchFile::parse(&text, std::path::Path::new(".")).unwrap().nodes(&BTreeMap::new(), VIEWERS);
             if cfg!(feature = "studio") {
                 plans.unwrap().last().unwrap().check_parameters().unwrap();
             } else {

@@ -289,3 +289,33 @@ fn a_recording_of_another_program_is_played_and_recorded_again_byte_for_byte() {
         assert!(new.qos.contains(&format!("reliability: {reliability}\n")), "{topic}: {}", new.qos);
     }
 }
+
+#[test]
+fn a_difference_of_recordings_is_named_by_topic_message_and_field_and_none_is_exit_0() {
+    let lab = Lab::new();
+    let tiny = golden("scenes/tiny.toml");
+    let [one, many] = [&["--one-process"][..], &[]].map(|how| lab.launch(&tiny, how));
+    let other = lab.launch(&tiny, &["--seed", "4"]);
+    let diff = |a: &Path, b: &Path, more: &[&str]| {
+        let [a, b] = [a, b].map(|path| path.to_str().unwrap().to_owned());
+        lab.run(&[&["bag", "diff", &a, &b][..], more].concat())
+    };
+    let same = diff(&one, &many, &[]);
+    assert_eq!(same.code, Some(0), "{}{}", same.stdout, same.stderr);
+    let stress = same.stdout.lines().find(|l| l.starts_with("/stress ")).unwrap();
+    assert!(stress.contains("same") && stress.contains("differ"), "payload and times: {stress}");
+    assert_eq!(diff(&one, &many, &["--topics", "stress", "--times"]).code, Some(1));
+    assert_eq!(diff(&one, &many, &["--all"]).code, Some(1), "reports of processes");
+    let differs = diff(&many, &other, &["--topics", "packing"]);
+    assert_eq!(differs.code, Some(1));
+    assert!(differs.stdout.contains("/packing: message 1: "), "{}", differs.stdout);
+    let without = lab.folder().join("without");
+    let left_out =
+        ["bag", "filter", many.to_str().unwrap(), "--exclude", "stress", "-o", without.to_str().unwrap()];
+    assert_eq!(lab.run(&left_out).code, Some(0));
+    let missing = diff(&many, &without, &["--times"]);
+    assert_eq!(missing.code, Some(1));
+    assert_eq!(missing.stdout.matches("only in A").count(), 1, "{}", missing.stdout);
+    let late = lab.run(&["bag", "cut", many.to_str().unwrap(), "--start-offset", "500", "-o", "late"]);
+    assert!(late.code == Some(2) && late.stderr.contains("the recording has"), "{}", late.stderr);
+}

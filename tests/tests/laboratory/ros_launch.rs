@@ -1,9 +1,9 @@
-//! The shipped launch files under the launch package of ROS 2.
+//! The shipped launch files under the launch package of ROS 2, and launch files of ROS 2's documentation here.
 
 use std::path::Path;
 use std::process::Command;
 use system_tests::bodies::{assert_same, distinct};
-use system_tests::lab::{LIMIT, Lab, golden, grainlab};
+use system_tests::lab::{LIMIT, Lab, golden, grainlab, until};
 use system_tests::process::Process;
 use system_tests::python;
 
@@ -48,4 +48,58 @@ fn every_node_of_a_shipped_file_ends_by_itself_when_the_last_packing_is_inverted
             assert_same(&recorded, &lab.last_run());
         }
     }
+}
+
+/// Ten launch files of the tutorials of ROS 2: number of processes, or the fault with its line.
+#[test]
+fn launch_files_of_the_documentation_of_ros_2_start_or_are_refused_with_line_and_reason() {
+    let files: [(&str, Result<&str, [&str; 2]>); 10] = [
+        ("mimic", Ok("3")),
+        ("formats", Ok("7")),
+        ("substitutions", Err(["line 20", "$(env NAME DEFAULT) and $(dirname) are supported"])),
+        ("main_substitutions", Ok("1")),
+        ("world_1", Ok("1")),
+        ("world_2", Ok("1")),
+        ("world_3", Ok("1")),
+        ("broadcaster_listener", Ok("2")),
+        ("large", Ok("6")),
+        ("rviz", Err(["line 3", "rviz2"])),
+    ];
+    for (name, expected) in files {
+        let lab = Lab::new();
+        let file = golden(&format!("launch/{name}.launch.yaml"));
+        let launched = lab.start(&["launch", file.to_str().unwrap()]);
+        match expected {
+            Ok(count) => {
+                until(name, || lab.run(&["node", "list", "-c"]).stdout.trim() == count);
+                launched.signal(libc::SIGINT);
+                assert_eq!(launched.ended(LIMIT).code, Some(130), "{name}");
+            }
+            Err(needles) => {
+                let ended = launched.ended(LIMIT);
+                let is_named = needles.iter().all(|needle| ended.stderr.contains(needle));
+                assert!(ended.code == Some(2) && is_named, "{name}: {}", ended.stderr);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_launch_file_with_a_pushed_namespace_runs_two_laboratories_in_one_domain() {
+    let lab = Lab::new();
+    let [file, scene] = [golden("launch/labs.launch.yaml"), golden("scenes/tiny.toml")];
+    let scene = format!("scene:={}", scene.display());
+    let start = |name: &str| {
+        let (lab_is, out) = (format!("lab:={name}"), format!("out:={name}"));
+        lab.start(&["launch", file.to_str().unwrap(), &lab_is, &scene, &out])
+    };
+    let both = ["left", "right"].map(start);
+    for process in both {
+        let ended = process.ended(LIMIT);
+        assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    }
+    let [left, right] = ["left", "right"].map(|name| lab.folder().join(name).join("tiny-3-1"));
+    let bodies = |run: &Path, topic: &str| distinct(run, topic);
+    assert_eq!(bodies(&left, "/left/microstructure").len(), 2);
+    assert_eq!(bodies(&left, "/left/microstructure"), bodies(&right, "/right/microstructure"));
 }

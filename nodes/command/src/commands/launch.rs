@@ -1,10 +1,11 @@
 //! `grainlab launch`: the main job.
 
+use crate::viewers::VIEWERS;
 #[cfg(feature = "studio")]
 use grainlab_campaign::{Campaign, Member};
-use grainlab_console::{Failure, Format};
+use grainlab_console::{Failure, Format, say};
 use grainlab_launcher::agreement::names_of_run;
-use grainlab_launcher::{BUILT_IN, LaunchFile, NodePlan};
+use grainlab_launcher::{BUILT_IN, LaunchFile, NodePlan, start_all};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::runs::{RUNS, create_run_directory};
 use grainlab_recordings::scenes::SceneText;
@@ -102,6 +103,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(run) = &args.resume {
         return resume::run(run, &args.engine, output);
     }
+    if let Some(exit) = without_run(args)? {
+        return Ok(exit);
+    }
     let (scene, order) = planned(args)?;
     // Held to the end of the run.
     let mut _at_work = None;
@@ -124,6 +128,29 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     order.keep(&directory)?;
     let plans = order.plans(&directory)?;
     conduct(plans, medium, &directory, &scene, output)
+}
+
+/// Starts the processes of a launch file that has no simulator.
+fn without_run(args: &Args) -> Result<Option<Exit>, Failure> {
+    let (path, given) = split(&args.words)?;
+    let plans = read_file(path)?.without_run(&given, VIEWERS).map_err(Failure::usage)?;
+    let Some(plans) = plans else { return Ok(None) };
+    let of_run = args.scene.is_some() || args.seed.is_some() || args.out.is_some() || args.run.is_some();
+    if of_run || args.one_process || !args.set.is_empty() {
+        let fault = "the launch file has no dem_simulator: there is no run for --scene, --set, --seed, --out, --run or --one-process";
+        return Err(Failure::usage(fault));
+    }
+    refuse_unknown(&plans)?;
+    plans.iter().try_for_each(NodePlan::check_parameters).map_err(Failure::usage)?;
+    let medium = medium(false)?;
+    let domain = medium.domain().unwrap_or_default();
+    say!(
+        "grainlab: the launch file has no dem_simulator, so there is no run; {} processes in DDS domain {domain}",
+        plans.len()
+    );
+    let runtime =
+        tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failure::failed)?;
+    runtime.block_on(start_all(plans, domain)).map(Some)
 }
 
 /// The scene and the order of a launch. Invalid input is refused before a directory is created.
@@ -270,7 +297,8 @@ fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
         }
         None => input::text(path, input::SETTINGS).map_err(Failure::at(path))?,
     };
-    LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    LaunchFile::parse(&text, folder).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 
 /// Creates the next free directory.

@@ -78,7 +78,7 @@ pub use parameters::{
     parameter_text, parameters_of_file, parse_value,
 };
 pub use peers::{Liveliness, Peer, PeerWatch, SILENCE};
-pub use run::{NodeSpec, drive, run_node};
+pub use run::{NodeSpec, drive, run_node, use_sim_time};
 pub use sample::{Sample, SampleId, SampleInfo};
 pub use source::Source;
 pub use tool_bus::{bus_in, bus_named, tool_bus};

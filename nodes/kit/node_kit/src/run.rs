@@ -51,7 +51,7 @@ where
 }
 
 /// The parameter that ROS 2 gives to every node.
-fn use_sim_time() -> ParameterSpec {
+pub fn use_sim_time() -> ParameterSpec {
     let meaning = "whether /diagnostics is stamped with the time of /clock; all other stamps are the simulator's anyway";
     ParameterSpec::new(USE_SIM_TIME, false, meaning).changeable()
 }

@@ -80,6 +80,7 @@ impl Child {
             command.args(["--ros-args", "-p", &format!("resume:={path}")]);
         }
         command
+            .envs(self.plan.environment.iter().map(|(name, value)| (name, value)))
             .env("ROS_DOMAIN_ID", run.domain.to_string())
             .env(RUN_VARIABLE, run.id.to_string())
             .env(MEMBER_VARIABLE, self.member.to_string())
@@ -124,7 +125,7 @@ impl Child {
 }
 
 /// A third-party program does not watch its standard input: the kernel ends it when the launcher has ended.
-fn end_with_launcher(command: &mut Command) {
+pub(crate) fn end_with_launcher(command: &mut Command) {
     // SAFETY: prctl takes integers, accesses no memory, and may be called between fork and exec.
     unsafe {
         command.pre_exec(|| {

@@ -10,7 +10,9 @@ use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::{Bus, Names, Node, NodeError, NodeSpec, ParameterSpec, Parameters, RosArgs, Scope};
+use grainlab_node_kit::{
+    Bus, Names, Node, NodeError, NodeSpec, ParameterSpec, Parameters, RosArgs, Scope, use_sim_time,
+};
 use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
 use grainlab_recordings::{input, scenes};
 use grainlab_servo_controller::ServoController;
@@ -150,7 +152,8 @@ impl NodeKind {
         }
         let names = Names::from_args(self.name(), &ros).map_err(|e| e.to_string())?;
         self.check_remaps(&names)?;
-        let parameters = Parameters::resolve(&self.parameters(), self.name(), &names, &ros);
+        let specs: Vec<_> = self.parameters().into_iter().chain([use_sim_time()]).collect();
+        let parameters = Parameters::resolve(&specs, self.name(), &names, &ros);
         Ok((names, parameters.map_err(|e| e.to_string())?))
     }
 

@@ -227,6 +227,8 @@ mod tests {
             program: "grainlab".to_owned(),
             arguments: Vec::new(),
             respawn: false,
+            environment: Vec::new(),
+            ends_all: false,
         };
         PendingResults::of(&nodes.iter().map(plan).collect::<Vec<_>>())
     }
@@ -239,6 +241,8 @@ mod tests {
             program: "python3".to_owned(),
             arguments: Vec::new(),
             respawn: false,
+            environment: Vec::new(),
+            ends_all: false,
         };
         let ours = NodePlan { node: Some(NodeKind::FabricAnalyzer), ..foreign.clone() };
         let mut d = PendingResults::of(&[ours, foreign]);
@@ -254,6 +258,8 @@ mod tests {
             program: "python3".to_owned(),
             arguments: Vec::new(),
             respawn: false,
+            environment: Vec::new(),
+            ends_all: false,
         }]);
         of_start.measured("moduli", 9);
         of_start.inverted("moduli", 9, 2);
@@ -281,6 +287,8 @@ mod tests {
             program: "python3".to_owned(),
             arguments: Vec::new(),
             respawn: false,
+            environment: Vec::new(),
+            ends_all: false,
         };
         let mut d = PendingResults::of(&[program]);
         assert!(d.silent_programs().unwrap().contains("from instrument before"));
@@ -303,6 +311,8 @@ mod tests {
             program: "python3".to_owned(),
             arguments: Vec::new(),
             respawn: false,
+            environment: Vec::new(),
+            ends_all: false,
         };
         let mut d = PendingResults::of(&[program]);
         d.measured("moduli", 9);

@@ -2,12 +2,14 @@
 //!
 //! - `cat`: messages as JSON or text
 //! - `convert`: one table per topic, as CSV or Parquet
+//! - `diff`: recordings compared
 //! - `copies`: new recordings from others, cut, merged, filtered, compressed
 
 mod cat;
 mod convert;
 mod copies;
 mod decoders;
+mod diff;
 mod excerpt;
 mod opened;
 mod output;
@@ -26,6 +28,8 @@ use grainlab_msgs::Exit;
 pub enum Command {
     /// Print messages as JSON or text.
     Cat(cat::Args),
+    /// Compare two recordings, topic by topic.
+    Diff(diff::Args),
     /// Write one table per topic, as JSON lines, CSV or Parquet; or a recording again.
     Convert(convert::Args),
     /// Write a recording made from others.
@@ -40,6 +44,7 @@ pub enum Command {
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Cat(args) => cat::run(args),
+        Command::Diff(args) => diff::run(args),
         Command::Convert(args) => convert::run(args),
         Command::Copies(command) => copies::run(command),
     }

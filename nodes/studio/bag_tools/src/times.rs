@@ -64,13 +64,21 @@ impl Interval {
             s => Ok(s.map(|s| (s * 1e9).round() as u64)),
         };
         let (offset, duration) = (ns("start-offset", self.start_offset)?, ns("duration", self.duration)?);
-        let first = recordings.iter().filter_map(Recording::time_range).map(|(first, _)| first).min();
-        let first = first.unwrap_or(0);
+        let ranges = || recordings.iter().filter_map(Recording::time_range);
+        let first = ranges().map(|(first, _)| first).min().unwrap_or(0);
+        let last = ranges().map(|(_, last)| last).max().unwrap_or(u64::MAX);
         let start = self.start.map(|t| t.0).or(offset.map(|o| first.saturating_add(o)));
         let length = duration.map(|d| start.unwrap_or(first).saturating_add(d));
         let end = self.end.map(|t| t.0).or(length);
         match (start, end) {
             (Some(start), Some(end)) if end < start => Err(Failure::usage("the end is before the start")),
+            (Some(start), _) if start > last => Err(Failure::usage(format!(
+                "the start is after the end: the recording has {} s",
+                (last - first) as f64 * 1e-9
+            ))),
+            (_, Some(end)) if end <= first => {
+                Err(Failure::usage("the end is before the first message of the recording"))
+            }
             interval => Ok(interval),
         }
     }

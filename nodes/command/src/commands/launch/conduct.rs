@@ -82,7 +82,7 @@ pub(super) enum Medium {
 }
 
 impl Medium {
-    fn domain(&self) -> Option<u16> {
+    pub(super) fn domain(&self) -> Option<u16> {
         match self {
             Self::Memory(_) => None,
             Self::Domain(domain) => Some(*domain),

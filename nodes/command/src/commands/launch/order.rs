@@ -82,7 +82,7 @@ impl Order {
         values.insert("scene", path(&directory.join("scene.toml")));
         values.insert("seed", self.seed.to_string());
         values.insert("out", path(directory));
-        let file = LaunchFile::parse(&self.launch).map_err(Failure::usage)?;
+        let file = LaunchFile::parse(&self.launch, Path::new(".")).map_err(Failure::usage)?;
         let mut plans = file.nodes(&values, VIEWERS).map_err(Failure::usage)?;
         let scene = directory.join("scene.toml");
         let agrees = |plan: &NodePlan| plan.check_handed_on(&scene, self.seed, directory);

@@ -67,7 +67,7 @@ fn part(message: &Shown<'_>, path: &str) -> Result<String, Failure> {
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let given = args.type_name.as_deref().map(|given| schema(given, &args.msg_path)).transpose()?;
     let name = given.as_ref().map(|(name, _)| name.as_str());
-    let mut listener = Listener::open(&args.topic, name, args.qos, true, args.common.patience())?;
+    let mut listener = Listener::open(&args.topic, name, &args.qos, true, args.common.patience())?;
     let (_, schema) = given.map_or_else(|| schema(listener.topic.info.type_name, &args.msg_path), Ok)?;
     let longest = if args.full_length { usize::MAX } else { args.truncate_length };
     let wanted = if args.once { Some(1) } else { args.count };

@@ -70,7 +70,7 @@ fn few(s: &Summary) -> String {
 
 pub(super) fn measure(window: &Window, line: fn(&Summary) -> String) -> Result<Exit, Failure> {
     let mut listener =
-        Listener::open(&window.topic, None, QosArgs::default(), false, window.common.patience())?;
+        Listener::open(&window.topic, None, &QosArgs::default(), false, window.common.patience())?;
     let stamped = begins_with_header(listener.topic.info.type_name);
     let each = Duration::from_secs_f64(window.duration.unwrap_or(if window.window.is_some() {
         86_400.0

@@ -34,7 +34,7 @@ impl Listener {
     pub(crate) fn open(
         name: &str,
         given: Option<&str>,
-        policies: QosArgs,
+        policies: &QosArgs,
         whole: bool,
         patience: Duration,
     ) -> Result<Self, Failure> {

@@ -1,61 +1,26 @@
 //! QoS on the command line, in the words of ROS 2.
 
 use crate::graph::{Endpoint, is_reliable, is_transient_local};
-use clap::ValueEnum;
 use grainlab_msgs::Qos;
 
 /// Samples kept for a late or slow reader of what `pub` sends.
 const DEPTH: u32 = 10;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-enum Profile {
-    Default,
-    SensorData,
-    ServicesDefault,
-    SystemDefault,
-    Parameters,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-enum Reliability {
-    Reliable,
-    BestEffort,
-    SystemDefault,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-enum Durability {
-    TransientLocal,
-    Volatile,
-    SystemDefault,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-enum History {
-    KeepLast,
-    KeepAll,
-    SystemDefault,
-}
-
 /// Policies that are set, and not adapted to the other side.
-#[derive(Clone, Copy, Debug, Default, clap::Args)]
+#[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct QosArgs {
     /// Profile from which the other policies differ
-    #[arg(long, value_enum, value_name = "PROFILE")]
-    qos_profile: Option<Profile>,
+    #[arg(long, value_parser = ["default", "sensor_data", "services_default", "system_default", "parameters"], value_name = "PROFILE")]
+    qos_profile: Option<String>,
     /// Reliability [default: for a subscription, that of the publishers]
-    #[arg(long, value_enum, value_name = "KIND")]
-    qos_reliability: Option<Reliability>,
+    #[arg(long, value_parser = ["reliable", "best_effort", "system_default"], value_name = "KIND")]
+    qos_reliability: Option<String>,
     /// Durability [default: for a subscription, that of the publishers]
-    #[arg(long, value_enum, value_name = "KIND")]
-    qos_durability: Option<Durability>,
+    #[arg(long, value_parser = ["transient_local", "volatile", "system_default"], value_name = "KIND")]
+    qos_durability: Option<String>,
     /// History; all is the last 10000
-    #[arg(long, value_enum, value_name = "KIND")]
-    qos_history: Option<History>,
+    #[arg(long, value_parser = ["keep_last", "keep_all", "system_default"], value_name = "KIND")]
+    qos_history: Option<String>,
     /// Number of messages of the history
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     qos_depth: Option<u32>,
@@ -63,18 +28,17 @@ pub(crate) struct QosArgs {
 
 impl QosArgs {
     fn with(&self, adapted: Qos) -> Qos {
-        let from = match self.qos_profile {
+        let from = match self.qos_profile.as_deref() {
             None => adapted,
-            Some(Profile::SensorData) => Qos { reliable: false, depth: 5, transient_local: false },
-            Some(Profile::Parameters) => Qos { reliable: true, depth: 1000, transient_local: false },
+            Some("sensor_data") => Qos { reliable: false, depth: 5, transient_local: false },
+            Some("parameters") => Qos { reliable: true, depth: 1000, transient_local: false },
             Some(_) => Qos { reliable: true, depth: DEPTH, transient_local: false },
         };
-        let all = matches!(self.qos_history, Some(History::KeepAll)).then_some(10_000);
+        let is = |policy: &Option<String>, default, word| policy.as_ref().map_or(default, |p| p == word);
+        let all = is(&self.qos_history, false, "keep_all").then_some(10_000);
         Qos {
-            reliable: self.qos_reliability.map_or(from.reliable, |r| r != Reliability::BestEffort),
-            transient_local: self
-                .qos_durability
-                .map_or(from.transient_local, |d| d == Durability::TransientLocal),
+            reliable: !is(&self.qos_reliability, !from.reliable, "best_effort"),
+            transient_local: is(&self.qos_durability, from.transient_local, "transient_local"),
             depth: all.or(self.qos_depth).unwrap_or(from.depth),
         }
     }

@@ -1,0 +1,183 @@
+//! `grainlab bag diff`.
+
+use crate::decoders::schema_of;
+use crate::opened::losses;
+use crate::selection::Topics;
+use grainlab_any_message::Shown;
+use grainlab_console::{Failure, Format, Table, worse};
+use grainlab_msgs::{Exit, Topic};
+use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::{BTreeMap, HashSet};
+use std::hash::{BuildHasher, RandomState};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab bag diff recordings/runs/demo-1-1 recordings/runs/demo-1-2
+  grainlab bag diff camera.mcap copy.mcap --times
+
+The messages of each topic are compared byte by byte, in their order; of the first that differs the first field that does is shown. Of a
+reproducible topic of the laboratory, repeats of a message (of a restarted node) are left out; its topics that depend on the clock are
+compared with --all only. Exit 1 if anything differs, 3 if a part could not be read.";
+
+/// Arguments of `grainlab bag diff`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// First recording: run directory or MCAP file
+    #[arg(value_name = "A")]
+    first: PathBuf,
+    /// Second recording: run directory or MCAP file
+    #[arg(value_name = "B")]
+    second: PathBuf,
+    #[command(flatten)]
+    topics: Topics,
+    /// Compare the times of publishing, too
+    #[arg(long)]
+    times: bool,
+    /// Compare topics of the laboratory that depend on the clock, too
+    #[arg(long)]
+    all: bool,
+    /// Format of the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// The comparison of one topic.
+#[derive(Serialize)]
+struct Compared {
+    topic: String,
+    /// Numbers of messages, without repeats.
+    messages: [usize; 2],
+    /// `same`, `differ`, `only in A`, `only in B`, or `not compared`.
+    payload: &'static str,
+    /// True if the times of publishing are the same.
+    same_times: bool,
+    /// Place and values of the first difference.
+    first_difference: Option<String>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If a recording cannot be read, or has no topic that is asked for.
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let open = |path: &PathBuf| Recording::open(path).map_err(Failure::failed);
+    let both = [open(&args.first)?, open(&args.second)?];
+    args.topics.check(&both)?;
+    let channels = both.each_ref().map(|recording| {
+        let wanted = recording.channels().into_iter().filter(|c| args.topics.take(c));
+        wanted.map(|c| (c.topic.clone(), c)).collect::<BTreeMap<String, Arc<ChannelInfo>>>()
+    });
+    let mut rows = Vec::new();
+    let names: std::collections::BTreeSet<&String> = channels.iter().flat_map(BTreeMap::keys).collect();
+    for name in names {
+        rows.push(compared(args, &both, name, channels.each_ref().map(|all| all.get(name)))?);
+    }
+    args.format.print(&rows, || table(&rows).csv(), || text(&rows))?;
+    let differs = |r: &Compared| {
+        !["same", "not compared"].contains(&r.payload) || args.times && r.payload == "same" && !r.same_times
+    };
+    let exit = if rows.iter().any(differs) { Exit::Failure } else { Exit::Done };
+    Ok(worse(exit, losses(&both)))
+}
+
+fn compared(
+    args: &Args,
+    both: &[Recording; 2],
+    name: &str,
+    channels: [Option<&Arc<ChannelInfo>>; 2],
+) -> Result<Compared, Failure> {
+    let contract = channels.iter().flatten().find_map(|c| Topic::of_channel(&c.topic, &c.ros_type));
+    let is_reproducible = contract.is_some_and(|topic| topic.reproducible);
+    let selection = Selection::topics([name]);
+    let hashes = [RandomState::new(), RandomState::new()];
+    let distinct = |k: usize| {
+        let mut seen = HashSet::new();
+        let hash = |m: &Message| hashes.each_ref().map(|h| h.hash_one(&m.payload[..]));
+        let all = channels[k].map(|_| both[k].messages(&selection).map_err(Failure::failed)).transpose()?;
+        Ok::<_, Failure>(all.into_iter().flatten().filter(move |m| !is_reproducible || seen.insert(hash(m))))
+    };
+    let (mut a, mut b) = (distinct(0)?, distinct(1)?);
+    let mut row = Compared {
+        topic: name.to_owned(),
+        messages: [0; 2],
+        payload: "same",
+        same_times: true,
+        first_difference: None,
+    };
+    loop {
+        let pair = (a.next(), b.next());
+        row.messages[0] += usize::from(pair.0.is_some());
+        row.messages[1] += usize::from(pair.1.is_some());
+        match pair {
+            (None, None) => break,
+            (Some(a), Some(b)) => {
+                row.same_times &= a.publish_time == b.publish_time;
+                if a.payload[..] != b.payload[..] && row.first_difference.is_none() {
+                    row.first_difference =
+                        Some(format!("message {}: {}", row.messages[0], difference(&a, &b)));
+                }
+            }
+            _ => row.same_times = false,
+        }
+    }
+    let not_compared = contract.is_some() && !is_reproducible && !args.all;
+    row.payload = match channels {
+        _ if not_compared => "not compared",
+        [Some(_), None] => "only in A",
+        [None, Some(_)] => "only in B",
+        _ if row.messages[0] != row.messages[1] || row.first_difference.is_some() => "differ",
+        _ => "same",
+    };
+    row.first_difference = row.first_difference.filter(|_| !not_compared);
+    Ok(row)
+}
+
+/// The first field of two messages that differs, or the first byte.
+fn difference(a: &Message, b: &Message) -> String {
+    let value = |m: &Message| {
+        let decoded = schema_of(&m.channel).ok()?.decode(&m.payload).ok()?;
+        serde_json::to_value(Shown::new(&decoded)).ok()
+    };
+    let found = value(a).zip(value(b)).and_then(|(a, b)| of_values(&a, &b, ""));
+    found.unwrap_or_else(|| {
+        let byte = a.payload.iter().zip(b.payload.iter()).position(|(a, b)| a != b);
+        let byte = byte.unwrap_or(a.payload.len().min(b.payload.len()));
+        format!("byte {byte} of {} and {}", a.payload.len(), b.payload.len())
+    })
+}
+
+fn of_values(a: &Value, b: &Value, path: &str) -> Option<String> {
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) => a.iter().find_map(|(name, a)| {
+            let dot = if path.is_empty() { "" } else { "." };
+            of_values(a, b.get(name)?, &format!("{path}{dot}{name}"))
+        }),
+        (Value::Array(a), Value::Array(b)) if a.len() != b.len() => {
+            Some(format!("{path} has {} and {} values", a.len(), b.len()))
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            a.iter().zip(b).enumerate().find_map(|(k, (a, b))| of_values(a, b, &format!("{path}[{k}]")))
+        }
+        _ => (a != b).then(|| format!("{path} is {a} and {b}")),
+    }
+}
+
+fn table(rows: &[Compared]) -> Table {
+    let mut table = Table::new(["topic", "A", "B", "payload", "publish times"]);
+    for r in rows {
+        let times = if r.same_times { "same" } else { "differ" };
+        let [a, b] = r.messages.map(|n| n.to_string());
+        table.row([r.topic.clone(), a, b, r.payload.to_owned(), times.to_owned()]);
+    }
+    table
+}
+
+fn text(rows: &[Compared]) -> String {
+    let first = rows.iter().filter_map(|r| Some(format!("{}: {}\n", r.topic, r.first_difference.as_ref()?)));
+    table(rows).text() + &first.collect::<String>()
+}
