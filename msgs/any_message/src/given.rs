@@ -10,7 +10,7 @@ use crate::value::{Array, Message, Value};
 
 impl Schema {
     /// The message with these values of fields, as JSON or YAML has them. Fields that are not given have their defaults, or 0, an empty
-    /// text, no elements. Numbers that are not finite are `.inf` and `.nan` of YAML, or the texts that [`Shown::json`](crate::Shown::json) writes.
+    /// text, no elements. Numbers that are not finite are texts, as [`Shown::json`](crate::Shown::json) writes them.
     ///
     /// # Errors
     /// A value that its field does not hold, or a field that the type does not have: with its path.

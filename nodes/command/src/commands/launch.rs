@@ -133,7 +133,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 /// Starts the processes of a launch file that has no simulator.
 fn without_run(args: &Args) -> Result<Option<Exit>, Failure> {
     let (path, given) = split(&args.words)?;
-    let plans = read_file(path)?.without_run(&given, VIEWERS).map_err(Failure::usage)?;
+    let named = |e| Failure::usage(format!("{}: {e}", path.unwrap_or(Path::new(BUILT_IN[0].0)).display()));
+    let plans = read_file(path)?.without_run(&given, VIEWERS).map_err(named)?;
     let Some(plans) = plans else { return Ok(None) };
     let of_run = args.scene.is_some() || args.seed.is_some() || args.out.is_some() || args.run.is_some();
     if of_run || args.one_process || !args.set.is_empty() {

@@ -73,6 +73,7 @@ where
         let network = refused(Exit::Usage, Network::from_env())?;
         let node_name = names.fully_qualified();
         let logger = Logger::install(&node_name, args);
+        network.exposure().iter().for_each(|text| log::warn!("{text}"));
         let identity = Identity::from_env(spec.scope);
         let signals = refused(Exit::Failure, Signals::of_node(identity.root))?;
         let stop = signals.flag();

@@ -152,7 +152,9 @@ fn read(text: &str, folder: &Path, level: usize, has_others: &mut bool) -> Resul
     let whole = text.replace("$(dirname)", &here.to_string_lossy());
     *has_others |= whole != text;
     let format = |e| PlanError(format!("not a launch file that can be run here: {e}"));
-    let file: File = serde_saphyr::from_str(&whole).map_err(format)?;
+    // `y` and `on` are texts, as in ROS 2's own reader.
+    let options = serde_saphyr::options! { strict_booleans: true };
+    let file: File = serde_saphyr::from_str_with_options(&whole, options).map_err(format)?;
     included(file.launch, level, has_others)
 }
 
@@ -191,7 +193,7 @@ fn of_file(include: Include, level: usize, has_others: &mut bool) -> Result<Entr
     let text = known.map(|(_, text)| Ok((*text).to_owned()));
     let text = text.unwrap_or_else(|| std::fs::read_to_string(path)).map_err(|e| fault(e.to_string()))?;
     let entries = read(&text, path.parent().unwrap_or(Path::new(".")), level + 1, has_others)
-        .map_err(|e| fault(e.0))?;
+        .map_err(|e| if e.0.starts_with("include ") { e } else { fault(e.0) })?;
     let children = arg.into_iter().map(Entry::Let).chain(entries).collect();
     Ok(Entry::Group(Group { children, scoped: Some(Text("false".to_owned())), if_, unless }))
 }

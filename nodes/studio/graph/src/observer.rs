@@ -84,7 +84,7 @@ impl Observer {
             if start.elapsed() >= patience {
                 let seconds = patience.as_secs_f64();
                 grainlab_console::say!(
-                    "grainlab: the graph still changes after {seconds} s (--spin-time): some of it may be missing"
+                    "grainlab: discovery ended after {seconds} s (--spin-time), before 2 s without a change: some of the graph may be missing"
                 );
                 return self.graph();
             }

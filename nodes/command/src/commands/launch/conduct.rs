@@ -97,6 +97,7 @@ pub(super) fn medium(one_process: bool) -> Result<Medium, Failure> {
         return Ok(Medium::Memory(OffTheBus::enter()));
     }
     let network = Network::from_env().map_err(Failure::usage)?;
+    network.exposure().iter().for_each(|text| grainlab_console::say!("grainlab: warning: {text}"));
     if std::env::var("ROS_DOMAIN_ID").is_ok_and(|v| !v.trim().is_empty()) {
         return Ok(Medium::Domain(network.domain));
     }

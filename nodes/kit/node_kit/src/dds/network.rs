@@ -83,6 +83,15 @@ impl Network {
         };
         Ok(Self { domain, reach, peers })
     }
+
+    /// A warning if other hosts are reached: messages are neither encrypted nor signed.
+    pub fn exposure(&self) -> Option<&'static str> {
+        let is_open = self.reach == Reach::Subnet || self.peers != StaticPeers::default();
+        is_open.then_some(
+            "other hosts are reached (ROS_AUTOMATIC_DISCOVERY_RANGE or ROS_STATIC_PEERS): everybody in that network can read the messages and \
+             disturb the nodes",
+        )
+    }
 }
 
 #[cfg(test)]
@@ -102,6 +111,10 @@ mod tests {
             read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")]).unwrap().reach,
             Reach::Subnet
         );
+        assert_eq!(read(&[]).unwrap().exposure(), None);
+        for open in [("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"), ("ROS_STATIC_PEERS", "127.0.0.1")] {
+            assert!(read(&[open]).unwrap().exposure().is_some(), "{open:?}");
+        }
         let both = [("ROS_LOCALHOST_ONLY", "1"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")];
         assert_eq!(read(&both).unwrap().reach, Reach::Localhost);
         assert_eq!(read(&[("ROS_LOCALHOST_ONLY", "0")]), Ok(Network::localhost(0)));

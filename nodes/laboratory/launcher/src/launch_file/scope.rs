@@ -34,7 +34,10 @@ impl Scope {
             match value.to_ascii_lowercase().as_str() {
                 "true" | "1" => Ok(true),
                 "false" | "0" => Ok(false),
-                _ => Err(PlanError(format!("a condition is {value:?}; it must be true, false, 1 or 0"))),
+                _ => Err(PlanError(format!(
+                    "`{}` is no condition: {value:?} must be true, false, 1 or 0",
+                    text.0
+                ))),
             }
         };
         Ok(if_.as_ref().map_or(Ok(true), truth)? && !unless.as_ref().map_or(Ok(false), truth)?)

@@ -54,7 +54,9 @@ pub(super) fn environment(get: impl Fn(&str) -> Option<String>) -> Vec<Finding> 
 
 /// Findings about the datagrams of the domain in the network of this host.
 pub(super) fn network(network: Network) -> Vec<Finding> {
-    let mut found = Vec::new();
+    let advice = "keep it if that network is trusted, or put a VPN (WireGuard) between the hosts";
+    let exposed = network.exposure().map(|text| Finding::note("exposed", text.to_owned(), advice));
+    let mut found: Vec<Finding> = exposed.into_iter().collect();
     let interface = match network.reach {
         Reach::Localhost => Ipv4Addr::LOCALHOST,
         Reach::Subnet => Ipv4Addr::UNSPECIFIED,

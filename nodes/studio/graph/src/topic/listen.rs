@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const DEPTH: u32 = 20_000;
 
 /// Least time of a look at the graph.
-const LEAST: Duration = Duration::from_millis(100);
+const LEAST: Duration = Duration::from_millis(2500);
 
 /// Packings that may wait for this process.
 const PACKINGS: u32 = 16;
