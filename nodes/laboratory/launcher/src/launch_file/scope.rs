@@ -158,7 +158,7 @@ impl Scope {
         let (pkg, exec) = (pkg?, exec?);
         if pkg != "grainlab" {
             return Err(PlanError(format!(
-                "node {exec} of the package `{pkg}`: nodes of grainlab can be started so; start it by an executable with its cmd"
+                "node {exec} of the package `{pkg}`: only nodes of the package grainlab are started by pkg and exec; write an executable with its cmd"
             )));
         }
         let split = |text: &Option<Text>| -> Result<Vec<String>, PlanError> {
