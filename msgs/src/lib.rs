@@ -4,7 +4,7 @@
 //! - [`msg`] and the packages of standard messages: types generated from the message files, those of this
 //!   project in `msg/`, those of ROS 2 in `std/` (same fields, same type hashes). After a change of a message
 //!   file: `cargo run --release -p grainlab_msgs --example generate`, then `tests/golden/make_golden.py`
-//! - [`COMMON`]: texts of other types of ROS 2, in `interfaces/`
+//! - [`INTERFACES`]: texts of other types of ROS 2, in `interfaces/`
 //! - `message`: name, hash and schema of a type; [`TypeInfo`]: the same as a value
 //! - `description`: the type description of a type, as `~/get_type_description` returns it
 //! - `cdr`: serialization
@@ -34,8 +34,8 @@ pub use clock::{EPOCH_SECONDS, simulated_seconds, stamp, wall_stamp};
 pub use decode_error::DecodeError;
 pub use description::{FieldDescription, FieldTypeDescription, MessageDescription, TypeDescription};
 pub use exit::Exit;
-pub use generated::common::COMMON;
 pub use generated::grainlab_msgs as msg;
+pub use generated::interfaces::INTERFACES;
 pub use generated::{
     builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs, sensor_msgs, std_msgs,
     tf2_msgs, visualization_msgs,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use grainlab_any_message::Schema;
-use grainlab_msgs::{COMMON, TypeInfo};
+use grainlab_msgs::{INTERFACES, TypeInfo};
 
 use crate::input;
 
@@ -50,14 +50,14 @@ impl Definitions {
     /// Full names of all types: messages, and services of the common interfaces.
     pub fn names(&self) -> BTreeSet<String> {
         let files = self.folders.iter().flat_map(|folder| files_below(folder));
-        let paths = files.chain(COMMON.iter().map(|(path, _)| PathBuf::from(path)));
+        let paths = files.chain(INTERFACES.iter().map(|(path, _)| PathBuf::from(path)));
         let known = TypeInfo::all().iter().map(|info| info.type_name.to_owned());
         known.chain(paths.map(|path| path.with_extension("").to_string_lossy().into_owned())).collect()
     }
 
     /// The two texts of a service of the common interfaces: request, `---`, answer.
     pub fn service(&self, type_name: &str) -> Option<&'static str> {
-        common(&format!("{type_name}.srv"))
+        interface(&format!("{type_name}.srv"))
     }
 
     /// The text of the type's own file.
@@ -70,7 +70,7 @@ impl Definitions {
         }
         let file = |folder: &PathBuf| folder.join(format!("{type_name}.msg"));
         let Some(path) = self.folders.iter().map(file).find(|path: &PathBuf| Path::exists(path)) else {
-            return Ok(common(&format!("{type_name}.msg")).map(str::to_owned));
+            return Ok(interface(&format!("{type_name}.msg")).map(str::to_owned));
         };
         let unread = |e| format!("{}: cannot read the definition of a message: {e}", path.display());
         input::text(&path, input::SETTINGS).map(Some).map_err(unread)
@@ -98,8 +98,8 @@ impl Definitions {
     }
 }
 
-fn common(file: &str) -> Option<&'static str> {
-    COMMON.iter().find(|(path, _)| *path == file).map(|(_, text)| *text)
+fn interface(file: &str) -> Option<&'static str> {
+    INTERFACES.iter().find(|(path, _)| *path == file).map(|(_, text)| *text)
 }
 
 /// Paths `package/msg/Type.msg` below a folder.

@@ -11,7 +11,7 @@ pub mod std_msgs;
 pub mod tf2_msgs;
 pub mod visualization_msgs;
 
-pub(crate) mod common;
+pub(crate) mod interfaces;
 
 use crate::TypeInfo;
 

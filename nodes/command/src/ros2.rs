@@ -13,10 +13,7 @@ const HINTS: &[(&str, &str)] = &[
     ("topic echo --raw", "grainlab bag record TOPIC, then grainlab bag cat"),
     ("topic hz --filter", "grainlab topic echo TOPIC --format json | jq"),
     ("topic hz --wall-time", "grainlab topic hz TOPIC: the time of the publishers, which is wall time"),
-    (
-        "service echo",
-        "grainlab bag record -a --include-hidden-topics: requests and answers are not topics here",
-    ),
+    ("service echo", "grainlab service call NAME: requests and answers of others are not shown"),
     ("service call -r", "while grainlab service call NAME; do sleep 1; done"),
     ("param delete", "grainlab param set NODE NAME VALUE: the nodes declare their parameters, and keep them"),
     ("param dump --output-dir", "grainlab param dump NODE > FILE"),
@@ -33,7 +30,7 @@ const HINTS: &[(&str, &str)] = &[
     ("bag record --compression-mode", "grainlab bag record --compression zstd, which is the default"),
     ("bag record --compression-format", "grainlab bag record --compression zstd"),
     ("bag record --max-cache-size", "grainlab bag record: every message is written as it comes"),
-    ("bag convert -i", "grainlab bag convert PATH --format FORMAT --out PATH"),
+    ("bag convert -i", "grainlab bag convert PATH --format FORMAT --output OUT"),
     ("doctor --report", "grainlab doctor --format json"),
     ("launch --show-args", "grainlab launch --help, and the args of the launch file"),
     ("launch --print", "grainlab launch FILE: the processes and their logs are in the run directory"),
@@ -44,7 +41,10 @@ const HINTS: &[(&str, &str)] = &[
     ("daemon", "there is no daemon: each command looks at the domain itself"),
     ("multicast", "grainlab doctor, which tests multicast"),
     ("pkg", "grainlab --help: every node is a sub-command of grainlab run"),
-    ("security", "the page on networks in nodes/README.md: DDS Security is not part of this program"),
+    (
+        "security",
+        "DDS Security is not part of this program: stay on this host, the default, or put a VPN between the hosts",
+    ),
 ];
 
 /// The form of a command of `ros2` that is not known here, from its words without `ros2`.

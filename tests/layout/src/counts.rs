@@ -8,8 +8,8 @@ use syn::{Item, UseTree, Visibility};
 
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
-const LABORATORY: usize = 54_047;
-const STUDIO_AND_COMMAND: usize = 27_485;
+const LABORATORY: usize = 54_051;
+const STUDIO_AND_COMMAND: usize = 27_458;
 const TESTS: usize = 47_357;
 
 /// First words that leave open what is described.

@@ -20,7 +20,7 @@ pub(crate) fn root(library: &Library) -> String {
     for package in packages {
         out += &format!("pub mod {package};\n");
     }
-    out += "\npub(crate) mod common;\n\nuse crate::TypeInfo;\n\n/// Every type, sorted by name.\npub(crate) const TYPES: &[TypeInfo] = &[\n";
+    out += "\npub(crate) mod interfaces;\n\nuse crate::TypeInfo;\n\n/// Every type, sorted by name.\npub(crate) const TYPES: &[TypeInfo] = &[\n";
     for file in library.values() {
         out += &format!("    TypeInfo::of::<{}::{}>(),\n", file.package, file.name);
     }

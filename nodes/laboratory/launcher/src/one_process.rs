@@ -20,14 +20,18 @@ use grainlab_recorder::ResultSlot;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Refuses a launch file that starts third-party programs, which are processes of their own.
+/// Refuses a launch file that starts third-party programs, which are processes of their own, or gives a node an environment.
 ///
 /// # Errors
 /// If there is one; the text names it.
 pub fn check_one_process(plans: &[NodePlan]) -> Result<(), PlanError> {
     let reason =
         "one process has no other programs: launch without --one-process, or the campaign with --processes";
-    plans.iter().find(|p| p.node.is_none()).map_or(Ok(()), |plan| Err(PlanError::of(&plan.name, reason)))
+    if let Some(plan) = plans.iter().find(|p| p.node.is_none()) {
+        return Err(PlanError::of(&plan.name, reason));
+    }
+    let shared = "env and set_env have no effect in one process, whose nodes share one environment: launch without --one-process";
+    plans.iter().find(|p| !p.environment.is_empty()).map_or(Ok(()), |p| Err(PlanError::of(&p.name, shared)))
 }
 
 /// A run whose nodes are steps of one thread.

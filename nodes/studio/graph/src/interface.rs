@@ -1,6 +1,6 @@
 //! The command `grainlab interface`: definitions of message and service types.
 
-use crate::view::{OutputFormat, shown};
+use crate::view::{OutputFormat, full_name, shown};
 use grainlab_console::{Failure, Table};
 use grainlab_msgs::Topic;
 use grainlab_node_kit::Exit;
@@ -8,6 +8,9 @@ use grainlab_recordings::Definitions;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+
+/// Levels of messages in each other, as a schema may have.
+const DEEPEST: usize = 64;
 
 /// Commands about interfaces.
 #[derive(Debug, clap::Subcommand)]
@@ -95,7 +98,14 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Show { type_name, no_comments, all_comments, common } => {
             let text = text(&common.known(), type_name)?;
-            let text = nested(&text, !no_comments, *all_comments);
+            let comments = if *no_comments {
+                0
+            } else if *all_comments {
+                DEEPEST
+            } else {
+                1
+            };
+            let text = nested(type_name, &text, comments);
             shown(common.format, &text, || text.clone())
         }
         Command::List { only_msgs, only_srvs, common } => {
@@ -138,56 +148,48 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
 
 /// The text of a message with the sections of the types of its fields, or of a service.
 fn text(known: &Definitions, type_name: &str) -> Result<String, Failure> {
-    if let Some(service) = known.service(type_name) {
-        return Ok(service.to_owned());
-    }
-    let full = match type_name.split_once('/') {
-        Some((package, name)) if !name.contains('/') => format!("{package}/msg/{name}"),
-        _ => type_name.to_owned(),
-    };
-    known.text(&full, "").map_err(Failure::failed)
+    let service = known.service(type_name).map(str::to_owned);
+    service.map_or_else(|| known.text(&full_name(type_name), "").map_err(Failure::failed), Ok)
 }
 
-/// The first section with those of its fields below them, each level by a tab further to the right.
-fn nested(text: &str, comments: bool, all_comments: bool) -> String {
+/// The text of a type with those of its fields below them, each level by a tab further to the right.
+struct Nested<'a> {
+    /// Texts by names, as in `std_msgs/Header`.
+    others: Vec<(&'a str, &'a str)>,
+    /// Levels with their comments.
+    comments: usize,
+    shown: String,
+}
+
+/// The first section of `text` with those of its fields.
+fn nested(type_name: &str, text: &str, comments: usize) -> String {
     let bar = format!("{}\n", "=".repeat(80));
     let mut sections = text.split(bar.as_str());
     let root = sections.next().unwrap_or_default();
-    let others: Vec<(&str, &str)> =
-        sections.filter_map(|s| s.strip_prefix("MSG: ")?.split_once('\n')).collect();
-    let mut shown = String::new();
-    below(
-        root,
-        &others,
-        0,
-        &|level| if level == 0 { comments } else { comments && all_comments },
-        &mut shown,
-    );
-    shown
+    let others = sections.filter_map(|s| s.strip_prefix("MSG: ")?.split_once('\n')).collect();
+    let mut nested = Nested { others, comments, shown: String::new() };
+    nested.add(type_name, root, 0);
+    nested.shown
 }
 
-fn below(
-    text: &str,
-    others: &[(&str, &str)],
-    level: usize,
-    comments: &dyn Fn(usize) -> bool,
-    shown: &mut String,
-) {
-    for line in text.trim_end().lines() {
-        let bare = line.split('#').next().unwrap_or_default();
-        let line = if comments(level) { line } else { bare.trim_end() };
-        if line.is_empty() && !comments(level) {
-            continue;
-        }
-        *shown += &format!("{}{line}\n", "\t".repeat(level));
-        let word = bare.split_whitespace().next().unwrap_or_default();
-        let base = word.split(['[', '<']).next().unwrap_or_default();
-        let is_it = |(name, _): &&(&str, &str)| {
-            *name == base || name.split_once('/').is_some_and(|(_, short)| short == base)
-        };
-        // The time of builtin_interfaces is in no section of some texts.
-        if let Some((_, inner)) = others.iter().find(is_it).filter(|_| level < 64) {
-            below(inner, others, level + 1, comments, shown);
+impl Nested<'_> {
+    fn add(&mut self, type_name: &str, text: &str, level: usize) {
+        let package = type_name.split('/').next().unwrap_or_default();
+        let has_comments = level < self.comments;
+        for line in text.trim_end().lines() {
+            let bare = line.split('#').next().unwrap_or_default();
+            let line = if has_comments { line } else { bare.trim_end() };
+            if line.is_empty() && !has_comments {
+                continue;
+            }
+            self.shown += &format!("{}{line}\n", "\t".repeat(level));
+            let word = bare.split_whitespace().next().unwrap_or_default();
+            let base = word.split(['[', '<']).next().unwrap_or_default().replace("/msg/", "/");
+            let full = if base.contains('/') { base } else { format!("{package}/{base}") };
+            let inner = self.others.iter().find(|(name, _)| *name == full).copied();
+            if let Some((name, inner)) = inner.filter(|_| level < DEEPEST) {
+                self.add(name, inner, level + 1);
+            }
         }
     }
 }

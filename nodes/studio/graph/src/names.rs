@@ -67,11 +67,6 @@ pub(crate) fn unknown<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'
     ))
 }
 
-/// True for a name with a part that begins with an underscore.
-pub(crate) fn is_hidden(name: &str) -> bool {
-    name.split('/').any(|part| part.starts_with('_'))
-}
-
 /// A name as typed, with a slash before it.
 pub(crate) fn absolute(name: &str) -> String {
     format!("/{}", name.trim_matches('/'))

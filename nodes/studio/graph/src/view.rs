@@ -59,6 +59,39 @@ impl Common {
     }
 }
 
+/// The arguments of a list.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct Listing {
+    /// Print the types, and who has them
+    #[arg(short = 't', long, visible_alias = "show-types", short_alias = 'v', alias = "verbose")]
+    types: bool,
+    /// Print their number only
+    #[arg(short, long, aliases = ["count-topics", "count-services", "count-nodes"])]
+    count: bool,
+    /// List those, too, of which a part of the name begins with an underscore
+    #[arg(short = 'a', long, aliases = ["all", "include-hidden-topics", "include-hidden-services"])]
+    include_hidden: bool,
+    #[command(flatten)]
+    pub(crate) common: Common,
+}
+
+impl Listing {
+    /// Prints rows by their names, or as a table with the types.
+    pub(crate) fn print<T: Serialize>(
+        &self,
+        mut rows: Vec<T>,
+        name: impl Fn(&T) -> &str,
+        table: impl FnOnce(&[T]) -> String,
+    ) -> Result<Exit, Failure> {
+        rows.retain(|row| self.include_hidden || !name(row).split('/').any(|part| part.starts_with('_')));
+        if self.count {
+            return self.common.show(&rows.len(), || format!("{}\n", rows.len()));
+        }
+        let names = || rows.iter().map(|row| format!("{}\n", name(row))).collect();
+        self.common.show(&rows, || if self.types { table(&rows) } else { names() })
+    }
+}
+
 /// Prints the value as JSON, or as this text.
 pub(crate) fn shown<T: Serialize + ?Sized>(
     format: OutputFormat,
@@ -72,12 +105,17 @@ pub(crate) fn shown<T: Serialize + ?Sized>(
     Ok(Exit::Done)
 }
 
-/// The schema of a message type, with its full name: `package/Type` is `package/msg/Type`.
-pub(crate) fn schema(type_name: &str, folders: &[PathBuf]) -> Result<(String, Schema), Failure> {
-    let full = match type_name.split_once('/') {
+/// The full name of a message type: `package/Type` is `package/msg/Type`.
+pub(crate) fn full_name(type_name: &str) -> String {
+    match type_name.split_once('/') {
         Some((package, name)) if !name.contains('/') => format!("{package}/msg/{name}"),
         _ => type_name.to_owned(),
-    };
+    }
+}
+
+/// The schema of a message type, with its full name.
+pub(crate) fn schema(type_name: &str, folders: &[PathBuf]) -> Result<(String, Schema), Failure> {
+    let full = full_name(type_name);
     let text = Definitions::with_folders(folders).text(&full, "").map_err(Failure::failed)?;
     let schema = Schema::parse(&full, &text).map_err(Failure::failed)?;
     Ok((full, schema))

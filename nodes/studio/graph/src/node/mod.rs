@@ -5,8 +5,7 @@ mod state;
 
 pub(crate) use info::find;
 
-use crate::names::is_hidden;
-use crate::view::Common;
+use crate::view::{Common, Listing};
 use clap::Subcommand;
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
@@ -16,17 +15,7 @@ use grainlab_node_kit::Exit;
 pub enum Command {
     /// List the nodes of the domain.
     #[command(after_help = "Example:\n  grainlab node list --format json")]
-    List {
-        /// Also those whose name begins with an underscore
-        #[arg(short, long)]
-        all: bool,
-        /// Print their number only
-        #[arg(short, long)]
-        count_nodes: bool,
-        /// Format of the output and time limit.
-        #[command(flatten)]
-        common: Common,
-    },
+    List(Listing),
     /// Show the publishers, subscriptions and services of a node.
     #[command(after_help = "Example:\n  grainlab node info /dem_simulator")]
     Info {
@@ -50,14 +39,10 @@ pub enum Command {
 /// With the exit code and the message for the user.
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
-        Command::List { all, count_nodes, common } => {
-            let graph = common.graph()?;
-            let names = graph.nodes.iter().map(|n| n.name.as_str());
-            let names: Vec<&str> = names.filter(|name| *all || !is_hidden(name)).collect();
-            if *count_nodes {
-                return common.show(&names.len(), || format!("{}\n", names.len()));
-            }
-            common.show(&names, || names.iter().map(|name| format!("{name}\n")).collect())
+        Command::List(listing) => {
+            let graph = listing.common.graph()?;
+            let names: Vec<String> = graph.nodes.into_iter().map(|node| node.name).collect();
+            listing.print(names, String::as_str, |names| names.join("\n") + "\n")
         }
         Command::Info { node, common } => info::run(node, common),
         Command::State(common) => state::run(common),

@@ -3,7 +3,7 @@
 mod calls;
 
 use crate::names::{absolute, unknown};
-use crate::view::Common;
+use crate::view::{Common, Listing};
 use clap::Subcommand;
 use grainlab_console::{Failure, Table};
 use grainlab_node_kit::Exit;
@@ -14,17 +14,7 @@ use serde::Serialize;
 pub enum Command {
     /// List the services of the domain.
     #[command(after_help = "Example:\n  grainlab service list --types")]
-    List {
-        /// Print the types and the nodes
-        #[arg(short = 't', long, visible_alias = "show-types")]
-        types: bool,
-        /// Print their number only
-        #[arg(short, long)]
-        count_services: bool,
-        /// Format of the output and time limit.
-        #[command(flatten)]
-        common: Common,
-    },
+    List(Listing),
     /// Print the type of a service.
     #[command(after_help = "Example:\n  grainlab service type /dem_simulator/get_parameters")]
     Type {
@@ -40,12 +30,9 @@ pub enum Command {
         /// Name of the type, package/srv/Type
         #[arg(value_name = "TYPE")]
         type_name: String,
-        /// Print their number only
-        #[arg(short, long)]
-        count_services: bool,
-        /// Format of the output and time limit.
+        /// Format of the list.
         #[command(flatten)]
-        common: Common,
+        listing: Listing,
     },
     /// Call a service of the parameters, or of the package std_srvs.
     Call(calls::Args),
@@ -57,7 +44,7 @@ pub enum Command {
 /// With the exit code and the message for the user.
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
-        Command::List { types, count_services, common } => list(|_| true, *types, *count_services, common),
+        Command::List(listing) => list(listing, None),
         Command::Type { service, common } => {
             let name = absolute(service);
             let graph = common.graph_with(|graph| graph.services().contains_key(name.as_str()))?;
@@ -66,9 +53,7 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
             let found = found.ok_or_else(|| unknown("service", &name, services.keys().copied()))?;
             common.show(&found.type_name, || format!("{}\n", found.type_name))
         }
-        Command::Find { type_name, count_services, common } => {
-            list(|row| row.type_name == *type_name, false, *count_services, common)
-        }
+        Command::Find { type_name, listing } => list(listing, Some(type_name)),
         Command::Call(args) => calls::run(args),
     }
 }
@@ -81,23 +66,23 @@ struct Row {
     nodes: Vec<String>,
 }
 
-fn list(is_asked: impl Fn(&Row) -> bool, types: bool, count: bool, common: &Common) -> Result<Exit, Failure> {
-    let graph = common.graph()?;
+/// Lists the services, or those of a type.
+fn list(listing: &Listing, type_name: Option<&str>) -> Result<Exit, Failure> {
+    let graph = listing.common.graph()?;
     let row = |(name, servers): (&str, Vec<&crate::graph::Endpoint>)| Row {
         name: name.to_owned(),
         type_name: servers.first().map_or_else(String::new, |s| s.type_name.clone()),
         nodes: servers.iter().map(|s| graph.owner(s)).collect(),
     };
-    let rows: Vec<Row> = graph.services().into_iter().map(row).filter(is_asked).collect();
-    if count {
-        return common.show(&rows.len(), || format!("{}\n", rows.len()));
-    }
-    common.show(&rows, || {
-        if !types {
-            return rows.iter().map(|r| format!("{}\n", r.name)).collect();
-        }
-        let mut table = Table::new(["service", "type", "node"]);
-        rows.iter().for_each(|r| table.row([r.name.clone(), r.type_name.clone(), r.nodes.join(", ")]));
-        table.text()
-    })
+    let is_asked = |row: &Row| type_name.is_none_or(|name| row.type_name == name);
+    let rows = graph.services().into_iter().map(row).filter(is_asked).collect();
+    listing.print(
+        rows,
+        |row| &row.name,
+        |rows| {
+            let mut table = Table::new(["service", "type", "node"]);
+            rows.iter().for_each(|r| table.row([r.name.clone(), r.type_name.clone(), r.nodes.join(", ")]));
+            table.text()
+        },
+    )
 }

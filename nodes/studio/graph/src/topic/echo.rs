@@ -77,10 +77,10 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         match schema.decode(&sample.body) {
             Ok(message) => {
                 let shown = Shown::new(&message).shortened(longest);
-                let read = print_more(&match args.common.format {
-                    _ if args.field.is_some() => part(&shown, args.field.as_deref().unwrap_or_default())?,
-                    OutputFormat::Text => format!("{}---\n", shown.text()),
-                    OutputFormat::Json => format!("{}\n", shown.json()),
+                let read = print_more(&match (&args.field, args.common.format) {
+                    (Some(path), _) => part(&shown, path)?,
+                    (None, OutputFormat::Text) => format!("{}---\n", shown.text()),
+                    (None, OutputFormat::Json) => format!("{}\n", shown.json()),
                 })?;
                 printed += 1;
                 if !read {

@@ -9,7 +9,7 @@ mod publish;
 mod qos;
 mod stream;
 
-use crate::view::Common;
+use crate::view::{Common, Listing};
 use clap::Subcommand;
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
@@ -18,7 +18,8 @@ use grainlab_node_kit::Exit;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// List the topics of the domain.
-    List(list::Args),
+    #[command(after_help = "Example:\n  grainlab topic list --types")]
+    List(Listing),
     /// Show the publishers and subscriptions of a topic, with their QoS.
     #[command(after_help = "Example:\n  grainlab topic info /stress")]
     Info {
@@ -46,15 +47,9 @@ pub enum Command {
         /// Name of the type, package/msg/Type
         #[arg(value_name = "TYPE")]
         type_name: String,
-        /// Print their number only
-        #[arg(short, long)]
-        count_topics: bool,
-        /// Also those with a part that begins with an underscore
-        #[arg(long)]
-        include_hidden_topics: bool,
-        /// Format of the output and time limit.
+        /// Format of the list.
         #[command(flatten)]
-        common: Common,
+        listing: Listing,
     },
     /// Print the messages of a topic, of any type whose definition is known.
     Echo(echo::Args),
@@ -80,12 +75,10 @@ pub enum Command {
 /// With the exit code and the message for the user.
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
-        Command::List(args) => list::run(args),
+        Command::List(listing) => list::run(listing, None),
         Command::Info { topic, common, .. } => info::run(topic, common),
         Command::Type { topic, common } => info::print_type(topic, common),
-        Command::Find { type_name, count_topics, include_hidden_topics, common } => {
-            list::find(type_name, *count_topics, *include_hidden_topics, common)
-        }
+        Command::Find { type_name, listing } => list::run(listing, Some(type_name)),
         Command::Pub(args) => publish::run(args),
         Command::Echo(args) => echo::run(args),
         Command::Hz(window) => hz::measure(window, hz::rate_line),

@@ -99,26 +99,31 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         }
     }
     let start = Instant::now();
-    let mut sent = 0;
+    let (mut sent, mut exit) = (0, Exit::Done);
     loop {
         match bus.publish(publisher, &body) {
-            Ok(_) | Err(BusError::Full { .. }) => sent += 1,
+            Ok(_) => {}
+            Err(error @ BusError::Full { .. }) => {
+                exit = Exit::DataLoss;
+                grainlab_console::say!("grainlab: #{} is lost: {error}", sent + 1);
+            }
             Err(error) => return Err(Failure::failed(error)),
         }
+        sent += 1;
         let text = format!("publishing #{sent}: {shown}\n");
         if sent % args.print == 0 && !print_more(&text)? {
-            return Ok(Exit::Done);
+            return Ok(exit);
         }
         let is_last = times.is_some_and(|times| sent >= times);
         let due = start + Duration::from_secs_f64(sent as f64 / args.rate);
         let due = if is_last { Instant::now() + Duration::from_secs_f64(args.keep_alive) } else { due };
         while let Some(left) = due.checked_duration_since(Instant::now()).filter(|left| !left.is_zero()) {
             if bus.wait(left) == Wake::Shutdown {
-                return Ok(if times.is_some() { Exit::Interrupted } else { Exit::Done });
+                return Ok(if times.is_some() { Exit::Interrupted } else { exit });
             }
         }
         if is_last {
-            return Ok(Exit::Done);
+            return Ok(exit);
         }
     }
 }

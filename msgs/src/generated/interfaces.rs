@@ -2,7 +2,7 @@
 
 /// Each with its path, `package/msg/Name.msg` or `package/srv/Name.srv`.
 #[rustfmt::skip]
-pub const COMMON: &[(&str, &str)] = &[
+pub const INTERFACES: &[(&str, &str)] = &[
     ("diagnostic_msgs/srv/AddDiagnostics.srv", include_str!("../../interfaces/diagnostic_msgs/srv/AddDiagnostics.srv")),
     ("diagnostic_msgs/srv/SelfTest.srv", include_str!("../../interfaces/diagnostic_msgs/srv/SelfTest.srv")),
     ("geometry_msgs/msg/Accel.msg", include_str!("../../interfaces/geometry_msgs/msg/Accel.msg")),
