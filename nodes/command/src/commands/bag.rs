@@ -18,7 +18,7 @@ use recorded::Recorded;
 #[derive(Debug, Subcommand)]
 pub(crate) enum BagCommand {
     /// Record topics until SIGINT or SIGTERM.
-    Record(record::Args),
+    Record(Box<record::Args>),
     /// Publish the messages of a recording.
     Play(play::Args),
     /// Show the content of a recording.
