@@ -89,10 +89,12 @@ pub struct Select<'a> {
     pub end: Option<u64>,
     /// Copy latched messages from before the start.
     pub latched: bool,
+    /// Called with the log time of each message of the interval.
+    pub progress: &'a dyn Fn(u64),
 }
 
 impl Default for Select<'_> {
     fn default() -> Self {
-        Self { topic: &|_| true, start: None, end: None, latched: true }
+        Self { topic: &|_| true, start: None, end: None, latched: true, progress: &|_| () }
     }
 }

@@ -70,6 +70,7 @@ pub fn copy(
     for message in merged(recordings, &topics, select, &mut repeated) {
         let Some(place) = places.of(&message.channel) else { continue };
         messages += 1;
+        (select.progress)(message.log_time);
         made += write(&mut output, &mut pictures, place, message.log_time, &message)?;
     }
     for record in &extras.metadata {

@@ -30,6 +30,11 @@ pub struct ChannelInfo {
 }
 
 impl ChannelInfo {
+    /// True for messages in CDR of a known type whose definition is not in the recording.
+    pub fn is_without_definition(&self) -> bool {
+        self.schema.is_empty() && !self.ros_type.is_empty() && self.message_encoding == "cdr"
+    }
+
     /// True if the recorded QoS is transient local: late readers get the last message.
     pub fn is_latched(&self) -> bool {
         // rosbag2 writes an integer up to version 8 of its metadata, a word from version 9 on.

@@ -6,6 +6,7 @@ use std::fmt;
 use chrono::{DateTime, SecondsFormat};
 use serde::Serialize;
 
+use super::definition::StoredDefinition;
 use super::error::Warning;
 use super::recording::Recording;
 use crate::ledger::TopicTally;
@@ -57,8 +58,8 @@ pub struct TopicInfo {
     /// ROS type, `grainlab_msgs/msg/Stress`.
     #[serde(rename = "type")]
     pub ros_type: String,
-    /// Definition compared with that of this program: `same`, `mapped` (read by the names of fields), `refused`, or `unknown` (this
-    /// program has no type of the name).
+    /// Definition compared with that of this program: `same`, `mapped` (read by the names of fields), `refused`, `unknown` (this
+    /// program has no type of the name), or `missing` (it is not in the recording).
     pub definition: &'static str,
     /// Messages in the recording.
     pub messages: u64,
@@ -87,7 +88,10 @@ impl Recording {
                 TopicInfo {
                     name: channel.topic.clone(),
                     ros_type: channel.ros_type.clone(),
-                    definition: channel.stored.word(),
+                    definition: match &channel.stored {
+                        StoredDefinition::Unknown if channel.is_without_definition() => "missing",
+                        stored => stored.word(),
+                    },
                     messages: self.count(&channel.topic),
                     latched: channel.is_latched(),
                     published: tally.map(|t| t.published),

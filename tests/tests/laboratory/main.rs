@@ -31,3 +31,4 @@ mod ros2_words;
 mod ros_launch;
 mod stopped;
 mod strangers;
+mod tables;

@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use grainlab_any_message::Shown;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::Exit;
-use grainlab_recordings::Message;
+use grainlab_recordings::{Message, MessagePath};
 use serde::Serialize;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::slice::from_ref;
@@ -17,7 +17,7 @@ Examples:
   grainlab bag cat recordings/runs/demo-1-1 --topics packing_report
   grainlab bag cat run.mcap --regex '/(stress|strain_rate)' --count 10 --format text --max-array 6
 
-Every message is decoded by the schema in the recording. json: one line per message, with topic, type, log_time and
+Every message is decoded by the schema in the recording; where it has none, by that of --msg-path or of ROS 2's common interfaces. json: one line per message, with topic, type, log_time and
 publish_time (ns since 1970), sequence and data; numbers that are not finite are \"NaN\", \"Infinity\" and \"-Infinity\". Arrays are
 complete without --max-array. Exit 3 if a part could not be read or decoded.";
 
@@ -27,6 +27,8 @@ complete without --max-array. Exit 3 if a part could not be read or decoded.";
 pub struct Args {
     #[command(flatten)]
     excerpt: Excerpt,
+    #[command(flatten)]
+    messages: MessagePath,
     /// Print at most this many messages
     #[arg(short = 'n', long, value_name = "N")]
     count: Option<usize>,
@@ -53,7 +55,7 @@ enum Format {
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or stdout fails.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let (recording, selection) = args.excerpt.open()?;
+    let (recording, selection) = args.excerpt.open(&args.messages)?;
     let messages = recording.messages(&selection).map_err(Failure::failed)?;
     let mut decoders = Decoders::default();
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());

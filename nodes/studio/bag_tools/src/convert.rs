@@ -5,9 +5,9 @@ use crate::opened::losses;
 use crate::output::{Form, Job};
 use crate::tables::{TableFormat, Tables, failed};
 use clap::ValueEnum;
-use grainlab_console::{Failure, print, worse};
+use grainlab_console::{Failure, count, print, worse};
 use grainlab_msgs::Exit;
-use grainlab_recordings::NewPath;
+use grainlab_recordings::{MessagePath, NewPath};
 use std::path::PathBuf;
 use std::slice::from_ref;
 
@@ -15,13 +15,17 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab bag convert recordings/runs/demo-1-1 --format csv -o tables
   grainlab bag convert run.mcap --topics stress --format parquet -o tables
+  grainlab bag convert recordings/runs/demo-1-1 --topics microstructure --explode estimates --format csv -o estimates
   grainlab bag convert old --format mcap --compression lz4 -o new
   grainlab bag convert recordings/runs/demo-1-1 --pictures -o pictures.mcap      # for RViz, Foxglove, Lichtblick, Rerun
 
 json, csv, parquet: a new folder with one file per topic: /a/b is a_b.csv. json has the lines of `grainlab bag cat`. csv and
-parquet have one row per message, with log_time and publish_time (ns since 1970; in Parquet timestamps). Fields are flattened: stress.xx. An array with at most --array-columns values in every
-message is as many columns: rate[0]; a longer one is JSON in one column. Values that are not there are empty. mcap: the recording
-written again. --pictures adds /packing/points (sensor_msgs/PointCloud2: x, y, z, radius, id, coordination, normal_force, rattler, and for Rerun radii, colors)
+parquet have one row per message, with log_time and publish_time (ns since 1970; in Parquet timestamps).
+parquet: a message is a struct, an array a list, uint8[] bytes. csv: fields are flattened, stress.xx; an array with at most
+--array-columns values in every message is as many columns, rate[0], a longer one is JSON in one column; values that are not there are empty.
+--explode estimates: a row for each value of the array, with its index from 0; an empty array has no row; a topic without the array has
+a row per message.
+mcap: the recording written again. --pictures adds /packing/points (sensor_msgs/PointCloud2: x, y, z, radius, id, coordination, normal_force, rattler, and for Rerun radii, colors)
 and /packing/markers (visualization_msgs/MarkerArray in the namespaces grains, contacts, cell) in the frame `cell`. Exit 3 if a part could not be read or decoded.";
 
 /// Arguments of `grainlab bag convert`.
@@ -30,6 +34,8 @@ and /packing/markers (visualization_msgs/MarkerArray in the namespaces grains, c
 pub struct Args {
     #[command(flatten)]
     excerpt: Excerpt,
+    #[command(flatten)]
+    messages: MessagePath,
     /// New folder; for mcap a new recording: a directory, or one file if the name ends with .mcap
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -39,7 +45,10 @@ pub struct Args {
     /// Write a recording with pictures of the packings, for viewers that do not read packings
     #[arg(long)]
     pictures: bool,
-    /// Longest array that is written as columns
+    /// Write a row for each value of this array, with the other fields of the message beside it: estimates
+    #[arg(long, value_name = "ARRAY")]
+    explode: Option<String>,
+    /// Longest array that is written as columns of CSV
     #[arg(long, value_name = "N", default_value_t = 36)]
     array_columns: usize,
     #[command(flatten)]
@@ -69,23 +78,36 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         Some(Format::Csv) => TableFormat::Csv,
         Some(Format::Json) => TableFormat::Json,
         Some(Format::Mcap) | None => {
+            if args.explode.is_some() {
+                return Err(Failure::usage("--explode is for tables: choose --format csv, parquet or json"));
+            }
             let Excerpt { path, topics, interval } = &args.excerpt;
             let (paths, pictures) = (from_ref(path), args.pictures);
-            return Job { operation: "convert", paths, topics, interval, latched: true, pictures }
-                .write(&args.output, &args.form);
+            return Job {
+                operation: "convert",
+                paths,
+                topics,
+                interval,
+                latched: true,
+                pictures,
+                schemas: None,
+            }
+            .write(&args.output, &args.form);
         }
     };
     if args.pictures {
         return Err(Failure::usage("--pictures are added to recordings: leave --format out, or choose mcap"));
     }
     args.form.refuse_given()?;
-    let (recording, selection) = args.excerpt.open()?;
+    let (recording, selection) = args.excerpt.open(&args.messages)?;
     let new = NewPath::begin(&args.output).map_err(Failure::usage)?;
     std::fs::create_dir(new.partial()).map_err(|e| failed(&args.output, &e))?;
-    let mut tables = Tables::new(&args.output, new.partial(), format, args.array_columns);
-    let messages = tables.convert(&recording, &selection)?;
+    let mut tables =
+        Tables::new(&args.output, new.partial(), format, args.array_columns, args.explode.as_deref());
+    let rows = tables.convert(&recording, &selection)?;
     let (files, decoders) = tables.finish()?;
     new.finish().map_err(|e| failed(&args.output, &e))?;
-    print(&format!("{}: {messages} messages in {files} files\n", args.output.display()))?;
+    let (rows, files) = (count(rows, "row"), count(files as u64, "file"));
+    print(&format!("{}: {rows} in {files}\n", args.output.display()))?;
     Ok(worse(losses(from_ref(&recording)), decoders.losses()))
 }

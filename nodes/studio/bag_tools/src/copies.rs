@@ -7,6 +7,7 @@ use crate::times::Interval;
 use clap::Subcommand;
 use grainlab_console::Failure;
 use grainlab_msgs::Exit;
+use grainlab_recordings::MessagePath;
 use std::path::PathBuf;
 use std::slice::from_ref;
 
@@ -42,6 +43,13 @@ Examples:
   grainlab bag compress recordings/runs/demo-1-1 --preset zstd_small -o archive
 
 Writes the recording again, with every message. Exit 3 if a part could not be read.";
+
+const ADD_SCHEMAS: &str = "\
+Examples:
+  grainlab bag add-schemas old.mcap --msg-path my_ws/install/share -o complete.mcap
+
+Writes the recording again; a topic that was recorded without the definition of its type gets that in package/msg/Type.msg below --msg-path,
+or that of this program and of ROS 2's common interfaces. Exit 3 if a topic is left without.";
 
 /// Commands that make a recording from others.
 #[derive(Debug, Subcommand)]
@@ -79,6 +87,17 @@ pub enum Copies {
         #[command(flatten)]
         output: Output,
     },
+    /// Write a recording with the definitions of types that it lacks.
+    #[command(after_help = ADD_SCHEMAS)]
+    AddSchemas {
+        /// Run directory or MCAP file
+        #[arg(value_name = "PATH")]
+        path: PathBuf,
+        #[command(flatten)]
+        messages: MessagePath,
+        #[command(flatten)]
+        output: Output,
+    },
     /// Write a recording with another compression.
     #[command(after_help = COMPRESS)]
     Compress {
@@ -109,7 +128,11 @@ pub(crate) fn run(command: &Copies) -> Result<Exit, Failure> {
         Copies::Filter { excerpt: Excerpt { path, topics, interval }, output } => {
             ("filter", from_ref(path), topics, interval, true, output)
         }
+        Copies::AddSchemas { path, output, .. } => {
+            ("add-schemas", from_ref(path), &all, &always, true, output)
+        }
         Copies::Compress { path, output } => ("compress", from_ref(path), &all, &always, true, output),
     };
-    Job { operation, paths, topics, interval, latched, pictures: false }.run(output)
+    let schemas = if let Copies::AddSchemas { messages, .. } = command { Some(messages) } else { None };
+    Job { operation, paths, topics, interval, latched, pictures: false, schemas }.run(output)
 }

@@ -6,7 +6,7 @@ use crate::selection::Topics;
 use grainlab_any_message::Shown;
 use grainlab_console::{Failure, Format, Table, worse};
 use grainlab_msgs::{Exit, Topic};
-use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
+use grainlab_recordings::{ChannelInfo, Message, MessagePath, Recording, Selection};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, HashSet};
@@ -35,6 +35,8 @@ pub struct Args {
     second: PathBuf,
     #[command(flatten)]
     topics: Topics,
+    #[command(flatten)]
+    messages: MessagePath,
     /// Compare the times of publishing, too
     #[arg(long)]
     times: bool,
@@ -65,8 +67,7 @@ struct Compared {
 /// # Errors
 /// If a recording cannot be read, or has no topic that is asked for.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let open = |path: &PathBuf| Recording::open(path).map_err(Failure::failed);
-    let both = [open(&args.first)?, open(&args.second)?];
+    let both = [args.messages.open(&args.first)?, args.messages.open(&args.second)?];
     args.topics.check(&both)?;
     let channels = both.each_ref().map(|recording| {
         let wanted = recording.channels().into_iter().filter(|c| args.topics.take(c));

@@ -3,7 +3,7 @@
 use crate::selection::Topics;
 use crate::times::Interval;
 use grainlab_console::Failure;
-use grainlab_recordings::{Recording, Selection};
+use grainlab_recordings::{MessagePath, Recording, Selection};
 use std::path::PathBuf;
 use std::slice::from_ref;
 
@@ -21,8 +21,8 @@ pub struct Excerpt {
 
 impl Excerpt {
     /// Opens the recording, and selects its messages.
-    pub(crate) fn open(&self) -> Result<(Recording, Selection), Failure> {
-        let recording = Recording::open(&self.path).map_err(Failure::failed)?;
+    pub(crate) fn open(&self, messages: &MessagePath) -> Result<(Recording, Selection), Failure> {
+        let recording = messages.open(&self.path)?;
         self.topics.check(from_ref(&recording))?;
         let (start, end) = self.interval.of(from_ref(&recording))?;
         let wanted = recording.channels().into_iter().filter(|c| self.topics.take(c));

@@ -13,6 +13,7 @@ mod diff;
 mod excerpt;
 mod opened;
 mod output;
+mod progress;
 mod selection;
 mod table;
 mod tables;

@@ -1,12 +1,14 @@
 //! The recording that a command writes.
 
 use crate::opened::losses;
+use crate::progress::Progress;
 use crate::selection::Topics;
 use crate::times::Interval;
 use grainlab_console::{Failure, count, print, say, worse};
 use grainlab_msgs::Exit;
 use grainlab_recordings::copy::{self, CopyOptions, Preset, Select};
-use grainlab_recordings::{Compression, Recording};
+use grainlab_recordings::{ChannelInfo, Compression, MessagePath, Recording};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Output of a copy, and its options.
@@ -82,6 +84,8 @@ pub(crate) struct Job<'a> {
     pub(crate) latched: bool,
     /// Add pictures of packings.
     pub(crate) pictures: bool,
+    /// Add the definitions that are found here to topics without.
+    pub(crate) schemas: Option<&'a MessagePath>,
 }
 
 impl Job<'_> {
@@ -93,12 +97,22 @@ impl Job<'_> {
     /// Copies to `output` with the options of `form`, and prints what was written.
     pub(crate) fn write(&self, output: &Path, form: &Form) -> Result<Exit, Failure> {
         let options = CopyOptions { pictures: self.pictures, ..form.options(self.operation)? };
-        let opened = |path| Recording::open(path).map_err(Failure::failed);
+        let opened = |path| match self.schemas {
+            Some(schemas) => schemas.open(path),
+            None => Recording::open(path).map_err(Failure::failed),
+        };
         let recordings = self.paths.iter().map(|path| opened(path)).collect::<Result<Vec<_>, _>>()?;
         self.topics.check(&recordings)?;
         let (start, end) = self.interval.of(&recordings)?;
-        let select = Select { topic: &|c| self.topics.take(c), start, end, latched: self.latched };
+        let ranges = recordings.iter().filter_map(Recording::time_range);
+        let range = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let progress =
+            Progress::new(range.map(|(a, b)| (start.unwrap_or(a).max(a), end.unwrap_or(b).min(b))));
+        let take = |c: &ChannelInfo| self.topics.take(c);
+        let select =
+            Select { topic: &take, start, end, latched: self.latched, progress: &|time| progress.at(time) };
         let copied = copy::copy(&recordings, &select, output, &options)?;
+        drop(progress);
         copied.notes.iter().for_each(|note| say!("grainlab: {note}"));
         let latched = match copied.latched {
             0 => String::new(),
@@ -115,9 +129,18 @@ impl Job<'_> {
             count(copied.topics.len() as u64, "topic"),
             copied.bytes as f64 * 1e-6
         ))?;
-        let complete = if copied.without_picture == 0 { Exit::Done } else { Exit::DataLoss };
+        let missing = self.schemas.into_iter().flat_map(|_| without_definition(&recordings));
+        let missing = missing.inspect(|line| say!("grainlab: {line}")).count();
+        let complete = if copied.without_picture == 0 && missing == 0 { Exit::Done } else { Exit::DataLoss };
         Ok(worse(losses(&recordings), complete))
     }
+}
+
+/// Topics that have no definition, with the file that is missing.
+fn without_definition(recordings: &[Recording]) -> BTreeSet<String> {
+    let channels = recordings.iter().flat_map(Recording::channels);
+    let missing = channels.filter(|c| c.is_without_definition());
+    missing.map(|c| format!("{}: {}", c.topic, crate::decoders::no_definition(&c.ros_type))).collect()
 }
 
 #[cfg(test)]

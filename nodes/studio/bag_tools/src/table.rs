@@ -1,13 +1,17 @@
-//! Tables of messages: one row per message, one column per number.
-//!
-//! - `shape`: fields and the greatest length of each array, from a schema and the messages
-//! - `columns`: the columns of a shape, and the cells of a message
-//! - `csv`: the file
+//! Messages of a topic as a table.
 
-mod columns;
 mod csv;
+mod parquet;
 mod shape;
 
-pub(crate) use columns::Columns;
-pub(crate) use csv::CsvTable;
+pub(crate) use csv::{Columns, CsvTable};
+pub(crate) use parquet::parquet_table;
 pub(crate) use shape::{MOST_COLUMNS, Shape};
+
+/// The first columns: times of the recording.
+const TIMES: [&str; 2] = ["log_time", "publish_time"];
+
+/// The name of a column of times, with `recording.` in front if a field has it.
+fn free_name(time: &str, is_taken: impl Fn(&str) -> bool) -> String {
+    if is_taken(time) { format!("recording.{time}") } else { time.to_owned() }
+}

@@ -2,16 +2,17 @@
 
 use crate::cat;
 use crate::decoders::{Decoders, schema_of};
-use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape};
-use grainlab_any_message::Shown;
+use crate::progress::Progress;
+use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape, parquet_table};
+use grainlab_any_message::{Exploded, Length, Message as Decoded, Schema, Shown, Value};
 use grainlab_console::Failure;
 use grainlab_parquet::ParquetTable;
 use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Longest name of a file without number and extension: file systems take 255 bytes.
@@ -31,8 +32,10 @@ pub(crate) struct Tables<'a> {
     name: &'a Path,
     folder: &'a Path,
     format: TableFormat,
-    /// Longest array that is written as columns.
+    /// Longest array that is written as columns of CSV.
     widest: usize,
+    /// Array with a row for each of its values.
+    explode: Option<&'a str>,
     list: Vec<Table>,
     /// Place in the list by the address of the channel, which stays its own while it is in here.
     places: BTreeMap<usize, (Arc<ChannelInfo>, Option<usize>)>,
@@ -41,14 +44,18 @@ pub(crate) struct Tables<'a> {
 
 struct Table {
     channel: Arc<ChannelInfo>,
-    shape: Shape,
-    file: Option<TableFile>,
+    /// Path without the extension.
+    base: PathBuf,
+    exploded: Option<Exploded>,
+    file: TableFile,
 }
 
 enum TableFile {
+    /// The shape of the messages, before the file is begun.
+    Shape(Shape),
     Json(BufWriter<File>),
-    Csv(Columns, Box<CsvTable>),
-    Parquet(Columns, Box<ParquetTable<File>>),
+    Csv(Box<CsvTable>),
+    Parquet(Box<ParquetTable<File>>),
 }
 
 /// A failure of the file system or of a library.
@@ -56,44 +63,77 @@ pub(crate) fn failed(path: &Path, error: &dyn Display) -> Failure {
     Failure::failed(format!("{}: {error}", path.display()))
 }
 
-impl<'a> Tables<'a> {
-    pub(crate) fn new(name: &'a Path, folder: &'a Path, format: TableFormat, widest: usize) -> Self {
-        let (list, places, decoders) = (Vec::new(), BTreeMap::new(), Decoders::default());
-        Self { name, folder, format, widest, list, places, decoders }
+impl Table {
+    /// The rows of a message.
+    fn rows(&self, message: Decoded) -> Vec<Decoded> {
+        match &self.exploded {
+            Some(exploded) => exploded.rows(&message),
+            None => vec![message],
+        }
     }
+}
 
-    /// Writes all selected messages; returns their number. The recording is read twice: first for the lengths of arrays.
-    pub(crate) fn convert(&mut self, recording: &Recording, selection: &Selection) -> Result<u64, Failure> {
-        let messages = || recording.messages(selection).map_err(Failure::failed);
-        let mut first = Decoders::default();
-        for message in messages()? {
-            if let Some(place) = self.place(&message)?
-                && self.format != TableFormat::Json
-                && let Some(decoded) = first.decode(&message)
-            {
-                self.list[place].shape.include(&decoded);
+impl TableFile {
+    fn write(&mut self, message: &Message, row: &Decoded) -> Result<(), String> {
+        let times = [message.log_time, message.publish_time];
+        match self {
+            Self::Shape(shape) => {
+                shape.include(row);
+                Ok(())
+            }
+            Self::Json(file) => cat::json(file, message, Shown::new(row)).map_err(|e| e.to_string()),
+            Self::Csv(file) => file.row(times, row).map_err(|e| e.to_string()),
+            Self::Parquet(file) => {
+                let times = times.map(Value::U64);
+                file.row(times.iter().chain(&row.values).map(Some)).map_err(|e| e.to_string())
             }
         }
-        self.create()?;
+    }
+}
+
+impl<'a> Tables<'a> {
+    /// No files yet; `folder` gets them, and is called `name` at the end.
+    pub(crate) fn new(
+        name: &'a Path,
+        folder: &'a Path,
+        format: TableFormat,
+        widest: usize,
+        explode: Option<&'a str>,
+    ) -> Self {
+        let (list, places, decoders) = (Vec::new(), BTreeMap::new(), Decoders::default());
+        Self { name, folder, format, widest, explode, list, places, decoders }
+    }
+
+    /// Writes all selected messages; returns the number of rows. For CSV the recording is read twice: first for the lengths of
+    /// arrays.
+    pub(crate) fn convert(&mut self, recording: &Recording, selection: &Selection) -> Result<u64, Failure> {
+        self.check_explode(recording, selection)?;
+        if self.format == TableFormat::Csv {
+            self.pass(recording, selection)?;
+            self.decoders = Decoders::default();
+            for table in &mut self.list {
+                if let TableFile::Shape(shape) = &table.file {
+                    let columns = Columns::of(shape, self.widest).ok_or_else(|| too_wide(&table.channel))?;
+                    let file = CsvTable::create(&table.base.with_added_extension("csv"), columns);
+                    table.file = TableFile::Csv(Box::new(file.map_err(|e| failed(self.name, &e))?));
+                }
+            }
+        }
+        self.pass(recording, selection)
+    }
+
+    fn pass(&mut self, recording: &Recording, selection: &Selection) -> Result<u64, Failure> {
+        let progress = Progress::new(recording.time_range());
         let mut count = 0;
-        for message in messages()? {
+        for message in recording.messages(selection).map_err(Failure::failed)? {
+            progress.at(message.log_time);
             let decoded = self.decoders.decode(&message);
             let (Some(place), Some(decoded)) = (self.place(&message)?, decoded) else { continue };
-            let (log_time, publish_time) = (message.log_time, message.publish_time);
-            let wrong = |e: &dyn Display| failed(self.name, e);
-            match &mut self.list[place].file {
-                Some(TableFile::Json(file)) => {
-                    cat::json(file, &message, Shown::new(&decoded)).map_err(|e| wrong(&e))?;
-                }
-                Some(TableFile::Csv(columns, file)) => {
-                    file.row(&columns.row(log_time, publish_time, &decoded)).map_err(|e| wrong(&e))?;
-                }
-                Some(TableFile::Parquet(columns, file)) => {
-                    file.row(columns.row(log_time, publish_time, &decoded)).map_err(|e| wrong(&e))?;
-                }
-                None => continue,
+            let table = &mut self.list[place];
+            for row in table.rows(decoded) {
+                table.file.write(&message, &row).map_err(|e| failed(self.name, &e))?;
+                count += 1;
             }
-            count += 1;
         }
         Ok(count)
     }
@@ -101,16 +141,34 @@ impl<'a> Tables<'a> {
     /// Completes the files; returns their number and what could not be decoded.
     pub(crate) fn finish(self) -> Result<(usize, Decoders), Failure> {
         let wrong = |e: &dyn Display| failed(self.name, e);
-        let mut files = 0;
-        for file in self.list.into_iter().filter_map(|table| table.file) {
-            match file {
+        let files = self.list.len();
+        for table in self.list {
+            match table.file {
+                TableFile::Shape(_) => {}
                 TableFile::Json(mut file) => file.flush().map_err(|e| wrong(&e))?,
-                TableFile::Csv(_, file) => file.finish().map_err(|e| wrong(&e))?,
-                TableFile::Parquet(_, file) => file.finish().map_err(|e| wrong(&e))?,
+                TableFile::Csv(file) => file.finish().map_err(|e| wrong(&e))?,
+                TableFile::Parquet(file) => file.finish().map(drop).map_err(|e| wrong(&e))?,
             }
-            files += 1;
         }
         Ok((files, self.decoders))
+    }
+
+    /// An error if no topic has the array to explode.
+    fn check_explode(&self, recording: &Recording, selection: &Selection) -> Result<(), Failure> {
+        let Some(array) = self.explode else { return Ok(()) };
+        let taken = |c: &ChannelInfo| selection.topics.as_ref().is_none_or(|t| t.contains(&c.topic));
+        let channels = recording.channels().into_iter().filter(|c| taken(c));
+        let schemas: Vec<Schema> = channels.filter_map(|c| schema_of(&c).ok()).collect();
+        if schemas.iter().any(|s| Exploded::of(s.root(), array).is_some()) {
+            return Ok(());
+        }
+        let fields = schemas.iter().flat_map(|s| &s.root().fields);
+        let arrays: BTreeSet<&str> =
+            fields.filter(|f| f.kind.length != Length::One).map(|f| f.name.as_str()).collect();
+        let arrays = arrays.into_iter().collect::<Vec<_>>().join(", ");
+        Err(Failure::usage(format!(
+            "--explode {array}: no topic has an array of this name; they have: {arrays}"
+        )))
     }
 
     /// The table of a message; `None` if its type cannot be decoded.
@@ -125,45 +183,39 @@ impl<'a> Tables<'a> {
         if place.is_none()
             && let Ok(schema) = schema_of(channel)
         {
-            let shape = Shape::of(schema.root(), self.widest).ok_or_else(|| too_wide(channel))?;
             place = Some(self.list.len());
-            self.list.push(Table { channel: channel.clone(), shape, file: None });
+            let table = self.begin(channel, &schema)?;
+            self.list.push(table);
         }
         self.places.insert(address, (channel.clone(), place));
         Ok(place)
     }
 
-    /// Creates the files.
-    fn create(&mut self) -> Result<(), Failure> {
-        let mut names: Vec<String> = Vec::new();
-        for table in &mut self.list {
-            let base = file_name(&table.channel.topic)?;
-            let taken = names.iter().filter(|name| **name == base).count();
-            let number = if taken == 0 { String::new() } else { format!(".{}", taken + 1) };
-            let path = |extension: &str| self.folder.join(format!("{base}{number}.{extension}"));
-            let wrong = |e: &dyn Display| failed(self.name, e);
-            let columns = || Columns::of(&table.shape, self.widest).ok_or_else(|| too_wide(&table.channel));
-            table.file = Some(match self.format {
-                TableFormat::Json => {
-                    let file = File::create_new(path("jsonl")).map_err(|e| wrong(&e))?;
-                    TableFile::Json(BufWriter::with_capacity(1 << 16, file))
-                }
-                TableFormat::Csv => {
-                    let columns = columns()?;
-                    let file = CsvTable::create(&path("csv"), &columns.list).map_err(|e| wrong(&e))?;
-                    TableFile::Csv(columns, Box::new(file))
-                }
-                TableFormat::Parquet => {
-                    let columns = columns()?;
-                    let file = File::create_new(path("parquet")).map_err(Into::into);
-                    let file = file.and_then(|file| ParquetTable::new(file, "messages", &columns.list));
-                    let file = file.map_err(|e| wrong(&e))?;
-                    TableFile::Parquet(columns, Box::new(file))
-                }
-            });
-            names.push(base);
-        }
-        Ok(())
+    fn begin(&self, channel: &Arc<ChannelInfo>, schema: &Schema) -> Result<Table, Failure> {
+        let name = file_name(&channel.topic)?;
+        let same = |t: &&Table| file_name(&t.channel.topic).is_ok_and(|other| other == name);
+        let number = match self.list.iter().filter(same).count() {
+            0 => String::new(),
+            taken => format!(".{}", taken + 1),
+        };
+        let base = self.folder.join(format!("{name}{number}"));
+        let exploded = self.explode.and_then(|array| Exploded::of(schema.root(), array));
+        let kind = exploded.as_ref().map_or(schema.root(), Exploded::kind);
+        let wrong = |e: &dyn Display| failed(self.name, e);
+        let file = match self.format {
+            TableFormat::Json => {
+                let file = File::create_new(base.with_added_extension("jsonl")).map_err(|e| wrong(&e))?;
+                TableFile::Json(BufWriter::with_capacity(1 << 16, file))
+            }
+            TableFormat::Csv => {
+                TableFile::Shape(Shape::of(kind, self.widest).ok_or_else(|| too_wide(channel))?)
+            }
+            TableFormat::Parquet => {
+                let file = parquet_table(&base.with_added_extension("parquet"), kind);
+                TableFile::Parquet(Box::new(file.map_err(|e| wrong(&format!("{}: {e}", channel.topic)))?))
+            }
+        };
+        Ok(Table { channel: channel.clone(), base, exploded, file })
     }
 }
 

@@ -4,10 +4,9 @@ use crate::view::{OutputFormat, full_name, shown};
 use grainlab_console::{Failure, Table};
 use grainlab_msgs::Topic;
 use grainlab_node_kit::Exit;
-use grainlab_recordings::Definitions;
+use grainlab_recordings::{Definitions, MessagePath};
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
 /// Levels of messages in each other, as a schema may have.
 const DEEPEST: usize = 64;
@@ -62,19 +61,14 @@ pub enum Command {
 /// The arguments that every command has.
 #[derive(Debug, clap::Args)]
 pub struct Folders {
-    /// Folder with message files, package/msg/Type.msg; may be repeated
-    #[arg(long, value_name = "DIR")]
-    msg_path: Vec<PathBuf>,
+    #[command(flatten)]
+    messages: MessagePath,
     /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: OutputFormat,
 }
 
 impl Folders {
-    fn known(&self) -> Definitions {
-        Definitions::with_folders(&self.msg_path)
-    }
-
     fn list(&self, names: &BTreeSet<String>) -> Result<Exit, Failure> {
         shown(self.format, names, || names.iter().map(|name| format!("{name}\n")).collect())
     }
@@ -97,7 +91,7 @@ struct Row {
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Show { type_name, no_comments, all_comments, common } => {
-            let text = text(&common.known(), type_name)?;
+            let text = text(&common.messages.definitions()?, type_name)?;
             let comments = if *no_comments {
                 0
             } else if *all_comments {
@@ -109,14 +103,14 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
             shown(common.format, &text, || text.clone())
         }
         Command::List { only_msgs, only_srvs, common } => {
-            let mut names = common.known().names();
+            let mut names = common.messages.definitions()?.names();
             names.retain(|name| {
                 !(*only_msgs && name.contains("/srv/") || *only_srvs && name.contains("/msg/"))
             });
             common.list(&names)
         }
         Command::Package { package, common } => {
-            let mut names = common.known().names();
+            let mut names = common.messages.definitions()?.names();
             names.retain(|name| name.split('/').next() == Some(package));
             if names.is_empty() {
                 return Err(Failure::failed(format!(
@@ -126,7 +120,7 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
             common.list(&names)
         }
         Command::Packages(common) => {
-            let names = common.known().names();
+            let names = common.messages.definitions()?.names();
             common.list(&names.iter().filter_map(|name| name.split('/').next()).map(str::to_owned).collect())
         }
         Command::Topics(common) => {

@@ -6,9 +6,8 @@ use clap::ValueEnum;
 use grainlab_any_message::Schema;
 use grainlab_console::{Failure, json, print};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::Definitions;
+use grainlab_recordings::MessagePath;
 use serde::Serialize;
-use std::path::PathBuf;
 
 /// Format of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -114,9 +113,9 @@ pub(crate) fn full_name(type_name: &str) -> String {
 }
 
 /// The schema of a message type, with its full name.
-pub(crate) fn schema(type_name: &str, folders: &[PathBuf]) -> Result<(String, Schema), Failure> {
+pub(crate) fn schema(type_name: &str, messages: &MessagePath) -> Result<(String, Schema), Failure> {
     let full = full_name(type_name);
-    let text = Definitions::with_folders(folders).text(&full, "").map_err(Failure::failed)?;
+    let text = messages.definitions()?.text(&full, "").map_err(Failure::failed)?;
     let schema = Schema::parse(&full, &text).map_err(Failure::failed)?;
     Ok((full, schema))
 }

@@ -1,32 +1,31 @@
-//! Tables of typed columns as Parquet.
+//! Tables of ROS 2 values as Parquet: arrays are lists, messages are structs.
 
-use grainlab_any_message::Primitive;
-use parquet::basic::{LogicalType, Repetition, TimeUnit, Type as PhysicalType};
-use parquet::data_type::{
-    BoolType, ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type,
-};
-use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
-use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
-use parquet::schema::types::Type;
+mod nested;
+mod schema;
+
+use grainlab_any_message::{FieldType, Value};
+use nested::Nested;
+use parquet::basic::Repetition;
+pub use parquet::errors::ParquetError;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::{ColumnPath, Type};
 use std::io::Write;
 use std::sync::Arc;
 
-/// Rows and cells of a row group, whichever is reached first.
-const ROWS: usize = 1 << 16;
-const CELLS: usize = 1 << 21;
-/// Bytes of texts of a row group.
-const TEXT: usize = 64 << 20;
+/// Bytes of a row group in memory.
+const GROUP: usize = 32 << 20;
+/// Rows of a row group.
+const ROWS: usize = 1 << 17;
 
 /// Type of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// ns since 1970.
     Time,
-    /// Numbers, or yes and no.
-    One(Primitive),
-    /// Texts in UTF-8.
-    Text,
+    /// The type of a field: a number, yes or no, a text, a message (struct), or an array of them (list). `uint8[]` is
+    /// bytes.
+    Field(FieldType),
 }
 
 /// Column of a table.
@@ -38,235 +37,93 @@ pub struct Column {
     pub kind: Kind,
 }
 
-/// A value of a row.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Cell {
-    /// Not known: null.
-    Missing,
-    /// Yes or no.
-    Bool(bool),
-    /// A signed integer.
-    Signed(i64),
-    /// An unsigned integer, or a time.
-    Unsigned(u64),
-    /// A number of 32 bits.
-    Single(f32),
-    /// A number of 64 bits.
-    Double(f64),
-    /// Text in UTF-8.
-    Text(String),
-}
-
-/// A Parquet file, written in row groups, not compressed. Every column is optional.
+/// A Parquet file, written in row groups, not compressed.
+///
+/// A column of numbers, texts or times is optional; lists, structs and what is in them are not. A message without fields, and a list
+/// of such, has no column.
 pub struct ParquetTable<W: Write + Send> {
     writer: SerializedFileWriter<W>,
-    kinds: Vec<Kind>,
-    /// The rows of the next row group, column by column.
-    cells: Vec<Vec<Cell>>,
+    is_time: Vec<bool>,
+    /// The rows of the next row group.
+    columns: Vec<Option<Nested>>,
     rows: usize,
-    text: usize,
+    size: usize,
 }
 
 impl<W: Write + Send> ParquetTable<W> {
     /// An empty table of this name, written to `file`.
     ///
     /// # Errors
-    /// If a column cannot be one, or `file` cannot be written.
+    /// If the columns and the messages in them have more than 20,000 fields, or `file` cannot be written.
     pub fn new(file: W, name: &str, columns: &[Column]) -> Result<Self, ParquetError> {
-        let fields = columns.iter().map(|c| field(c).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
+        let mut fields = 0;
+        let types = columns.iter().map(|c| schema::column(c, &mut fields)).collect::<Result<Vec<_>, _>>()?;
+        let fields = types.iter().flatten().cloned().collect();
         let schema = Arc::new(Type::group_type_builder(name).with_fields(fields).build()?);
-        let properties = WriterProperties::builder().set_created_by("grainlab".into()).build();
-        let writer = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
-        let kinds: Vec<Kind> = columns.iter().map(|c| c.kind).collect();
-        Ok(Self { writer, cells: vec![Vec::new(); kinds.len()], kinds, rows: 0, text: 0 })
+        let mut properties = WriterProperties::builder()
+            .set_created_by("grainlab".into())
+            .set_dictionary_enabled(false)
+            .set_statistics_enabled(EnabledStatistics::Chunk);
+        for texts in types.iter().flatten().filter(|t| schema::is_text(t)) {
+            properties = properties.set_column_dictionary_enabled(ColumnPath::from(texts.name()), true);
+        }
+        let writer = SerializedFileWriter::new(file, schema, Arc::new(properties.build()))?;
+        let nested = types.iter().map(|t| t.as_deref().map(|t| Nested::of(t, 0, 0))).collect();
+        let is_time = columns.iter().map(|c| c.kind == Kind::Time).collect();
+        Ok(Self { writer, is_time, columns: nested, rows: 0, size: 0 })
     }
 
-    /// Adds a row, and writes the row group if it is large.
+    /// Adds a row, a value or null for each column, and writes the row group if it is large. A time is [`Value::U64`].
     ///
     /// # Errors
     /// If a time is too late for Parquet, or the file cannot be written.
-    pub fn row(&mut self, row: Vec<Cell>) -> Result<(), ParquetError> {
-        self.push(row)?;
-        if self.rows >= ROWS || self.rows * self.kinds.len() >= CELLS || self.text >= TEXT {
-            self.write_group()?;
-        }
-        Ok(())
-    }
-
-    /// Adds a row to the row group.
-    ///
-    /// # Errors
-    /// If a time is too late for Parquet.
-    pub fn push(&mut self, row: Vec<Cell>) -> Result<(), ParquetError> {
-        for ((column, kind), cell) in self.cells.iter_mut().zip(&self.kinds).zip(row) {
-            if *kind == Kind::Time && matches!(cell, Cell::Unsigned(ns) if i64::try_from(ns).is_err()) {
+    pub fn row<'v>(&mut self, row: impl IntoIterator<Item = Option<&'v Value>>) -> Result<(), ParquetError> {
+        for ((column, is_time), value) in self.columns.iter_mut().zip(&self.is_time).zip(row) {
+            if *is_time && matches!(value, Some(Value::U64(ns)) if i64::try_from(*ns).is_err()) {
                 let why = "a time is after the year 2262, which a Parquet timestamp cannot hold: convert to csv or json";
                 return Err(ParquetError::General(why.to_owned()));
             }
-            if let Cell::Text(text) = &cell {
-                self.text += text.len();
+            if let Some(column) = column {
+                column.push(value, 0, 0, &mut self.size);
             }
-            column.push(cell);
         }
         self.rows += 1;
+        if self.rows >= ROWS || self.size >= GROUP {
+            self.write_group()?;
+        }
         Ok(())
     }
 
-    /// Writes what is left.
+    /// Writes what is left; returns the file.
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn finish(mut self) -> Result<(), ParquetError> {
+    pub fn finish(mut self) -> Result<W, ParquetError> {
         if self.rows > 0 {
             self.write_group()?;
         }
-        self.writer.close().map(drop)
+        self.writer.into_inner()
     }
 
-    /// Writes the rows that were added as one row group.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
-    pub fn write_group(&mut self) -> Result<(), ParquetError> {
+    fn write_group(&mut self) -> Result<(), ParquetError> {
         let mut group = self.writer.next_row_group()?;
-        for (kind, cells) in self.kinds.iter().zip(&mut self.cells) {
-            let Some(mut column) = group.next_column()? else { break };
-            match physical(*kind) {
-                PhysicalType::BOOLEAN => put::<BoolType>(&mut column, cells, |cell| match cell {
-                    Cell::Bool(v) => Some(v),
-                    _ => None,
-                }),
-                PhysicalType::INT32 => put::<Int32Type>(&mut column, cells, |cell| match cell {
-                    Cell::Signed(v) => Some(v as i32),
-                    Cell::Unsigned(v) => Some(v as u32 as i32),
-                    _ => None,
-                }),
-                PhysicalType::INT64 => put::<Int64Type>(&mut column, cells, |cell| match cell {
-                    Cell::Signed(v) => Some(v),
-                    Cell::Unsigned(v) => Some(v as i64),
-                    _ => None,
-                }),
-                PhysicalType::FLOAT => put::<FloatType>(&mut column, cells, |cell| match cell {
-                    Cell::Single(v) => Some(v),
-                    _ => None,
-                }),
-                PhysicalType::DOUBLE => put::<DoubleType>(&mut column, cells, |cell| match cell {
-                    Cell::Double(v) => Some(v),
-                    _ => None,
-                }),
-                _ => put::<ByteArrayType>(&mut column, cells, |cell| match cell {
-                    Cell::Text(text) => Some(ByteArray::from(text.into_bytes())),
-                    _ => None,
-                }),
-            }?;
-            column.close()?;
+        let mut leaves = Vec::new();
+        self.columns.iter_mut().flatten().for_each(|column| column.leaves(&mut leaves));
+        for leaf in leaves {
+            if let Some(column) = group.next_column()? {
+                leaf.write(column)?;
+            }
         }
         group.close()?;
-        (self.rows, self.text) = (0, 0);
+        (self.rows, self.size) = (0, 0);
         Ok(())
     }
 }
 
-fn physical(kind: Kind) -> PhysicalType {
-    match kind {
-        Kind::Time => PhysicalType::INT64,
-        Kind::Text => PhysicalType::BYTE_ARRAY,
-        Kind::One(primitive) => match primitive {
-            Primitive::Bool => PhysicalType::BOOLEAN,
-            Primitive::F32 => PhysicalType::FLOAT,
-            Primitive::F64 => PhysicalType::DOUBLE,
-            Primitive::I64 | Primitive::U64 => PhysicalType::INT64,
-            _ => PhysicalType::INT32,
-        },
-    }
-}
-
-fn field(column: &Column) -> Result<Type, ParquetError> {
-    let integer = |bits: i8, signed: bool| Some(LogicalType::integer(bits, signed));
-    let logical = match column.kind {
-        Kind::Time => Some(LogicalType::timestamp(true, TimeUnit::NANOS)),
-        Kind::Text => Some(LogicalType::String),
-        Kind::One(primitive) => match primitive {
-            Primitive::I8 => integer(8, true),
-            Primitive::U8 => integer(8, false),
-            Primitive::I16 => integer(16, true),
-            Primitive::U16 => integer(16, false),
-            Primitive::U32 => integer(32, false),
-            Primitive::U64 => integer(64, false),
-            _ => None,
-        },
-    };
-    Type::primitive_type_builder(&column.name, physical(column.kind))
-        .with_repetition(Repetition::OPTIONAL)
-        .with_logical_type(logical)
-        .build()
-}
-
-/// Writes one column and empties it; what is missing has definition level 0.
-fn put<T: DataType>(
-    column: &mut SerializedColumnWriter<'_>,
-    cells: &mut Vec<Cell>,
-    value: impl Fn(Cell) -> Option<T::T>,
-) -> Result<(), ParquetError> {
-    let values: Vec<Option<T::T>> = cells.drain(..).map(value).collect();
-    let levels: Vec<i16> = values.iter().map(|v| i16::from(v.is_some())).collect();
-    let known: Vec<T::T> = values.into_iter().flatten().collect();
-    column.typed::<T>().write_batch(&known, Some(&levels), None).map(drop)
+/// Repetition of values that are always there, and of those that may be missing.
+fn repetition(is_optional: bool) -> Repetition {
+    if is_optional { Repetition::OPTIONAL } else { Repetition::REQUIRED }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use bytes::Bytes;
-    use parquet::file::reader::{FileReader, SerializedFileReader};
-    use parquet::record::Field;
-
-    #[test]
-    fn values_of_every_type_are_read_back_and_what_is_missing_is_null() {
-        let column = |name: &str, kind| Column { name: name.into(), kind };
-        let columns = [
-            column("log_time", Kind::Time),
-            column("flag", Kind::One(Primitive::Bool)),
-            column("i8", Kind::One(Primitive::I8)),
-            column("u64", Kind::One(Primitive::U64)),
-            column("f32", Kind::One(Primitive::F32)),
-            column("f64", Kind::One(Primitive::F64)),
-            column("text", Kind::Text),
-        ];
-        let mut file = Vec::new();
-        let mut table = ParquetTable::new(&mut file, "rows", &columns).unwrap();
-        let row = vec![
-            Cell::Unsigned(1_700_000_000_000_000_001),
-            Cell::Bool(true),
-            Cell::Signed(-3),
-            Cell::Unsigned(u64::MAX),
-            Cell::Single(0.5),
-            Cell::Double(f64::INFINITY),
-            Cell::Text("[1,2]".into()),
-        ];
-        let mut late = row.clone();
-        late[0] = Cell::Unsigned(1 << 63);
-        assert!(table.row(late).unwrap_err().to_string().contains("year 2262"), "it would be one of 1677");
-        table.cells.iter_mut().for_each(Vec::clear);
-        let count = CELLS / columns.len() + 2;
-        (1..count).for_each(|_| table.row(row.clone()).unwrap());
-        table.row(vec![Cell::Missing; columns.len()]).unwrap();
-        table.finish().unwrap();
-        let reader = SerializedFileReader::new(Bytes::from(file)).unwrap();
-        assert!(reader.num_row_groups() > 1);
-        let rows: Vec<_> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
-        assert_eq!(rows.len(), count);
-        let values: Vec<&Field> = rows[0].get_column_iter().map(|(_, value)| value).collect();
-        assert!(format!("{:?}", values[0]).contains("1700000000000000001"), "{:?}", values[0]);
-        let expected = [
-            Field::Bool(true),
-            Field::Byte(-3),
-            Field::ULong(u64::MAX),
-            Field::Float(0.5),
-            Field::Double(f64::INFINITY),
-            Field::Str("[1,2]".into()),
-        ];
-        assert_eq!(values[1..].iter().map(|v| (*v).clone()).collect::<Vec<_>>(), expected);
-        assert!(rows[count - 1].get_column_iter().all(|(_, value)| *value == Field::Null));
-    }
-}
+mod tests;

@@ -3,7 +3,7 @@
 use super::recorded::Recorded;
 use grainlab_console::{Failure, Format, Table, count, say};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::{Check, Recording, SeveralRuns, strangers};
+use grainlab_recordings::{Check, SeveralRuns, strangers};
 use serde::Serialize;
 
 pub(super) const EXAMPLES: &str = "\
@@ -17,7 +17,7 @@ of types against those of this program. Exit 0 without faults, else 3; a definit
 ledger that is absent because another program, or a copy, wrote the file: then losses cannot be judged.";
 
 pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
-    let recording = Recording::open(&args.path).map_err(Failure::failed)?;
+    let recording = args.messages.open(&args.path)?;
     let check = recording.check();
     let view = View {
         check,

@@ -4,14 +4,14 @@ use super::recorded::Recorded;
 use grainlab_console::{Failure, Format, Table};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::strangers::{self, StrangerView};
-use grainlab_recordings::{Info, METADATA_RECORD, Recording, SeveralRuns};
+use grainlab_recordings::{Info, METADATA_RECORD, SeveralRuns};
 use serde::Serialize;
 use std::path::PathBuf;
 
 pub(super) const EXAMPLES: &str = "Example:\n  grainlab bag info recordings/runs/demo-1-1 --format json";
 
 pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
-    let recording = Recording::open(&args.path).map_err(Failure::failed)?;
+    let recording = args.messages.open(&args.path)?;
     let view = View {
         info: recording.info(),
         run: recording.metadata(METADATA_RECORD).and_then(|record| record.get("run").cloned()),

@@ -6,7 +6,7 @@ use grainlab_launcher::NodeKind;
 use grainlab_msgs::Topic;
 use grainlab_node_kit::{Exit, NodeSpec, Scope, run_node};
 use grainlab_recorder::{OtherTopics, Recorder, ResultSlot, Settings, SnapshotSettings, contract_topics};
-use grainlab_recordings::{Compression, Definitions, QosOverrides, TopicNames, WriterOptions};
+use grainlab_recordings::{Compression, MessagePath, QosOverrides, TopicNames, WriterOptions};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -49,9 +49,8 @@ pub(crate) struct Args {
     /// Record hidden topics, too: those with a part that begins with an underscore, and /parameter_events
     #[arg(long)]
     include_hidden_topics: bool,
-    /// Folder with message files, package/msg/Type.msg; may be repeated
-    #[arg(long, value_name = "DIR")]
-    msg_path: Vec<PathBuf>,
+    #[command(flatten)]
+    messages: MessagePath,
     /// QoS of readers instead of the adapted one, as a YAML file of rosbag2
     #[arg(long, value_name = "FILE")]
     qos_profile_overrides_path: Option<PathBuf>,
@@ -111,14 +110,11 @@ fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
     if let Some(name) = names.topics.iter().find(not_recorded) {
         contract_topics(std::slice::from_ref(name))?;
     }
-    if let Some(folder) = args.msg_path.iter().find(|folder| !folder.is_dir()) {
-        return Err(Failure::usage(format!("--msg-path {}: there is no such folder", folder.display())));
-    }
     let qos = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose()?;
     let others = OtherTopics {
         names,
         hidden: args.include_hidden_topics,
-        definitions: Definitions::with_folders(&args.msg_path),
+        definitions: args.messages.definitions()?,
         qos: qos.unwrap_or_default(),
     };
     let mut topics = contract_topics(&[])?;

@@ -1,12 +1,12 @@
 //! Fields, and the greatest length of each array.
 
-use grainlab_any_message::{Array, Element, FieldType, Length, Message, MessageType, Primitive, Value};
+use grainlab_any_message::{Array, Element, FieldType, Length, Message, MessageType, Value};
 
 /// The shape of the values of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Shape {
-    One(Primitive),
-    Text,
+    /// A number, yes or no, or a text.
+    One,
     Message(Vec<(String, Shape)>),
     /// An array whose type or messages have at most so many values.
     Array(usize, Box<Shape>),
@@ -36,8 +36,7 @@ impl Shape {
 
     fn field(kind: &FieldType, widest: usize, fields: &mut usize) -> Option<Self> {
         let one = match &kind.element {
-            Element::Primitive(primitive) => Self::One(*primitive),
-            Element::String(_) | Element::WString(_) => Self::Text,
+            Element::Primitive(_) | Element::String(_) | Element::WString(_) => Self::One,
             Element::Message(inner) => Self::message(inner, widest, fields)?,
         };
         let length = match kind.length {

@@ -6,7 +6,7 @@ use crate::view::{Common, OutputFormat, schema, seconds};
 use grainlab_any_message::Shown;
 use grainlab_console::{Failure, print_more, say};
 use grainlab_node_kit::Exit;
-use std::path::PathBuf;
+use grainlab_recordings::MessagePath;
 use std::time::{Duration, Instant};
 
 /// A day: as good as no limit.
@@ -42,9 +42,8 @@ pub struct Args {
     /// Print at most this many values of an array
     #[arg(short = 'l', long, value_name = "N", default_value_t = 128)]
     truncate_length: usize,
-    /// Folder with message files, package/msg/Type.msg
-    #[arg(long, value_name = "DIR")]
-    msg_path: Vec<PathBuf>,
+    #[command(flatten)]
+    messages: MessagePath,
     #[command(flatten)]
     qos: QosArgs,
     #[command(flatten)]
@@ -65,10 +64,10 @@ fn part(message: &Shown<'_>, path: &str) -> Result<String, Failure> {
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let given = args.type_name.as_deref().map(|given| schema(given, &args.msg_path)).transpose()?;
+    let given = args.type_name.as_deref().map(|given| schema(given, &args.messages)).transpose()?;
     let name = given.as_ref().map(|(name, _)| name.as_str());
     let mut listener = Listener::open(&args.topic, name, &args.qos, true, args.common.patience())?;
-    let (_, schema) = given.map_or_else(|| schema(listener.topic.info.type_name, &args.msg_path), Ok)?;
+    let (_, schema) = given.map_or_else(|| schema(listener.topic.info.type_name, &args.messages), Ok)?;
     let longest = if args.full_length { usize::MAX } else { args.truncate_length };
     let wanted = if args.once { Some(1) } else { args.count };
     let end = Instant::now() + args.duration.map_or(DAY, Duration::from_secs_f64);

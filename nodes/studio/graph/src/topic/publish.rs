@@ -6,7 +6,7 @@ use crate::view::{schema, seconds};
 use grainlab_console::{Failure, print_more};
 use grainlab_msgs::Topic;
 use grainlab_node_kit::{Bus, BusError, Exit, Wake, tool_bus};
-use std::path::PathBuf;
+use grainlab_recordings::MessagePath;
 use std::time::{Duration, Instant};
 
 /// Longest sleep while subscriptions are waited for: the graph is looked at then.
@@ -48,9 +48,8 @@ pub struct Args {
     /// Print every Nth message
     #[arg(short, long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     print: u64,
-    /// Folder with message files, package/msg/Type.msg
-    #[arg(long, value_name = "DIR")]
-    msg_path: Vec<PathBuf>,
+    #[command(flatten)]
+    messages: MessagePath,
     #[command(flatten)]
     qos: QosArgs,
 }
@@ -62,7 +61,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             args.rate
         )));
     }
-    let (type_name, schema) = schema(&args.type_name, &args.msg_path)?;
+    let (type_name, schema) = schema(&args.type_name, &args.messages)?;
     let text = args.values.as_deref().unwrap_or("{}");
     let options = serde_saphyr::options! { strict_booleans: true };
     let wrong =

@@ -1,45 +1,42 @@
 //! Tables as Apache Parquet.
 
-use grainlab_any_message::Primitive;
+use grainlab_any_message::{Element, FieldType, Length, Primitive, Value};
 use grainlab_console::{Cell, Failure};
-use grainlab_parquet::{Cell as Value, Column, Kind, ParquetTable};
+use grainlab_parquet::{Column, Kind, ParquetTable};
 
 /// The bytes of a file.
 pub(super) fn write(names: &[String], rows: &[Vec<Cell>]) -> Result<Vec<u8>, Failure> {
     let columns =
         names.iter().enumerate().map(|(c, name)| column(name, c, rows)).collect::<Result<Vec<_>, _>>()?;
-    let value = |cell| typed(cell).map_or(Value::Missing, |(_, value)| value);
-    let mut file = Vec::new();
-    let written = ParquetTable::new(&mut file, "states", &columns).and_then(|mut table| {
-        rows.iter().try_for_each(|row| table.push(row.iter().map(&value).collect()))?;
-        table.write_group()?;
+    let written = ParquetTable::new(Vec::new(), "states", &columns).and_then(|mut table| {
+        for row in rows {
+            let values: Vec<Option<Value>> = row.iter().map(|cell| typed(cell)?.1).collect();
+            table.row(values.iter().map(Option::as_ref))?;
+        }
         table.finish()
     });
-    written.map_err(|e| Failure::failed(format!("Parquet: {e}")))?;
-    Ok(file)
+    written.map_err(|e| Failure::failed(format!("Parquet: {e}")))
 }
 
 /// A column with the type of its values; of numbers if nothing in it is known.
 fn column(name: &str, column: usize, rows: &[Vec<Cell>]) -> Result<Column, Failure> {
     let mut kinds = rows.iter().filter_map(|row| Some(typed(&row[column])?.0));
-    let first = kinds.next().unwrap_or(Kind::One(Primitive::F64));
+    let first = kinds.next().unwrap_or(Element::Primitive(Primitive::F64));
     if kinds.all(|kind| kind == first) {
-        return Ok(Column { name: name.to_owned(), kind: first });
+        let kind = Kind::Field(FieldType { element: first, length: Length::One });
+        return Ok(Column { name: name.to_owned(), kind });
     }
     Err(Failure::failed(format!("Parquet: column {name} has values of several types")))
 }
 
 /// Type and value of a cell; `None` if it is unknown.
-fn typed(cell: &Cell) -> Option<(Kind, Value)> {
+fn typed(cell: &Cell) -> Option<(Element, Option<Value>)> {
     Some(match cell {
         Cell::Unknown => return None,
-        Cell::Number(v) if !v.is_finite() => (Kind::One(Primitive::F64), Value::Missing),
-        Cell::Number(v) => (Kind::One(Primitive::F64), Value::Double(*v)),
-        Cell::Count(n) => {
-            (Kind::One(Primitive::I64), i64::try_from(*n).map_or(Value::Missing, Value::Signed))
-        }
-        Cell::Flag(flag) => (Kind::One(Primitive::Bool), Value::Bool(*flag)),
-        Cell::Text(text) => (Kind::Text, Value::Text(text.clone())),
+        Cell::Number(v) => (Element::Primitive(Primitive::F64), v.is_finite().then_some(Value::F64(*v))),
+        Cell::Count(n) => (Element::Primitive(Primitive::I64), i64::try_from(*n).ok().map(Value::I64)),
+        Cell::Flag(flag) => (Element::Primitive(Primitive::Bool), Some(Value::Bool(*flag))),
+        Cell::Text(text) => (Element::String(None), Some(Value::Text(text.clone()))),
     })
 }
 

@@ -1,0 +1,44 @@
+//! `--msg-path` of commands.
+
+use crate::definitions::Definitions;
+use crate::reader::Recording;
+use grainlab_console::{Failure, say};
+use std::path::{Path, PathBuf};
+
+/// Folders with message files on the command line.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct MessagePath {
+    /// Folder with message files, package/msg/Type.msg; may be repeated
+    #[arg(long, value_name = "DIR")]
+    msg_path: Vec<PathBuf>,
+}
+
+impl MessagePath {
+    /// The definitions in the folders, and those of this program.
+    ///
+    /// # Errors
+    /// If a folder does not exist.
+    pub fn definitions(&self) -> Result<Definitions, Failure> {
+        match self.msg_path.iter().find(|folder| !folder.is_dir()) {
+            Some(folder) => {
+                Err(Failure::usage(format!("--msg-path {}: there is no such folder", folder.display())))
+            }
+            None => Ok(Definitions::with_folders(&self.msg_path)),
+        }
+    }
+
+    /// Opens a recording, and gives topics without a definition those found here, which it says.
+    ///
+    /// # Errors
+    /// If a folder does not exist, or the recording cannot be read.
+    pub fn open(&self, path: &Path) -> Result<Recording, Failure> {
+        let definitions = self.definitions()?;
+        let mut recording = Recording::open(path).map_err(Failure::failed)?;
+        for (topic, type_name) in recording.define(&definitions) {
+            say!(
+                "grainlab: {topic}: the recording has no definition of {type_name}; the one found here is used"
+            );
+        }
+        Ok(recording)
+    }
+}

@@ -1,0 +1,101 @@
+//! Tables of recordings beside rosbags, and definitions that a recording lacks.
+
+use std::path::Path;
+use std::process::Command;
+use system_tests::lab::{Lab, golden};
+use system_tests::python;
+
+const PAGE: &str = include_str!("../../../recordings/README.md");
+
+/// Runs a command that has to end with this exit code; its stdout and stderr.
+fn run(lab: &Lab, arguments: &[&str], code: i32) -> String {
+    let ended = lab.run(arguments);
+    assert_eq!(ended.code, Some(code), "{arguments:?}\n{}{}", ended.stdout, ended.stderr);
+    ended.stdout + &ended.stderr
+}
+
+#[test]
+fn every_value_of_a_parquet_table_is_that_of_rosbags_and_the_recipe_of_the_page_reads_it() {
+    let Some(python) = python::with("rosbags, pandas, pyarrow, polars, duckdb") else { return };
+    let lab = Lab::new();
+    let ours = lab.launch(&golden("scenes/tiny.toml"), &[]);
+    let made = python::tool(&python, "make_bags.py", &[lab.folder().to_str().unwrap()]);
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    for (path, folder) in [(ours.to_str().unwrap(), "tables"), ("rosbags", "others")] {
+        run(&lab, &["bag", "convert", path, "--format", "parquet", "-o", folder], 0);
+        let [path, folder] = [path, folder].map(|p| lab.folder().join(p).to_str().unwrap().to_owned());
+        let compared = python::tool(&python, "compare_parquet.py", &[&path, &folder]);
+        assert!(compared.status.success(), "{}", String::from_utf8_lossy(&compared.stderr));
+    }
+    let recipe = PAGE.split("```python\n").nth(1).unwrap().split("```").next().unwrap();
+    let read = Command::new(&python).args(["-c", recipe]).current_dir(lab.folder()).output().unwrap();
+    let (out, err) = (String::from_utf8_lossy(&read.stdout), String::from_utf8_lossy(&read.stderr));
+    assert!(read.status.success() && out.contains("hertz-mindlin") && out.contains("pressure"), "{out}{err}");
+}
+
+#[test]
+fn an_exploded_array_has_a_row_per_value_and_one_that_no_topic_has_is_refused() {
+    let lab = Lab::new();
+    let source = lab.launch(&golden("scenes/tiny.toml"), &["--one-process"]);
+    let source = source.to_str().unwrap();
+    let convert = |array: &str, format: &str, code| {
+        let form = ["--explode", array, "--format", format, "-o", format];
+        run(&lab, &[&["bag", "convert", source, "--topics", "microstructure"], &form[..]].concat(), code)
+    };
+    convert("estimates", "csv", 0);
+    let text = std::fs::read_to_string(lab.folder().join("csv/microstructure.csv")).unwrap();
+    let rows: Vec<&str> = text.lines().collect();
+    let place = rows[0].split(',').position(|name| name == "model").unwrap();
+    let models: Vec<&str> = rows[1..].iter().map(|row| row.split(',').nth(place).unwrap()).collect();
+    assert!(models.len() > 4 && models.contains(&"relaxed") && models.contains(&"ratio"), "{models:?}");
+    let refused = convert("estimate", "parquet", 2);
+    assert!(refused.contains("they have: estimates"), "{refused}");
+    assert!(!lab.folder().join("parquet").exists(), "nothing is left of it");
+    assert!(convert("estimates", "mcap", 2).contains("--explode is for tables"));
+}
+
+/// Writes a recording with a topic whose definition is not in it.
+fn without_definition(python: &Path, path: &Path) {
+    let script = "import sys; from mcap.writer import Writer; f = open(sys.argv[1], 'wb'); w = Writer(f); w.start('ros2')\n\
+                  for topic, kind, data in [('/odd', 'demo_msgs/msg/Odd', b'\\0\\1\\0\\0\\7'), ('/text', 'std_msgs/msg/String', \
+                  b'\\0\\1\\0\\0\\3\\0\\0\\0hi\\0')]:\n    schema = w.register_schema(kind, '', b'')\n    \
+                  channel = w.register_channel(topic, 'cdr', schema)\n    w.add_message(channel, 5, data, 5)\nw.finish()";
+    let made = Command::new(python).args(["-c", script]).arg(path).output().unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+}
+
+#[test]
+fn definitions_that_a_recording_lacks_come_from_a_folder_and_can_be_added_to_it() {
+    let Some(python) = python::with("mcap, rosbags") else { return };
+    let lab = Lab::new();
+    without_definition(&python, &lab.folder().join("old.mcap"));
+    let folder = lab.folder().join("types/demo_msgs/msg");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("Odd.msg"), "uint8 n\n").unwrap();
+    let path = ["--msg-path", "types"];
+
+    let alone = run(&lab, &["bag", "cat", "old.mcap"], 3);
+    assert!(alone.contains("\"hi\"") && alone.contains("demo_msgs/msg/Odd.msg with --msg-path"), "{alone}");
+    let given = run(&lab, &[&["bag", "cat", "old.mcap"], &path[..]].concat(), 0);
+    assert!(
+        given.contains("{\"n\":7}") && given.contains("/odd: the recording has no definition"),
+        "{given}"
+    );
+    assert!(run(&lab, &["bag", "info", "old.mcap", "--format", "csv"], 0).contains("missing"));
+    run(&lab, &[&["bag", "convert", "old.mcap", "--format", "csv", "-o", "csv"], &path[..]].concat(), 0);
+
+    let part = run(&lab, &["bag", "add-schemas", "old.mcap", "-o", "part.mcap"], 3);
+    assert!(part.contains("/odd: the recording has no definition of demo_msgs/msg/Odd: give"), "{part}");
+    run(&lab, &[&["bag", "add-schemas", "old.mcap", "-o", "new.mcap"], &path[..]].concat(), 0);
+    assert!(run(&lab, &["bag", "cat", "new.mcap"], 0).contains("{\"n\":7}"));
+    let read = "import sys; from rosbags.highlevel import AnyReader; from pathlib import Path\n\
+                with AnyReader([Path(sys.argv[1])]) as r: print([r.deserialize(d, c.msgtype) for c, _, d in r.messages()])";
+    let new = lab.folder().join("new.mcap");
+    let read = Command::new(&python).args(["-c", read]).arg(new).output().unwrap();
+    let out = String::from_utf8_lossy(&read.stdout);
+    assert!(
+        out.contains("n=7") && out.contains("data='hi'"),
+        "{out}{}",
+        String::from_utf8_lossy(&read.stderr)
+    );
+}
