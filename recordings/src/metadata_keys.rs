@@ -12,3 +12,6 @@ pub const LEDGER_KEY: &str = "ledger";
 /// Key of the recorder's session in the metadata record [`METADATA_RECORD`]. The ledger of the last file of a session
 /// covers its earlier files, too.
 pub const SESSION_KEY: &str = "session";
+
+/// Key in the metadata record [`METADATA_RECORD`] of a file that was completed after its recorder was killed.
+pub(crate) const RECOVERED_KEY: &str = "recovered";

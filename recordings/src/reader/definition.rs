@@ -1,14 +1,10 @@
 //! The definition that a recording has of a type of this program.
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use grainlab_any_message::{Comparison, Mapping, Schema};
 use grainlab_msgs::TypeInfo;
-
-use super::recording::Recording;
-use crate::definitions::Definitions;
 
 /// Relation of the messages of a channel to the type of this name in this program. The definition in the recording decides, since
 /// copies may keep a hash of another version; the hash counts where there is no definition.
@@ -86,27 +82,6 @@ impl StoredDefinition {
             Self::Mapped(mapping) => mapping.apply(bytes).map(Cow::Owned).map_err(|e| e.to_string()),
             Self::Refused(_) => Err(self.note().unwrap_or_default()),
         }
-    }
-}
-
-impl Recording {
-    /// Gives the channels without a definition the ones found for their types; returns topic and type of each of them. A type of this
-    /// program that is refused stays so.
-    pub fn define(&mut self, definitions: &Definitions) -> BTreeSet<(String, String)> {
-        let mut defined = BTreeSet::new();
-        for channel in self.files.iter_mut().flat_map(|f| f.index.channels.values_mut()) {
-            if !channel.is_without_definition() || matches!(channel.stored, StoredDefinition::Refused(_)) {
-                continue;
-            }
-            if let Ok(text) = definitions.text(&channel.ros_type, &channel.type_hash) {
-                defined.insert((channel.topic.clone(), channel.ros_type.clone()));
-                let new = Arc::make_mut(channel);
-                new.schema = text.clone().into_bytes();
-                new.definition = text;
-                new.schema_encoding = "ros2msg".to_owned();
-            }
-        }
-        defined
     }
 }
 

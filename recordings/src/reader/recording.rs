@@ -1,12 +1,14 @@
 //! An opened recording: its files, topics, stored files and ledger.
 
 use super::channel::ChannelInfo;
+use super::definition::StoredDefinition;
 use super::error::{self, Warning, WarningKind, no_such_topic};
 use super::file::OpenFile;
 use super::files;
 use super::stored_file::{FileCount, StoredFile};
+use crate::definitions::Definitions;
 use crate::ledger::{TopicTally, merge};
-use crate::metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
+use crate::metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, RECOVERED_KEY, SESSION_KEY};
 use chrono::{DateTime, SecondsFormat};
 use grainlab_console::Failure;
 use std::collections::{BTreeMap, BTreeSet};
@@ -93,6 +95,25 @@ impl Recording {
         self.all_channels().filter_map(line).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
+    /// Gives the channels without a definition the ones found for their types; returns topic and type of each of them. A type of this
+    /// program that is refused stays so.
+    pub fn define(&mut self, definitions: &Definitions) -> BTreeSet<(String, String)> {
+        let mut defined = BTreeSet::new();
+        for channel in self.files.iter_mut().flat_map(|f| f.index.channels.values_mut()) {
+            if !channel.is_without_definition() || matches!(channel.stored, StoredDefinition::Refused(_)) {
+                continue;
+            }
+            if let Ok(text) = definitions.text(&channel.ros_type, &channel.type_hash) {
+                defined.insert((channel.topic.clone(), channel.ros_type.clone()));
+                let new = Arc::make_mut(channel);
+                new.schema = text.clone().into_bytes();
+                new.definition = text;
+                new.schema_encoding = "ros2msg".to_owned();
+            }
+        }
+        defined
+    }
+
     /// All channels of all files; a topic may have several, of several files or publishers.
     pub(crate) fn all_channels(&self) -> impl Iterator<Item = &Arc<ChannelInfo>> {
         self.files.iter().flat_map(|f| f.index.channels.values())
@@ -165,6 +186,15 @@ impl Recording {
     /// The files of this program's recorder without a ledger: it was killed, or is still running.
     pub fn unaccounted(&self) -> Vec<PathBuf> {
         self.without_ledger(is_of_a_recorder)
+    }
+
+    /// The files that were completed after their recorder was killed.
+    pub(super) fn recovered(&self) -> Vec<PathBuf> {
+        let is_recovered = |file: &&OpenFile| {
+            let record = file.metadata(METADATA_RECORD, |w| self.warn(w));
+            record.is_some_and(|record| record.contains_key(RECOVERED_KEY))
+        };
+        self.files.iter().filter(is_recovered).map(|f| f.path.clone()).collect()
     }
 
     /// The files that never had a ledger: copies, and those of other programs.

@@ -32,6 +32,8 @@ pub struct Check {
     pub lost: Option<u64>,
     /// Files without a ledger whose recorder was killed, or is still running.
     pub unaccounted: Vec<PathBuf>,
+    /// Those of a killed recorder that were recovered: all that is left of them is in the recording.
+    pub recovered: Vec<PathBuf>,
     /// Files that never had a ledger, copies and those of other programs: their losses cannot be judged.
     pub unjudged: Vec<PathBuf>,
     /// Topics whose definition is not that of this program, with what differs.
@@ -68,6 +70,8 @@ impl Recording {
                 }
             }
         }
+        let recovered = self.recovered();
+        let (recovered, unaccounted) = unaccounted.into_iter().partition(|path| recovered.contains(path));
         Check {
             files: self.paths(),
             bytes: self.size(),
@@ -77,6 +81,7 @@ impl Recording {
             attachments: found.attachments,
             lost: ledger.map(|l| l.iter().map(|t| t.lost).fold(0, u64::saturating_add)),
             unaccounted,
+            recovered,
             unjudged: self.unjudged(),
             definitions: self.differing(),
             refused: self.all_channels().any(|c| matches!(c.stored, StoredDefinition::Refused(_))),

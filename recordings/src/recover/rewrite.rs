@@ -9,7 +9,7 @@ use std::path::Path;
 use mcap::records::{Channel, MessageHeader, Metadata, Record, SchemaHeader, op};
 use mcap::{Attachment, McapError};
 
-use crate::metadata_keys::METADATA_RECORD;
+use crate::metadata_keys::{METADATA_RECORD, RECOVERED_KEY};
 use crate::reader::{Recording, Walked, Warning, WarningKind, place, walk};
 use crate::writer::part;
 
@@ -143,7 +143,7 @@ impl Copy {
 
     fn finish(mut self, unreadable: Vec<Warning>) -> Result<Written, McapError> {
         let mut metadata = std::mem::take(&mut self.known);
-        metadata.insert("recovered".into(), "true".into());
+        metadata.insert(RECOVERED_KEY.into(), "true".into());
         metadata.entry("finished".into()).or_insert_with(|| "false".into());
         let texts: Vec<String> = unreadable.iter().map(ToString::to_string).collect();
         metadata.insert("recovered_without".into(), serde_json::Value::from(texts).to_string());

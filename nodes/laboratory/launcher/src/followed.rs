@@ -175,6 +175,11 @@ impl Followed {
         self.reasons.push(reason);
     }
 
+    /// True if the end of this process was a reason already.
+    pub(super) fn has_blamed(&self, node: NodeKind) -> bool {
+        self.reasons.iter().any(|reason| reason.starts_with(&format!("{node} ended")))
+    }
+
     /// Data of an external instrument do not belong to a packing of the run.
     fn note_result(&mut self, topic: &'static str, step: u64) {
         if step > 0 {

@@ -189,9 +189,11 @@ impl OneProcess {
             exit = simulator;
         }
         if recorder != Exit::Done && exit != Exit::Usage {
-            let code = recorder.code();
-            let text = format!("{0} ended with exit code {code}: see logs/{0}.log", NodeKind::Recorder);
-            self.followed.complain(text);
+            if !self.followed.has_blamed(NodeKind::Recorder) {
+                let code = recorder.code();
+                let text = format!("{0} ended with exit code {code}: see logs/{0}.log", NodeKind::Recorder);
+                self.followed.complain(text);
+            }
             exit = worse(exit, Exit::DataLoss);
         }
         Ok(exit)

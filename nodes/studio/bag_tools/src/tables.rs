@@ -3,10 +3,10 @@
 use crate::cat;
 use crate::decoders::{Decoders, schema_of};
 use crate::progress::Progress;
-use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape, parquet_table};
-use grainlab_any_message::{Exploded, Length, Message as Decoded, Schema, Shown, Value};
+use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape, time_columns};
+use grainlab_any_message::{Exploded, Length, Message as Decoded, MessageType, Schema, Shown, Value};
 use grainlab_console::Failure;
-use grainlab_parquet::ParquetTable;
+use grainlab_parquet::{Column, Kind, ParquetError, ParquetTable};
 use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
@@ -217,6 +217,15 @@ impl<'a> Tables<'a> {
         };
         Ok(Table { channel: channel.clone(), base, exploded, file })
     }
+}
+
+/// A Parquet file for the messages of a type.
+fn parquet_table(path: &Path, kind: &MessageType) -> Result<ParquetTable<File>, ParquetError> {
+    let times = time_columns(|time| kind.fields.iter().any(|f| f.name == time));
+    let fields = kind.fields.iter().map(|f| (f.name.clone(), Kind::Field(f.kind.clone())));
+    let columns = times.map(|name| (name, Kind::Time)).into_iter().chain(fields);
+    let columns: Vec<Column> = columns.map(|(name, kind)| Column { name, kind }).collect();
+    ParquetTable::new(File::create_new(path)?, "messages", &columns)
 }
 
 fn too_wide(channel: &ChannelInfo) -> Failure {

@@ -3,13 +3,13 @@
 mod nested;
 mod schema;
 
-use grainlab_any_message::{FieldType, Value};
+use grainlab_any_message::Value;
 use nested::Nested;
-use parquet::basic::Repetition;
 pub use parquet::errors::ParquetError;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{ColumnPath, Type};
+pub use schema::{Column, Kind};
 use std::io::Write;
 use std::sync::Arc;
 
@@ -17,25 +17,6 @@ use std::sync::Arc;
 const GROUP: usize = 32 << 20;
 /// Rows of a row group.
 const ROWS: usize = 1 << 17;
-
-/// Type of a column.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// ns since 1970.
-    Time,
-    /// The type of a field: a number, yes or no, a text, a message (struct), or an array of them (list). `uint8[]` is
-    /// bytes.
-    Field(FieldType),
-}
-
-/// Column of a table.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
-    /// In the header.
-    pub name: String,
-    /// Type of its values.
-    pub kind: Kind,
-}
 
 /// A Parquet file, written in row groups, not compressed.
 ///
@@ -118,11 +99,6 @@ impl<W: Write + Send> ParquetTable<W> {
         (self.rows, self.size) = (0, 0);
         Ok(())
     }
-}
-
-/// Repetition of values that are always there, and of those that may be missing.
-fn repetition(is_optional: bool) -> Repetition {
-    if is_optional { Repetition::OPTIONAL } else { Repetition::REQUIRED }
 }
 
 #[cfg(test)]

@@ -1,11 +1,29 @@
 //! Types of ROS 2 as types of Parquet.
 
-use super::{Column, Kind, repetition};
 use grainlab_any_message::{Element, FieldType, Length, Primitive};
 use parquet::basic::{LogicalType, Repetition, TimeUnit, Type as Physical};
 use parquet::errors::ParquetError;
 use parquet::schema::types::{Type, TypePtr};
 use std::sync::Arc;
+
+/// Type of a column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// ns since 1970.
+    Time,
+    /// The type of a field: a number, yes or no, a text, a message (struct), or an array of them (list). `uint8[]` is
+    /// bytes.
+    Field(FieldType),
+}
+
+/// Column of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// In the header.
+    pub name: String,
+    /// Type of its values.
+    pub kind: Kind,
+}
 
 /// Fields of a type and of the messages in it.
 const MOST: usize = 20_000;
@@ -90,7 +108,8 @@ fn leaf(
     logical: Option<LogicalType>,
     is_optional: bool,
 ) -> Result<TypePtr, ParquetError> {
-    let leaf = Type::primitive_type_builder(name, physical).with_repetition(repetition(is_optional));
+    let repetition = if is_optional { Repetition::OPTIONAL } else { Repetition::REQUIRED };
+    let leaf = Type::primitive_type_builder(name, physical).with_repetition(repetition);
     leaf.with_logical_type(logical).build().map(Arc::new)
 }
 

@@ -1,6 +1,6 @@
 use super::*;
 use bytes::Bytes;
-use grainlab_any_message::{Element, Length, Message, Primitive, Schema};
+use grainlab_any_message::{Element, FieldType, Length, Message, Primitive, Schema};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row};
 

@@ -14,7 +14,7 @@ Examples:
 Reads every record: framing, checksums of chunks, attachments, summary and data, the index against the messages, the order
 of files, the recorder's ledger against the messages, what its recorder noted as disputed between processes, and the definitions
 of types against those of this program. Exit 0 without faults, else 3; a definition that is read by the names of its fields is no fault, nor are several runs in one recording, nor a
-ledger that is absent because another program, or a copy, wrote the file: then losses cannot be judged.";
+ledger that is absent because another program, a copy, or `bag recover` wrote the file: then losses cannot be judged.";
 
 pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
     let recording = args.messages.open(&args.path)?;
@@ -68,6 +68,10 @@ fn text(view: &View) -> String {
     lines.extend(check.warnings.iter().map(ToString::to_string));
     for path in &check.unaccounted {
         let what = "it has no ledger: its recorder was killed, or is still running";
+        lines.push(format!("{}: {what}", path.display()));
+    }
+    for path in &check.recovered {
+        let what = "it was recovered after its recorder was killed: messages that were not yet in the file are in no count";
         lines.push(format!("{}: {what}", path.display()));
     }
     if let Some(lost) = check.lost.filter(|n| *n > 0) {

@@ -41,6 +41,11 @@ pub(super) fn finish(
 ) -> Result<Exit, Failure> {
     let mut exit = supervised.exit;
     let recording = Recording::open(directory);
+    let mut recorders = supervised.children.iter().filter(|c| c.plan.is(NodeKind::Recorder));
+    if recording.is_err() && recorders.any(|c| c.code == Some(i32::from(Exit::Failure.code()))) {
+        // The recorder could not begin, which was printed: there is nothing to sum up.
+        return Ok(Exit::Failure);
+    }
     let (mut back, tallies) = match &recording {
         Ok(recording) => (read_back::read(recording), recording.ledger()),
         Err(error) => (ReadBack::failed(error), None),

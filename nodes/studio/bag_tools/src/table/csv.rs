@@ -1,6 +1,6 @@
 //! Tables as CSV files: fields as `stress.xx`, short arrays as `rate[0]`.
 
-use super::shape::{MOST_COLUMNS, Shape};
+use super::shape::{MOST_COLUMNS, Shape, time_columns};
 use grainlab_any_message::{Array, Message, Value};
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -27,7 +27,7 @@ impl Columns {
     pub(crate) fn of(shape: &Shape, widest: usize) -> Option<Self> {
         let mut names = Vec::new();
         name_columns(shape, "", widest, &mut names)?;
-        let times = super::TIMES.map(|time| super::free_name(time, |name| names.iter().any(|n| n == name)));
+        let times = time_columns(|time| names.iter().any(|name| name == time));
         names.splice(0..0, times);
         Some(Self { names, shape: shape.clone(), widest })
     }

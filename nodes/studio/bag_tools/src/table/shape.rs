@@ -2,6 +2,12 @@
 
 use grainlab_any_message::{Array, Element, FieldType, Length, Message, MessageType, Value};
 
+/// The first columns, times of the recording; with `recording.` in front if a field has the name.
+pub(crate) fn time_columns(is_field: impl Fn(&str) -> bool) -> [String; 2] {
+    ["log_time", "publish_time"]
+        .map(|time| if is_field(time) { format!("recording.{time}") } else { time.to_owned() })
+}
+
 /// The shape of the values of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Shape {
