@@ -1,26 +1,21 @@
 #!/usr/bin/env python3
 """A third-party acoustic instrument: sends one set of wave speeds, prints the microstructure received.
 
-   pip install cyclonedds==11.0.1       # no ROS, and only the message files of this project
+   pip install ../../msgs               # the message types for CycloneDDS: no ROS, nothing else of this project
    ROS_DOMAIN_ID=77 instrument.py       # while `grainlab run emt_inversion` runs in the same domain
 
 The answer is the one with the name and the stamp of what was sent: a late reader first receives the answer to somebody else's data.
 With --json what was sent and what came back are printed whole. Ends with 4 if the speeds are refused, or no model has an estimate.
-CYCLONEDDS_URI, if set, chooses the network; else it is this host alone.
 """
 import json
-import os
 import sys
 import time
 from dataclasses import asdict
+from pathlib import Path
 
-os.environ.setdefault("CYCLONEDDS_URI", '<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" '
-                      'multicast="true"/></Interfaces></General></Domain></CycloneDDS>')
-from cyclonedds.domain import DomainParticipant  # noqa: E402 (reads the variable)
-from cyclonedds.pub import DataWriter  # noqa: E402
-from cyclonedds.sub import DataReader  # noqa: E402
-from cyclonedds.topic import Topic  # noqa: E402
-from ros_messages import LATCHED, message  # noqa: E402
+# The message types of a folder above, if they are not installed.
+sys.path += [str(folder / "msgs/python") for folder in Path(__file__).resolve().parents]
+from grainlab_msgs import LATCHED, message, participant, reader, writer  # noqa: E402 (the path above)
 
 WaveSpeeds, WaveSpeed = message("grainlab_msgs/msg/WaveSpeeds"), message("grainlab_msgs/msg/WaveSpeed")
 Microstructure, Vector3 = message("grainlab_msgs/msg/Microstructure"), message("geometry_msgs/msg/Vector3")
@@ -40,18 +35,13 @@ def measurement():
                       grain_poisson_ratio=0.2, speeds=speeds)
 
 
-def domain():
-    return int(os.environ.get("ROS_DOMAIN_ID", "0"))
-
-
 class Instrument:
     """A writer of wave speeds and a reader of the estimates, once both have discovered the inversion."""
 
     def __init__(self, seconds=20.0):
-        self.participant = DomainParticipant(domain())
-        topic = lambda name, kind: Topic(self.participant, "rt/" + name, kind, qos=LATCHED)
-        self.reader = DataReader(self.participant, topic("microstructure", Microstructure), qos=LATCHED)
-        self.writer = DataWriter(self.participant, topic("wave_speeds", WaveSpeeds), qos=LATCHED)
+        self.participant = participant()
+        self.reader = reader(self.participant, "microstructure", Microstructure, LATCHED)
+        self.writer = writer(self.participant, "wave_speeds", WaveSpeeds, LATCHED)
         running = "is `grainlab run emt_inversion` running in this ROS_DOMAIN_ID?"
         self.until(lambda: self.writer.get_matched_subscriptions(), seconds, f"nobody reads wave_speeds: {running}")
         self.until(lambda: self.reader.get_matched_publications(), seconds, f"nobody writes microstructure: {running}")

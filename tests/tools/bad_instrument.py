@@ -16,11 +16,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "nodes" / "launch"))
 import instrument as lab  # noqa: E402 (the path above; sets CYCLONEDDS_URI)
 from cyclonedds.core import Policy, Qos  # noqa: E402
-from cyclonedds.domain import DomainParticipant  # noqa: E402
 from cyclonedds.idl import IdlStruct  # noqa: E402
 from cyclonedds.idl.annotations import final  # noqa: E402
 from cyclonedds.idl.types import uint32  # noqa: E402
-from ros_messages import LATCHED, message  # noqa: E402
+from grainlab_msgs import LATCHED, message  # noqa: E402
 
 TYPE = "grainlab_msgs::msg::dds_::WaveSpeeds_"
 
@@ -59,9 +58,8 @@ def bad():
 
 def send_as(kind, sample):
     """From a separate participant: in one participant a topic has one type."""
-    participant = DomainParticipant(lab.domain())
-    topic = lab.Topic(participant, "rt/wave_speeds", kind, qos=LATCHED)
-    writer = lab.DataWriter(participant, topic, qos=LATCHED)
+    participant = lab.participant()
+    writer = lab.writer(participant, "wave_speeds", kind, LATCHED)
     peer.until(writer.get_matched_subscriptions, 20.0, f"nobody reads {kind.__name__}")
     writer.write(sample)
     return participant, writer
@@ -80,8 +78,7 @@ def refused():
 peer = lab.Instrument()
 qos = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Policy.History.KeepLast(64))
 DiagnosticArray = message("diagnostic_msgs/msg/DiagnosticArray")
-diagnostics = lab.DataReader(
-    peer.participant, lab.Topic(peer.participant, "rt/diagnostics", DiagnosticArray, qos=qos), qos=qos)
+diagnostics = lab.reader(peer.participant, "diagnostics", DiagnosticArray, qos)
 latest = [0]
 
 sent = lab.measurement()

@@ -10,9 +10,11 @@ import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "nodes" / "launch"))
-import instrument as lab  # noqa: E402 (the path above; sets CYCLONEDDS_URI)
-from cyclonedds.core import Listener, Policy, Qos  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "msgs/python"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "nodes/launch"))
+import grainlab_msgs as lab  # noqa: E402 (the path above; sets CYCLONEDDS_URI)
+from servo import Stress, StrainRate, Waker, answer  # noqa: E402
+from cyclonedds.core import Policy, Qos  # noqa: E402
 from cyclonedds.domain import DomainParticipant  # noqa: E402
 from cyclonedds.idl import IdlStruct  # noqa: E402
 from cyclonedds.idl.annotations import final  # noqa: E402
@@ -21,10 +23,8 @@ from cyclonedds.pub import DataWriter  # noqa: E402
 from cyclonedds.sub import DataReader  # noqa: E402
 from cyclonedds.topic import Topic  # noqa: E402
 from cyclonedds.util import duration  # noqa: E402
-from ros_messages import LATCHED, message  # noqa: E402
+from grainlab_msgs import LATCHED, STREAM, message  # noqa: E402
 
-STREAM = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.Volatile, Policy.History.KeepLast(1000),
-             Policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False))
 SAMPLED = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Policy.History.KeepLast(1000),
               Policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False))
 # Messages of a topic to print: enough to compare, few enough to read.
@@ -79,43 +79,12 @@ def listen(seconds, *topics):
     return {"nodes": sorted(nodes), "topics": heard}
 
 
-def rate(stress):
-    """The scaled law: (stress - setpoint) / (tangent response_time), at most rate_limit; held components are 0."""
-    names = ("xx", "yy", "zz", "yz", "xz", "xy")
-    rates, saturated = [], []
-    for i, name in enumerate(names):
-        mode, value = stress.mode[i], 0.0
-        if mode == 2:
-            value = stress.setpoint[i]
-        elif mode == 1:
-            tangent = getattr(stress.tangent[0], name) if stress.tangent else 0.0
-            value = (getattr(stress.stress, name) - stress.setpoint[i]) / (tangent * stress.response_time) if tangent else 0.0
-        limited = max(-stress.rate_limit, min(stress.rate_limit, value))
-        rates.append(limited)
-        saturated.append(limited != value)
-    return rates, saturated
-
-
-class Waker(Listener):
-    """Wakes the servo when a stress arrives, without a pause that would hold the simulator up."""
-
-    def __init__(self):
-        super().__init__()
-        import threading
-        self.arrived = threading.Event()
-
-    def on_data_available(self, reader):
-        self.arrived.set()
-
-
 def servo(exchanges):
     wanted = int(exchanges)
-    Stress, StrainRate = message("grainlab_msgs/msg/Stress"), message("grainlab_msgs/msg/StrainRate")
     participant = DomainParticipant(lab.domain())
     waker = Waker()
-    topic = Topic(participant, "rt/stress", Stress, qos=STREAM)
-    stresses = DataReader(participant, topic, qos=STREAM, listener=waker)
-    writer = DataWriter(participant, Topic(participant, "rt/strain_rate", StrainRate, qos=STREAM), qos=STREAM)
+    stresses = lab.reader(participant, "stress", Stress, STREAM, listener=waker)
+    writer = lab.writer(participant, "strain_rate", StrainRate, STREAM)
     clock = reader(participant, "rt/clock", message("rosgraph_msgs/msg/Clock"), STREAM)
     answered, repeated, missed, expected, clocks = 0, 0, 0, None, 0
     quiet = time.monotonic() + 60.0
@@ -133,8 +102,7 @@ def servo(exchanges):
                 missed += 0 if expected is None else stress.sequence - expected
                 expected = stress.sequence + 1
                 answered += 1
-            rates, saturated = rate(stress)
-            writer.write(StrainRate(header=stress.header, sequence=stress.sequence, rate=rates, saturated=saturated))
+            writer.write(answer(stress))
     return {"answered": answered, "repeated": repeated, "missed": missed, "clocks": clocks}
 
 

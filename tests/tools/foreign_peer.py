@@ -12,8 +12,8 @@ import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "nodes" / "launch"))
-import instrument as lab  # noqa: E402 (the path above; sets CYCLONEDDS_URI)
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "msgs/python"))
+import grainlab_msgs as lab  # noqa: E402 (the path above; sets CYCLONEDDS_URI)
 from cyclonedds.core import Policy, Qos  # noqa: E402
 from cyclonedds.domain import DomainParticipant  # noqa: E402
 from cyclonedds.idl import IdlStruct  # noqa: E402
@@ -23,7 +23,7 @@ from cyclonedds.pub import DataWriter  # noqa: E402
 from cyclonedds.sub import DataReader  # noqa: E402
 from cyclonedds.topic import Topic  # noqa: E402
 from cyclonedds.util import duration  # noqa: E402
-from ros_messages import message  # noqa: E402
+from grainlab_msgs import message  # noqa: E402
 
 MESSAGES, LIMIT = 30, 40.0
 Header = message("std_msgs/msg/Header")

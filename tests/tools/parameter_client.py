@@ -15,8 +15,8 @@ import types
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "nodes" / "launch"))
-import instrument as lab  # noqa: E402 (the path above; sets CYCLONEDDS_URI)
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "msgs/python"))
+import grainlab_msgs as lab  # noqa: E402 (the path above; sets CYCLONEDDS_URI)
 from cyclonedds.core import Policy, Qos  # noqa: E402
 from cyclonedds.domain import DomainParticipant  # noqa: E402
 from cyclonedds.idl import IdlStruct  # noqa: E402

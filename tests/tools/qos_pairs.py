@@ -8,15 +8,14 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "nodes/launch"))
-from instrument import domain  # noqa: E402 (sets the network)
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "msgs/python"))
+from grainlab_msgs import domain, message  # noqa: E402 (sets the network)
 from cyclonedds.core import Policy, Qos  # noqa: E402
 from cyclonedds.domain import DomainParticipant  # noqa: E402
 from cyclonedds.pub import DataWriter  # noqa: E402
 from cyclonedds.sub import DataReader  # noqa: E402
 from cyclonedds.topic import Topic  # noqa: E402
 from cyclonedds.util import duration  # noqa: E402
-from ros_messages import message  # noqa: E402
 
 reliable, best_effort = Policy.Reliability.Reliable(duration(seconds=1)), Policy.Reliability.BestEffort
 latched, volatile = Policy.Durability.TransientLocal, Policy.Durability.Volatile

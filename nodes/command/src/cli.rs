@@ -2,7 +2,7 @@
 
 use crate::commands::{analyze, bag, completions, invert, launch, man, pick, probe, run, scene};
 #[cfg(feature = "studio")]
-use crate::commands::{calibrate, campaign, report, reproduce, verify, view};
+use crate::commands::{calibrate, campaign, new, report, reproduce, verify, view};
 use clap::{CommandFactory, Parser, Subcommand};
 #[cfg(feature = "studio")]
 use grainlab_bench as bench;
@@ -87,6 +87,9 @@ enum Studio {
     Interface(interface::Command),
     /// Find what keeps nodes from working together: QoS, types, names, network.
     Doctor(doctor::Args),
+    /// Write a node of your own in Python or Rust, with a launch file and a test.
+    #[command(subcommand)]
+    New(new::NewCommand),
     /// Compare with other codes and the literature: one table of numbers, tolerances and verdicts.
     Verify(verify::Args),
     /// Measure cost and accuracy on this machine.
@@ -140,6 +143,7 @@ fn studio(command: &Studio) -> Result<Exit, Failure> {
         Studio::Service(command) => service::run(command),
         Studio::Interface(command) => interface::run(command),
         Studio::Doctor(args) => doctor::run(args),
+        Studio::New(command) => new::run(command),
         Studio::Verify(args) => verify::run(args),
         Studio::Bench(command) => bench::run(command),
     }

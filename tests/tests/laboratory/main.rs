@@ -18,6 +18,7 @@ mod live;
 mod main_job;
 mod messages;
 mod namespaces;
+mod new_nodes;
 mod one_process;
 mod other_dds;
 mod paper;

@@ -10,6 +10,8 @@ pub(crate) mod completions;
 pub(crate) mod invert;
 pub(crate) mod launch;
 pub(crate) mod man;
+#[cfg(feature = "studio")]
+pub(crate) mod new;
 pub(crate) mod packings;
 pub(crate) mod pick;
 pub(crate) mod probe;
