@@ -1,6 +1,6 @@
 #!/bin/sh
-# Checks that each vendored crate is the published one with the changes of nodes/vendor/CRATE.patch, and nothing else.
-# With --update, writes those patches anew from the vendored trees.
+# Checks that each vendored crate is the published one with the patches of nodes/vendor/patches/CRATE in order, and nothing else.
+# With --update, writes what the patches leave as one more patch, whose message is to be filled in.
 set -eu
 
 update=${1-}
@@ -12,7 +12,7 @@ trap 'rm -rf "$work"' EXIT
 check() {
     name=$1 version=$2 commit=$3 parts=$4
     vendored=$root/nodes/vendor/$name
-    patch=$root/nodes/vendor/$name.patch
+    patches=$root/nodes/vendor/patches/$name
     here=$work/$name
 
     # A separate manifest, so that the [patch] of the workspace does not apply.
@@ -41,6 +41,10 @@ MANIFEST
         cp -R "$published/$part" "$here/a/$part"
         cp -R "$vendored/$part" "$here/b/$part"
     done
+    for patch in "$patches"/*.patch; do
+        (cd "$here/a" && patch --quiet -p1 < "$patch")
+    done
+    find "$here/a" -name '*.orig' -delete
     rm -rf "$here/a/src/bin" "$here/a/src/ros2" "$here/a/src/ros2.rs"
     for part in "$vendored"/* "$vendored"/.[!.]*; do
         case ${part##*/} in
@@ -49,19 +53,24 @@ MANIFEST
         esac
     done
 
-    if [ "$update" = --update ]; then
-        # Times would make every patch different.
-        (cd "$here" && diff -ruN a b) | sed -E 's/^((---|\+\+\+) [^\t]+)\t.*/\1/; /^diff -ruN /d' > "$patch" || true
-        echo "$patch: $(grep -c '^+[^+]' "$patch") lines added, $(grep -c '^-[^-]' "$patch") removed"
+    if [ "$update" = --update ] && ! diff -rq "$here/a" "$here/b" > "$here/differing"; then
+        number=$(ls "$patches" | tail -n 1 | cut -c1-4 | sed 's/^0*//')
+        patch=$patches/$(printf '%04d' $((number + 1)))-new.patch
+        {
+            printf 'From: AUTHOR\nSubject: [PATCH] WHAT\n\nWHY\n\nTest: WHICH.\n\n'
+            # Times would make every patch different.
+            (cd "$here" && diff -ruN a b) | sed -E 's/^((---|\+\+\+) [^\t]+)\t.*/\1/; /^diff -ruN /d'
+        } > "$patch" || true
+        (cd "$here/a" && patch --quiet -p1 < "$patch")
+        find "$here/a" -name '*.orig' -delete
+        echo "$patch: fill in its message, and name it by that"
     fi
 
-    (cd "$here/a" && patch --quiet -p1 < "$patch")
-    find "$here/a" -name '*.orig' -delete
     diff -r "$here/a" "$here/b" || {
-        echo "the vendored $name differs from the published one with $patch; see nodes/vendor/README.md" >&2
+        echo "the vendored $name differs from the published one with $patches; see nodes/vendor/README.md" >&2
         exit 1
     }
-    echo "$name $version with $(grep -c '^+++ ' "$patch") changed files, as kept in $patch"
+    echo "$name $version with $(ls "$patches" | wc -l) patches of $patches"
 }
 
 check rustdds 0.15.1 cde6e4fd3a587a99e2a23db137eada7c13ca3d56 'Cargo.toml LICENSE.md README.md SECURITY.md rustfmt.toml src'

@@ -66,3 +66,15 @@ pub mod rosout {
 
   pub const TYPE_NAME: &str = "rcl_interfaces::msg::dds_::Log_";
 }
+
+#[cfg(test)]
+mod tests {
+  use rustdds::policy::{Durability, History};
+
+  #[test]
+  fn events_of_parameters_are_kept_as_rmw_qos_profile_parameter_events_says() {
+    let qos = &super::parameter_events::QOS;
+    assert_eq!(qos.durability(), Some(Durability::Volatile));
+    assert_eq!(qos.history(), Some(History::KeepLast { depth: 1000 }));
+  }
+}

@@ -1733,6 +1733,9 @@ mod tests {
         .is_ok()
     );
     assert_eq!(node.time_now(), crate::ROSTime::ZERO);
+    // The application may read /clock itself.
+    node.set_sim_time(crate::ROSTime::from_nanos(5));
+    assert_eq!(node.time_now(), crate::ROSTime::from_nanos(5));
 
     assert!(node.set_parameter("p", ParameterValue::NotSet).is_ok());
     assert!(!node.has_parameter("p"));

@@ -11,3 +11,15 @@ macro_rules! warn_sparsely {
     }
   }};
 }
+
+#[test]
+fn a_line_is_logged_at_powers_of_two() {
+  log::set_max_level(log::LevelFilter::Warn);
+  let mut logged = 0;
+  let mut log = || logged += 1;
+  for _ in 0..1000 {
+    warn_sparsely!("{:?}", log());
+  }
+  // None at all if another test has set the level meanwhile.
+  assert!(logged <= 10);
+}

@@ -73,3 +73,21 @@ impl ServiceMapping {
     }
   }
 }
+
+#[cfg(test)]
+mod tests {
+  use super::*;
+
+  #[test]
+  fn each_client_is_answered_in_the_mapping_of_its_rmw() {
+    let client = |vendor: [u8; 2]| {
+      let mut guid = [7; 16];
+      guid[..2].copy_from_slice(&vendor);
+      Gid::from(guid)
+    };
+    let (cyclone, fast) = (client([0x01, 0x10]), client([0x01, 0x0f]));
+    assert_eq!(ServiceMapping::ByClient.for_client(cyclone), ServiceMapping::Cyclone);
+    assert_eq!(ServiceMapping::ByClient.for_client(fast), ServiceMapping::Enhanced);
+    assert_eq!(ServiceMapping::Basic.for_client(cyclone), ServiceMapping::Basic);
+  }
+}

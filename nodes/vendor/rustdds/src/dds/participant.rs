@@ -1901,6 +1901,13 @@ mod tests {
   };
   use super::DomainParticipant;
 
+  #[test]
+  fn the_guid_prefix_of_a_participant_can_be_chosen() {
+    let prefix = crate::structure::guid::GuidPrefix::new(&[7; 12]);
+    let builder = super::DomainParticipantBuilder::new(test_domain_id(40)).guid_prefix(prefix);
+    assert_eq!(crate::RTPSEntity::guid(&builder.build().unwrap()).prefix, prefix);
+  }
+
   // TODO: improve basic test when more or the structure is known
   #[test]
   fn dp_basic_domain_participant() {
@@ -1917,6 +1924,33 @@ mod tests {
 
     // TODO: get result data from Reader
   }
+  #[test]
+  fn samples_that_the_filter_refuses_do_not_reach_the_reader() {
+    let (ask, asked) = std::sync::mpsc::channel();
+    let participant = super::DomainParticipantBuilder::new(test_domain_id(41))
+      .data_filter(move |writer, _| ask.send(writer).is_err())
+      .build()
+      .unwrap();
+    let qos = QosPolicies::qos_none();
+    let topic = participant
+      .create_topic("t".into(), "RandomData".into(), &qos, TopicKind::NoKey)
+      .unwrap();
+    let subscriber = participant.create_subscriber(&qos).unwrap();
+    let mut reader = subscriber
+      .create_datareader_no_key_cdr::<RandomData>(&topic, None)
+      .unwrap();
+    let publisher = participant.create_publisher(&qos).unwrap();
+    let writer = publisher
+      .create_datawriter_no_key_cdr(&topic, None)
+      .unwrap();
+    let wait = std::time::Duration::from_millis(100);
+    let is_asked = (0..50).any(|_| {
+      writer.write(RandomData { a: 1, b: String::new() }, None).unwrap();
+      asked.recv_timeout(wait).is_ok()
+    });
+    assert!(is_asked && reader.take_next_sample().unwrap().is_none());
+  }
+
   #[test]
   fn dp_writer_heartbeat_test() {
     let domain_participant =

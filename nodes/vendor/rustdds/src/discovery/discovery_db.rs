@@ -1225,6 +1225,14 @@ mod tests {
     let writer_data = DiscoveredWriterData::new(&dw, &topic, &domain_participant, None);
     discovery_db.update_publication(&writer_data);
 
+    // Those of one participant are found.
+    let of = |guid: GUID| {
+      let (readers, writers) = discovery_db.endpoints_of(guid.prefix);
+      (readers.len(), writers.len())
+    };
+    assert_eq!(of(writer_data.writer_proxy.remote_writer_guid), (0, 1));
+    assert_eq!(of(dreader.reader_proxy.remote_reader_guid), (1, 0));
+
     // Both accessors return the discovered endpoints as a snapshot.
     let readers = discovery_db
       .get_all_external_topic_readers()

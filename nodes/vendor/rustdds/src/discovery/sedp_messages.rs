@@ -1457,7 +1457,7 @@ mod tests {
       last_updated: Instant::now(),
       writer_proxy,
       publication_topic_data: pub_topic_data,
-      user_data: Vec::new(),
+      user_data: vec![1, 2, 3, 4],
     };
 
     let sdata = dwd

@@ -553,6 +553,20 @@ mod tests {
   }
 
   #[test]
+  fn a_flood_is_read_in_batches() {
+    let mut listener = UDPListener::new_unicast("127.0.0.1", 10011).unwrap();
+    let sender = UDPSender::new_with_random_port().unwrap();
+    for _ in 0..20 {
+      sender.send_to_all(&[0; 4], &[SocketAddr::from(([127, 0, 0, 1], 10011))]);
+    }
+    thread::sleep(time::Duration::from_millis(200));
+    let (first, is_emptied) = listener.messages_bounded(8);
+    assert_eq!((first.len(), is_emptied), (8, false));
+    let (rest, is_emptied) = listener.messages_bounded(256);
+    assert_eq!((rest.len(), is_emptied), (12, true));
+  }
+
+  #[test]
   fn udpl_multicast_address() {
     let listener =
       UDPListener::new_multicast("0.0.0.0", 10002, Ipv4Addr::new(239, 255, 0, 1)).unwrap();

@@ -362,6 +362,15 @@ mod tests {
     rtps::constant::FALLBACK_MAX_AGGREGATED_DATAGRAM_SIZE, structure::locator::Locator,
   };
 
+  #[test]
+  #[cfg(target_os = "linux")]
+  fn loopback_is_listed_with_its_mask_and_mtu() {
+    let table = super::local_interface_table();
+    let lo = table.iter().find(|i| i.ip == Ipv4Addr::LOCALHOST).unwrap();
+    assert!(lo.is_loopback && lo.index > 0 && lo.mtu.is_some_and(|mtu| mtu > 1500));
+    assert_eq!(lo.netmask, Some(Ipv4Addr::new(255, 0, 0, 0)));
+  }
+
   fn v4(a: u8, b: u8, c: u8, d: u8) -> IpAddr {
     IpAddr::V4(Ipv4Addr::new(a, b, c, d))
   }

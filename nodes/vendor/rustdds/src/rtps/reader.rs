@@ -1780,6 +1780,17 @@ mod tests {
       cc_from_cache, &cc_locally_built,
       "The content of the cache change in the topic cache not as expected"
     );
+
+    // 7. Verify that data of a writer that was not discovered does not get there,
+    // even if it claims to be a built-in one
+    drop(topic_cache);
+    let stranger = Data {
+      writer_id: EntityId::SEDP_BUILTIN_TOPIC_WRITER,
+      writer_sn: sequence_num.plus_1(),
+      ..Data::default()
+    };
+    reader.handle_data_msg(stranger, data_flags, &mr_state);
+    assert_eq!(reader.seqnum_instant_map.len(), 1);
   }
 
   #[test]
@@ -2039,6 +2050,18 @@ mod tests {
         .all_ackable_before(),
       SequenceNumber::new(6)
     );
+
+    // 9. Verify that a best-effort reader does not listen to GAPs
+    reader.reliability = Reliability::BestEffort;
+    let gap = Gap {
+      reader_id: reader.entity_id(),
+      writer_id: writer_guid.entity_id,
+      gap_start: SequenceNumber::new(6),
+      gap_list: SequenceNumberSet::new(SequenceNumber::new(1000), 1),
+    };
+    reader.handle_gap_msg(&gap, &mr_state);
+    let proxy = reader.matched_writer(writer_guid).unwrap();
+    assert_eq!(proxy.all_ackable_before(), SequenceNumber::new(6));
   }
 
   #[test]

@@ -178,3 +178,38 @@ where
     Ok(())
   }
 }
+
+#[cfg(test)]
+mod tests {
+  use super::*;
+
+  // A value that is serialized already, and says whether it is big-endian.
+  struct Stored;
+
+  impl no_key::SerializerAdapter<bool> for Stored {
+    type Error = std::io::Error;
+
+    fn output_encoding() -> RepresentationIdentifier {
+      RepresentationIdentifier::CDR_LE
+    }
+
+    fn encoding_of(is_big_endian: &bool) -> RepresentationIdentifier {
+      if *is_big_endian {
+        RepresentationIdentifier::CDR_BE
+      } else {
+        Self::output_encoding()
+      }
+    }
+
+    fn to_bytes(_value: &bool) -> Result<Bytes, Self::Error> {
+      Ok(Bytes::new())
+    }
+  }
+
+  #[test]
+  fn each_value_is_written_in_its_own_encoding() {
+    let of = |value| <SAWrapper<Stored> as no_key::SerializerAdapter<_>>::encoding_of(&NoKeyWrapper { d: value });
+    assert_eq!(of(true), RepresentationIdentifier::CDR_BE);
+    assert_eq!(of(false), RepresentationIdentifier::CDR_LE);
+  }
+}
