@@ -3,11 +3,16 @@
 use grainlab_msgs::topics;
 use grainlab_recordings::{Recording, Selection};
 use serde_json::Value;
+use std::os::unix::fs::{PermissionsExt, chown};
+use std::os::unix::process::CommandExt;
 use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 use system_tests::bodies::assert_same;
 use system_tests::forger::{FORGERIES, Forger, Forgery};
-use system_tests::lab::{LIMIT, Lab, golden, until};
+use system_tests::lab::{LIMIT, Lab, golden, grainlab, until};
+use system_tests::process::Process;
+use system_tests::python::say_skipped;
 
 fn strangers(run: &Path) -> Vec<Value> {
     let text = std::fs::read_to_string(run.join("summary.json")).unwrap();
@@ -169,4 +174,94 @@ fn by_hand_a_second_inversion_is_an_error_that_names_it_and_a_forged_result_is_l
             assert!(ended.stderr.contains("two writers of strain_rate"), "{forgery:?} {}", ended.stderr);
         }
     }
+}
+
+const OWNER: u32 = 65533;
+const OTHER: u32 = 65534;
+
+/// Starts a shell script as a user of this host, in the laboratory's folder, with the binary as `$0`.
+fn by_user(lab: &Lab, user: u32, script: &str) -> Process {
+    let mut command = Command::new("sh");
+    command
+        .args(["-ec", script, "./grainlab"])
+        .current_dir(lab.folder())
+        .env("HOME", "/nonexistent")
+        .uid(user)
+        .gid(user);
+    for (name, value) in lab.command(&[]).get_envs() {
+        match value {
+            Some(value) => command.env(name, value),
+            None => command.env_remove(name),
+        };
+    }
+    Process::start(&mut command)
+}
+
+#[test]
+fn another_user_of_the_host_reads_and_asks_and_is_ignored_and_ends_and_alters_nothing() {
+    let lab = Lab::new();
+    let set = |mode| std::fs::set_permissions(lab.folder(), PermissionsExt::from_mode(mode)).unwrap();
+    std::fs::copy(grainlab(), lab.folder().join("grainlab")).unwrap();
+    for scene in ["endless.toml", "tiny.toml"] {
+        std::fs::copy(golden("scenes").join(scene), lab.folder().join(scene)).unwrap();
+    }
+    if chown(lab.folder(), Some(OWNER), Some(OWNER)).is_err() {
+        return say_skipped("no right to start processes of other users");
+    }
+    set(0o755);
+    let run = by_user(&lab, OWNER, "umask 022; exec $0 launch --scene endless.toml");
+    lab.until_recorded(1000);
+    let folder = lab.last_run();
+    let other =
+        |script: &str| by_user(&lab, OTHER, &format!("run={}; {script}", folder.display())).ended(LIMIT);
+    let launcher = run.pid();
+
+    for (can, output) in [
+        ("$0 topic echo /stress --once", "stress:"),
+        ("$0 topic list", "/packing"),
+        ("$0 param get /dem_simulator seed", "1"),
+        ("$0 service call /recorder/get_parameters '{names: [append]}'", "\"boolean_value\": false"),
+        // The one parameter that changes while a node runs; it stamps diagnostics.
+        ("$0 param set /servo_controller use_sim_time true", "set"),
+        // Messages outside the run: left out below.
+        ("$0 topic pub --times 3 -r 10 /stress grainlab_msgs/msg/Stress '{sequence: 1}'", "#3"),
+        ("$0 bag info $run || true", "/stress"),
+    ] {
+        let ended = other(can);
+        assert!(ended.code == Some(0) && ended.stdout.contains(output), "{can}: {ended:?}");
+    }
+    // The id of the run is in every GUID, and a number of a member is easy to choose.
+    let member = "id=$($0 topic info /stress -v | grep -o '0112[0-9a-f]*' | head -n 1 | cut -c 5-16)
+        GRAINLAB_RUN=$id GRAINLAB_MEMBER=4 timeout 4 $0 run servo_controller";
+    assert_eq!(other(member).code, Some(124));
+    let processes = format!("kill -INT {launcher} || kill -KILL $(pgrep -P {launcher} | head -n 1)");
+    for (cannot, reason) in [
+        ("$0 param set /dem_simulator seed 5", "read-only"),
+        (processes.as_str(), "not permitted"),
+        ("echo >> $run/*.mcap", "ermission denied"),
+        ("rm -f $run/*.mcap", "ermission denied"),
+        ("mv $run elsewhere", "ermission denied"),
+    ] {
+        let ended = other(cannot);
+        assert!(ended.code != Some(0) && ended.stderr.contains(reason), "{cannot}: {ended:?}");
+    }
+    run.signal(libc::SIGINT);
+    let ended = run.ended(LIMIT);
+    assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+    let resumed = other("$0 launch --resume $run");
+    assert!(resumed.code == Some(1) && resumed.stderr.contains("ermission denied"), "{resumed:?}");
+    let summary = std::fs::read_to_string(folder.join("summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    let ignored = |topic: &str| {
+        let strangers = summary["strangers"].as_array().unwrap();
+        strangers.iter().any(|s| s["ignored"][topic].as_u64() > Some(0))
+    };
+    assert!(ignored("/stress") && ignored("/diagnostics"), "{summary}");
+    assert!(!summary.to_string().contains("two processes"), "{summary}");
+
+    // Files of the run are those of its user's umask.
+    let closed = by_user(&lab, OWNER, "umask 077; $0 launch --scene tiny.toml --out closed").ended(LIMIT);
+    assert_eq!(closed.code, Some(0), "{}", closed.stderr);
+    let ended = other("$0 bag info closed/*");
+    assert!(ended.code != Some(0) && ended.stderr.contains("ermission denied"), "{ended:?}");
 }

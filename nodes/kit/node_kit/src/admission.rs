@@ -47,9 +47,9 @@ impl std::fmt::Display for Stranger {
 }
 
 /// A process on this host.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Process {
-    /// Id of the process.
+    /// Id of the process; 0 for one of another user, whose sockets cannot be seen.
     pub pid: u32,
     /// Name, as `ps` shows it.
     pub name: String,
@@ -62,7 +62,7 @@ pub struct Process {
 pub(crate) struct Admission {
     identity: Identity,
     own: Participant,
-    /// Processes of participants without a run, if they are on this host.
+    /// Processes of participants without a run, and of other users with the name of ours, if they are on this host.
     processes: BTreeMap<Participant, Process>,
     strangers: BTreeMap<Participant, Stranger>,
 }
@@ -105,7 +105,7 @@ impl Admission {
             (Some(own), Some(run))
                 if run == own && (self.identity.member == 0 || member_of(participant) != 0) =>
             {
-                true
+                self.processes.get(participant).is_none_or(|p| p.below_root)
             }
             // The processes of another launcher have another root.
             (Some(_), _) => self.processes.get(participant).is_some_and(|p| p.below_root),
@@ -141,7 +141,8 @@ impl Admission {
 
     /// The known facts of a participant, for messages to users.
     pub(crate) fn describe(&self, participant: &Participant) -> Stranger {
-        let process = self.processes.get(participant).map(|p| format!("pid {} ({})", p.pid, p.name));
+        let process = self.processes.get(participant).filter(|p| p.pid != 0);
+        let process = process.map(|p| format!("pid {} ({})", p.pid, p.name));
         let (participant, run) = (*participant, run_of(participant));
         Stranger { participant, run, process, ignored: BTreeMap::new() }
     }
@@ -180,6 +181,10 @@ mod tests {
             Admission::new(joined, joined.guid_prefix()).admits(&run.guid_prefix()),
             "it receives the run's samples"
         );
+        let other_user = Identity::member_of(RunId::named("a"), 2).guid_prefix();
+        assert!(admission.admits(&other_user));
+        admission.discovered(other_user, Process::default());
+        assert!(!admission.admits(&other_user), "a process of another user with the run and a member number");
         let instrument = [0x01, 0x10, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5];
         assert!(!admission.admits(&instrument));
         admission.discovered(instrument, process(false));

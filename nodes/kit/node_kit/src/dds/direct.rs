@@ -59,6 +59,10 @@ pub(super) fn topic(context: &Context, name: String, type_name: &str) -> Result<
 
 fn builder(network: Network) -> DomainParticipantBuilder {
     let builder = DomainParticipantBuilder::new(network.domain).initial_peers(network.peers.iter());
+    let builder = match network.interface {
+        Some(address) => builder.with_only_networks([Ipv4Addr::LOCALHOST, address]),
+        None => builder,
+    };
     match network.reach {
         Reach::Localhost if network.peers.is_empty() => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
         Reach::Localhost => builder.with_multicast_only_on([Ipv4Addr::LOCALHOST]),

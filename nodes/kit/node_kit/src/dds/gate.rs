@@ -1,7 +1,7 @@
 //! Applies the rules of admission in RustDDS's threads.
 
 use super::processes;
-use crate::admission::{Admission, Participant, Stranger};
+use crate::admission::{Admission, Participant, Process, Stranger};
 use crate::identity::{Identity, Scope};
 use crate::lock::lock;
 use grainlab_msgs::Guid;
@@ -69,10 +69,13 @@ impl Gate {
         let participant = participant.participant();
         // The process of a participant is looked up only where admission or a message needs it.
         let ours = self.identity.run.is_some() && lock(&self.admission).admits(&participant);
-        if self.identity.scope == Scope::Everyone || ours {
+        // A launcher starts its processes as its own user: the run and a member number alone can be taken by anyone.
+        let pretends = ours && self.identity.member != 0 && processes::of_another_user(addresses);
+        if self.identity.scope == Scope::Everyone || (ours && !pretends) {
             return;
         }
-        if let Some(process) = processes::listening_on(addresses, self.identity.root) {
+        let process = processes::listening_on(addresses, self.identity.root);
+        if let Some(process) = process.or_else(|| pretends.then(Process::default)) {
             lock(&self.admission).discovered(participant, process);
         }
     }

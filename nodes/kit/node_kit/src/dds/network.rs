@@ -1,6 +1,8 @@
 //! Domain and discovery range from the ROS 2 environment variables, as far as RustDDS supports them.
 
 use super::static_peers::StaticPeers;
+use nix::ifaddrs::getifaddrs;
+use std::net::Ipv4Addr;
 
 /// The range of discovery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +22,12 @@ pub struct Network {
     pub reach: Reach,
     /// Hosts that are found without multicast.
     pub peers: StaticPeers,
+    /// Address of the only interface, besides loopback, that is used; `None` for all of them.
+    pub interface: Option<Ipv4Addr>,
 }
+
+/// Name or address of the only interface by which other hosts are reached. ROS 2 has no variable for it.
+const INTERFACE: &str = "GRAINLAB_INTERFACE";
 
 /// Greatest domain whose ports fit 16 bits with room for participants (RTPS 9.6.2.3).
 pub const MAX_DOMAIN: u16 = 232;
@@ -33,10 +40,11 @@ pub struct NetworkError(String);
 impl Network {
     /// This host only, in the given domain.
     pub fn localhost(domain: u16) -> Self {
-        Self { domain, reach: Reach::Localhost, peers: StaticPeers::default() }
+        Self { domain, reach: Reach::Localhost, peers: StaticPeers::default(), interface: None }
     }
 
-    /// Reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY` and `ROS_STATIC_PEERS`.
+    /// Reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY`, `ROS_STATIC_PEERS` and
+    /// `GRAINLAB_INTERFACE`.
     pub fn from_env() -> Result<Self, NetworkError> {
         Self::from_variables(|name| std::env::var(name).ok())
     }
@@ -81,7 +89,16 @@ impl Network {
             }
             _ => StaticPeers::default(),
         };
-        Ok(Self { domain, reach, peers })
+        let open = Self { domain, reach, peers, interface: None };
+        // An interface that is absent, such as a tunnel that is down, must not end in the use of all others.
+        let interface = match get(INTERFACE) {
+            Some(name) if open.exposure().is_some() => Some(address_of_interface(&name).ok_or_else(|| {
+                let reason = "must be the name or the IPv4 address of an interface of this host other than loopback, with an IPv4 address";
+                refuse(INTERFACE, &name, reason)
+            })?),
+            _ => None,
+        };
+        Ok(Self { interface, ..open })
     }
 
     /// A warning if other hosts are reached: messages are neither encrypted nor signed.
@@ -92,6 +109,14 @@ impl Network {
              disturb the nodes",
         )
     }
+}
+
+/// The first IPv4 address of the interface with this name, or the address itself if an interface has it.
+fn address_of_interface(name: &str) -> Option<Ipv4Addr> {
+    let interfaces =
+        getifaddrs().ok()?.filter_map(|i| Some((i.interface_name, i.address?.as_sockaddr_in()?.ip())));
+    let mut addresses = interfaces.filter(|(_, address)| !address.is_loopback());
+    addresses.find(|(interface, address)| interface == name || address.to_string() == name).map(|(_, a)| a)
 }
 
 #[cfg(test)]
@@ -137,6 +162,24 @@ mod tests {
         assert_eq!(read(&[peers, ("ROS_LOCALHOST_ONLY", "1")]), Ok(Network::localhost(0)));
         let error = read(&[("ROS_STATIC_PEERS", "192.0.2.1,192.0.2.2")]).unwrap_err().to_string();
         assert!(error.contains("ROS_STATIC_PEERS") && error.contains("semicolons"), "{error}");
+    }
+
+    #[test]
+    fn an_interface_that_is_absent_is_refused_where_other_hosts_are_reached() {
+        let peers = ("ROS_STATIC_PEERS", "192.0.2.1");
+        for absent in ["absent0", "lo", "127.0.0.1", "192.0.2.99"] {
+            let error = read(&[peers, (INTERFACE, absent)]).unwrap_err().to_string();
+            assert!(error.contains(INTERFACE) && error.contains(absent), "{error}");
+            assert_eq!(read(&[(INTERFACE, absent)]), Ok(Network::localhost(0)));
+        }
+        let ipv4 =
+            |i: nix::ifaddrs::InterfaceAddress| Some((i.interface_name, i.address?.as_sockaddr_in()?.ip()));
+        let mut present = getifaddrs().unwrap().filter_map(ipv4);
+        if let Some((name, address)) = present.find(|(_, address)| !address.is_loopback()) {
+            for named in [name, address.to_string()] {
+                assert_eq!(read(&[peers, (INTERFACE, &named)]).unwrap().interface, Some(address), "{named}");
+            }
+        }
     }
 
     #[test]

@@ -3,7 +3,8 @@
 use crate::admission::Process;
 use std::collections::BTreeMap;
 use std::fs;
-use std::net::{IpAddr, SocketAddr, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
+use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
 /// Maximum number of ancestors that are checked, more than any chain of launchers and shells has.
@@ -21,6 +22,26 @@ pub(super) fn listening_on(addresses: &[SocketAddr], root: Option<u32>) -> Optio
     let pid = owner_of(*inode)?;
     let name = fs::read_to_string(format!("/proc/{pid}/comm")).unwrap_or_default().trim().to_owned();
     Some(Process { pid, name, below_root: root.is_some_and(|root| is_below(pid, root)) })
+}
+
+/// True if processes of other users alone, root excepted, listen on these addresses of one participant. False if it is on
+/// another host.
+pub(super) fn of_another_user(addresses: &[SocketAddr]) -> bool {
+    let (Ok(own), Ok(text)) = (fs::metadata("/proc/self"), fs::read_to_string("/proc/net/udp")) else {
+        return false;
+    };
+    // The user is in the eighth column, the address in hexadecimal digits of the memory.
+    let user = |line: &str| -> Option<u32> {
+        let columns: Vec<&str> = line.split_whitespace().collect();
+        let (ip, port) = columns.get(1)?.split_once(':')?;
+        let ip = Ipv4Addr::from(u32::from_str_radix(ip, 16).ok()?.to_ne_bytes());
+        let port = u16::from_str_radix(port, 16).ok()?;
+        let listens = |a: &SocketAddr| a.port() == port && (ip.is_unspecified() || a.ip() == ip);
+        columns.get(7).filter(|_| addresses.iter().any(listens))?.parse().ok()
+    };
+    let users: Vec<u32> = text.lines().skip(1).filter_map(user).collect();
+    let trusted = |user: &u32| [0, own.uid()].contains(user);
+    !users.is_empty() && !users.iter().any(trusted) && addresses.iter().all(|a| is_local(a.ip()))
 }
 
 /// Only an address of this host can be bound.

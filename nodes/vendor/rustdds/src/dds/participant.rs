@@ -117,9 +117,10 @@ impl DomainParticipantBuilder {
   /// When set, only interfaces whose IP address appears in `addrs` are used for
   /// multicast joins, multicast sends, and unicast locator advertisement.
   /// Datagrams that arrive on other interfaces, loopback excepted, are dropped
-  /// unread. If the only address is a loopback one, unicast sockets are bound to
-  /// it, and on Linux multicast sockets to the multicast group, so that the
-  /// kernel delivers nothing from elsewhere.
+  /// unread. Unicast to other hosts leaves by the interface, if it is one. If the
+  /// only address is a loopback one, unicast sockets are bound to it, and on
+  /// Linux multicast sockets to the multicast group, so that the kernel delivers
+  /// nothing from elsewhere.
   pub fn with_only_networks(mut self, addrs: impl IntoIterator<Item = impl Into<IpAddr>>) -> Self {
     self.only_networks = Some(addrs.into_iter().map(Into::into).collect());
     self

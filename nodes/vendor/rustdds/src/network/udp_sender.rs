@@ -2,7 +2,7 @@ use std::{
   cell::RefCell,
   collections::HashMap,
   io,
-  net::{IpAddr, SocketAddr, UdpSocket},
+  net::{IpAddr, SocketAddr, SocketAddrV4, UdpSocket},
 };
 #[cfg(test)]
 use std::net::Ipv4Addr;
@@ -14,7 +14,9 @@ use log::{debug, error, info, trace, warn};
 use socket2::{Domain, Protocol, SockAddr, Socket, Type};
 
 use crate::{
-  network::util::{get_local_multicast_ip_addrs_filtered, unicast_bind_address},
+  network::util::{
+    get_local_multicast_ip_addrs_filtered, outgoing_interface_index, unicast_bind_address,
+  },
   rtps::{
     outbound::{ControlQueue, Datagram, SendOutcome, SocketId, CONTROL_QUEUE_WARN_LEN},
     transmit::InterfaceSelector,
@@ -27,6 +29,9 @@ use crate::{
 #[derive(Debug)]
 pub struct UDPSender {
   unicast_socket: UdpSocket,
+  // With `only_networks`: OS index of the interface that unicast to other hosts
+  // leaves by, whatever the routes say.
+  outgoing_interface: Option<u32>,
   // One multicast sender socket per local interface, keyed by the interface it
   // was bound to (its `InterfaceSelector`). This lets us target a single
   // interface instead of sending on all of them.
@@ -161,6 +166,7 @@ impl UDPSender {
 
     let sender = Self {
       unicast_socket,
+      outgoing_interface: outgoing_interface_index(only_networks),
       multicast_sockets,
       control_queues: RefCell::new(HashMap::new()),
     };
@@ -223,7 +229,13 @@ impl UDPSender {
       return SendOutcome::Dropped;
     }
     let outcome = loop {
-      match socket.send_to(buffer, addr) {
+      let sent = match (id, self.outgoing_interface, addr) {
+        (SocketId::Unicast, Some(index), SocketAddr::V4(addr)) if !addr.ip().is_loopback() => {
+          send_by_interface(socket, index, addr, buffer)
+        }
+        _ => socket.send_to(buffer, addr),
+      };
+      match sent {
         Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
         outcome => break outcome,
       }
@@ -545,6 +557,40 @@ impl UDPSender {
   }
 }
 
+/// One non-blocking datagram that leaves by the interface with this index: a
+/// peer may announce addresses that the routes put behind another one.
+#[cfg(any(target_os = "linux", target_vendor = "apple"))]
+fn send_by_interface(
+  socket: &UdpSocket,
+  index: u32,
+  addr: SocketAddrV4,
+  buffer: &[u8],
+) -> io::Result<usize> {
+  use nix::{
+    libc,
+    sys::socket::{sendmsg, ControlMessage, MsgFlags, SockaddrIn},
+  };
+  let any = libc::in_addr { s_addr: 0 };
+  let info = libc::in_pktinfo {
+    ipi_ifindex: index as _,
+    ipi_spec_dst: any,
+    ipi_addr: any,
+  };
+  let sent = sendmsg(
+    socket.as_raw_fd(),
+    &[io::IoSlice::new(buffer)],
+    &[ControlMessage::Ipv4PacketInfo(&info)],
+    MsgFlags::empty(),
+    Some(&SockaddrIn::from(addr)),
+  );
+  sent.map_err(io::Error::from)
+}
+
+#[cfg(not(any(target_os = "linux", target_vendor = "apple")))]
+fn send_by_interface(_: &UdpSocket, _: u32, _: SocketAddrV4, _: &[u8]) -> io::Result<usize> {
+  Err(io::ErrorKind::Unsupported.into())
+}
+
 #[cfg(test)]
 mod tests {
   use super::*;
@@ -610,5 +656,14 @@ mod tests {
       sender.raw_send(SocketId::Unicast, v6_dest, &[0u8; 4]),
       SendOutcome::Dropped
     );
+  }
+
+  #[test]
+  fn what_is_sent_by_an_interface_that_is_gone_goes_nowhere_but_to_loopback() {
+    let only = [[127, 0, 0, 1], [192, 0, 2, 99]].map(IpAddr::from);
+    let sender = UDPSender::new_with_networks(0, Some(&only), None, 0).unwrap();
+    let send = |host: [u8; 4]| sender.raw_send(SocketId::Unicast, (host, 10402).into(), &[0; 4]);
+    assert_eq!(send([127, 0, 0, 1]), SendOutcome::Sent);
+    assert_eq!(send([192, 0, 2, 1]), SendOutcome::Dropped);
   }
 }

@@ -310,6 +310,20 @@ pub fn unicast_bind_address(only_networks: Option<&[IpAddr]>) -> Ipv4Addr {
   }
 }
 
+/// OS index of the one interface, loopback aside, that a participant restricted
+/// to `only_networks` sends by. `None`: no restriction, or several interfaces,
+/// between which the routes choose. An address that no interface has gives an
+/// index that none has, so that nothing is sent.
+pub fn outgoing_interface_index(only_networks: Option<&[IpAddr]>) -> Option<u32> {
+  let mut others = only_networks?.iter().filter(|ip| !ip.is_loopback());
+  let (Some(only), None) = (others.next(), others.next()) else {
+    return None;
+  };
+  let ifaces = enumerate_interfaces().unwrap_or_default();
+  let found = ifaces.iter().find(|ifa| ifa.ip == *only);
+  Some(found.map_or(i32::MAX.unsigned_abs(), |ifa| ifa.index))
+}
+
 /// Builds a mapping from OS interface index to an [`InterfaceSelector`].
 ///
 /// Used to resolve the `ipi_ifindex` reported by `IP_PKTINFO`/`IPV6_PKTINFO`
