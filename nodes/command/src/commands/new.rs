@@ -157,10 +157,7 @@ fn rust(args: &Args) -> Result<Vec<(String, String)>, Failure> {
         ("src/main.rs".into(), main),
         ("tests/launch.rs".into(), include_str!("new/test_node.txt").replace("NAME", name)),
         (format!("{name}.launch.yaml"), inversion_with(name, run)),
-        (
-            "README.md".into(),
-            readme(name, "src/main.rs", "cargo build --release\n", "cargo test --release"),
-        ),
+        ("README.md".into(), readme(name, "src/main.rs", "cargo build --release\n", "cargo test --release")),
     ])
 }
 
