@@ -75,8 +75,8 @@ fn an_instrument_of_another_vendor_that_a_launch_file_lists_is_of_the_run_and_re
     let folder = here("../nodes/launch");
     let text = format!(
         "import sys; sys.path.insert(0, {folder:?})\nimport instrument as i\ni.main()\n\
-         kind = i.message('grainlab_msgs/msg/Packing')\np = i.DomainParticipant(i.domain())\n\
-         packings = i.DataReader(p, i.Topic(p, 'rt/packing', kind, qos=i.LATCHED), qos=i.LATCHED)\n\
+         kind = i.message('grainlab_msgs/msg/Packing')\n\
+         packings = i.reader(i.participant(), 'packing', kind, i.LATCHED)\n\
          while not packings.take(): i.time.sleep(0.01)\n"
     );
     let program = lab.folder().join("listed.py");
