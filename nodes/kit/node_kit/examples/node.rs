@@ -19,17 +19,17 @@ fn measured() -> WaveSpeeds {
     let (up, across, aside) = (vector(0.0, 1.0), vector(1.0, 0.0), Vector3 { x: 0.0, y: 1.0, z: 0.0 });
     let slanted = vector(0.6, 0.8);
     let heard = [
-        (&up, &up, 437.2),
-        (&across, &across, 425.0),
-        (&up, &across, 269.1),
-        (&across, &up, 270.3),
-        (&across, &aside, 264.9),
-        (&slanted, &slanted, 433.0),
+        (up, up, 437.2),
+        (across, across, 425.0),
+        (up, across, 269.1),
+        (across, up, 270.3),
+        (across, aside, 264.9),
+        (slanted, slanted, 433.0),
     ];
     let speeds = heard.map(|(direction, polarization, speed)| WaveSpeed {
         method: WaveSpeed::METHOD_CROSS_CORRELATION,
-        direction: direction.clone(),
-        polarization: polarization.clone(),
+        direction,
+        polarization,
         speed,
         speed_stddev: 3e-3 * speed,
         frequency: 10e3,
@@ -42,7 +42,7 @@ fn measured() -> WaveSpeeds {
         pressure: 50e3,
         pressure_stddev: 500.0,
         solid_fraction: 0.634,
-        axis: up.clone(),
+        axis: up,
         grain_shear_modulus: 29e9,
         grain_shear_modulus_stddev: 5e8,
         grain_poisson_ratio: 0.2,

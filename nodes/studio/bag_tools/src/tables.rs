@@ -114,7 +114,7 @@ impl<'a> Tables<'a> {
             for table in &mut self.list {
                 if let TableFile::Shape(shape) = &table.file {
                     let columns = Columns::of(shape, self.widest).ok_or_else(|| too_wide(&table.channel))?;
-                    let file = CsvTable::create(&table.base.with_added_extension("csv"), columns);
+                    let file = CsvTable::create(&with_extension(&table.base, "csv"), columns);
                     table.file = TableFile::Csv(Box::new(file.map_err(|e| failed(self.name, &e))?));
                 }
             }
@@ -204,19 +204,27 @@ impl<'a> Tables<'a> {
         let wrong = |e: &dyn Display| failed(self.name, e);
         let file = match self.format {
             TableFormat::Json => {
-                let file = File::create_new(base.with_added_extension("jsonl")).map_err(|e| wrong(&e))?;
+                let file = File::create_new(with_extension(&base, "jsonl")).map_err(|e| wrong(&e))?;
                 TableFile::Json(BufWriter::with_capacity(1 << 16, file))
             }
             TableFormat::Csv => {
                 TableFile::Shape(Shape::of(kind, self.widest).ok_or_else(|| too_wide(channel))?)
             }
             TableFormat::Parquet => {
-                let file = parquet_table(&base.with_added_extension("parquet"), kind);
+                let file = parquet_table(&with_extension(&base, "parquet"), kind);
                 TableFile::Parquet(Box::new(file.map_err(|e| wrong(&format!("{}: {e}", channel.topic)))?))
             }
         };
         Ok(Table { channel: channel.clone(), base, exploded, file })
     }
+}
+
+/// The path with an extension behind its name, which may have dots.
+fn with_extension(base: &Path, extension: &str) -> PathBuf {
+    let mut path = base.as_os_str().to_owned();
+    path.push(".");
+    path.push(extension);
+    path.into()
 }
 
 /// A Parquet file for the messages of a type.
