@@ -56,6 +56,30 @@ fn a_killed_recorder_ends_the_run_with_exit_code_3_and_keeps_its_recording() {
 }
 
 #[test]
+fn a_recorder_that_cannot_begin_ends_the_run_with_exit_code_1_and_one_error() {
+    let lab = Lab::new();
+    let tiny = golden("scenes/tiny.toml").to_string_lossy().into_owned();
+    for how in [&[][..], &["--one-process"]] {
+        // The file system of the run is too small for a recording.
+        let script = "mkdir small; mount -t tmpfs -o size=3m none small && exec \"$@\"";
+        let mut command = std::process::Command::new("unshare");
+        command.args(["-m", "sh", "-c", script, "sh"]).arg(system_tests::lab::grainlab());
+        command.args(["launch", "--scene", &tiny, "--run", "small/run"]).args(how).current_dir(lab.folder());
+        let plain = lab.command(&[]);
+        command.envs(plain.get_envs().filter_map(|(name, value)| Some((name, value?))));
+        if !system_tests::hosts::can_isolate() {
+            return;
+        }
+        let ended = command.output().unwrap();
+        let err = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(1), "{err}");
+        assert_eq!(err.matches("the recording was not begun").count(), 1, "{err}");
+        assert!(!err.contains("contains no .mcap") && ended.stdout.is_empty(), "{err}");
+        std::fs::remove_dir(lab.folder().join("small")).unwrap();
+    }
+}
+
+#[test]
 fn a_killed_launcher_ends_every_process_and_finishes_the_recording() {
     let lab = Lab::new();
     let (launcher, _) = under_way(&lab, "dem_simulator");

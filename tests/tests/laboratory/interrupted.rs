@@ -50,6 +50,9 @@ fn goes_on_to_the_same_bytes(lab: &Lab, run: &Path, expected: &Path) {
     for topic in ["/packing_report", "/microstructure"] {
         assert_eq!(distinct(expected, topic).last(), distinct(run, topic).last(), "{topic}");
     }
+    let both = [expected, run].map(|path| path.to_str().unwrap());
+    let same = lab.run(&[&["bag", "diff"], &both[..], &["--topics", "stress", "strain_rate"]].concat());
+    assert_eq!(same.code, Some(0), "{}{}", same.stdout, same.stderr);
     // The counts are those of the whole run.
     let count = |run: &Path, topic: &str| distinct(run, topic).len() as u64;
     let text = std::fs::read_to_string(run.join("summary.json")).unwrap();

@@ -56,6 +56,7 @@ fn the_recording_of_a_recorder_killed_at_any_moment_is_finished_and_loses_no_mes
         let check = lab.run(&["bag", "check", &path, "--format", "json"]);
         let report: serde_json::Value = serde_json::from_str(&check.stdout).unwrap();
         assert_eq!(report["warnings"], serde_json::json!([]), "{delay:?}: {}", check.stdout);
+        assert_eq!(check.code, Some(0), "nothing is damaged any more: {}", check.stdout);
         assert_eq!(report["messages"].as_u64(), Some(before.len() as u64));
         if let Some(python) = &python {
             // rosbags opens no recording without a message.

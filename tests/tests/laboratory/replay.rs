@@ -37,6 +37,10 @@ fn a_recording_played_into_fresh_nodes_gives_the_recorded_bytes() {
         assert_eq!(distinct(&live, topic), distinct(&out, topic), "{topic}");
         assert_eq!(distinct(&live, topic).len(), 2, "{topic}");
     }
+    let both = [&live, &out].map(|path| path.to_str().unwrap());
+    let results = ["--topics", "packing", "packing_report", "microstructure", "moduli"];
+    let same = lab.run(&[&["bag", "diff"], &both[..], &results].concat());
+    assert_eq!(same.code, Some(0), "{}{}", same.stdout, same.stderr);
 }
 
 /// The bodies of the analyzer node and those recorded by `analyze` are compared whole.

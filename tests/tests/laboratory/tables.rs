@@ -99,3 +99,24 @@ fn definitions_that_a_recording_lacks_come_from_a_folder_and_can_be_added_to_it(
         String::from_utf8_lossy(&read.stderr)
     );
 }
+
+#[test]
+fn a_conversion_of_more_than_a_second_shows_its_progress_on_a_terminal_and_erases_it() {
+    let Some(python) = python::with("mcap") else { return };
+    let lab = Lab::new();
+    let script = "import sys; from mcap.writer import Writer; w = Writer(open(sys.argv[1], 'wb')); w.start('ros2')\n\
+                  schema = w.register_schema('p/msg/Many', 'ros2msg', b'float64[] x')\n\
+                  channel = w.register_channel('/many', 'cdr', schema); body = b'\\0\\1\\0\\0\\x90\\x5f\\1\\0' + b'\\0' * 4 + b'\\0' * 8 * 90000\n\
+                  for n in range(400): w.add_message(channel, n, body, n)\nw.finish()";
+    let made =
+        Command::new(&python).args(["-c", script, "many.mcap"]).current_dir(lab.folder()).output().unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let line =
+        format!("{} bag convert many.mcap --format csv -o out", system_tests::lab::grainlab().display());
+    let shown =
+        Command::new("script").args(["-qec", &line, "/dev/null"]).current_dir(lab.folder()).output().unwrap();
+    let text = String::from_utf8_lossy(&shown.stdout);
+    let (drawn, end) = (text.find(" % of the recording, "), text.rfind("\r\u{1b}[2K"));
+    assert!(shown.status.success() && drawn.is_some() && drawn < end, "{text:?}");
+    assert!(text.contains("out: 400 rows in 1 file"), "{text:?}");
+}
