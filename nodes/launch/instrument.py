@@ -2,7 +2,7 @@
 """A third-party acoustic instrument: sends one set of wave speeds, prints the microstructure received.
 
    pip install ../../msgs               # the message types for CycloneDDS: no ROS, nothing else of this project
-   ROS_DOMAIN_ID=77 instrument.py       # while `grainlab run emt_inversion` runs in the same domain
+   ROS_DOMAIN_ID=77 python3 instrument.py       # while `grainlab run emt_inversion` runs in the same domain
 
 The answer is the one with the name and the stamp of what was sent: a late reader first receives the answer to somebody else's data.
 With --json what was sent and what came back are printed whole. Ends with 4 if the speeds are refused, or no model has an estimate.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """An instrument that reads the records of an oscilloscope from a folder as they are written, and sends their wave speeds.
 
-   pip install cyclonedds==11.0.1
+   pip install ../../msgs
    record_instrument.py FOLDER --grain-shear-modulus 29e9 --poisson 0.2    # while `grainlab run emt_inversion` runs
 
 FOLDER has records.csv, the table of `grainlab pick --help`, with sample, pressure_pa, density, mode and angle_deg of each record. Rows and

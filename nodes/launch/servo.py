@@ -6,8 +6,10 @@
 
 The same stress gets the same answer, so that a servo that is started again in the middle of a run changes nothing.
 """
+import os
 import sys
 import threading
+import traceback
 from pathlib import Path
 
 # The message types of a folder above, if they are not installed.
@@ -17,7 +19,7 @@ from cyclonedds.core import Listener  # noqa: E402
 
 Stress, StrainRate = message("grainlab_msgs/msg/Stress"), message("grainlab_msgs/msg/StrainRate")
 COMPONENTS = ("xx", "yy", "zz", "yz", "xz", "xy")
-# Simulated time, in control intervals, in which the error would vanish at the present stiffness: above 2, or the loop diverges.
+# Simulated time, in control intervals, in which the error would vanish at the present stiffness. Of a shorter one the loop may diverge.
 RESPONSE = 20.0
 
 
@@ -68,3 +70,7 @@ if __name__ == "__main__":
         main()
     except KeyboardInterrupt:
         pass
+    except BaseException:
+        # The thread of the listener would keep the program: it ends at once, so that the run ends, too.
+        traceback.print_exc()
+        os._exit(1)

@@ -47,6 +47,15 @@ impl Definitions {
         }
     }
 
+    /// Place of the definition of a type, in words.
+    pub fn place(&self, type_name: &str) -> String {
+        let file = |folder: &PathBuf| folder.join(format!("{type_name}.msg"));
+        match self.folders.iter().map(file).find(|path| path.exists()) {
+            Some(path) if TypeInfo::by_name(type_name).is_none() => path.display().to_string(),
+            _ => "that of this program".to_owned(),
+        }
+    }
+
     /// Full names of all types: messages, and services of the common interfaces.
     pub fn names(&self) -> BTreeSet<String> {
         let files = self.folders.iter().flat_map(|folder| files_below(folder));

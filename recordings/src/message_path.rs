@@ -27,18 +27,18 @@ impl MessagePath {
         }
     }
 
-    /// Opens a recording, and gives topics without a definition those found here, which it says.
+    /// Opens a recording, and gives topics without a definition those found here, which it says; returns their names, too.
     ///
     /// # Errors
     /// If a folder does not exist, or the recording cannot be read.
-    pub fn open(&self, path: &Path) -> Result<Recording, Failure> {
+    pub fn open(&self, path: &Path) -> Result<(Recording, Vec<String>), Failure> {
         let definitions = self.definitions()?;
         let mut recording = Recording::open(path).map_err(Failure::failed)?;
-        for (topic, type_name) in recording.define(&definitions) {
-            say!(
-                "grainlab: {topic}: the recording has no definition of {type_name}; the one found here is used"
-            );
+        let defined = recording.define(&definitions);
+        for (topic, type_name) in &defined {
+            let from = definitions.place(type_name);
+            say!("grainlab: {topic}: the recording has no definition of {type_name}; {from} is used");
         }
-        Ok(recording)
+        Ok((recording, defined.into_iter().map(|(topic, _)| topic).collect()))
     }
 }

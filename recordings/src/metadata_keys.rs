@@ -13,5 +13,6 @@ pub const LEDGER_KEY: &str = "ledger";
 /// covers its earlier files, too.
 pub const SESSION_KEY: &str = "session";
 
-/// Key in the metadata record [`METADATA_RECORD`] of a file that was completed after its recorder was killed.
-pub(crate) const RECOVERED_KEY: &str = "recovered";
+/// Key in the metadata record [`METADATA_RECORD`] of a file that was completed after its recorder was killed: the parts that could not be
+/// read, as a JSON list of texts.
+pub(crate) const RECOVERED_KEY: &str = "recovered_without";

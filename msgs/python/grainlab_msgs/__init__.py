@@ -44,7 +44,7 @@ STREAM = Qos(RELIABLE, Policy.Durability.Volatile, Policy.History.KeepLast(1000)
 
 
 def domain():
-    return int(os.environ.get("ROS_DOMAIN_ID", "0"))
+    return int(os.environ.get("ROS_DOMAIN_ID") or "0")
 
 
 def participant():
@@ -64,7 +64,7 @@ def writer(participant, topic, kind, qos):
 @functools.cache
 def message(name):
     """The type of `package/msg/Name`; fields that are not given are 0, empty or false. Constants are attributes."""
-    package, stem = name.split("/msg/")
+    package, _, stem = name.replace("/msg/", "/").partition("/")
     folders = [ROOT] if package == "grainlab_msgs" else [ROOT / "std" / package, ROOT / "interfaces" / package]
     file = next((f for folder in folders if (f := folder / "msg" / f"{stem}.msg").exists()), None)
     if file is None:

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use grainlab_any_message::Schema;
 use grainlab_console::Failure;
 
 use super::options::Select;
@@ -36,7 +35,7 @@ impl Channels {
     /// The place of a channel in the list.
     pub(super) fn place(&self, channel: &ChannelInfo) -> Option<usize> {
         let known = self.by_topic.get(&channel.topic)?;
-        known.iter().map(|(place, _)| *place).find(|place| same_messages(&self.list[*place], channel))
+        known.iter().map(|(place, _)| *place).find(|place| self.list[*place].is_read_as(channel))
     }
 
     fn add(&mut self, recording: &Recording, channel: &Arc<ChannelInfo>) -> Result<(), Failure> {
@@ -65,24 +64,5 @@ impl Channels {
         known.push((self.list.len(), path.to_owned()));
         self.list.push(channel.clone());
         Ok(())
-    }
-}
-
-/// True if messages of both channels have the same bytes for the same content: schemas may differ in comments.
-fn same_messages(a: &ChannelInfo, b: &ChannelInfo) -> bool {
-    let encodings = |c: &ChannelInfo| (c.message_encoding.clone(), c.schema_encoding.clone());
-    if a.ros_type != b.ros_type || encodings(a) != encodings(b) {
-        return false;
-    }
-    if a.schema == b.schema {
-        return true;
-    }
-    let parsed = |c: &ChannelInfo| {
-        Schema::parse(&c.ros_type, &c.definition).ok().filter(|_| c.schema_encoding == "ros2msg")
-    };
-    match (parsed(a), parsed(b)) {
-        // A copy may have the hash of another definition.
-        (Some(a), Some(b)) => a == b,
-        _ => !a.type_hash.is_empty() && a.type_hash == b.type_hash,
     }
 }

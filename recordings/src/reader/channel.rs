@@ -1,5 +1,6 @@
 //! Topics of a recording.
 
+use grainlab_any_message::Schema;
 use std::collections::BTreeMap;
 
 use super::definition::StoredDefinition;
@@ -30,9 +31,29 @@ pub struct ChannelInfo {
 }
 
 impl ChannelInfo {
+    /// True if messages of both have the same bytes for the same content: definitions may differ in comments.
+    pub fn is_read_as(&self, other: &Self) -> bool {
+        let encodings = |c: &Self| (c.message_encoding.clone(), c.schema_encoding.clone());
+        if self.ros_type != other.ros_type || encodings(self) != encodings(other) {
+            return false;
+        }
+        if self.schema == other.schema {
+            return true;
+        }
+        let parsed = |c: &Self| {
+            Schema::parse(&c.ros_type, &c.definition).ok().filter(|_| c.schema_encoding == "ros2msg")
+        };
+        match (parsed(self), parsed(other)) {
+            // A copy may have the hash of another definition.
+            (Some(a), Some(b)) => a == b,
+            _ => !self.type_hash.is_empty() && self.type_hash == other.type_hash,
+        }
+    }
+
     /// True for messages in CDR of a known type whose definition is not in the recording.
     pub fn is_without_definition(&self) -> bool {
-        self.schema.is_empty() && !self.ros_type.is_empty() && self.message_encoding == "cdr"
+        // A type without fields has an empty definition.
+        self.schema.is_empty() && self.schema_encoding.is_empty() && self.message_encoding == "cdr"
     }
 
     /// True if the recorded QoS is transient local: late readers get the last message.

@@ -95,17 +95,21 @@ impl Recording {
         self.all_channels().filter_map(line).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
-    /// Gives the channels without a definition the ones found for their types; returns topic and type of each of them. A type of this
-    /// program that is refused stays so.
+    /// Gives the channels without a definition the ones found for their types; returns topic and type of each of them.
     pub fn define(&mut self, definitions: &Definitions) -> BTreeSet<(String, String)> {
         let mut defined = BTreeSet::new();
         for channel in self.files.iter_mut().flat_map(|f| f.index.channels.values_mut()) {
-            if !channel.is_without_definition() || matches!(channel.stored, StoredDefinition::Refused(_)) {
+            if !channel.schema.is_empty() || channel.ros_type.is_empty() || channel.message_encoding != "cdr"
+            {
                 continue;
             }
-            if let Ok(text) = definitions.text(&channel.ros_type, &channel.type_hash) {
+            let found = definitions.text(&channel.ros_type, &channel.type_hash).ok();
+            // A type without fields is complete.
+            let is_new = |text: &String| channel.schema_encoding != "ros2msg" || !text.trim().is_empty();
+            if let Some(text) = found.filter(is_new) {
                 defined.insert((channel.topic.clone(), channel.ros_type.clone()));
                 let new = Arc::make_mut(channel);
+                new.stored = StoredDefinition::of(&new.ros_type, "ros2msg", &text, &new.type_hash);
                 new.schema = text.clone().into_bytes();
                 new.definition = text;
                 new.schema_encoding = "ros2msg".to_owned();
@@ -131,7 +135,10 @@ impl Recording {
     pub fn channel(&self, topic: &str) -> Result<Arc<ChannelInfo>, Failure> {
         let channels = self.channels();
         let wanted = topic.trim_start_matches('/');
-        channels.iter().find(|c| c.topic.trim_start_matches('/') == wanted).cloned().ok_or_else(|| {
+        // Two topics may differ by that slash.
+        let exact = channels.iter().find(|c| c.topic == topic);
+        let found = exact.or_else(|| channels.iter().find(|c| c.topic.trim_start_matches('/') == wanted));
+        found.cloned().ok_or_else(|| {
             let known = channels.iter().map(|c| c.topic.as_str()).collect::<Vec<_>>().join(", ");
             no_such_topic(&self.path, topic, &known)
         })
@@ -188,13 +195,13 @@ impl Recording {
         self.without_ledger(is_of_a_recorder)
     }
 
-    /// The files that were completed after their recorder was killed.
-    pub(super) fn recovered(&self) -> Vec<PathBuf> {
-        let is_recovered = |file: &&OpenFile| {
-            let record = file.metadata(METADATA_RECORD, |w| self.warn(w));
-            record.is_some_and(|record| record.contains_key(RECOVERED_KEY))
+    /// The files that were completed after their recorder was killed, with what was left out of them.
+    pub(super) fn recovered(&self) -> BTreeMap<PathBuf, Vec<String>> {
+        let without = |file: &OpenFile| {
+            let texts = file.metadata(METADATA_RECORD, |w| self.warn(w))?.remove(RECOVERED_KEY)?;
+            Some((file.path.clone(), serde_json::from_str(&texts).unwrap_or_default()))
         };
-        self.files.iter().filter(is_recovered).map(|f| f.path.clone()).collect()
+        self.files.iter().filter_map(without).collect()
     }
 
     /// The files that never had a ledger: copies, and those of other programs.

@@ -32,8 +32,8 @@ pub struct Check {
     pub lost: Option<u64>,
     /// Files without a ledger whose recorder was killed, or is still running.
     pub unaccounted: Vec<PathBuf>,
-    /// Those of a killed recorder that were recovered: all that is left of them is in the recording.
-    pub recovered: Vec<PathBuf>,
+    /// Those of a killed recorder that were recovered, each with the parts that could not be read then.
+    pub recovered: BTreeMap<PathBuf, Vec<String>>,
     /// Files that never had a ledger, copies and those of other programs: their losses cannot be judged.
     pub unjudged: Vec<PathBuf>,
     /// Topics whose definition is not that of this program, with what differs.
@@ -71,7 +71,7 @@ impl Recording {
             }
         }
         let recovered = self.recovered();
-        let (recovered, unaccounted) = unaccounted.into_iter().partition(|path| recovered.contains(path));
+        let unaccounted = unaccounted.into_iter().filter(|path| !recovered.contains_key(path)).collect();
         Check {
             files: self.paths(),
             bytes: self.size(),

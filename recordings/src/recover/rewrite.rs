@@ -143,10 +143,10 @@ impl Copy {
 
     fn finish(mut self, unreadable: Vec<Warning>) -> Result<Written, McapError> {
         let mut metadata = std::mem::take(&mut self.known);
-        metadata.insert(RECOVERED_KEY.into(), "true".into());
+        metadata.insert("recovered".into(), "true".into());
         metadata.entry("finished".into()).or_insert_with(|| "false".into());
         let texts: Vec<String> = unreadable.iter().map(ToString::to_string).collect();
-        metadata.insert("recovered_without".into(), serde_json::Value::from(texts).to_string());
+        metadata.insert(RECOVERED_KEY.into(), serde_json::Value::from(texts).to_string());
         self.mcap.write_metadata(&Metadata { name: METADATA_RECORD.into(), metadata })?;
         self.mcap.finish()?;
         let file = self.mcap.into_inner().into_inner().map_err(io::IntoInnerError::into_error)?;

@@ -316,6 +316,18 @@ fn a_difference_of_recordings_is_named_by_topic_message_and_field_and_none_is_ex
     let missing = diff(&many, &without, &["--times"]);
     assert_eq!(missing.code, Some(1));
     assert_eq!(missing.stdout.matches("only in A").count(), 1, "{}", missing.stdout);
+    // Equal bytes by another definition are other values.
+    let swapped = "import sys; from mcap.writer import Writer\n\
+                   for name, text in [('xy', 'float64 x\\nfloat64 y'), ('yx', 'float64 y\\nfloat64 x')]:\n    \
+                   w = Writer(open(name + '.mcap', 'wb')); w.start('ros2')\n    \
+                   c = w.register_channel('/p', 'cdr', w.register_schema('d/msg/P', 'ros2msg', text.encode()))\n    \
+                   w.add_message(c, 1, b'\\0\\1\\0\\0' + b'\\1' * 16, 1); w.finish()";
+    if let Some(python) = python::with("mcap") {
+        let made = Command::new(python).args(["-c", swapped]).current_dir(lab.folder()).status().unwrap();
+        assert!(made.success());
+        let differs = lab.run(&["bag", "diff", "xy.mcap", "yx.mcap"]);
+        assert!(differs.code == Some(1) && differs.stdout.contains("its definition"), "{}", differs.stdout);
+    }
     let late = lab.run(&["bag", "cut", many.to_str().unwrap(), "--start-offset", "500", "-o", "late"]);
     assert!(late.code == Some(2) && late.stderr.contains("the recording has"), "{}", late.stderr);
 }

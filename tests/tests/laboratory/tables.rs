@@ -58,7 +58,7 @@ fn an_exploded_array_has_a_row_per_value_and_one_that_no_topic_has_is_refused() 
 fn without_definition(python: &Path, path: &Path) {
     let script = "import sys; from mcap.writer import Writer; f = open(sys.argv[1], 'wb'); w = Writer(f); w.start('ros2')\n\
                   for topic, kind, data in [('/odd', 'demo_msgs/msg/Odd', b'\\0\\1\\0\\0\\7'), ('/text', 'std_msgs/msg/String', \
-                  b'\\0\\1\\0\\0\\3\\0\\0\\0hi\\0')]:\n    schema = w.register_schema(kind, '', b'')\n    \
+                  b'\\0\\1\\0\\0\\3\\0\\0\\0hi\\0'), ('text', 'std_msgs/msg/Empty', b'\\0\\1\\0\\0\\0')]:\n    schema = w.register_schema(kind, '', b'')\n    \
                   channel = w.register_channel(topic, 'cdr', schema)\n    w.add_message(channel, 5, data, 5)\nw.finish()";
     let made = Command::new(python).args(["-c", script]).arg(path).output().unwrap();
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
@@ -84,8 +84,23 @@ fn definitions_that_a_recording_lacks_come_from_a_folder_and_can_be_added_to_it(
     assert!(run(&lab, &["bag", "info", "old.mcap", "--format", "csv"], 0).contains("missing"));
     run(&lab, &[&["bag", "convert", "old.mcap", "--format", "csv", "-o", "csv"], &path[..]].concat(), 0);
 
+    // A topic that differs by the slash alone, of a type without fields, is another one.
+    let tables = run(
+        &lab,
+        &[&["bag", "convert", "old.mcap", "--format", "parquet", "-o", "t"], &path[..]].concat(),
+        0,
+    );
+    assert!(
+        tables.contains("text.parquet  /text  1 row") && tables.contains("text.2.parquet  text  1 row"),
+        "{tables}"
+    );
+
     let part = run(&lab, &["bag", "add-schemas", "old.mcap", "-o", "part.mcap"], 3);
-    assert!(part.contains("/odd: the recording has no definition of demo_msgs/msg/Odd: give"), "{part}");
+    assert!(part.contains("/odd: left without a definition: the definition of demo_msgs/msg/Odd"), "{part}");
+    std::fs::create_dir_all(lab.folder().join("wrong/demo_msgs/msg")).unwrap();
+    std::fs::write(lab.folder().join("wrong/demo_msgs/msg/Odd.msg"), "float64 n\n").unwrap();
+    let wrong = run(&lab, &["bag", "add-schemas", "old.mcap", "--msg-path", "wrong", "-o", "wrong.mcap"], 1);
+    assert!(wrong.contains("nothing was written") && !lab.folder().join("wrong.mcap").exists(), "{wrong}");
     run(&lab, &[&["bag", "add-schemas", "old.mcap", "-o", "new.mcap"], &path[..]].concat(), 0);
     assert!(run(&lab, &["bag", "cat", "new.mcap"], 0).contains("{\"n\":7}"));
     let read = "import sys; from rosbags.highlevel import AnyReader; from pathlib import Path\n\
@@ -118,5 +133,5 @@ fn a_conversion_of_more_than_a_second_shows_its_progress_on_a_terminal_and_erase
     let text = String::from_utf8_lossy(&shown.stdout);
     let (drawn, end) = (text.find(" % of the recording, "), text.rfind("\r\u{1b}[2K"));
     assert!(shown.status.success() && drawn.is_some() && drawn < end, "{text:?}");
-    assert!(text.contains("out: 400 rows in 1 file"), "{text:?}");
+    assert!(text.contains("many.csv  /many  400 rows"), "{text:?}");
 }

@@ -297,6 +297,7 @@ impl Supervisor {
             self.followed.progress.say(&format!("{} {how}", child.plan.name));
         } else {
             self.followed.complain(format!("{name} {how}: see logs/{name}.log", name = child.plan.name));
+            self.children[index].quote_log(&self.logs);
             self.foreign_failure = true;
         }
         None
@@ -331,6 +332,9 @@ impl Supervisor {
             return Some(self.give_up(index, again, Exit::Failure));
         }
         self.followed.progress.say(&format!("{name} {how}: restarted"));
+        if self.children[index].plan.node.is_none() {
+            self.children[index].quote_log(&self.logs);
+        }
         self.start_again(index).await
     }
 

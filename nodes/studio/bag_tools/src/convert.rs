@@ -5,7 +5,7 @@ use crate::opened::losses;
 use crate::output::{Form, Job};
 use crate::tables::{TableFormat, Tables, failed};
 use clap::ValueEnum;
-use grainlab_console::{Failure, count, print, worse};
+use grainlab_console::{Failure, print, worse};
 use grainlab_msgs::Exit;
 use grainlab_recordings::{MessagePath, NewPath};
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ Examples:
   grainlab bag convert old --format mcap --compression lz4 -o new
   grainlab bag convert recordings/runs/demo-1-1 --pictures -o pictures.mcap      # for RViz, Foxglove, Lichtblick, Rerun
 
-json, csv, parquet: a new folder with one file per topic: /a/b is a_b.csv. json has the lines of `grainlab bag cat`. csv and
+json, csv, parquet: a new folder with one file per topic, or per definition of its type: /a/b is a_b.csv, the next a_b.2.csv. json has the lines of `grainlab bag cat`. csv and
 parquet have one row per message, with log_time and publish_time (ns since 1970; in Parquet timestamps).
 parquet: a message is a struct, an array a list, uint8[] bytes. csv: fields are flattened, stress.xx; an array with at most
 --array-columns values in every message is as many columns, rate[0], a longer one is JSON in one column; values that are not there are empty.
@@ -104,10 +104,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     std::fs::create_dir(new.partial()).map_err(|e| failed(&args.output, &e))?;
     let mut tables =
         Tables::new(&args.output, new.partial(), format, args.array_columns, args.explode.as_deref());
-    let rows = tables.convert(&recording, &selection)?;
-    let (files, decoders) = tables.finish()?;
+    tables.convert(&recording, &selection)?;
+    let (lines, decoders) = tables.finish()?;
     new.finish().map_err(|e| failed(&args.output, &e))?;
-    let (rows, files) = (count(rows, "row"), count(files as u64, "file"));
-    print(&format!("{}: {rows} in {files}\n", args.output.display()))?;
+    print(&format!("{}:\n{}", args.output.display(), lines.concat()))?;
     Ok(worse(losses(from_ref(&recording)), decoders.losses()))
 }

@@ -49,7 +49,7 @@ Examples:
   grainlab bag add-schemas old.mcap --msg-path my_ws/install/share -o complete.mcap
 
 Writes the recording again; a topic that was recorded without the definition of its type gets that in package/msg/Type.msg below --msg-path,
-or that of this program and of ROS 2's common interfaces. Exit 3 if a topic is left without.";
+or that of this program and of ROS 2's common interfaces. Nothing is written if a message is not of it. Exit 3 if a topic is left without.";
 
 /// Commands that make a recording from others.
 #[derive(Debug, Subcommand)]

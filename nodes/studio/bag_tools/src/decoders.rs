@@ -24,7 +24,10 @@ struct Known {
 /// The schema of a channel, or why its messages cannot be decoded.
 pub(crate) fn schema_of(channel: &ChannelInfo) -> Result<Schema, String> {
     if channel.is_without_definition() {
-        return Err(no_definition(&channel.ros_type));
+        let kind = &channel.ros_type;
+        return Err(format!(
+            "the recording has no definition of {kind}: give a folder that contains {kind}.msg with --msg-path"
+        ));
     }
     let (schema, message) = (channel.schema_encoding.as_str(), channel.message_encoding.as_str());
     if (schema, message) != ("ros2msg", "cdr") {
@@ -33,12 +36,6 @@ pub(crate) fn schema_of(channel: &ChannelInfo) -> Result<Schema, String> {
         ));
     }
     Schema::parse(&channel.ros_type, &channel.definition).map_err(|e| e.to_string())
-}
-
-pub(crate) fn no_definition(kind: &str) -> String {
-    format!(
-        "the recording has no definition of {kind}: give a folder that contains {kind}.msg with --msg-path"
-    )
 }
 
 impl Decoders {

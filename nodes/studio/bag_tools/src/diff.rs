@@ -19,9 +19,9 @@ Examples:
   grainlab bag diff recordings/runs/demo-1-1 recordings/runs/demo-1-2
   grainlab bag diff camera.mcap copy.mcap --times
 
-The messages of each topic are compared byte by byte, in their order; of the first that differs the first field that does is shown. Of a
-reproducible topic of the laboratory, repeats of a message (of a restarted node) are left out; its topics that depend on the clock are
-compared with --all only. Exit 1 if anything differs, 3 if a part could not be read.";
+The messages of each topic are compared byte by byte, in their order, without padding at their end, and so are the definitions of their
+types; of the first that differs the first field that does is shown. Of a reproducible topic of the laboratory, repeats of a message (of a
+restarted node) are left out; its topics that depend on the clock are compared with --all, or if topics are named. Exit 1 if anything differs, 3 if a part could not be read.";
 
 /// Arguments of `grainlab bag diff`.
 #[derive(Debug, clap::Args)]
@@ -54,7 +54,7 @@ struct Compared {
     topic: String,
     /// Numbers of messages, without repeats.
     messages: [usize; 2],
-    /// `same`, `differ`, `only in A`, `only in B`, or `not compared`.
+    /// `same`, `differ`, `only in A`, `only in B`, `no messages`, or `not compared`.
     payload: &'static str,
     /// True if the times of publishing are the same.
     same_times: bool,
@@ -67,7 +67,7 @@ struct Compared {
 /// # Errors
 /// If a recording cannot be read, or has no topic that is asked for.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let both = [args.messages.open(&args.first)?, args.messages.open(&args.second)?];
+    let both = [args.messages.open(&args.first)?.0, args.messages.open(&args.second)?.0];
     args.topics.check(&both)?;
     let channels = both.each_ref().map(|recording| {
         let wanted = recording.channels().into_iter().filter(|c| args.topics.take(c));
@@ -80,7 +80,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     args.format.print(&rows, || table(&rows).csv(), || text(&rows))?;
     let differs = |r: &Compared| {
-        !["same", "not compared"].contains(&r.payload) || args.times && r.payload == "same" && !r.same_times
+        !["same", "not compared", "no messages"].contains(&r.payload)
+            || args.times && r.payload == "same" && !r.same_times
     };
     let exit = if rows.iter().any(differs) { Exit::Failure } else { Exit::Done };
     Ok(worse(exit, losses(&both)))
@@ -118,7 +119,7 @@ fn compared(
             (None, None) => break,
             (Some(a), Some(b)) => {
                 row.same_times &= a.publish_time == b.publish_time;
-                if a.payload[..] != b.payload[..] && row.first_difference.is_none() {
+                if !is_same(&a.payload, &b.payload) && row.first_difference.is_none() {
                     row.first_difference =
                         Some(format!("message {}: {}", row.messages[0], difference(&a, &b)));
                 }
@@ -126,9 +127,15 @@ fn compared(
             _ => row.same_times = false,
         }
     }
-    let not_compared = contract.is_some() && !is_reproducible && !args.all;
+    let not_compared = contract.is_some() && !is_reproducible && !args.all && !args.topics.is_given();
     row.payload = match channels {
         _ if not_compared => "not compared",
+        [None, _] | [_, None] if row.messages == [0, 0] => "no messages",
+        [Some(a), Some(b)] if !a.is_read_as(b) => {
+            row.first_difference =
+                Some(format!("its definition as {} and as {} differs", a.ros_type, b.ros_type));
+            "differ"
+        }
         [Some(_), None] => "only in A",
         [None, Some(_)] => "only in B",
         _ if row.messages[0] != row.messages[1] || row.first_difference.is_some() => "differ",
@@ -136,6 +143,12 @@ fn compared(
     };
     row.first_difference = row.first_difference.filter(|_| !not_compared);
     Ok(row)
+}
+
+/// True for the same bytes; RTPS fills up the last word of what was sent over DDS.
+fn is_same(a: &[u8], b: &[u8]) -> bool {
+    let (short, long) = if a.len() < b.len() { (a, b) } else { (b, a) };
+    long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.len() < 4 && long.len() % 4 == 0)
 }
 
 /// The first field of two messages that differs, or the first byte.

@@ -22,7 +22,7 @@ pub struct Excerpt {
 impl Excerpt {
     /// Opens the recording, and selects its messages.
     pub(crate) fn open(&self, messages: &MessagePath) -> Result<(Recording, Selection), Failure> {
-        let recording = messages.open(&self.path)?;
+        let (recording, _) = messages.open(&self.path)?;
         self.topics.check(from_ref(&recording))?;
         let (start, end) = self.interval.of(from_ref(&recording))?;
         let wanted = recording.channels().into_iter().filter(|c| self.topics.take(c));

@@ -1,5 +1,6 @@
 //! The recording that a command writes.
 
+use crate::decoders::Decoders;
 use crate::opened::losses;
 use crate::progress::Progress;
 use crate::selection::Topics;
@@ -7,9 +8,10 @@ use crate::times::Interval;
 use grainlab_console::{Failure, count, print, say, worse};
 use grainlab_msgs::Exit;
 use grainlab_recordings::copy::{self, CopyOptions, Preset, Select};
-use grainlab_recordings::{ChannelInfo, Compression, MessagePath, Recording};
+use grainlab_recordings::{ChannelInfo, Compression, MessagePath, Recording, Selection};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Output of a copy, and its options.
 #[derive(Clone, Debug, clap::Args)]
@@ -98,7 +100,7 @@ impl Job<'_> {
     pub(crate) fn write(&self, output: &Path, form: &Form) -> Result<Exit, Failure> {
         let options = CopyOptions { pictures: self.pictures, ..form.options(self.operation)? };
         let opened = |path| match self.schemas {
-            Some(schemas) => schemas.open(path),
+            Some(schemas) => schemas.open(path).and_then(|(recording, defined)| decodes(recording, &defined)),
             None => Recording::open(path).map_err(Failure::failed),
         };
         let recordings = self.paths.iter().map(|path| opened(path)).collect::<Result<Vec<_>, _>>()?;
@@ -129,18 +131,37 @@ impl Job<'_> {
             count(copied.topics.len() as u64, "topic"),
             copied.bytes as f64 * 1e-6
         ))?;
-        let missing = self.schemas.into_iter().flat_map(|_| without_definition(&recordings));
-        let missing = missing.inspect(|line| say!("grainlab: {line}")).count();
+        let missing = self.schemas.map(|schemas| without_definition(&recordings, schemas)).transpose()?;
+        let missing = missing.into_iter().flatten().inspect(|line| say!("grainlab: {line}")).count();
         let complete = if copied.without_picture == 0 && missing == 0 { Exit::Done } else { Exit::DataLoss };
         Ok(worse(losses(&recordings), complete))
     }
 }
 
-/// Topics that have no definition, with the file that is missing.
-fn without_definition(recordings: &[Recording]) -> BTreeSet<String> {
+/// The recording, if every message of these topics is one of the definition that was found for it.
+fn decodes(recording: Recording, topics: &[String]) -> Result<Recording, Failure> {
+    let mut decoders = Decoders::default();
+    for message in recording.messages(&Selection::topics(topics)).map_err(Failure::failed)? {
+        decoders.decode(&message);
+    }
+    match decoders.losses() {
+        Exit::Done => Ok(recording),
+        _ => Err(Failure::failed(
+            "the definitions that were found are not those of the messages: nothing was written",
+        )),
+    }
+}
+
+/// Topics that have no definition, with why none was found.
+fn without_definition(recordings: &[Recording], schemas: &MessagePath) -> Result<BTreeSet<String>, Failure> {
+    let definitions = schemas.definitions()?;
     let channels = recordings.iter().flat_map(Recording::channels);
     let missing = channels.filter(|c| c.is_without_definition());
-    missing.map(|c| format!("{}: {}", c.topic, crate::decoders::no_definition(&c.ros_type))).collect()
+    let line = |c: Arc<ChannelInfo>| {
+        let why = definitions.text(&c.ros_type, &c.type_hash).err().unwrap_or_default();
+        format!("{}: left without a definition: {why}", c.topic)
+    };
+    Ok(missing.map(line).collect())
 }
 
 #[cfg(test)]

@@ -18,6 +18,11 @@ fn bare(name: &str) -> &str {
 }
 
 impl Topics {
+    /// True if topics are asked for.
+    pub(crate) fn is_given(&self) -> bool {
+        !self.names.topics.is_empty() || self.names.regex.is_some() || !self.types.is_empty()
+    }
+
     /// True for a channel that is wanted.
     pub(crate) fn take(&self, channel: &ChannelInfo) -> bool {
         let short = channel.ros_type.replace("/msg/", "/");

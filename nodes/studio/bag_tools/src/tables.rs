@@ -5,7 +5,7 @@ use crate::decoders::{Decoders, schema_of};
 use crate::progress::Progress;
 use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape, time_columns};
 use grainlab_any_message::{Exploded, Length, Message as Decoded, MessageType, Schema, Shown, Value};
-use grainlab_console::Failure;
+use grainlab_console::{Failure, count};
 use grainlab_parquet::{Column, Kind, ParquetError, ParquetTable};
 use grainlab_recordings::{ChannelInfo, Message, Recording, Selection};
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,6 +24,16 @@ pub(crate) enum TableFormat {
     Json,
     Csv,
     Parquet,
+}
+
+impl TableFormat {
+    const fn extension(self) -> &'static str {
+        match self {
+            Self::Json => "jsonl",
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+        }
+    }
 }
 
 /// The files of a folder.
@@ -48,6 +58,7 @@ struct Table {
     base: PathBuf,
     exploded: Option<Exploded>,
     file: TableFile,
+    rows: u64,
 }
 
 enum TableFile {
@@ -104,9 +115,9 @@ impl<'a> Tables<'a> {
         Self { name, folder, format, widest, explode, list, places, decoders }
     }
 
-    /// Writes all selected messages; returns the number of rows. For CSV the recording is read twice: first for the lengths of
+    /// Writes all selected messages. For CSV the recording is read twice: first for the lengths of
     /// arrays.
-    pub(crate) fn convert(&mut self, recording: &Recording, selection: &Selection) -> Result<u64, Failure> {
+    pub(crate) fn convert(&mut self, recording: &Recording, selection: &Selection) -> Result<(), Failure> {
         self.check_explode(recording, selection)?;
         if self.format == TableFormat::Csv {
             self.pass(recording, selection)?;
@@ -114,7 +125,7 @@ impl<'a> Tables<'a> {
             for table in &mut self.list {
                 if let TableFile::Shape(shape) = &table.file {
                     let columns = Columns::of(shape, self.widest).ok_or_else(|| too_wide(&table.channel))?;
-                    let file = CsvTable::create(&with_extension(&table.base, "csv"), columns);
+                    let file = CsvTable::create(&with_extension(&table.base, self.format), columns);
                     table.file = TableFile::Csv(Box::new(file.map_err(|e| failed(self.name, &e))?));
                 }
             }
@@ -122,27 +133,31 @@ impl<'a> Tables<'a> {
         self.pass(recording, selection)
     }
 
-    fn pass(&mut self, recording: &Recording, selection: &Selection) -> Result<u64, Failure> {
+    fn pass(&mut self, recording: &Recording, selection: &Selection) -> Result<(), Failure> {
         let progress = Progress::new(recording.time_range());
-        let mut count = 0;
+        self.list.iter_mut().for_each(|table| table.rows = 0);
         for message in recording.messages(selection).map_err(Failure::failed)? {
             progress.at(message.log_time);
             let decoded = self.decoders.decode(&message);
             let (Some(place), Some(decoded)) = (self.place(&message)?, decoded) else { continue };
             let table = &mut self.list[place];
             for row in table.rows(decoded) {
-                table.file.write(&message, &row).map_err(|e| failed(self.name, &e))?;
-                count += 1;
+                let topic = &message.channel.topic;
+                table.file.write(&message, &row).map_err(|e| failed(self.name, &format!("{topic}: {e}")))?;
+                table.rows += 1;
             }
         }
-        Ok(count)
+        Ok(())
     }
 
-    /// Completes the files; returns their number and what could not be decoded.
-    pub(crate) fn finish(self) -> Result<(usize, Decoders), Failure> {
+    /// Completes the files; returns a line about each, and what could not be decoded.
+    pub(crate) fn finish(self) -> Result<(Vec<String>, Decoders), Failure> {
         let wrong = |e: &dyn Display| failed(self.name, e);
-        let files = self.list.len();
+        let mut lines = Vec::new();
         for table in self.list {
+            let name = table.base.file_name().unwrap_or_default().to_string_lossy();
+            let (topic, extension) = (&table.channel.topic, self.format.extension());
+            lines.push(format!("  {name}.{extension}  {topic}  {}\n", count(table.rows, "row")));
             match table.file {
                 TableFile::Shape(_) => {}
                 TableFile::Json(mut file) => file.flush().map_err(|e| wrong(&e))?,
@@ -150,7 +165,7 @@ impl<'a> Tables<'a> {
                 TableFile::Parquet(file) => file.finish().map(drop).map_err(|e| wrong(&e))?,
             }
         }
-        Ok((files, self.decoders))
+        Ok((lines, self.decoders))
     }
 
     /// An error if no topic has the array to explode.
@@ -204,26 +219,26 @@ impl<'a> Tables<'a> {
         let wrong = |e: &dyn Display| failed(self.name, e);
         let file = match self.format {
             TableFormat::Json => {
-                let file = File::create_new(with_extension(&base, "jsonl")).map_err(|e| wrong(&e))?;
+                let file = File::create_new(with_extension(&base, self.format)).map_err(|e| wrong(&e))?;
                 TableFile::Json(BufWriter::with_capacity(1 << 16, file))
             }
             TableFormat::Csv => {
                 TableFile::Shape(Shape::of(kind, self.widest).ok_or_else(|| too_wide(channel))?)
             }
             TableFormat::Parquet => {
-                let file = parquet_table(&with_extension(&base, "parquet"), kind);
+                let file = parquet_table(&with_extension(&base, self.format), kind);
                 TableFile::Parquet(Box::new(file.map_err(|e| wrong(&format!("{}: {e}", channel.topic)))?))
             }
         };
-        Ok(Table { channel: channel.clone(), base, exploded, file })
+        Ok(Table { channel: channel.clone(), base, exploded, file, rows: 0 })
     }
 }
 
 /// The path with an extension behind its name, which may have dots.
-fn with_extension(base: &Path, extension: &str) -> PathBuf {
+fn with_extension(base: &Path, format: TableFormat) -> PathBuf {
     let mut path = base.as_os_str().to_owned();
     path.push(".");
-    path.push(extension);
+    path.push(format.extension());
     path.into()
 }
 
@@ -243,7 +258,7 @@ fn too_wide(channel: &ChannelInfo) -> Failure {
     ))
 }
 
-/// `/a/b` as `a_b`; other characters than letters, digits, `_`, `-` and `.` become `_`.
+/// `/a/b` as `a_b`; other characters than letters, digits, `_`, `-` and `.` become `_`, and a dot at the beginning.
 fn file_name(topic: &str) -> Result<String, Failure> {
     let safe = |c: char| if c.is_ascii_alphanumeric() || "-.".contains(c) { c } else { '_' };
     let name: String = topic.trim_matches('/').chars().map(safe).collect();
@@ -254,7 +269,11 @@ fn file_name(topic: &str) -> Result<String, Failure> {
             name.len()
         )));
     }
-    Ok(if name.trim_matches('.').is_empty() { "topic".to_owned() } else { name })
+    Ok(match name.strip_prefix('.') {
+        Some(rest) => format!("_{rest}"),
+        None if name.is_empty() => "topic".to_owned(),
+        None => name,
+    })
 }
 
 #[cfg(test)]

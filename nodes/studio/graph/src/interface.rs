@@ -142,6 +142,12 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
 
 /// The text of a message with the sections of the types of its fields, or of a service.
 fn text(known: &Definitions, type_name: &str) -> Result<String, Failure> {
+    let of_name = |full: &String| full.rsplit('/').next() == Some(type_name);
+    let full = known.names().into_iter().filter(of_name).collect::<Vec<_>>();
+    if let [_, _, ..] = &full[..] {
+        return Err(Failure::usage(format!("{type_name} is one of several types: {}", full.join(", "))));
+    }
+    let type_name = full.first().map_or(type_name, String::as_str);
     let service = known.service(type_name).map(str::to_owned);
     service.map_or_else(|| known.text(&full_name(type_name), "").map_err(Failure::failed), Ok)
 }

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 pub(super) const EXAMPLES: &str = "Example:\n  grainlab bag info recordings/runs/demo-1-1 --format json";
 
 pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
-    let recording = args.messages.open(&args.path)?;
+    let (recording, _) = args.messages.open(&args.path)?;
     let view = View {
         info: recording.info(),
         run: recording.metadata(METADATA_RECORD).and_then(|record| record.get("run").cloned()),

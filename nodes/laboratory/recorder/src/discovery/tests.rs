@@ -33,8 +33,8 @@ fn found(finder: &mut Finder, bus: &mut MemoryBus, known: &BTreeSet<String>) -> 
 fn every_topic_is_found_with_its_type_and_the_qos_that_suits_all_writers() {
     let hub = Hub::new(1);
     let (mut other, mut own) = (bus(&hub, "other"), bus(&hub, "own"));
-    publish(&mut other, "/chatter", "std_msgs/msg/String", Qos::STREAM);
-    publish(&mut other, "/chatter", "std_msgs/msg/String", BEST_EFFORT);
+    publish(&mut other, "/chatter", "demo_msgs/msg/Chat", Qos::STREAM);
+    publish(&mut other, "/chatter", "demo_msgs/msg/Chat", BEST_EFFORT);
     publish(&mut other, "/left/stress", "grainlab_msgs/msg/Stress", Qos::LATCHED);
     publish(&mut other, "/arm/_action/status", "action_msgs/msg/GoalStatusArray", Qos::LATCHED);
     publish(&mut other, "/left/packing_chunk", "grainlab_msgs/msg/PackingChunk", Qos::PARTS);
@@ -47,7 +47,7 @@ fn every_topic_is_found_with_its_type_and_the_qos_that_suits_all_writers() {
 
     let chatter = &all["/chatter"];
     assert_eq!((chatter.topic.qos.reliable, chatter.topic.qos.transient_local), (false, false));
-    assert_eq!(chatter.spec.ros_type, "std_msgs/msg/String");
+    assert_eq!(chatter.spec.ros_type, "demo_msgs/msg/Chat");
     assert_eq!((chatter.spec.schema_encoding.as_str(), chatter.spec.definition.as_str()), ("", ""));
     assert_eq!(chatter.spec.qos.matches("- history").count(), 2, "{}", chatter.spec.qos);
     let stress = &all["/left/stress"];

@@ -3,7 +3,7 @@
 use super::shape::{MOST_COLUMNS, Shape, time_columns};
 use grainlab_any_message::{Array, Message, Value};
 use std::fs::File;
-use std::io::{self, BufWriter};
+use std::io;
 use std::path::Path;
 
 /// The shape of rows, and the names of their columns.
@@ -17,7 +17,7 @@ pub(crate) struct Columns {
 
 /// A CSV file with a header, written row by row.
 pub(crate) struct CsvTable {
-    writer: csv::Writer<BufWriter<File>>,
+    writer: csv::Writer<File>,
     columns: Columns,
 }
 
@@ -63,7 +63,9 @@ impl Columns {
 
 impl CsvTable {
     pub(crate) fn create(path: &Path, columns: Columns) -> io::Result<Self> {
-        let mut writer = csv::Writer::from_writer(BufWriter::with_capacity(1 << 18, File::create_new(path)?));
+        // The writer looks through the rest of a value again for each buffer that it fills.
+        let mut writer =
+            csv::WriterBuilder::new().buffer_capacity(1 << 21).from_writer(File::create_new(path)?);
         writer.write_record(&columns.names)?;
         Ok(Self { writer, columns })
     }
