@@ -113,8 +113,13 @@ impl PendingResults {
         }
         let inversions = plans.iter().filter(|p| p.is(NodeKind::EmtInversion)).count().max(1);
         let programs = plans.iter().filter(|p| p.node.is_none() && !has(NodeKind::AcousticProbe));
-        let programs: Vec<String> = programs.map(|p| p.name.clone()).collect();
-        Self { kinds, inversions, instruments: !programs.is_empty(), programs }
+        let mut programs: Vec<String> = programs.map(|p| p.name.clone()).collect();
+        let instruments = !programs.is_empty();
+        // One of them is the servo, if no node is.
+        if !has(NodeKind::ServoController) && programs.len() == 1 {
+            programs.clear();
+        }
+        Self { kinds, inversions, instruments, programs }
     }
 
     /// A sentence on third-party programs, if none of them sent wave speeds of any packing.
@@ -290,7 +295,13 @@ mod tests {
             environment: Vec::new(),
             ends_all: false,
         };
-        let mut d = PendingResults::of(&[program]);
+        assert_eq!(
+            PendingResults::of(std::slice::from_ref(&program)).silent_programs(),
+            None,
+            "it is the servo"
+        );
+        let servo = NodePlan { node: Some(NodeKind::ServoController), ..program.clone() };
+        let mut d = PendingResults::of(&[program, servo]);
         assert!(d.silent_programs().unwrap().contains("from instrument before"));
         d.remember(&RecordedSpeeds { measured: [7, 9].into(), inverted: [7].into() });
         for step in [7, 9, 11] {
