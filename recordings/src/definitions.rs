@@ -49,11 +49,8 @@ impl Definitions {
 
     /// Place of the definition of a type, in words.
     pub fn place(&self, type_name: &str) -> String {
-        let file = |folder: &PathBuf| folder.join(format!("{type_name}.msg"));
-        match self.folders.iter().map(file).find(|path| path.exists()) {
-            Some(path) if TypeInfo::by_name(type_name).is_none() => path.display().to_string(),
-            _ => "that of this program".to_owned(),
-        }
+        let path = self.file(type_name).filter(|_| TypeInfo::by_name(type_name).is_none());
+        path.map_or_else(|| "that of this program".to_owned(), |path| path.display().to_string())
     }
 
     /// Full names of all types: messages, and services of the common interfaces.
@@ -69,16 +66,19 @@ impl Definitions {
         interface(&format!("{type_name}.srv"))
     }
 
-    /// The text of the type's own file.
-    fn read(&self, type_name: &str) -> Result<Option<String>, String> {
+    /// The file of the type in the folders.
+    fn file(&self, type_name: &str) -> Option<PathBuf> {
         // A type name from the network is not a path: it has three parts of letters, digits and underscores.
         let plain =
             |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        if type_name.split('/').count() != 3 || !type_name.split('/').all(plain) {
-            return Ok(None);
-        }
-        let file = |folder: &PathBuf| folder.join(format!("{type_name}.msg"));
-        let Some(path) = self.folders.iter().map(file).find(|path: &PathBuf| Path::exists(path)) else {
+        let is_plain = type_name.split('/').count() == 3 && type_name.split('/').all(plain);
+        let files = self.folders.iter().map(|folder| folder.join(format!("{type_name}.msg")));
+        files.filter(|_| is_plain).find(|path| path.exists())
+    }
+
+    /// The text of the type's own file.
+    fn read(&self, type_name: &str) -> Result<Option<String>, String> {
+        let Some(path) = self.file(type_name) else {
             return Ok(interface(&format!("{type_name}.msg")).map(str::to_owned));
         };
         let unread = |e| format!("{}: cannot read the definition of a message: {e}", path.display());

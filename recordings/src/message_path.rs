@@ -19,12 +19,10 @@ impl MessagePath {
     /// # Errors
     /// If a folder does not exist.
     pub fn definitions(&self) -> Result<Definitions, Failure> {
-        match self.msg_path.iter().find(|folder| !folder.is_dir()) {
-            Some(folder) => {
-                Err(Failure::usage(format!("--msg-path {}: there is no such folder", folder.display())))
-            }
-            None => Ok(Definitions::with_folders(&self.msg_path)),
+        if let Some(folder) = self.msg_path.iter().find(|folder| !folder.is_dir()) {
+            return Err(Failure::usage(format!("--msg-path {}: there is no such folder", folder.display())));
         }
+        Ok(Definitions::with_folders(&self.msg_path))
     }
 
     /// Opens a recording, and gives topics without a definition those found here, which it says; returns their names, too.

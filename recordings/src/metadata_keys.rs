@@ -14,5 +14,5 @@ pub const LEDGER_KEY: &str = "ledger";
 pub const SESSION_KEY: &str = "session";
 
 /// Key in the metadata record [`METADATA_RECORD`] of a file that was completed after its recorder was killed: the parts that could not be
-/// read, as a JSON list of texts.
+/// read, as a JSON list of warnings.
 pub(crate) const RECOVERED_KEY: &str = "recovered_without";

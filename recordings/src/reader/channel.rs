@@ -50,10 +50,21 @@ impl ChannelInfo {
         }
     }
 
-    /// True for messages in CDR of a known type whose definition is not in the recording.
+    /// True for messages in CDR whose definition is not in the recording.
     pub fn is_without_definition(&self) -> bool {
         // A type without fields has an empty definition.
         self.schema.is_empty() && self.schema_encoding.is_empty() && self.message_encoding == "cdr"
+    }
+
+    /// Advice for a channel [without a definition](Self::is_without_definition).
+    pub fn advice(&self) -> String {
+        let kind = &self.ros_type;
+        if kind.is_empty() {
+            return "the recording has neither its type nor a definition".to_owned();
+        }
+        format!(
+            "the recording has no definition of {kind}: give a folder that contains {kind}.msg with --msg-path"
+        )
     }
 
     /// True if the recorded QoS is transient local: late readers get the last message.

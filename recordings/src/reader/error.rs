@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use grainlab_console::Failure;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A file that does not start as MCAP, of this size in bytes.
 pub(super) fn not_mcap(path: &Path, bytes: u64) -> Failure {
@@ -24,7 +24,7 @@ pub(crate) fn no_such_topic(path: &Path, topic: &str, known: &str) -> Failure {
 }
 
 /// A part that could not be read, or that contradicts another; the rest of the recording is used.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Warning {
     /// Path of the file.
     pub path: PathBuf,
@@ -37,7 +37,7 @@ pub struct Warning {
 }
 
 /// Kinds of [`Warning`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WarningKind {
     /// The recording is truncated here: the recorder was killed or is still running.

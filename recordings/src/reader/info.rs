@@ -40,7 +40,7 @@ pub struct Info {
     pub messages: u64,
     /// The topics, by name.
     pub topics: Vec<TopicInfo>,
-    /// Topics whose definition is not that of this program, with what differs.
+    /// Topics whose definition is missing or not that of this program, with what differs.
     pub definitions: Vec<String>,
     /// Names of the stored files.
     pub attachments: Vec<String>,
@@ -119,7 +119,7 @@ impl Recording {
             duration_s: range.map_or(0.0, |(a, b)| (b - a) as f64 * 1e-9),
             messages: topics.iter().map(|t| t.messages).sum(),
             topics,
-            definitions: self.differing(),
+            definitions: self.definitions(),
             attachments: files
                 .iter()
                 .flat_map(|f| f.index.attachments.iter().map(|a| a.name.clone()))

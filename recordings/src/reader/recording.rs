@@ -99,14 +99,11 @@ impl Recording {
     pub fn define(&mut self, definitions: &Definitions) -> BTreeSet<(String, String)> {
         let mut defined = BTreeSet::new();
         for channel in self.files.iter_mut().flat_map(|f| f.index.channels.values_mut()) {
-            if !channel.schema.is_empty() || channel.ros_type.is_empty() || channel.message_encoding != "cdr"
-            {
-                continue;
-            }
-            let found = definitions.text(&channel.ros_type, &channel.type_hash).ok();
-            // A type without fields is complete.
+            let is_open = channel.schema.is_empty() && channel.message_encoding == "cdr";
+            let found = is_open.then(|| definitions.text(&channel.ros_type, &channel.type_hash));
+            // The empty definition of a type without fields is complete.
             let is_new = |text: &String| channel.schema_encoding != "ros2msg" || !text.trim().is_empty();
-            if let Some(text) = found.filter(is_new) {
+            if let Some(text) = found.and_then(Result::ok).filter(is_new) {
                 defined.insert((channel.topic.clone(), channel.ros_type.clone()));
                 let new = Arc::make_mut(channel);
                 new.stored = StoredDefinition::of(&new.ros_type, "ros2msg", &text, &new.type_hash);
@@ -116,6 +113,13 @@ impl Recording {
             }
         }
         defined
+    }
+
+    /// Those lines, and one for each topic whose definition is not in the recording and not known to this program.
+    pub(super) fn definitions(&self) -> Vec<String> {
+        let missing = self.all_channels().filter(|c| c.is_without_definition() && c.stored.note().is_none());
+        let missing: BTreeSet<_> = missing.map(|c| format!("{}: {}", c.topic, c.advice())).collect();
+        self.differing().into_iter().chain(missing).collect()
     }
 
     /// All channels of all files; a topic may have several, of several files or publishers.
@@ -196,10 +200,10 @@ impl Recording {
     }
 
     /// The files that were completed after their recorder was killed, with what was left out of them.
-    pub(super) fn recovered(&self) -> BTreeMap<PathBuf, Vec<String>> {
+    pub(super) fn recovered(&self) -> BTreeMap<PathBuf, Vec<Warning>> {
         let without = |file: &OpenFile| {
-            let texts = file.metadata(METADATA_RECORD, |w| self.warn(w))?.remove(RECOVERED_KEY)?;
-            Some((file.path.clone(), serde_json::from_str(&texts).unwrap_or_default()))
+            let parts = file.metadata(METADATA_RECORD, |w| self.warn(w))?.remove(RECOVERED_KEY)?;
+            Some((file.path.clone(), serde_json::from_str(&parts).ok()?))
         };
         self.files.iter().filter_map(without).collect()
     }

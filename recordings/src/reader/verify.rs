@@ -33,10 +33,10 @@ pub struct Check {
     /// Files without a ledger whose recorder was killed, or is still running.
     pub unaccounted: Vec<PathBuf>,
     /// Those of a killed recorder that were recovered, each with the parts that could not be read then.
-    pub recovered: BTreeMap<PathBuf, Vec<String>>,
+    pub recovered: BTreeMap<PathBuf, Vec<Warning>>,
     /// Files that never had a ledger, copies and those of other programs: their losses cannot be judged.
     pub unjudged: Vec<PathBuf>,
-    /// Topics whose definition is not that of this program, with what differs.
+    /// Topics whose definition is missing or not that of this program, with what differs.
     pub definitions: Vec<String>,
     /// True if messages of such a topic cannot be read by this program.
     pub refused: bool,
@@ -83,7 +83,7 @@ impl Recording {
             unaccounted,
             recovered,
             unjudged: self.unjudged(),
-            definitions: self.differing(),
+            definitions: self.definitions(),
             refused: self.all_channels().any(|c| matches!(c.stored, StoredDefinition::Refused(_))),
             warnings: self.warnings(),
         }

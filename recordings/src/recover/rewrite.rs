@@ -145,8 +145,7 @@ impl Copy {
         let mut metadata = std::mem::take(&mut self.known);
         metadata.insert("recovered".into(), "true".into());
         metadata.entry("finished".into()).or_insert_with(|| "false".into());
-        let texts: Vec<String> = unreadable.iter().map(ToString::to_string).collect();
-        metadata.insert(RECOVERED_KEY.into(), serde_json::Value::from(texts).to_string());
+        metadata.insert(RECOVERED_KEY.into(), serde_json::to_string(&unreadable).unwrap_or_default());
         self.mcap.write_metadata(&Metadata { name: METADATA_RECORD.into(), metadata })?;
         self.mcap.finish()?;
         let file = self.mcap.into_inner().into_inner().map_err(io::IntoInnerError::into_error)?;

@@ -74,7 +74,10 @@ fn a_damaged_chunk_of_a_cut_file_is_left_out_and_named() {
     assert!(metadata["recovered_without"].contains("chunk"), "{metadata:?}");
     assert!(!recover(&directory).unwrap().changed());
     // The recorder wrote its ledger, which shows the damage.
-    let faults = Recording::open(&directory).unwrap().check().warnings;
+    let check = Recording::open(&directory).unwrap().check();
+    let left_out = check.recovered.values().flatten();
+    assert!(left_out.map(|w| w.kind).any(|kind| kind == WarningKind::DamagedChunk), "{check:?}");
+    let faults = check.warnings;
     assert!(!faults.is_empty() && faults.iter().all(|w| w.detail.contains("ledger")), "{faults:?}");
 }
 

@@ -82,6 +82,8 @@ fn definitions_that_a_recording_lacks_come_from_a_folder_and_can_be_added_to_it(
         "{given}"
     );
     assert!(run(&lab, &["bag", "info", "old.mcap", "--format", "csv"], 0).contains("missing"));
+    let check = run(&lab, &["bag", "check", "old.mcap"], 0);
+    assert!(check.contains("/odd: the recording has no definition of demo_msgs/msg/Odd"), "{check}");
     run(&lab, &[&["bag", "convert", "old.mcap", "--format", "csv", "-o", "csv"], &path[..]].concat(), 0);
 
     // A topic that differs by the slash alone, of a type without fields, is another one.

@@ -1,4 +1,4 @@
-//! Round trips between two processes by RustDDS, and who hears whom, with and without DDS Security.
+//! Round trips between two processes by RustDDS, and who receives from whom, with and without DDS Security.
 //!
 //! `dds_security echo DIR DOMAIN...`, `dds_security ping DIR BYTES ROUNDS DOMAIN...`, `dds_security chat DIR NUMBER SECONDS DOMAIN`.
 //! A participant of domain 0, or with the DIR `-`, has no security.

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Measures DDS Security of RustDDS as published: cost of a build, round trips, who hears whom, CycloneDDS.
-# usage: sudo measure.sh FOLDER [all|cost|trips|access|cyclone|fast]. Needs cargo, openssl with headers, unshare and ip; cyclone and fast need
+# Measures DDS Security of RustDDS as published: cost of a build, round trips, who receives from whom, CycloneDDS.
+# usage, as root: measure.sh FOLDER [all|cost|trips|access|cyclone|fast]. Needs cargo, openssl with headers, unshare and ip; cyclone and fast need
 # the Debian packages cyclonedds-dev, cyclonedds-tools and libfastrtps-dev. Everything runs in a network of loopback alone.
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)

@@ -106,14 +106,11 @@ impl Child {
         Ok(())
     }
 
-    /// Repeats the last errors of its log on stderr; of another program its last line.
+    /// Repeats the last errors of its log on stderr; of another program its last lines.
     pub fn quote_log(&self, logs: &Path) {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).unwrap_or_default();
-        let is_error = |l: &&str| l.contains("ERROR") || l.contains("panicked");
-        let errors: Vec<&str> = match self.plan.node {
-            Some(_) => text.lines().filter(is_error).collect(),
-            None => text.lines().rfind(|l| !l.trim().is_empty()).into_iter().collect(),
-        };
+        let is_error = |l: &&str| self.plan.node.is_none() || l.contains("ERROR") || l.contains("panicked");
+        let errors: Vec<&str> = text.lines().filter(is_error).collect();
         errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| grainlab_console::say!("  {l}"));
     }
 

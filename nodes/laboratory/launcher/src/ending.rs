@@ -157,8 +157,7 @@ impl Supervisor {
         }
         // Data loss is in the table; other errors are only in the recorder's log.
         let failed = self.children.iter().position(|c| c.plan.is(RECORDER) && c.code == Some(1));
-        if let Some(recorder) = failed.filter(|_| !self.followed.has_blamed(RECORDER)) {
-            self.followed.complain(format!("{RECORDER} ended with exit code 1: see logs/{RECORDER}.log"));
+        if let Some(recorder) = failed.filter(|_| self.followed.blame(RECORDER, 1)) {
             self.children[recorder].quote_log(&self.logs);
         }
         // A code of its own says why.

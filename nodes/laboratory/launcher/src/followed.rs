@@ -175,9 +175,12 @@ impl Followed {
         self.reasons.push(reason);
     }
 
-    /// True if the end of this process was a reason already.
-    pub(super) fn has_blamed(&self, node: NodeKind) -> bool {
-        self.reasons.iter().any(|reason| reason.starts_with(&format!("{node} ended")))
+    /// Complains that a node ended with this code; false if its end was a reason already.
+    pub(super) fn blame(&mut self, node: NodeKind, code: u8) -> bool {
+        let is_new = !self.reasons.iter().any(|reason| reason.starts_with(&format!("{node} ended")));
+        is_new
+            .then(|| self.complain(format!("{node} ended with exit code {code}: see logs/{node}.log")))
+            .is_some()
     }
 
     /// Data of an external instrument do not belong to a packing of the run.

@@ -189,11 +189,7 @@ impl OneProcess {
             exit = simulator;
         }
         if recorder != Exit::Done && exit != Exit::Usage {
-            if !self.followed.has_blamed(NodeKind::Recorder) {
-                let code = recorder.code();
-                let text = format!("{0} ended with exit code {code}: see logs/{0}.log", NodeKind::Recorder);
-                self.followed.complain(text);
-            }
+            self.followed.blame(NodeKind::Recorder, recorder.code());
             exit = worse(exit, Exit::DataLoss);
         }
         Ok(exit)

@@ -211,15 +211,14 @@ impl Supervisor {
     /// Ends a complete run, but waits until a stopped process continues and has had time to catch up: its writers keep
     /// the samples it missed only until they leave.
     async fn caught_up(&mut self) -> Exit {
-        let crashed = self.children.iter().any(|c| c.plan.node.is_none() && !c.restarts.is_empty());
-        match self.followed.pending.silent_programs() {
-            // It failed, and nothing that it was listed for came.
-            Some(text) if crashed => {
+        if let Some(text) = self.followed.pending.silent_programs() {
+            // One that failed made the run incomplete.
+            if self.children.iter().any(|c| c.plan.node.is_none() && !c.restarts.is_empty()) {
                 self.followed.complain(text);
                 self.foreign_failure = true;
+            } else {
+                self.followed.progress.say(&text);
             }
-            Some(text) => self.followed.progress.say(&text),
-            None => {}
         }
         self.look_for_stopped();
         let behind = self.stopped.any_within(CATCHES_UP_WITHIN);

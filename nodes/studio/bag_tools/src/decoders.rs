@@ -24,10 +24,7 @@ struct Known {
 /// The schema of a channel, or why its messages cannot be decoded.
 pub(crate) fn schema_of(channel: &ChannelInfo) -> Result<Schema, String> {
     if channel.is_without_definition() {
-        let kind = &channel.ros_type;
-        return Err(format!(
-            "the recording has no definition of {kind}: give a folder that contains {kind}.msg with --msg-path"
-        ));
+        return Err(channel.advice());
     }
     let (schema, message) = (channel.schema_encoding.as_str(), channel.message_encoding.as_str());
     if (schema, message) != ("ros2msg", "cdr") {

@@ -144,12 +144,10 @@ fn decodes(recording: Recording, topics: &[String]) -> Result<Recording, Failure
     for message in recording.messages(&Selection::topics(topics)).map_err(Failure::failed)? {
         decoders.decode(&message);
     }
-    match decoders.losses() {
-        Exit::Done => Ok(recording),
-        _ => Err(Failure::failed(
-            "the definitions that were found are not those of the messages: nothing was written",
-        )),
+    if decoders.losses() == Exit::Done {
+        return Ok(recording);
     }
+    Err(Failure::failed("the definitions found are not those of the messages: nothing was written"))
 }
 
 /// Topics that have no definition, with why none was found.

@@ -91,7 +91,9 @@ struct Row {
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Show { type_name, no_comments, all_comments, common } => {
-            let text = text(&common.messages.definitions()?, type_name)?;
+            let known = common.messages.definitions()?;
+            let type_name = &complete(&known, type_name)?;
+            let text = text(&known, type_name)?;
             let comments = if *no_comments {
                 0
             } else if *all_comments {
@@ -140,14 +142,18 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
     }
 }
 
+/// The full name of a type that may be given without its package.
+fn complete(known: &Definitions, type_name: &str) -> Result<String, Failure> {
+    let full = known.names().into_iter().filter(|full| full.rsplit('/').next() == Some(type_name));
+    match &full.collect::<Vec<_>>()[..] {
+        [] => Ok(type_name.to_owned()),
+        [full] => Ok(full.clone()),
+        all => Err(Failure::usage(format!("{type_name} is the name of several types: {}", all.join(", ")))),
+    }
+}
+
 /// The text of a message with the sections of the types of its fields, or of a service.
 fn text(known: &Definitions, type_name: &str) -> Result<String, Failure> {
-    let of_name = |full: &String| full.rsplit('/').next() == Some(type_name);
-    let full = known.names().into_iter().filter(of_name).collect::<Vec<_>>();
-    if let [_, _, ..] = &full[..] {
-        return Err(Failure::usage(format!("{type_name} is one of several types: {}", full.join(", "))));
-    }
-    let type_name = full.first().map_or(type_name, String::as_str);
     let service = known.service(type_name).map(str::to_owned);
     service.map_or_else(|| known.text(&full_name(type_name), "").map_err(Failure::failed), Ok)
 }

@@ -3,7 +3,7 @@
 use super::recorded::Recorded;
 use grainlab_console::{Failure, Format, Table, count, say};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::{Check, SeveralRuns, strangers};
+use grainlab_recordings::{Check, SeveralRuns, WarningKind, strangers};
 use serde::Serialize;
 
 pub(super) const EXAMPLES: &str = "\
@@ -31,7 +31,7 @@ pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
         && check.unaccounted.is_empty()
         && !check.refused
         // The end of a file that was being written is lost in any case.
-        && check.recovered.values().flatten().all(|part| part.contains(" is truncated: "))
+        && check.recovered.values().flatten().all(|part| part.kind == WarningKind::Truncated)
         && check.lost.unwrap_or(0) == 0;
     args.format.print(&view, || csv(check), || text(&view))?;
     if args.format != Format::Table {

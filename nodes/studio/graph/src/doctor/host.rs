@@ -54,7 +54,8 @@ pub(super) fn environment(get: impl Fn(&str) -> Option<String>) -> Vec<Finding> 
 
 /// Findings about the datagrams of the domain in the network of this host.
 pub(super) fn network(network: Network) -> Vec<Finding> {
-    let advice = "keep it if that network is trusted, or put a VPN (WireGuard) between the hosts";
+    let advice =
+        "keep it if that network is trusted, or put WireGuard between the hosts and set GRAINLAB_INTERFACE";
     let exposed = network.exposure().map(|text| Finding::note("exposed", text.to_owned(), advice));
     let mut found: Vec<Finding> = exposed.into_iter().collect();
     let interface = match network.reach {
