@@ -7,12 +7,14 @@
 //! - [`Printed`], [`Printer`]: results one after the other; [`inference_text`]: results of models as text
 //! - [`read_back`]: the results in a recording; [`continuity`]: the messages that it lacks
 //! - [`posterior_draws`]: draws from a posterior as files
+//! - [`findings`]: the same in sentences, with reasons to doubt
 //! - [`Summary`]: a launched run; [`summary_text`]: all of it as text; [`brief`]: at most 20 lines
 
 mod acoustic;
 mod acoustic_text;
 pub mod brief;
 pub mod continuity;
+pub mod findings;
 mod inference;
 pub mod inference_text;
 mod measured_packing;

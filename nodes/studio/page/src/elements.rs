@@ -143,6 +143,17 @@ pub fn heading(kind: &str, title: &str, about: &str) -> Html {
     )
 }
 
+/// The findings of a page: what was done, what was found, and reasons to doubt, each a sentence.
+pub fn finding(done: &str, found: &[String], doubts: &[String]) -> Html {
+    html!(
+        "<div class=\"finding\"><p>{{ done }}</p>\n{% if found %}<p class=\"found\">{{ found }}</p>\n{% endif %}\
+         {% if doubts %}<p>Reasons to doubt:</p>{{ doubts }}{% else %}<p>No warning was given.</p>\n{% endif %}</div>\n",
+        done,
+        found => found.join(" "),
+        doubts => list(doubts)
+    )
+}
+
 /// The state of a run in one line: `good`, `warn` or `bad`.
 pub fn verdict(class: &str, words: &str) -> Html {
     html!("<p class=\"verdict {{ class }}\">{{ words }}</p>\n", class, words)

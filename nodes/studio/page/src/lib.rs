@@ -17,8 +17,8 @@ pub mod plot;
 
 pub use dataset::Dataset;
 pub use elements::{
-    Cell, card, code, csv, data, details, figure, fixed, grid, heading, lines, list, paragraph, plus_minus,
-    signed, six_digits, table, verdict, with_unit,
+    Cell, card, code, csv, data, details, figure, finding, fixed, grid, heading, lines, list, paragraph,
+    plus_minus, signed, six_digits, table, verdict, with_unit,
 };
 pub use markup::Html;
 #[doc(hidden)]

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 /// Style of all pages, in addition to [`page_style`].
 const STYLE: &str = include_str!("../assets/page.css");
-/// Script of all pages: theme, saved plots and data, sorted tables.
-const SCRIPT: &str = include_str!("../assets/page.js");
+/// Scripts of all pages: theme, saved plots and data, sorted tables; values and parts of plots.
+const SCRIPTS: [&str; 2] = [include_str!("../assets/page.js"), include_str!("../assets/plots.js")];
 
 /// A part of a page, to which its navigation leads.
 #[derive(Clone, Debug, Serialize)]
@@ -31,7 +31,7 @@ pub struct Page {
     pub sections: Vec<Section>,
     /// Styles that this page adds to those of all pages.
     pub styles: Vec<&'static str>,
-    /// Scripts that this page adds to that of all pages.
+    /// Scripts that this page adds to those of all pages.
     pub scripts: Vec<&'static str>,
     /// True with a bar, which has a navigation and a switch between light and dark.
     pub has_bar: bool,
@@ -47,7 +47,7 @@ impl Page {
             .into_iter()
             .chain(self.styles.iter().map(fixed))
             .collect();
-        let scripts: Vec<Html> = [SCRIPT].iter().chain(&self.scripts).map(fixed).collect();
+        let scripts: Vec<Html> = SCRIPTS.iter().chain(&self.scripts).map(fixed).collect();
         let Self { title, heading, sections, has_bar, is_served, .. } = self;
         html!(
             include_str!("../assets/frame.html"),
@@ -72,7 +72,7 @@ mod tests {
         let section = Section { id: "a", title: "A & B", content: "1 < 2".into() };
         let page = Page { title: "<x>".into(), sections: vec![section], has_bar: true, ..Page::default() };
         let text = page.text();
-        let section = "<section id=\"a\">\n<h2>A &amp; B</h2>\n1 &lt; 2<";
+        let section = "<section id=\"a\">\n<h2>A &amp; B <a class=\"anchor\" href=\"#a\" aria-label=\"Link to this section\">#</a></h2>\n1 &lt; 2<";
         for part in ["<title>&lt;x&gt;</title>", "<a href=\"#a\">A &amp; B</a>", section] {
             assert!(text.contains(part), "{part}: {text}");
         }

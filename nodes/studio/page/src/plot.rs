@@ -2,7 +2,7 @@
 //! dark. Points can have tooltips.
 //!
 //! - [`Figure`]: the contents; [`Theme`]: the colours of a file; `page_style`: those of all plots of a page
-//! - [`Strip`]: one of several plots over a common axis; [`Rose`]: a quantity by direction; [`Bars`]: values by name
+//! - [`Strip`]: a plot of a page; [`Rose`]: a quantity by direction; [`Bars`]: values by name; [`Intervals`]: with their intervals
 //! - `axis`: positions of values, and the tick marks of an axis
 //! - `labels`: texts beside points, if there is room
 //! - `draw`: the elements; `style`: their colours
@@ -11,6 +11,7 @@ mod axis;
 mod bars;
 mod draw;
 mod figure;
+mod intervals;
 mod labels;
 mod rose;
 mod strip;
@@ -18,6 +19,7 @@ mod style;
 
 pub use bars::{Bar, Bars};
 pub use figure::{Axis, Entry, Figure, Line, Marker, Point, Scale, Series, Theme};
+pub use intervals::{Estimated, Intervals};
 pub use rose::Rose;
 pub use strip::{Band, Strip};
 pub(crate) use style::page_style;
@@ -29,21 +31,17 @@ use draw::{Drawing, Key};
 impl Figure {
     /// The plot as a file.
     pub fn svg(&self, theme: Theme) -> String {
-        self.drawn(Some(theme)).end()
-    }
-
-    /// The plot as an element of a page.
-    pub fn element(&self) -> Html {
-        self.drawn(None).element()
-    }
-
-    fn drawn(&self, theme: Option<Theme>) -> Drawing {
         let mut drawing = Drawing::begin(theme, &self.title, &self.subtitle);
         let [x, y] = self.ranges(drawing.frame());
         drawing.axes((&x, &self.x.name), (&y, &self.y.name));
         self.draw(&mut drawing, [&x, &y]);
         drawing.legend(&self.legend);
-        drawing
+        drawing.end()
+    }
+
+    /// The plot as an element of a page.
+    pub fn element(self) -> Html {
+        Strip { figure: self, ..Strip::default() }.svg()
     }
 
     /// The axes within a frame.
@@ -103,7 +101,7 @@ mod tests {
             x: axis("x"),
             y: axis("y"),
             series: vec![series],
-            legend: Vec::new(),
+            ..Figure::default()
         }
     }
 

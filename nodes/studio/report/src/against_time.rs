@@ -4,11 +4,14 @@ use crate::phased::Phased;
 use crate::timeline::{Structure, Timeline};
 use grainlab_console::count;
 use grainlab_core::SymTensor;
-use grainlab_page::plot::{Axis, Band, Entry, Figure, Line, Marker, Point, Scale, Series, Strip};
+use grainlab_page::plot::{Axis, Band, Figure, Line, Marker, Point, Scale, Series, Strip};
 use grainlab_page::{Html, csv, figure, html, paragraph, six_digits};
 
 /// Seconds to milliseconds.
 const MS: f64 = 1e3;
+
+/// Share of the largest component below which shear components are not drawn.
+const SMALL: f64 = 0.01;
 
 /// One curve or set of points.
 struct Curve {
@@ -80,36 +83,41 @@ impl Timeline {
 
     fn plots(&self) -> Vec<Plot> {
         let t = self;
-        let components =
-            |series: &[Phased; 6], symbol: &str, unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
-                which
-                    .map(|n| {
-                        Curve::line(&format!("{symbol} {}", SymTensor::COMPONENTS[n]), n, &series[n], unit)
-                    })
-                    .collect()
-            };
+        let components = |series: &[Phased; 6], unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
+            let curve = |n: usize| Curve::line(SymTensor::COMPONENTS[n], n % 3, &series[n], unit);
+            which.map(curve).collect()
+        };
+        let largest =
+            |curves: &[Curve]| curves.iter().flat_map(|c| &c.points).map(|p| p.1.abs()).fold(0.0, f64::max);
+        let with_shear = |series: &[Phased; 6], unit: f64| {
+            let (normal, shear) = (components(series, unit, 0..3), components(series, unit, 3..6));
+            let is_small = largest(&shear) < SMALL * largest(&normal);
+            (normal, if is_small { Vec::new() } else { shear })
+        };
+        let (stress, shear_stress) = with_shear(&t.stress, 1e-3);
+        let (strain, shear_strain) = with_shear(&t.strain, 100.0);
         let mut coordination = vec![Curve::line("k", 0, &t.coordination, 1.0)];
         if !t.fabrics.is_empty() {
             coordination.push(Curve::points("z", 1, &t.fabrics, |s| s.z));
         }
         let target =
             |(n, series): (usize, &Phased)| Curve { faint: true, ..Curve::line("", n, series, 1e-3) };
-        let targets = t.targets.iter().enumerate().map(target);
+        let targets = t.targets[..3].iter().enumerate().map(target);
         let fabric = match t.fabrics.as_slice() {
             [] | [_] => Vec::new(),
-            all => vec![
-                Curve::points("ε", 0, all, |s| s.eps),
-                Curve::points("ε by stiffness", 1, all, |s| s.eps_stiffness),
-            ],
+            all => {
+                vec![Curve::points("ε", 0, all, |s| s.eps), Curve::points("ε_k", 1, all, |s| s.eps_stiffness)]
+            }
         };
         let plot = |id, title, caption, curves| Plot { id, title, scale: Scale::Linear, caption, curves };
         vec![
             plot(
                 "stress",
-                "Stress, kPa",
-                "Components, positive in compression; thin: their targets.",
-                targets.chain(components(&t.stress, "σ", 1e-3, 0..6)).collect(),
+                "Normal stress, kPa",
+                "Positive in compression; thin: targets. Shear components below 1 % of the largest of these are not drawn.",
+                targets.chain(stress).collect(),
             ),
+            plot("shear-stress", "Shear stress, kPa", "", shear_stress),
             plot(
                 "pressure",
                 "Pressure and deviator, kPa",
@@ -118,10 +126,11 @@ impl Timeline {
             ),
             plot(
                 "strain",
-                "Strain, %",
-                "Logarithmic, positive in extension, since the reference state; before a phase sets one, since the first step.",
-                components(&t.strain, "ε", 100.0, 0..6),
+                "Normal strain, %",
+                "Logarithmic, positive in extension, since the reference state; before a phase sets one, since the first step. Shear components below 1 % of the largest of these are not drawn.",
+                strain,
             ),
+            plot("shear-strain", "Shear strain, %", "", shear_strain),
             plot("solid-fraction", "Solid fraction φ", "", vec![Curve::line("φ", 0, &t.solid_fraction, 1.0)]),
             plot(
                 "coordination",
@@ -139,7 +148,7 @@ impl Timeline {
             plot(
                 "fabric",
                 "Fabric: anisotropy",
-                "ε of the contacts, and weighted by their stiffness, at the measured packings.",
+                "ε of the contacts, and ε_k, weighted by their stiffness, at the measured packings.",
                 fabric,
             ),
         ]
@@ -184,6 +193,7 @@ impl Timeline {
     fn figure(&self, plot: &Plot, name: &str, across: impl Fn(f64) -> f64) -> Figure {
         let drawable = |v: f64| plot.scale == Scale::Linear || v > 0.0;
         let series = |c: &Curve| Series {
+            name: c.name.clone(),
             colour: Some(c.colour),
             marker: c.marked.then_some(Marker::Circle),
             line: Some(if c.marked || c.faint { Line::Faint } else { Line::Straight }),
@@ -200,14 +210,13 @@ impl Timeline {
         let middle =
             plot.curves.iter().flat_map(|c| &c.points).map(|p| p.1).find(|v| drawable(*v)).unwrap_or(1.0);
         let span = Series { points: ends.map(|t| Point::at(across(t), middle)).into(), ..Series::default() };
-        let named = plot.curves.iter().filter(|c| !c.name.is_empty());
         Figure {
             title: plot.title.to_owned(),
             subtitle: said(&plot.curves),
             x: Axis::linear(name),
             y: Axis { name: String::new(), scale: plot.scale },
             series: std::iter::once(span).chain(plot.curves.iter().map(series)).collect(),
-            legend: named.map(|c| Entry::Colour(c.colour, c.name.clone())).collect(),
+            legend: Vec::new(),
         }
     }
 }

@@ -52,10 +52,10 @@ pub(crate) fn section(phases: &[EnergyBalance]) -> Option<Html> {
     let all: f64 = (0..names.len()).map(total).sum();
     let bars = names.iter().enumerate().filter(|(i, _)| total(*i) != 0.0).map(|(i, name)| {
         let value = total(i) / all.abs().max(f64::MIN_POSITIVE) * 100.0;
-        Bar { name: (*name).to_owned(), colour: 0, value, interval: None, text: format!("{value:.2} %") }
+        Bar { name: (*name).to_owned(), colour: 0, value, text: format!("{value:.2} %") }
     });
     let title = format!("Energy dissipated, % of {all:.3e} J");
-    let plot = Bars { title, from_zero: true, bars: bars.collect(), reference: None }.svg();
+    let plot = Bars { title, bars: bars.collect() }.svg();
     let figure = figure("energy", plot, "Sums over the phases in the table.", &data(phases));
     Some(grid(figure) + balance(phases))
 }

@@ -1,18 +1,19 @@
 //! Values inferred from moduli and wave speeds, with those that were counted.
 
-use crate::run::{Run, recommended};
+use crate::run::Run;
 use grainlab_core::results::InferredQuantity;
 use grainlab_msgs::topics::PACKING_REPORT;
-use grainlab_page::plot::{Bar, Bars};
+use grainlab_page::plot::{Axis, Estimated, Figure, Intervals, Line, Marker, Point, Series};
 use grainlab_page::{
-    Cell, Html, csv, details, figure, fixed, grid, list, paragraph, plus_minus, signed, six_digits, table,
+    Cell, Html, csv, details, figure, fixed, grid, html, list, paragraph, plus_minus, six_digits, table,
 };
 use grainlab_results::Inference;
 use grainlab_results::brief::moduli;
+use grainlab_results::findings::{Judged, recommended};
 use grainlab_results::read_back::InvertedPacking;
 
-/// Most bars of a plot; its data have all.
-const MOST_BARS: usize = 60;
+/// Most rows of a plot; its data have all.
+const MOST_ROWS: usize = 60;
 
 /// Name of a result: its model, and its data unless these are the report of the packing.
 fn name(e: &Inference) -> String {
@@ -29,30 +30,87 @@ fn name(e: &Inference) -> String {
     format!("{}{}{}", e.model, data.unwrap_or_default(), by.unwrap_or_default())
 }
 
-fn plot(quantity: InferredQuantity, state: &InvertedPacking) -> Option<Html> {
-    let counted = state.packing.report.counted(quantity)?;
-    let digits = quantity.digits();
+/// Every result of a state, the recommended one first, with its values beside those that were counted.
+fn judged(state: &InvertedPacking) -> Vec<(&Inference, Vec<Judged>)> {
     let best = recommended(state);
     let others = state.results.iter().filter(|e| !best.is_some_and(|b| std::ptr::eq(b, *e)));
-    let (mut rows, mut bars) = (Vec::new(), Vec::new());
-    for e in best.into_iter().chain(others) {
-        let Some(value) = e.values[quantity] else { continue };
-        let by_sigma = || e.sigma[quantity].map(|s| [value - 1.96 * s, value + 1.96 * s]);
-        let interval = e.interval.bounds[quantity].or_else(by_sigma);
-        let [low, high] = interval.map_or([String::new(), String::new()], |i| i.map(six_digits));
-        let [inferred, counted_digits] = [value, counted].map(six_digits);
-        rows.push([name(e).replace(',', ""), e.status.to_string(), inferred, low, high, counted_digits]);
-        let colour = usize::from(e.status != "ok");
-        let text = format!("{} ({})", fixed(value, digits), signed(value - counted, digits));
-        bars.push(Bar { name: name(e), colour, value, interval, text });
-    }
-    bars.truncate(MOST_BARS);
-    let reference = Some((counted, format!("counted {counted:.digits$}")));
-    let title = format!("{}: {}", quantity.symbol(), quantity.meaning());
-    let id = format!("inferred-{}", quantity.text().replace('_', "-"));
-    let data = csv(["model", "status", "inferred", "low", "high", "counted"], rows);
-    (!bars.is_empty())
-        .then(|| figure(&id, Bars { title, from_zero: false, bars, reference }.svg(), "", &data))
+    best.into_iter().chain(others).map(|e| (e, Judged::of(e, &state.packing.report))).collect()
+}
+
+/// A plot for each quantity with a row for each result; the first one is set apart.
+fn plots(results: &[(&Inference, Vec<Judged>)], is_first_apart: bool) -> Html {
+    let plot = |q: InferredQuantity| {
+        let of = |judged: &[Judged]| judged.iter().find(|j| j.quantity == q).copied();
+        let counted = results.iter().find_map(|(_, judged)| of(judged))?.counted;
+        let rows = results.iter().take(MOST_ROWS).enumerate().map(|(n, (e, judged))| {
+            let found = of(judged);
+            Estimated {
+                name: name(e),
+                value: found.map(|j| j.inferred),
+                interval: found.and_then(|j| j.interval),
+                text: found.map_or_else(|| "not inferred".to_owned(), |j| j.value()),
+                below: found.filter(|_| n == 0 && is_first_apart).map_or_else(String::new, |j| j.distance()),
+                hollow: e.status != "ok",
+            }
+        });
+        let digits = q.digits();
+        let reference = Some((counted, format!("counted {counted:.digits$}")));
+        let (title, meaning) = (q.symbol().to_owned(), q.meaning().to_owned());
+        Some(Intervals { title, meaning, rows: rows.collect(), reference }.svg())
+    };
+    let drawn: Html = InferredQuantity::countable().filter_map(plot).collect();
+    if drawn.is_empty() { drawn } else { html!("<div class=\"panels\">{{ drawn }}</div>", drawn) }
+}
+
+fn data(results: &[(&Inference, Vec<Judged>)]) -> String {
+    let row = |e: &Inference, j: &Judged| {
+        let [low, high] = j.interval.map_or([String::new(), String::new()], |i| i.map(six_digits));
+        let [inferred, counted] = [j.inferred, j.counted].map(six_digits);
+        let quantity = j.quantity.name().to_owned();
+        [quantity, name(e).replace(',', ""), e.status.to_string(), inferred, low, high, counted]
+    };
+    let rows = results.iter().flat_map(|(e, judged)| judged.iter().map(move |j| row(e, j)));
+    csv(["quantity", "model", "status", "inferred", "low", "high", "counted"], rows)
+}
+
+/// Inferred over counted values of several states, by the recommended model of each.
+fn over_counted(states: &[InvertedPacking]) -> Html {
+    let all: Vec<Judged> = (states.iter())
+        .filter_map(|s| Some(Judged::of(recommended(s)?, &s.packing.report)))
+        .flatten()
+        .collect();
+    let plot = |q: InferredQuantity| {
+        let of: Vec<&Judged> = all.iter().filter(|j| j.quantity == q).collect();
+        let points = of.iter().map(|j| {
+            let error = j.interval.map(|[low, high]| 0.5 * (high - low));
+            let tooltip =
+                Some(format!("{} (counted {}: {})", j.value(), six_digits(j.counted), j.distance()));
+            Point { error, tooltip, ..Point::at(j.counted, j.inferred) }
+        });
+        let ends = of
+            .iter()
+            .map(|j| j.counted)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+        let exact = Series {
+            line: Some(Line::Faint),
+            points: ends.map(|v| Point::at(v, v)).into(),
+            ..Series::default()
+        };
+        let marker = Some(Marker::Circle);
+        let found = Series { colour: Some(0), marker, points: points.collect(), ..Series::default() };
+        let rows = of.iter().map(|j| {
+            let [low, high] = j.interval.map_or([String::new(), String::new()], |i| i.map(six_digits));
+            [six_digits(j.counted), six_digits(j.inferred), low, high]
+        });
+        let title = format!("{} inferred, over the count", q.symbol());
+        let drawn =
+            Figure { title, x: Axis::linear("counted"), series: vec![exact, found], ..Figure::default() };
+        let id = format!("{}-over-counted", q.text().replace('_', "-"));
+        (of.len() > 1)
+            .then(|| figure(&id, drawn.element(), "", &csv(["counted", "inferred", "low", "high"], rows)))
+    };
+    let drawn: Html = InferredQuantity::countable().filter_map(plot).collect();
+    if drawn.is_empty() { drawn } else { grid(drawn) }
 }
 
 /// Cells of the inferred quantities and of their model; empty without an estimate.
@@ -77,21 +135,32 @@ impl Run {
     /// Inferred against counted, of the last state, and all states as a table.
     pub(crate) fn inferred(&self) -> Html {
         let Some(state) = self.last() else { return paragraph("No packing was measured.") };
-        let figures: Html = InferredQuantity::countable().filter_map(|q| plot(q, state)).collect();
+        let results = judged(state);
+        let (best, all) = (plots(&results[..results.len().min(1)], true), plots(&results, false));
+        if all.is_empty() {
+            return paragraph("Nothing was inferred.") + self.of_instruments();
+        }
         let level = state.results.iter().find_map(|e| e.interval.level).unwrap_or(0.95);
-        let about = if figures.is_empty() {
-            "Nothing was inferred.".to_owned()
-        } else {
-            format!(
-                "Inferred from moduli, or from wave speeds if there are some, with the stress and the sizes and material of the grains; the contacts \
-                 were not seen. Bars are intervals of {:.0} %, which assume the errors of the data that the inversion was given; the vertical line is the \
-                 count. The model that is recommended comes first. Orange: its status is not ok; the notes have the reason.",
-                100.0 * level
-            )
+        let which = if self.states.len() > 1 { " Of the last state." } else { "" };
+        let caption = format!(
+            "Points: inferred, with intervals of {:.0} %, which assume the errors of the data that the inversion was given. \
+             Vertical line: counted. Below the interval: inferred less counted, and that in standard deviations. An outline: the \
+             status of the estimate is not ok.{which}",
+            100.0 * level
+        );
+        let others = match results.len() {
+            0 | 1 => Html::default(),
+            n => details(
+                format!("All {n} estimates: the other models, for comparison"),
+                figure("inferred-by-model", all, "The recommended model comes first.", &data(&results)),
+            ),
         };
+        let best = figure("inferred", best, caption, &data(&results[..1]));
+        let about = "The inversion was given the moduli, or wave speeds if there are some, the stress, and the sizes and material of the grains. It was not given the contacts.";
         let notes = state.results.iter().flat_map(|e| e.warnings.iter().map(move |w| (e, w)));
         let warnings = list(notes.map(|(e, w)| format!("{}: {w}", name(e))));
-        paragraph(about) + grid(figures) + details("Notes of the models", warnings) + self.of_instruments()
+        let notes = details("Notes of the models", warnings);
+        paragraph(about) + over_counted(&self.states) + best + others + notes + self.of_instruments()
     }
 
     /// Values inferred from data of no packing of the run, for example from an instrument; may be empty.

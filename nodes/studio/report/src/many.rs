@@ -1,14 +1,17 @@
 //! The page of many runs: one row per run, sortable, with outliers marked.
 
 use crate::outliers::Outliers;
-use crate::over_settings::{Quantities, figures};
+use crate::over_settings::{OverSettings, Quantities, strips};
 use crate::page::STYLE;
-use crate::run::{Run, recommended};
-use crate::settings::keys;
+use crate::run::Run;
+use crate::settings::{Setting, differing, keys};
 use grainlab_console::{CsvText, count};
 use grainlab_core::results::InferredQuantity;
-use grainlab_page::{Cell, Page, Section, data, fixed, heading, html, paragraph, six_digits, table};
+use grainlab_page::{
+    Cell, Html, Page, Section, data, finding, fixed, grid, heading, html, paragraph, six_digits, table,
+};
 use grainlab_results::brief::moduli;
+use grainlab_results::findings::{Findings, and, recommended};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A number of a run: header, decimal places, and value.
@@ -64,10 +67,14 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     let mut marked = 0;
     let mut csv = CsvText::default();
     let names = columns.iter().map(|(name, ..)| name.as_str());
-    let header: Vec<&str> = ["run", "scene", "seed", "end"].into_iter().chain(names).collect();
+    let varied: Vec<Setting> = differing(&runs.iter().map(|(run, _)| run).collect::<Vec<_>>());
+    let varied: Vec<Setting> = varied.into_iter().filter(|s| s.name != "scene").collect();
+    let settings_names = varied.iter().map(|s| s.name.as_str());
+    let fixed_columns = ["run", "scene", "seed"].into_iter();
+    let header: Vec<&str> = fixed_columns.chain(settings_names).chain(["end"]).chain(names).collect();
     csv.row(&header);
     let mut rows = Vec::new();
-    for (run, link) in runs {
+    for (n, (run, link)) in runs.iter().enumerate() {
         let (name, scene) = (run.name(), run.scene_name());
         let end = match run.summary.exit {
             None => "not known".to_owned(),
@@ -79,9 +86,12 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         let seed = run.seed().map(|s| s.to_string()).unwrap_or_default();
         let class = if run.summary.exit == Some(0) && !run.is_incomplete() { "" } else { "bad" };
         let linked = html!("<a href=\"{{ link }}\">{{ name }}</a>", link, name);
-        let mut row =
-            vec![Cell::text(linked), Cell::text(&scene), Cell::number(&seed), Cell::classed(&end, class)];
-        let mut line = vec![name, scene.clone(), seed, end];
+        let mut row = vec![Cell::text(linked), Cell::text(&scene), Cell::number(&seed)];
+        row.extend(varied.iter().map(|s| Cell::number(&s.values[n])));
+        row.push(Cell::classed(&end, class));
+        let mut line = vec![name, scene.clone(), seed];
+        line.extend(varied.iter().map(|s| s.values[n].clone()));
+        line.push(end);
         for ((name, digits, value), outliers) in numbers(run).iter().zip(&distributions[&settings(run)]) {
             line.push(value.map(six_digits).unwrap_or_default());
             row.push(value.map_or_else(
@@ -107,11 +117,9 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         rows.push(row);
         csv.row(line);
     }
-    let about = format!(
-        "The last packing of each run; errors are inferred less counted. Marked: {}, further from the \
-         median of the runs of a scene with the same settings (six or more) than chance alone has it in one column of a hundred. Click a header to sort.",
-        count(marked, "value")
-    );
+    let about = "The last packing of each run; errors are inferred less counted. A value is marked if it lies further from the median of \
+                 the runs of a scene with the same settings (six or more) than chance alone has it in one column of a hundred. \
+                 Click a header to sort.";
     let content = html!(
         "{{ about }}<div class=\"drawing sortable\" id=\"runs-table\">{{ table }}\
          <p class=\"save\"><button type=\"button\" data-save=\"csv\">Save CSV</button></p>{{ data }}</div>\n",
@@ -119,22 +127,68 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         table => table("Runs", header, rows),
         data => data("text/csv", "runs-data", &csv.finish())
     );
-    let scenes: BTreeSet<String> = runs.iter().map(|(run, _)| run.scene_name()).collect();
-    let title = format!("{} of {}", count(runs.len(), "run"), count(scenes.len(), "scene"));
     let compared = |run| {
         let all = numbers(run).into_iter().filter(|(name, ..)| is_compared(name));
         (run, all.map(|(name, _, value)| (name, value)).collect())
     };
     let compared: Vec<Quantities<'_>> = runs.iter().map(|(run, _)| compared(run)).collect();
-    let mut sections = vec![Section { id: "runs", title: "Runs", content }];
-    sections.extend(figures(&compared).map(|content| Section { id: "settings", title: "Settings", content }));
+    let over = OverSettings::of(&compared);
+    let figures = match (&over, runs) {
+        (Some(over), _) => Section { id: "settings", title: "Over the settings", content: over.figures() },
+        (None, [(a, _), (b, _)]) => {
+            Section { id: "pair", title: "Side by side", content: side_by_side([a, b]) }
+        }
+        _ => Section { id: "strips", title: "Every run", content: strips(&compared) },
+    };
+    let scenes: BTreeSet<String> = runs.iter().map(|(run, _)| run.scene_name()).collect();
+    let scenes: Vec<String> = scenes.into_iter().collect();
+    let title = format!("{} of {}", count(runs.len(), "run"), and(&scenes));
+    let complete = runs.iter().filter(|(run, _)| run.summary.exit == Some(0) && !run.is_incomplete()).count();
+    let differ = match varied.as_slice() {
+        [] => " They differ in nothing but the seed.".to_owned(),
+        some => format!(" They differ in {}.", and(&some.iter().map(|s| s.name.clone()).collect::<Vec<_>>())),
+    };
+    let done = format!("{complete} of {} complete.{differ}", count(runs.len(), "run"));
+    let symbols = [InferredQuantity::Z, InferredQuantity::Eps].map(InferredQuantity::symbol);
+    let mut found: Vec<String> =
+        over.iter().flat_map(|o| symbols.iter().flat_map(|s| o.sentences(s))).collect();
+    found.extend(Findings::inferred(&runs.iter().filter_map(|(run, _)| run.last()).collect::<Vec<_>>()));
+    let warned = runs.iter().filter(|(run, _)| !run.summary.warnings.is_empty()).count();
+    let doubts = [
+        (runs.len() - complete, "run", "not complete: the table says why"),
+        (warned, "run", "with warnings, which its page lists"),
+        (marked, "value", "marked in the table: far from those of runs with the same settings"),
+    ];
+    let doubts = doubts.into_iter().filter(|(n, ..)| *n > 0);
+    let doubts: Vec<String> = doubts.map(|(n, noun, what)| format!("{} {what}.", count(n, noun))).collect();
     let page = Page {
-        heading: heading("grainlab", &title, ""),
+        heading: heading("grainlab", &title, "") + finding(&done, &found, &doubts),
         title,
-        sections,
+        sections: vec![figures, Section { id: "runs", title: "Runs", content }],
         styles: vec![STYLE],
         has_bar: true,
         ..Page::default()
     };
     page.text()
+}
+
+/// The numbers of two runs beside each other.
+fn side_by_side(pair: [&Run; 2]) -> Html {
+    let [a, b] = pair.map(numbers);
+    let rows = a.into_iter().zip(b).map(|((name, digits, x), (_, _, y))| {
+        let difference = x.zip(y).map(|(x, y)| y - x);
+        let cells = [Cell::fixed(x, digits), Cell::fixed(y, digits), Cell::signed(difference, digits)];
+        std::iter::once(Cell::text(name)).chain(cells)
+    });
+    let [first, second] = pair.map(Run::name);
+    let settings = differing(&pair).into_iter().map(|s| {
+        s.values.iter().fold(vec![Cell::text(&s.name)], |mut row, value| {
+            row.push(Cell::text(value));
+            row
+        })
+    });
+    let header = |what: &str| [what.to_owned(), first.clone(), second.clone()];
+    let tables = table("Settings", header("setting"), settings)
+        + table("Numbers", header("quantity").into_iter().chain(["difference".to_owned()]), rows);
+    grid(tables)
 }

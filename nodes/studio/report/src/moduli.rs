@@ -39,12 +39,10 @@ impl Run {
                 name: NAMES[n].to_owned(),
                 colour: *colour,
                 value: values[n],
-                interval: None,
                 text: format!("{:.1} {kind}", values[n]),
             })
         });
-        let plot =
-            Bars { title: "Moduli, MPa".into(), from_zero: true, bars: bars.collect(), reference: None };
+        let plot = Bars { title: "Moduli, MPa".into(), bars: bars.collect() };
         let of = |n: usize| (NAMES[n], kinds.map(|k| k.2[n]));
         let data = csv(
             ["modulus", "relaxed_mpa", "mean_rotation_mpa", "affine_mpa"],

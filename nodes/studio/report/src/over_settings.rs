@@ -1,9 +1,9 @@
 //! Quantities of many runs over the settings in which they differ: means with standard errors.
 
 use crate::run::Run;
-use crate::settings::differing;
-use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Strip};
-use grainlab_page::{Html, Mean, csv, figure, grid, html, paragraph, six_digits};
+use crate::settings::{Setting, differing};
+use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
+use grainlab_page::{Html, Mean, csv, figure, grid, paragraph, six_digits};
 use std::collections::BTreeSet;
 
 /// Ratio of the ends from which an axis is logarithmic.
@@ -12,82 +12,161 @@ const DECADE: f64 = 10.0;
 /// Most curves: what a legend has room for.
 const CURVES: usize = 20;
 
-/// Most letters of the legend of a small plot, and those that the symbol of a curve takes.
-const LEGEND: usize = 52;
-const SYMBOL: usize = 5;
+/// Most curves that are described in sentences.
+const DESCRIBED: usize = 3;
 
 /// A run, and its quantities by name.
 pub(crate) type Quantities<'a> = (&'a Run, Vec<(String, Option<f64>)>);
 
-/// A figure for each quantity, over the setting with most numbers, with a curve for each value of the other one; nothing if
-/// no setting differs.
-pub(crate) fn figures(all: &[Quantities<'_>]) -> Option<Html> {
-    let is_whole = |run: &Run| run.summary.exit == Some(0) && !run.is_incomplete() && run.last().is_some();
-    let whole: Vec<&Quantities<'_>> = all.iter().filter(|(run, _)| is_whole(run)).collect();
-    let mut settings = differing(&whole.iter().map(|(run, _)| *run).collect::<Vec<_>>());
-    settings.sort_by_key(|s| std::cmp::Reverse(s.numbers().map_or(0, |_| s.different())));
-    let is_drawn = settings.len() <= 2 && settings.get(1).is_none_or(|s| s.different() <= CURVES);
-    let Some(x) = settings.first()?.numbers().filter(|_| is_drawn) else {
-        let names: Vec<&str> = settings.iter().map(|s| s.name.as_str()).collect();
-        return Some(paragraph(format!(
-            "There are figures of runs that differ in one setting or two, of which one is a number and the other has few values. These differ in: {}.",
-            names.join(", ")
-        )));
-    };
-    let (along, by) = (&settings[0].name, settings.get(1));
-    let mut places = x.clone();
-    places.sort_by(f64::total_cmp);
-    places.dedup();
-    let curve = |n: usize| by.map_or("", |s| s.values[n].as_str());
-    let mut curves: Vec<&str> = (0..whole.len()).map(curve).collect();
-    let number = |text: &str| text.parse().unwrap_or(f64::INFINITY);
-    curves.sort_by(|a, b| number(a).total_cmp(&number(b)).then(a.cmp(b)));
-    curves.dedup();
-    let is_small = curves.iter().map(|c| c.chars().count() + SYMBOL).sum::<usize>() <= LEGEND;
-    // A run that repeats another one adds nothing to a mean.
-    let mut seen = BTreeSet::new();
-    let is_new = |n: &usize| seen.insert((curve(*n), x[*n].to_bits(), whole[*n].0.seed()));
-    let kept: Vec<usize> = (0..whole.len()).filter(is_new).collect();
-    let is_log = places[0] > 0.0 && places[places.len() - 1] >= DECADE * places[0];
-    let axis = if is_log { Axis::log(along) } else { Axis::linear(along) };
-    let by_name = by.map_or("", |s| &s.name);
-    let draw = |(q, (name, _)): (usize, &(String, Option<f64>))| {
-        let (mut rows, mut series, mut legend) =
-            (Vec::new(), Vec::new(), vec![Entry::Note(by_name.to_owned())]);
-        for (c, of) in curves.iter().enumerate() {
-            let mut points = Vec::new();
-            for at in &places {
-                let here = kept.iter().filter(|n| curve(**n) == *of && x[**n] == *at);
-                let Some(m) = Mean::of(here.filter_map(|n| whole[*n].1[q].1)) else { continue };
-                let error = m.error.map(six_digits).unwrap_or_default();
-                let (mean, n) = (six_digits(m.value), m.count.to_string());
-                let tooltip =
-                    Some(format!("{along} {at} {by_name} {of}: {mean}, standard error {error}, n {n}"));
-                points.push(Point { error: m.error, tooltip, ..Point::at(*at, m.value) });
-                rows.push([at.to_string(), (*of).to_owned(), n, mean, error]);
-            }
-            let marker = Marker::of(c);
-            let (colour, line) = (Some(c), Some(Line::Straight));
-            series.push(Series { colour, marker: Some(marker), line, points, ..Series::default() });
-            if by.is_some() {
-                legend.push(Entry::Shape(marker, colour, false, (*of).to_owned()));
-            }
-        }
-        let (title, x, y) = (name.clone(), axis.clone(), Axis::default());
-        let drawn = Figure { title, x, y, series, legend, ..Figure::default() };
-        let data = csv([along.as_str(), by_name, "n", "mean", "standard_error"], rows);
-        let plot = if is_small { Strip { figure: drawn, ..Strip::default() }.svg() } else { drawn.element() };
-        figure(&format!("over-settings-{}", q + 1), plot, "", &data)
-    };
-    let quantities = whole[0].1.iter().enumerate();
-    let has_value = |(q, _): &(usize, _)| whole.iter().any(|(_, values)| values[*q].1.is_some());
-    let drawn: Html = quantities.filter(has_value).map(draw).collect();
-    let curves = if by.is_some() { format!(", with a curve for each {by_name}") } else { String::new() };
-    let mut about = format!("Mean and standard error over seeds, over {along}{curves}.");
-    if all.len() > kept.len() {
-        let runs = grainlab_console::count(all.len() - kept.len(), "run");
-        about += &format!(" Left out: {runs}, not complete or repeated.");
+/// Runs over the setting with most numbers, with a curve for each value of the other one.
+pub(crate) struct OverSettings<'a> {
+    along: Setting,
+    by: Option<Setting>,
+    /// The complete runs, with their quantities.
+    whole: Vec<&'a Quantities<'a>>,
+    /// Value of the setting of each of them.
+    x: Vec<f64>,
+    /// Those that do not repeat another one, which would add nothing to a mean.
+    kept: Vec<usize>,
+    places: Vec<f64>,
+    curves: Vec<String>,
+    /// Number of runs that are left out.
+    left_out: usize,
+}
+
+impl<'a> OverSettings<'a> {
+    /// The runs, if they differ in one setting or two, of which one is a number and the other has few values.
+    pub(crate) fn of(all: &'a [Quantities<'a>]) -> Option<Self> {
+        let is_whole =
+            |run: &Run| run.summary.exit == Some(0) && !run.is_incomplete() && run.last().is_some();
+        let whole: Vec<&Quantities<'_>> = all.iter().filter(|(run, _)| is_whole(run)).collect();
+        let mut settings = differing(&whole.iter().map(|(run, _)| *run).collect::<Vec<_>>());
+        settings.sort_by_key(|s| std::cmp::Reverse(s.numbers().map_or(0, |_| s.different())));
+        let is_drawn = settings.len() <= 2 && settings.get(1).is_none_or(|s| s.different() <= CURVES);
+        let x = settings.first()?.numbers().filter(|_| is_drawn)?;
+        let mut settings = settings.into_iter();
+        let (along, by) = (settings.next()?, settings.next());
+        let mut places = x.clone();
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        let curve = |n: usize| by.as_ref().map_or("", |s| s.values[n].as_str());
+        let mut curves: Vec<String> = (0..whole.len()).map(|n| curve(n).to_owned()).collect();
+        let number = |text: &str| text.parse().unwrap_or(f64::INFINITY);
+        curves.sort_by(|a, b| number(a).total_cmp(&number(b)).then(a.cmp(b)));
+        curves.dedup();
+        let mut seen = BTreeSet::new();
+        let is_new = |n: &usize| seen.insert((curve(*n), x[*n].to_bits(), whole[*n].0.seed()));
+        let kept: Vec<usize> = (0..whole.len()).filter(is_new).collect();
+        let left_out = all.len() - kept.len();
+        Some(Self { along, by, whole, x, kept, places, curves, left_out })
     }
-    let drawn = if is_small { grid(drawn) } else { drawn };
-    Some(html!("{{ about }}{{ drawn }}", about => paragraph(about), drawn))
+
+    /// Means of a quantity over seeds along a curve.
+    fn means(&self, quantity: usize, curve: &str) -> Vec<(f64, Mean)> {
+        let of_curve = |n: &&usize| self.by.as_ref().map_or("", |s| &s.values[**n]) == curve;
+        let mean = |at: &f64| {
+            let here = self.kept.iter().filter(of_curve).filter(|n| self.x[**n] == *at);
+            Some((*at, Mean::of(here.filter_map(|n| self.whole[*n].1[quantity].1))?))
+        };
+        self.places.iter().filter_map(mean).collect()
+    }
+
+    /// The change of a quantity between the ends of the setting, in a sentence for each curve.
+    pub(crate) fn sentences(&self, symbol: &str) -> Vec<String> {
+        let Some(quantity) = self.whole[0].1.iter().position(|(name, _)| name == symbol) else {
+            return Vec::new();
+        };
+        let sentence = |curve: &String| {
+            let means = self.means(quantity, curve);
+            let [(from, a), .., (to, b)] = means.as_slice() else { return None };
+            let value = |m: &Mean| {
+                three_digits(m.value)
+                    + &m.error.map_or_else(String::new, |e| format!(" ± {}", three_digits(e)))
+            };
+            let of = match &self.by {
+                Some(by) => format!("For {} {curve}, {symbol}", by.name),
+                None => symbol.to_owned(),
+            };
+            let change = match (a.error, b.error) {
+                (Some(x), Some(y)) if (b.value - a.value).abs() <= 2.0 * x.hypot(y) => {
+                    "does not change beyond its scatter: it is"
+                }
+                _ if b.value > a.value => "rises from",
+                _ => "falls from",
+            };
+            let along = &self.along.name;
+            let to_word = if change.ends_with("is") { "and" } else { "to" };
+            Some(format!("{of} {change} {} at {along} {from} {to_word} {} at {to}.", value(a), value(b)))
+        };
+        self.curves.iter().take(DESCRIBED).filter_map(sentence).collect()
+    }
+
+    /// A figure for each quantity: means with standard errors.
+    pub(crate) fn figures(&self) -> Html {
+        let (along, by) = (&self.along.name, self.by.as_ref().map_or("", |s| &s.name));
+        let is_log = self.places[0] > 0.0 && self.places[self.places.len() - 1] >= DECADE * self.places[0];
+        let axis = if is_log { Axis::log(along) } else { Axis::linear(along) };
+        let draw = |(q, (name, _)): (usize, &(String, Option<f64>))| {
+            let (mut rows, mut series) = (Vec::new(), Vec::new());
+            for (c, of) in self.curves.iter().enumerate() {
+                let means = self.means(q, of);
+                let points = means.iter().map(|(at, m)| {
+                    let error = m.error.map(six_digits).unwrap_or_default();
+                    let (mean, n) = (six_digits(m.value), m.count.to_string());
+                    let tooltip = format!("{along} {at} {by} {of}: {mean}, standard error {error}, n {n}");
+                    rows.push([at.to_string(), of.clone(), n, mean, error]);
+                    Point { error: m.error, tooltip: Some(tooltip), ..Point::at(*at, m.value) }
+                });
+                let points = points.collect();
+                let (colour, marker, line) = (Some(c), Some(Marker::of(c)), Some(Line::Straight));
+                series.push(Series { name: of.clone(), colour, marker, line, points, ..Series::default() });
+            }
+            let (title, x) = (name.clone(), axis.clone());
+            let drawn = Figure { title, x, series, ..Figure::default() };
+            let data = csv([along.as_str(), by, "n", "mean", "standard_error"], rows);
+            figure(&format!("over-settings-{}", q + 1), drawn.element(), "", &data)
+        };
+        let has_value = |(q, _): &(usize, _)| self.whole.iter().any(|(_, values)| values[*q].1.is_some());
+        let drawn: Html = self.whole[0].1.iter().enumerate().filter(has_value).map(draw).collect();
+        let curves =
+            self.by.as_ref().map_or_else(String::new, |s| format!(", with a curve for each {}", s.name));
+        let mut about = format!("Mean and standard error over seeds, over {along}{curves}.");
+        if self.left_out > 0 {
+            let runs = grainlab_console::count(self.left_out, "run");
+            about += &format!(" Left out: {runs}, not complete or repeated.");
+        }
+        paragraph(about) + grid(drawn)
+    }
+}
+
+/// A figure for each quantity: a point for each run, in the order of the table.
+pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
+    let draw = |(q, (name, _)): (usize, &(String, Option<f64>))| {
+        let values =
+            || all.iter().enumerate().filter_map(|(n, (run, values))| Some((n + 1, run, values[q].1?)));
+        let points = values().map(|(n, run, value)| Point {
+            tooltip: Some(format!("{}: {}", run.name(), six_digits(value))),
+            ..Point::at(n as f64, value)
+        });
+        let series = vec![Series {
+            colour: Some(0),
+            marker: Some(Marker::Circle),
+            points: points.collect(),
+            ..Series::default()
+        }];
+        let drawn = Figure {
+            title: name.clone(),
+            x: Axis::linear("run, in the order of the table"),
+            series,
+            ..Figure::default()
+        };
+        let data = csv(["run", "value"], values().map(|(_, run, value)| [run.name(), six_digits(value)]));
+        (values().next().is_some()).then(|| figure(&format!("by-run-{}", q + 1), drawn.element(), "", &data))
+    };
+    grid(all[0].1.iter().enumerate().filter_map(draw).collect())
+}
+
+fn three_digits(value: f64) -> String {
+    let digits = if value == 0.0 { 0.0 } else { (2.0 - value.abs().log10().floor()).clamp(0.0, 6.0) };
+    format!("{value:.0$}", digits as usize)
 }

@@ -1,12 +1,13 @@
 //! The page of one run: one file, without references to others.
 
 use crate::energy;
-use crate::run::{Run, recommended};
+use crate::run::Run;
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{
-    Html, Page, Section, card, fixed, heading, html, list, paragraph, plus_minus, signed, verdict, with_unit,
+    Html, Page, Section, card, finding, fixed, heading, html, list, paragraph, verdict, with_unit,
 };
 use grainlab_results::brief::{ended, lost_words, moduli};
+use grainlab_results::findings::{Findings, Judged, recommended};
 use grainlab_results::read_back::InvertedPacking;
 use grainlab_viewer::PictureError;
 
@@ -14,6 +15,9 @@ use grainlab_viewer::PictureError;
 pub const STYLE: &str = include_str!("../assets/report.css");
 /// Script of plots against time.
 pub const SCRIPT: &str = include_str!("../assets/time.js");
+
+/// Most warnings of the run among the findings; its health has all.
+const MOST_WARNINGS: usize = 4;
 
 impl Run {
     /// The page.
@@ -31,11 +35,12 @@ impl Run {
         };
         let packing = grainlab_viewer::figure(&self.name(), &views)? + packing;
         let sections = [
+            ("inference", "Inferred and counted", Some(self.inferred())),
             ("packing", "The packing", (!views.is_empty()).then_some(packing)),
+            ("numbers", "Numbers", self.last().map(|state| cards(state) + self.states_table())),
             ("time", "Against time", Some(self.timeline.against_time())),
             ("structure", "Contacts and forces", Some(self.structure())),
             ("moduli", "Moduli", Some(self.moduli())),
-            ("inference", "Inferred and counted", Some(self.inferred())),
             ("waves", "Waves", self.waves()),
             ("energy", "Energy", energy::section(&self.timeline.energy)),
             ("health", "Health of the run", Some(self.health())),
@@ -59,16 +64,25 @@ impl Run {
     /// Scene, end and key results of the run.
     fn heading(&self) -> Html {
         let about = self.scene.as_ref().map_or("", |s| s.description.as_str());
+        let words = self.launched.as_deref().unwrap_or_default();
+        let set: Vec<&str> = words.windows(2).filter(|w| w[0] == "--set").map(|w| w[1].as_str()).collect();
+        let about = match set.as_slice() {
+            [] => about.to_owned(),
+            set => format!("{about} Changed for this run: {}.", set.join(", ")),
+        };
         let missing = list(&self.missing);
         let missing = html!(
             "{% if missing %}<div class=\"missing\"><b>Missing or not readable</b>{{ missing }}</div>\n{% endif %}",
             missing
         );
-        let results = self.last().map_or_else(Html::default, |state| cards(state) + self.states_table());
-        heading(&format!("grainlab · {}", self.name()), &self.headline(), about)
+        let Findings { done, found, mut doubts } = Findings::of(&self.states);
+        let more = self.summary.warnings.iter().filter(|w| !doubts.iter().any(|d| d.contains(w.as_str())));
+        let more: Vec<String> = more.take(MOST_WARNINGS).cloned().collect();
+        doubts.extend(more);
+        heading(&format!("grainlab · {}", self.name()), &self.headline(), &about)
+            + finding(&done, &found, &doubts)
             + self.verdict()
             + missing
-            + results
     }
 
     fn headline(&self) -> String {
@@ -117,14 +131,14 @@ fn cards(state: &InvertedPacking) -> Html {
     let r = &state.packing.report;
     let best = recommended(state);
     let inferred = |q: InferredQuantity| {
-        let (counted, digits) = (r.counted(q), q.digits());
-        let Some((best, value)) = best.and_then(|b| Some((b, b.values[q]?))) else {
+        let Some(best) = best else { return "not inferred".into() };
+        let Some(j) = Judged::of(best, r).into_iter().find(|j| j.quantity == q) else {
             return "not inferred".into();
         };
         html!(
             "inferred {{ value }}{% if error %} <span class=\"error\">{{ error }}</span>{% endif %}{% if status != \"ok\" %} ({{ status }}){% endif %}",
-            value => fixed(value, digits) + &plus_minus(best.sigma[q], digits),
-            error => counted.map(|c| signed(value - c, digits)),
+            value => j.value(),
+            error => format!("({})", j.distance()),
             status => best.status,
         )
     };

@@ -200,13 +200,6 @@ impl Run {
     }
 }
 
-/// The recommended result of a state, of the data that were inverted first.
-pub(crate) fn recommended(state: &InvertedPacking) -> Option<&Inference> {
-    grainlab_results::by_origin(&state.results)
-        .iter()
-        .find_map(|(_, results)| Inference::recommended(results))
-}
-
 /// The words after `grainlab launch` in a file that it wrote.
 fn launched(path: &Path) -> Option<Vec<String>> {
     #[derive(serde::Deserialize)]

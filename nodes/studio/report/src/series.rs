@@ -89,7 +89,7 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
     html!(
         "{{ verdict }}{{ drawn }}{{ notes }}",
         verdict => paragraph(verdict),
-        drawn => figure(&format!("z-{n}"), drawn.element(), "", &data),
+        drawn => figure(&format!("z-{n}"), drawn.element(), "Mean and 95 % of the posterior.", &data),
         notes => list(notes.iter().map(String::as_str))
     )
 }
@@ -139,7 +139,12 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
         [row.pressure.to_string(), kind(row), measured, to.predicted.to_string(), to.stddev.to_string()]
     });
     let data = csv(["pressure_pa", "mode", "speed", "predicted", "predicted_sigma"], rows);
-    figure(&format!("speeds-{n}"), drawn.element(), "", &data)
+    figure(
+        &format!("speeds-{n}"),
+        drawn.element(),
+        "Markers: measured. Lines with errors: predicted from the other speeds.",
+        &data,
+    )
 }
 
 fn contact(_: usize, sample: &InferredSample<'_>) -> Html {

@@ -3,7 +3,7 @@
 use crate::run::Run;
 use grainlab_core::results::{FORCE_BIN_WIDTH, ORIENTATION_BINS, PackingReport};
 use grainlab_core::{Packing, Vec3};
-use grainlab_page::plot::{Axis, Entry, Figure, Line, Point, Rose, Series, Strip};
+use grainlab_page::plot::{Axis, Figure, Line, Point, Rose, Series};
 use grainlab_page::{Html, csv, figure, grid, html, paragraph, six_digits};
 
 /// Values in the bins of orientation over their mean, and a of 1 + a (3 x² − 1).
@@ -110,12 +110,18 @@ fn forces(report: &PackingReport) -> Option<Html> {
     let end = bins.len() as f64 * FORCE_BIN_WIDTH;
     let least = bins.iter().map(|b| b.1).filter(|d| *d > 0.0).fold(1.0, f64::min);
     let exponential = (0..=100).map(|n| end * f64::from(n) / 100.0).map(|f| Point::at(f, (-f).exp()));
-    let series = |colour, line, points| Series { colour, line, points, ..Series::default() };
+    let series = |name: &str, colour, line, points| Series {
+        name: name.to_owned(),
+        colour,
+        line,
+        points,
+        ..Series::default()
+    };
     let left = |(f, d): &(f64, f64)| {
         [Point::at(f - 0.5 * FORCE_BIN_WIDTH, *d), Point::at(f + 0.5 * FORCE_BIN_WIDTH, *d)]
     };
     let plot = Figure {
-        title: "Normal forces".into(),
+        title: "Density of normal forces".into(),
         subtitle: format!(
             "Participation ratio {:.3}, largest force {:.2} times the mean",
             forces.participation_ratio(),
@@ -124,10 +130,15 @@ fn forces(report: &PackingReport) -> Option<Html> {
         x: Axis::linear("f = F / mean F"),
         y: Axis::log(""),
         series: vec![
-            series(None, Some(Line::Faint), exponential.filter(|p| p.y >= 0.5 * least).collect()),
-            series(Some(0), Some(Line::Straight), bins.iter().filter(|b| b.1 > 0.0).flat_map(left).collect()),
+            series("", None, Some(Line::Faint), exponential.filter(|p| p.y >= 0.5 * least).collect()),
+            series(
+                "",
+                Some(0),
+                Some(Line::Straight),
+                bins.iter().filter(|b| b.1 > 0.0).flat_map(left).collect(),
+            ),
         ],
-        legend: vec![Entry::Colour(0, "density of f".into())],
+        legend: Vec::new(),
     };
     let data = csv(["force_over_mean", "density"], bins.iter().map(|(f, d)| [f, d].map(|v| six_digits(*v))));
     let caption = format!(
@@ -136,6 +147,5 @@ fn forces(report: &PackingReport) -> Option<Html> {
         forces.participation_ratio(),
         forces.largest
     );
-    let plot = Strip { figure: plot, ..Strip::default() }.svg();
-    Some(grid(figure("force-distribution", plot, caption, &data)))
+    Some(grid(figure("force-distribution", plot.element(), caption, &data)))
 }

@@ -3,7 +3,7 @@
 use crate::run::Run;
 use grainlab_console::count;
 use grainlab_core::{MeasuredWave, Stiffness, Vec3};
-use grainlab_page::plot::{Axis, Entry, Figure, Marker, Point, Series, Strip};
+use grainlab_page::plot::{Axis, Figure, Marker, Point, Series};
 use grainlab_page::{Cell, Html, csv, figure, grid, paragraph, six_digits, table};
 use grainlab_results::AcousticReport;
 use std::collections::BTreeSet;
@@ -59,6 +59,7 @@ fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffn
     let data = csv(["mode", "angle_deg", "frequency_hz", "speed_m_s", "stddev_m_s"], rows);
     let plot = |id: &str, title: &str, x: &str, caption: &str, at: &dyn Fn(&MeasuredWave) -> Option<f64>| {
         let series = |m: usize| Series {
+            name: MODES[m].to_owned(),
             colour: Some(m),
             marker: Some(Marker::of(m)),
             points: (speeds.iter().filter(|s| mode(s, &axis) == m))
@@ -72,10 +73,10 @@ fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffn
             x: Axis::linear(x),
             y: Axis::linear(""),
             series: (0..MODES.len()).map(series).collect(),
-            legend: MODES.iter().enumerate().map(|(m, name)| Entry::Colour(m, (*name).to_owned())).collect(),
+            legend: Vec::new(),
         };
         let id = if n == 0 { id.to_owned() } else { format!("{id}-{}", n + 1) };
-        figure(&id, Strip { figure: plot, ..Strip::default() }.svg(), caption, &data)
+        figure(&id, plot.element(), caption, &data)
     };
     let by_angle = "By the angle between ray and axis; the bars are standard deviations.";
     let mut figures =

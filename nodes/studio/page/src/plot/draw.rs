@@ -14,11 +14,14 @@ const PICTURE: [f64; 2] = [860.0, 560.0];
 /// Left, top, right and bottom of the axes.
 const FRAME: Area = [70.0, 60.0, 640.0, 490.0];
 
+/// Half the width of a digit.
+pub(super) const HALF_LETTER: f64 = 3.8;
+
 /// Distance between two lines of the legend.
 const LEGEND_LINE: f64 = 20.0;
 
-/// Centre of the symbols of the legend, and the left end of its texts.
-const LEGEND: [f64; 2] = [FRAME[2] + 36.0, FRAME[2] + 50.0];
+/// Left end of the legend.
+const LEGEND: f64 = FRAME[2] + 29.0;
 
 /// The style of a point.
 #[derive(Clone, Copy)]
@@ -35,11 +38,10 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// With a title and a subtitle: a file with the colours of a theme, or a part of a page.
-    pub(super) fn begin(theme: Option<Theme>, title: &str, subtitle: &str) -> Self {
-        let sheet = theme.map_or_else(String::new, |theme| format!("<style>{}</style>\n", style(theme)));
-        let attributes = theme.map_or_else(|| of_page(title), |_| String::new());
-        let mut drawing = Self::blank(PICTURE, FRAME, &attributes, &sheet);
+    /// A file with a title and a subtitle, in the colours of a theme.
+    pub(super) fn begin(theme: Theme, title: &str, subtitle: &str) -> Self {
+        let sheet = format!("<style>{}</style>\n", style(theme));
+        let mut drawing = Self::blank(PICTURE, FRAME, "", &sheet);
         drawing.text([FRAME[0], 28.0], "start", "class=\"ink\" font-size=\"15\"", title);
         drawing.text([FRAME[0], 46.0], "start", "class=\"faint\"", subtitle);
         drawing
@@ -77,19 +79,39 @@ impl Drawing {
         self.frame
     }
 
+    /// Adds elements in a group of this class.
+    pub(super) fn group(&mut self, class: &str, draw: impl FnOnce(&mut Self)) {
+        self.add(format_args!("<g class=\"{class}\">"));
+        draw(self);
+        self.add(format_args!("</g>"));
+    }
+
     /// Adds an element.
     pub(super) fn add(&mut self, element: std::fmt::Arguments<'_>) {
         let _ = writeln!(self.text, "{element}");
     }
 
+    /// Lines and labels of the horizontal axis; a label that has no room is left out.
+    pub(super) fn marks(&mut self, x: &Range) {
+        self.group("marks", |drawing| drawing.marks_of(x));
+    }
+
+    fn marks_of(&mut self, x: &Range) {
+        let [_, top, _, bottom] = self.frame;
+        let mut free = f64::NEG_INFINITY;
+        for (value, text) in x.marks() {
+            let (at, half) = (x.at(value), HALF_LETTER * text.chars().count() as f64);
+            self.segment([at, top, at, bottom], "grid");
+            if at - half > free {
+                self.text([at, bottom + 16.0], "middle", "class=\"ink\"", &text);
+                free = at + half + HALF_LETTER;
+            }
+        }
+    }
+
     /// Both axes with their names and a grid.
     pub(super) fn axes(&mut self, (x, along): (&Range, &str), (y, up): (&Range, &str)) {
-        let [_, top, _, bottom] = self.frame;
-        for (value, text) in x.marks() {
-            let at = x.at(value);
-            self.segment([at, top, at, bottom], "grid");
-            self.text([at, bottom + 18.0], "middle", "class=\"ink\"", &text);
-        }
+        self.marks(x);
         self.other_axes(along, (y, up));
     }
 
@@ -125,9 +147,13 @@ impl Drawing {
             Line::Faint => " stroke-opacity=\"0.35\"",
         };
         let class = class(series.colour);
+        let name = match series.name.as_str() {
+            "" => String::new(),
+            name => format!(" data-name=\"{}\"", escaped(name)),
+        };
         let _ = writeln!(
             self.text,
-            "<path d=\"{path}\" class=\"{class}\" fill=\"none\" stroke=\"currentColor\"{opacity}/>"
+            "<path d=\"{path}\" class=\"{class}\" fill=\"none\" stroke=\"currentColor\"{opacity}{name}/>"
         );
     }
 
@@ -159,35 +185,38 @@ impl Drawing {
 
     /// A small text with its lower left corner.
     pub(super) fn label(&mut self, at: [f64; 2], text: &str, colour: Option<usize>) {
-        let more = format!("class=\"{}\" fill=\"currentColor\" font-size=\"10\"", class(colour));
+        let more = format!("class=\"{}\" fill=\"currentColor\" font-size=\"11\"", class(colour));
         self.text(at, "start", &more, text);
     }
 
     /// Lines of the legend.
     pub(super) fn legend(&mut self, entries: &[Entry]) {
-        let [x, beside] = LEGEND;
         let mut y = FRAME[1] + 10.0;
         for entry in entries {
-            match entry {
-                Entry::Colour(colour, text) => {
-                    let class = class(Some(*colour));
-                    let _ = writeln!(
-                        self.text,
-                        "<path d=\"M {:.1} {:.1} h 14\" class=\"{class}\" stroke=\"currentColor\" stroke-width=\"3\"/>",
-                        x - 7.0,
-                        y - 4.0
-                    );
-                    self.text([beside, y], "start", "class=\"ink\"", text);
-                }
-                Entry::Shape(marker, colour, hollow, text) => {
-                    let key = Key { marker: *marker, colour: *colour, hollow: *hollow };
-                    self.marker([x, y - 4.0], key, "");
-                    self.text([beside, y], "start", "class=\"ink\"", text);
-                }
-                Entry::Note(text) => self.text([x - 6.0, y], "start", "class=\"faint\"", text),
-                Entry::Gap => y -= 0.5 * LEGEND_LINE,
+            self.entry([LEGEND, y], entry);
+            y += if matches!(entry, Entry::Gap) { 0.5 * LEGEND_LINE } else { LEGEND_LINE };
+        }
+    }
+
+    /// One entry of a legend, from its left end on the line of its letters.
+    pub(super) fn entry(&mut self, [x, y]: [f64; 2], entry: &Entry) {
+        match entry {
+            Entry::Colour(colour, text) => {
+                let class = class(Some(*colour));
+                let _ = writeln!(
+                    self.text,
+                    "<path d=\"M {x:.1} {:.1} h 14\" class=\"{class}\" stroke=\"currentColor\" stroke-width=\"3\"/>",
+                    y - 4.0
+                );
+                self.text([x + 20.0, y], "start", "class=\"ink\"", text);
             }
-            y += LEGEND_LINE;
+            Entry::Shape(marker, colour, hollow, text) => {
+                let key = Key { marker: *marker, colour: *colour, hollow: *hollow };
+                self.marker([x + 7.0, y - 4.0], key, "");
+                self.text([x + 20.0, y], "start", "class=\"ink\"", text);
+            }
+            Entry::Note(text) => self.text([x, y], "start", "class=\"faint\"", text),
+            Entry::Gap => {}
         }
     }
 

@@ -1,6 +1,6 @@
 //! The contents of a plot.
 
-/// A plot: series over two axes, and a legend beside them.
+/// A plot: series over two axes, and a legend. On a page without one, the names of the series stand at their ends or above.
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
     /// Title of the plot.
@@ -51,6 +51,8 @@ pub enum Scale {
 /// Points of one colour and shape.
 #[derive(Clone, Debug, Default)]
 pub struct Series {
+    /// Name in the legend, or beside the end of the line; empty for a series without one.
+    pub name: String,
     /// Number of the colour; see [`Series::COLOURS`]. `None` for grey.
     pub colour: Option<usize>,
     /// Shape of the points; `None` for a line alone.
@@ -66,6 +68,16 @@ pub struct Series {
 impl Series {
     /// Number of different colours; higher numbers start over.
     pub const COLOURS: usize = 9;
+
+    /// The line of a legend.
+    pub(super) fn entry(&self) -> Entry {
+        match (self.marker, self.colour) {
+            (None, Some(colour)) => Entry::Colour(colour, self.name.clone()),
+            (marker, colour) => {
+                Entry::Shape(marker.unwrap_or(Marker::Circle), colour, self.hollow, self.name.clone())
+            }
+        }
+    }
 }
 
 /// One point of a series.

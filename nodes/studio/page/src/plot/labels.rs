@@ -6,6 +6,9 @@ const MARKER: f64 = 5.0;
 /// Size of the letters: width of one, height of all.
 const LETTER: [f64; 2] = [6.0, 10.0];
 
+/// Distance of two names beside the ends of their lines.
+const LINE: f64 = 13.0;
+
 /// Distance by which labels may extend beyond the right end of the axes.
 const BEYOND: f64 = 20.0;
 
@@ -45,6 +48,24 @@ pub(super) fn place<'a, T: Copy>(
     placed
 }
 
+/// Heights close to these, in order, at least a line apart, between the two ends.
+pub(super) fn spread(heights: Vec<f64>, [top, bottom]: [f64; 2]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..heights.len()).collect();
+    order.sort_by(|a, b| heights[*a].total_cmp(&heights[*b]));
+    let mut placed = heights;
+    let mut least = top;
+    for n in &order {
+        placed[*n] = placed[*n].max(least);
+        least = placed[*n] + LINE;
+    }
+    let mut most = bottom;
+    for n in order.iter().rev() {
+        placed[*n] = placed[*n].min(most);
+        most = placed[*n] - LINE;
+    }
+    placed
+}
+
 fn overlap(a: &Area, b: &Area) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
 }
@@ -57,6 +78,12 @@ mod tests {
     fn areas_overlap_where_they_share_some() {
         assert!(overlap(&[0.0, 0.0, 2.0, 2.0], &[1.0, 1.0, 3.0, 3.0]));
         assert!(!overlap(&[0.0, 0.0, 2.0, 2.0], &[2.0, 0.0, 3.0, 2.0]));
+    }
+
+    #[test]
+    fn names_at_one_height_are_spread_and_stay_between_the_ends() {
+        assert_eq!(spread(vec![50.0, 20.0], [0.0, 100.0]), [50.0, 20.0]);
+        assert_eq!(spread(vec![100.0, 99.0, 100.0], [0.0, 100.0]), [87.0, 74.0, 100.0]);
     }
 
     #[test]

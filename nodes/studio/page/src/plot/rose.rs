@@ -6,10 +6,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
 /// Width and height.
-const PICTURE: [f64; 2] = [320.0, 330.0];
+const PICTURE: [f64; 2] = [300.0, 330.0];
 
 /// Centre of the circles.
-const CENTRE: [f64; 2] = [160.0, 184.0];
+const CENTRE: [f64; 2] = [150.0, 184.0];
 
 /// Radius of the largest circle.
 const RADIUS: f64 = 118.0;
@@ -51,16 +51,11 @@ impl Rose {
             drawing.add(format_args!(
                 "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius:.1}\" fill=\"none\" class=\"grid\"{dash}/>"
             ));
-            drawing.text(
-                [x + radius + 3.0, y - 3.0],
-                "start",
-                "class=\"faint\" font-size=\"9\"",
-                &format!("{ring}"),
-            );
+            drawing.text([x + radius + 3.0, y - 3.0], "start", "class=\"faint\"", &format!("{ring}"));
         }
         drawing.segment([x, y - RADIUS - 8.0, x, y + RADIUS + 8.0], "grid");
         drawing.segment([x - RADIUS - 8.0, y, x + RADIUS + 8.0, y], "grid");
-        drawing.text([x, y - RADIUS - 13.0], "middle", "class=\"ink\" font-size=\"11\"", &self.axis);
+        drawing.text([x, y - RADIUS - 13.0], "middle", "class=\"ink\"", &self.axis);
         let (class_of_bins, count) = (class(Some(self.colour)), self.bins.len() as f64);
         for (n, value) in self.bins.iter().enumerate().filter(|(_, v)| v.is_finite()) {
             // Angles from the axis: the bin of the largest x is at the poles.

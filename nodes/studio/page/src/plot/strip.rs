@@ -1,18 +1,25 @@
 //! One of several plots over a common axis: small, with the legend beside its title, and bands for the stages of that axis.
 
+use super::axis::Range;
 use super::draw::{Drawing, class};
-use super::figure::{Entry, Figure, Scale};
-use super::labels::Area;
+use super::figure::{Entry, Figure, Scale, Series};
+use super::labels::spread;
 use crate::markup::{Html, escaped};
 
-/// Width and height.
-const PICTURE: [f64; 2] = [500.0, 226.0];
+/// Width: a column of a narrow screen, so that letters are never drawn smaller than written.
+const WIDTH: f64 = 340.0;
 
-/// Left, top, right and bottom of the axes.
-const FRAME: Area = [54.0, 34.0, 488.0, 184.0];
+/// Height of the axes.
+const HEIGHT: f64 = 150.0;
+
+/// Top of the axes below the title, and height of a row of the legend.
+const TOP: [f64; 2] = [34.0, 16.0];
 
 /// Mean width of a letter.
 const LETTER: f64 = 6.4;
+
+/// Most letters of a name beside the end of its line; longer ones are in a legend.
+const BESIDE: usize = 9;
 
 /// A stage of the horizontal axis.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,20 +44,65 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// The plot as an element of a page. The attributes `data-frame` (left, top, right, bottom) `data-x` (values at left and right) and
-    /// `data-y` (values at bottom and top, and the spacing) are for scripts that read positions.
+    /// The plot as an element of a page. The attributes `data-frame` (left, top, right, bottom), `data-x` and `data-y` (values at the
+    /// ends, and the spacing) are for scripts that read positions; so is `data-name` of a line.
     pub fn svg(&self) -> Html {
-        let Figure { title, subtitle, x, y, legend, .. } = &self.figure;
-        let [left, top, right, bottom] = FRAME;
-        let [across, up] = self.figure.ranges(FRAME);
-        let [low, high] = across.ends();
-        let [lowest, highest] = up.ends();
-        let spacing = if y.scale == Scale::Log { "log" } else { "linear" };
+        let Figure { title, subtitle, x, y, series, legend } = &self.figure;
+        let named: Vec<&Series> =
+            series.iter().filter(|s| !s.name.is_empty() && !s.points.is_empty()).collect();
+        let longest = named.iter().map(|s| s.name.chars().count()).max().unwrap_or(0);
+        let is_beside = legend.is_empty() && longest <= BESIDE;
+        let entries =
+            if legend.is_empty() { named.iter().map(|s| s.entry()).collect() } else { legend.clone() };
+        let rows = if is_beside { Vec::new() } else { rows(&entries) };
+        let margin = if is_beside && longest > 0 { LETTER * longest as f64 + 10.0 } else { 12.0 };
+        let top = TOP[0] + TOP[1] * rows.len() as f64;
+        let (right, bottom) = (WIDTH - margin, top + HEIGHT);
+        let [_, up] = self.figure.ranges([0.0, top, right, bottom]);
+        let digits = up.marks().iter().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
+        let frame = [14.0 + LETTER * digits as f64, top, right, bottom];
+        let [across, up] = self.figure.ranges(frame);
+        let of = |range: &Range, scale: Scale| {
+            let [low, high] = range.ends();
+            format!("{low} {high} {}", if scale == Scale::Log { "log" } else { "linear" })
+        };
+        let [left, ..] = frame;
         let attributes = format!(
-            " data-frame=\"{left} {top} {right} {bottom}\" data-x=\"{low} {high}\" data-y=\"{lowest} {highest} {spacing}\""
+            " data-frame=\"{left} {top} {right} {bottom}\" data-x=\"{}\" data-y=\"{}\"",
+            of(&across, x.scale),
+            of(&up, y.scale)
         );
         let about = format!("{title}. {subtitle}");
-        let mut drawing = Drawing::small(PICTURE, FRAME, title, &about, &attributes);
+        let title = if y.name.is_empty() { title.clone() } else { format!("{title}: {}", y.name) };
+        let mut drawing = Drawing::small([WIDTH, bottom + 40.0], frame, &title, &about, &attributes);
+        drawing.group("bands", |drawing| self.draw_bands(drawing, &across));
+        if self.by_band {
+            drawing.other_axes("", (&up, ""));
+        } else {
+            drawing.axes((&across, ""), (&up, ""));
+        }
+        drawing.text([right, bottom + 32.0], "end", "class=\"faint\"", &x.name);
+        drawing.group("curves", |drawing| self.figure.draw(drawing, [&across, &up]));
+        if is_beside {
+            let ends =
+                named.iter().filter_map(|s| s.points.iter().rfind(|p| up.has(p.y))).map(|p| up.at(p.y));
+            for (series, at) in named.iter().zip(spread(ends.collect(), [top, bottom])) {
+                let of = format!("class=\"{}\" fill=\"currentColor\"", class(series.colour));
+                drawing.text([right + 5.0, at + 4.0], "start", &of, &series.name);
+            }
+        }
+        for (n, row) in rows.iter().enumerate() {
+            let mut at = 8.0;
+            for (entry, width) in row {
+                drawing.entry([at, TOP[0] + TOP[1] * n as f64], entry);
+                at += width;
+            }
+        }
+        drawing.element()
+    }
+
+    fn draw_bands(&self, drawing: &mut Drawing, across: &Range) {
+        let ([_, top, _, bottom], [low, high]) = (drawing.frame(), across.ends());
         for (n, band) in self.bands.iter().enumerate() {
             let [from, to] = band.range.map(|v| across.at(v.clamp(low, high)));
             let fill = if n % 2 == 0 { "band" } else { "paper" };
@@ -62,41 +114,29 @@ impl Strip {
             ));
             let label_at = if self.by_band { bottom + 16.0 } else { top + 11.0 };
             if to - from > LETTER * band.label.chars().count() as f64 {
-                let at = [0.5 * (from + to), label_at];
-                drawing.text(at, "middle", "class=\"faint\" font-size=\"9\"", &band.label);
+                drawing.text([0.5 * (from + to), label_at], "middle", "class=\"faint\"", &band.label);
             }
         }
-        if self.by_band {
-            drawing.other_axes("", (&up, &y.name));
-        } else {
-            drawing.axes((&across, ""), (&up, &y.name));
-        }
-        drawing.text([right, bottom + 34.0], "end", "class=\"faint\" font-size=\"11\"", &x.name);
-        self.figure.draw(&mut drawing, [&across, &up]);
-        row(&mut drawing, legend);
-        drawing.element()
     }
 }
 
-/// A legend of colours in one row that ends at the right.
-fn row(drawing: &mut Drawing, entries: &[Entry]) {
-    let mut right = FRAME[2];
-    for entry in entries.iter().rev() {
-        let (colour, text) = match entry {
-            Entry::Colour(colour, text) => (Some(*colour), text),
-            Entry::Shape(_, colour, _, text) => (*colour, text),
-            Entry::Note(_) | Entry::Gap => continue,
+/// Entries of a legend in rows, each entry with its width.
+fn rows(entries: &[Entry]) -> Vec<Vec<(&Entry, f64)>> {
+    let (mut rows, mut room) = (Vec::new(), 0.0);
+    for entry in entries {
+        let width = match entry {
+            Entry::Colour(_, text) | Entry::Shape(.., text) => 32.0 + LETTER * text.chars().count() as f64,
+            Entry::Note(text) => 12.0 + LETTER * text.chars().count() as f64,
+            Entry::Gap => continue,
         };
-        right -= LETTER * text.chars().count() as f64;
-        drawing.text([right, 20.0], "start", "class=\"ink\" font-size=\"11\"", text);
-        right -= 5.0;
-        drawing.add(format_args!(
-            "<path d=\"M {:.1} 16 h 12\" class=\"{}\" stroke=\"currentColor\" stroke-width=\"2.5\" fill=\"none\"/>",
-            right - 12.0,
-            class(colour)
-        ));
-        right -= 24.0;
+        if room < width {
+            rows.push(Vec::new());
+            room = WIDTH - 8.0;
+        }
+        room -= width;
+        rows.last_mut().expect("a row").push((entry, width));
     }
+    rows
 }
 
 #[cfg(test)]
@@ -119,7 +159,8 @@ mod tests {
         .svg();
         assert!(svg.contains("aria-label=\"a &amp; b. \"") && svg.contains(">first<"), "{svg:?}");
         assert!(!svg.contains(">second<") && !svg.contains("NaN"), "{svg:?}");
-        let left = svg.split("<rect x=\"").nth(1).unwrap();
-        assert!(left.starts_with("54.0\""), "the band begins at the frame: {left}");
+        let left = svg.split("data-frame=\"").nth(1).unwrap().split(' ').next().unwrap();
+        let left = format!("<rect x=\"{:.1}\"", left.parse::<f64>().unwrap());
+        assert!(svg.contains(&left), "the band begins at the frame, {left}: {svg:?}");
     }
 }

@@ -3,9 +3,9 @@
 use super::figure::{Series, Theme};
 use std::fmt::Write;
 
-/// Distinct under colour blindness (Okabe and Ito, and two more), dark enough on white.
+/// Hues of Okabe and Ito and two more, distinct under colour blindness, and dark enough on white for letters.
 const ON_WHITE: [&str; Series::COLOURS] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f", "#6a3d9a"];
+    ["#0064a6", "#b54a00", "#00734f", "#a0447f", "#8a6100", "#3a719f", "#000000", "#6f5a1e", "#6a3d9a"];
 
 /// Colours of the same hues, light enough on dark.
 const ON_DARK: [&str; Series::COLOURS] =
@@ -54,4 +54,40 @@ pub(crate) fn page_style() -> String {
         ":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root:not([data-theme=light]){{{dark}}}}}\n\
          :root[data-theme=dark]{{{dark}}}\n{classes}\n"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance of a colour (WCAG 2).
+    fn luminance(colour: &str) -> f64 {
+        let part = |n: usize| f64::from(u8::from_str_radix(&colour[n..n + 2], 16).unwrap()) / 255.0;
+        let linear = |c: f64| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+        0.2126 * linear(part(1)) + 0.7152 * linear(part(3)) + 0.0722 * linear(part(5))
+    }
+
+    #[test]
+    fn letters_of_every_colour_have_a_contrast_of_4_5_to_every_ground() {
+        let sheet = page_style();
+        let of = |block: &str, name: &str| {
+            let at = block.find(&format!("{name}:#")).unwrap() + name.len() + 1;
+            luminance(&block[at..at + 7])
+        };
+        let mut blocks = sheet.split(":root").skip(1);
+        for block in [blocks.next().unwrap(), blocks.next_back().unwrap()] {
+            for ground in ["--paper", "--band", "--stage"] {
+                let numbered = (0..Series::COLOURS).map(|n| format!("--c{n}"));
+                for ink in ["--ink", "--faint", "--good", "--warn", "--bad"]
+                    .map(str::to_owned)
+                    .into_iter()
+                    .chain(numbered)
+                {
+                    let [a, b] = [of(block, &ink), of(block, ground)];
+                    let contrast = (a.max(b) + 0.05) / (a.min(b) + 0.05);
+                    assert!(contrast >= 4.5, "{ink} on {ground}: {contrast:.2}");
+                }
+            }
+        }
+    }
 }

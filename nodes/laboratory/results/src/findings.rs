@@ -1,0 +1,293 @@
+//! Findings of a run in sentences made from its numbers: what was done, what was found, how sure it is, and what to doubt.
+
+use crate::inference::{Inference, by_origin};
+use crate::packing_text::eps;
+use crate::read_back::InvertedPacking;
+use grainlab_console::count;
+use grainlab_core::results::{InferredQuantity, PackingReport};
+use grainlab_msgs::topics::PACKING_REPORT;
+use std::collections::BTreeSet;
+
+/// Standard deviations within which 95 % of a normal distribution lie.
+const NORMAL_95: f64 = 1.96;
+
+/// Deviator over mean stress from which a state is not called isotropic.
+const ISOTROPIC: f64 = 0.01;
+
+/// Warnings that are written out; the others are counted.
+const MOST_DOUBTS: usize = 4;
+
+/// Sentences on a run, or on many.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Findings {
+    /// The packing, or the packings.
+    pub done: String,
+    /// Inferred beside counted values, and how often the intervals contain them.
+    pub found: Vec<String>,
+    /// Reasons to doubt; empty without any.
+    pub doubts: Vec<String>,
+}
+
+/// An inferred value beside the counted one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// The quantity.
+    pub quantity: InferredQuantity,
+    /// Inferred value.
+    pub inferred: f64,
+    /// Counted value.
+    pub counted: f64,
+    /// Standard deviation of the inferred value, if it has one above 0.
+    pub sigma: Option<f64>,
+    /// Interval of the inferred value at its level, or by its standard deviation at 95 %.
+    pub interval: Option<[f64; 2]>,
+}
+
+impl Judged {
+    /// The values that a result has, beside those of the packing.
+    pub fn of(result: &Inference, truth: &PackingReport) -> Vec<Self> {
+        let judged = |quantity| {
+            let (inferred, counted) = (result.values[quantity]?, truth.counted(quantity)?);
+            let sigma = result.sigma[quantity].filter(|s| *s > 0.0);
+            let by_sigma = sigma.map(|s| [inferred - NORMAL_95 * s, inferred + NORMAL_95 * s]);
+            let interval = result.interval.bounds[quantity].or(by_sigma);
+            Some(Self { quantity, inferred, counted, sigma, interval })
+        };
+        InferredQuantity::countable().filter_map(judged).collect()
+    }
+
+    /// True if the interval contains the counted value; `None` without an interval.
+    pub fn is_inside(&self) -> Option<bool> {
+        self.interval.map(|[low, high]| (low..=high).contains(&self.counted))
+    }
+
+    /// Distance from the counted value: `-0.108, 1.7 σ`.
+    pub fn distance(&self) -> String {
+        let off = self.inferred - self.counted;
+        let digits = self.quantity.digits();
+        format!("{off:+.digits$}{}", self.sigmas().map_or_else(String::new, |s| format!(", {s:.1} σ")))
+    }
+
+    /// Distance from the counted value in standard deviations.
+    fn sigmas(&self) -> Option<f64> {
+        self.sigma.map(|s| ((self.inferred - self.counted) / s).abs())
+    }
+
+    /// `z 4.712 ± 0.034 (counted 4.726, 0.4 σ away)`.
+    fn words(&self) -> String {
+        let (symbol, digits) = (self.quantity.symbol(), self.quantity.digits());
+        let away = self.sigmas().map_or_else(String::new, |s| format!(", {s:.1} σ away"));
+        format!("{symbol} {} (counted {:.digits$}{away})", self.value(), self.counted)
+    }
+
+    /// The value with its standard deviation: `4.712 ± 0.034`.
+    pub fn value(&self) -> String {
+        let digits = self.quantity.digits();
+        let sigma = self.sigma.map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
+        format!("{:.digits$}{sigma}", self.inferred)
+    }
+}
+
+/// The recommended result of a state, of the data that were inverted first.
+pub fn recommended(state: &InvertedPacking) -> Option<&Inference> {
+    by_origin(&state.results).iter().find_map(|(_, results)| Inference::recommended(results))
+}
+
+impl Findings {
+    /// Of the packings at the ends of the phases of a run, in their order.
+    pub fn of(states: &[InvertedPacking]) -> Self {
+        let mut doubts = Doubts { states: states.len(), ..Doubts::default() };
+        states.iter().for_each(|s| doubts.of(s));
+        let (done, found) = match states {
+            [] => ("No packing at the end of a phase was measured.".to_owned(), Vec::new()),
+            [state] => (done(state), recommended(state).map_or_else(Vec::new, |best| of_one(state, best))),
+            several => (done_of_several(several), Self::inferred(&several.iter().collect::<Vec<_>>())),
+        };
+        Self { done, found, doubts: doubts.finish() }
+    }
+
+    /// The inversion of several states in sentences; none if nothing was inferred.
+    pub fn inferred(states: &[&InvertedPacking]) -> Vec<String> {
+        let best: Vec<_> = states.iter().filter_map(|s| Some((*s, recommended(s)?))).collect();
+        let judged: Vec<Judged> = best.iter().flat_map(|(s, b)| Judged::of(b, &s.packing.report)).collect();
+        let rms = |q: InferredQuantity| {
+            let of = judged.iter().filter(|j| j.quantity == q);
+            let squares: Vec<f64> = of.map(|j| (j.inferred - j.counted).powi(2)).collect();
+            let (mean, digits) = (squares.iter().sum::<f64>() / squares.len() as f64, q.digits());
+            (!squares.is_empty()).then(|| format!("{} {:.digits$}", q.symbol(), mean.sqrt()))
+        };
+        let errors: Vec<String> = InferredQuantity::countable().filter_map(rms).collect();
+        if errors.is_empty() {
+            return Vec::new();
+        }
+        let models: BTreeSet<&str> = best.iter().map(|(_, b)| b.model.as_str()).collect();
+        let mut found = vec![format!(
+            "The microstructure of {} was inferred, by {}; the rms difference from the count is {}.",
+            count(best.len(), "state"),
+            and(&models.into_iter().collect::<Vec<_>>()),
+            and(&errors)
+        )];
+        let with: Vec<bool> = judged.iter().filter_map(Judged::is_inside).collect();
+        if !with.is_empty() {
+            let inside = with.iter().filter(|is_inside| **is_inside).count();
+            found.push(format!("{inside} of {} counted values lie in their 95 % intervals.", with.len()));
+        }
+        found
+    }
+}
+
+fn done(state: &InvertedPacking) -> String {
+    let r = &state.packing.report;
+    let stress = match r.stress_ratio() {
+        Some(q) if q.abs() >= ISOTROPIC => format!(", under a deviatoric stress q/p of {q:.2}"),
+        Some(_) => ", isotropic in stress".to_owned(),
+        None => String::new(),
+    };
+    let anisotropy = eps(r).map_or_else(String::new, |e| format!(", and the contact anisotropy ε is {e:.3}"));
+    format!(
+        "{} grains at {:.4} kPa{stress}. Counted: {:.2} contacts per grain without rattlers (z){anisotropy}.",
+        r.contacts.grains,
+        six(r.pressure() / 1e3),
+        r.contacts.mechanical_coordination,
+    )
+}
+
+/// A number rounded to four significant digits, so that 50.000003 is 50.
+fn six(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+fn done_of_several(states: &[InvertedPacking]) -> String {
+    let range = |of: &dyn Fn(&PackingReport) -> f64, digits: usize, unit: &str| {
+        let values = states.iter().map(|s| of(&s.packing.report));
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let [low, high] = [low, high].map(|v| format!("{v:.digits$}"));
+        if low == high { format!("{low}{unit}") } else { format!("{low} to {high}{unit}") }
+    };
+    let grains = states.iter().map(|s| s.packing.report.contacts.grains).max().unwrap_or(0);
+    format!(
+        "{grains} grains in {} states: pressure {}. Counted: z {}, ε {}.",
+        states.len(),
+        range(&|r| r.pressure() / 1e3, 1, " kPa"),
+        range(&|r| r.contacts.mechanical_coordination, 2, ""),
+        range(&|r| r.fabric.contact_anisotropy, 3, "")
+    )
+}
+
+/// Words for the data of a result.
+fn data(result: &Inference) -> String {
+    match result.origin.source.as_deref() {
+        None => "its moduli".to_owned(),
+        Some(source) if source == PACKING_REPORT.name => "its moduli".to_owned(),
+        Some(_) => result.origin.data().unwrap_or_default().replace('_', " "),
+    }
+}
+
+fn of_one(state: &InvertedPacking, best: &Inference) -> Vec<String> {
+    let (data, model, judged) = (data(best), &best.model, Judged::of(best, &state.packing.report));
+    let main = [InferredQuantity::Z, InferredQuantity::Eps];
+    let is_shown =
+        |j: &&Judged| main.contains(&j.quantity) || !judged.iter().any(|j| main.contains(&j.quantity));
+    let values: Vec<String> = judged.iter().filter(is_shown).map(Judged::words).collect();
+    let infers = match values.as_slice() {
+        [] => format!("From {data} alone, the model {model} infers no quantity that can be counted."),
+        values => format!("From {data} alone, the model {model} infers {}.", and(values)),
+    };
+    std::iter::once(infers).chain(inside(&judged)).collect()
+}
+
+/// Quantities whose interval contains the counted value, and those whose does not.
+fn inside(judged: &[Judged]) -> Option<String> {
+    let of = |wanted| -> Vec<&str> {
+        judged.iter().filter(|j| j.is_inside() == Some(wanted)).map(|j| j.quantity.symbol()).collect()
+    };
+    let (inside, outside) = (of(true), of(false));
+    match (inside.as_slice(), outside.as_slice()) {
+        ([], []) => None,
+        (all, []) => Some(format!(
+            "The counted {} lie{} in the 95 % interval{}.",
+            and(all),
+            s(all.len() == 1),
+            s(all.len() > 1)
+        )),
+        ([], all) => Some(format!(
+            "The counted {} lie{} outside of the 95 % interval{}.",
+            and(all),
+            s(all.len() == 1),
+            s(all.len() > 1)
+        )),
+        (some, others) => {
+            Some(format!("The 95 % intervals contain the counted {}, but not {}.", and(some), and(others)))
+        }
+    }
+}
+
+fn s(is_wanted: bool) -> &'static str {
+    if is_wanted { "s" } else { "" }
+}
+
+/// `a, b and c`.
+pub fn and(parts: &[impl AsRef<str>]) -> String {
+    let parts: Vec<&str> = parts.iter().map(AsRef::as_ref).collect();
+    match parts.as_slice() {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
+/// Reasons to doubt, each with the number of states that have it.
+#[derive(Default)]
+struct Doubts {
+    states: usize,
+    /// In the order of their first state.
+    found: Vec<(String, BTreeSet<u64>)>,
+}
+
+impl Doubts {
+    fn add(&mut self, step: u64, text: String) {
+        match self.found.iter_mut().find(|(known, _)| *known == text) {
+            Some((_, steps)) => _ = steps.insert(step),
+            None => self.found.push((text, BTreeSet::from([step]))),
+        }
+    }
+
+    /// Takes the doubts about a state: of its inversion first, then of the packing.
+    fn of(&mut self, state: &InvertedPacking) {
+        let step = state.packing.step;
+        match (recommended(state), state.packing.report.elasticity.as_ref()) {
+            (Some(best), _) if best.status != "ok" => {
+                let why = best.warnings.first().map_or_else(String::new, |w| format!(": {w}"));
+                self.add(step, format!("The estimate is {}{why}", best.status));
+            }
+            (Some(_), _) => {}
+            (None, Err(why)) => self.add(step, format!("Nothing was inferred: there is no stiffness: {why}")),
+            (None, Ok(_)) => {
+                let results: Vec<&Inference> = state.results.iter().collect();
+                let why = Inference::why_unknown(&results);
+                let why = why.unwrap_or_else(|| "no moduli were inverted".to_owned());
+                self.add(step, format!("Nothing was inferred: {why}"));
+            }
+        }
+        state.packing.warnings.iter().for_each(|w| self.add(step, w.clone()));
+    }
+
+    fn finish(self) -> Vec<String> {
+        let shown = if self.found.len() > MOST_DOUBTS { MOST_DOUBTS - 1 } else { self.found.len() };
+        let more = self.found.len() - shown;
+        let of = |(text, steps): &(String, BTreeSet<u64>)| match (self.states, steps.len()) {
+            (1, _) => sentence(text),
+            (all, some) if all == some => format!("In every state: {text}."),
+            (all, some) => format!("In {some} of {all} states: {text}."),
+        };
+        let lines = self.found[..shown].iter().map(of);
+        lines.chain((more > 0).then(|| format!("And {}.", count(more, "further warning")))).collect()
+    }
+}
+
+/// A text with a capital letter and a full stop.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str().trim_end_matches('.'))
+}

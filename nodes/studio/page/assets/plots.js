@@ -1,0 +1,136 @@
+// Plots: values under the pointer, and a part of the horizontal axis.
+"use strict";
+(() => {
+  const make = (tag, attributes, parent) => {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+    return parent.appendChild(element);
+  };
+  // Ends of an axis and its spacing: the value at a share of its length, and back.
+  const axis = (text) => {
+    const [low, high, spacing] = text.split(" ").map((v, n) => (n < 2 ? Number(v) : v)), log = spacing === "log";
+    const [from, to] = log ? [Math.log(low), Math.log(high)] : [low, high];
+    return { log, low, high, at: (s) => (log ? Math.exp(from + s * (to - from)) : from + s * (to - from)), share: (v) => ((log ? Math.log(v) : v) - from) / (to - from) };
+  };
+  // As many digits as a tenth of the unit of the plot gives.
+  const written = (value, { log, low, high }) => {
+    if (log) return value.toPrecision(3);
+    return value.toFixed(Math.min(12, Math.max(0, 3 - Math.ceil(Math.log10(high - low)))));
+  };
+  const frame = (svg) => svg.dataset.frame.split(" ").map(Number);
+
+  const readout = document.createElement("div");
+  readout.className = "readout";
+  readout.setAttribute("aria-hidden", "true");
+  readout.hidden = true;
+  document.body.append(readout);
+  const rowsAt = (svg, x) => {
+    const [left, top, right, bottom] = frame(svg), across = axis(svg.dataset.shown ?? svg.dataset.x), up = axis(svg.dataset.y);
+    const at = across.at((x - left) / (right - left)), of = svg.closest("[data-axis]")?.dataset.axis;
+    const rows = [of === "phase" ? `phase ${Math.floor(at) + 1}` : `${written(at, across)}${of === "time" ? " ms" : ""}`];
+    for (const path of svg.querySelectorAll(".curves path[stroke=currentColor]:not([stroke-opacity])")) {
+      let near = null, first = Infinity, last = -Infinity;
+      for (const corner of path.getAttribute("d").matchAll(/[ML] ([-\d.]+) ([-\d.]+)/g)) {
+        const far = Math.abs(corner[1] - x);
+        [first, last] = [Math.min(first, corner[1]), Math.max(last, corner[1])];
+        if (near === null || far < near.far) near = { far, y: Number(corner[2]) };
+      }
+      // A curve has no value before its first corner and behind its last one, but for a few pixels.
+      if (near && x > first - 4 && x < last + 4) rows.push(`${path.dataset.name ?? ""} ${written(up.at((bottom - near.y) / (bottom - top)), up)}`.trim());
+    }
+    return rows;
+  };
+  let pointer = null, drag = null;
+  const under = () => pointer && document.elementFromPoint(...pointer)?.closest("svg[data-frame]");
+  const place = (svg, clientX) => {
+    const box = svg.getBoundingClientRect();
+    return ((clientX - box.left) / box.width) * svg.viewBox.baseVal.width;
+  };
+  const showValues = () => {
+    const svg = under(), x = svg && place(svg, pointer[0]);
+    const [left, , right] = svg ? frame(svg) : [0, 0, -1], rows = svg && x >= left && x <= right ? rowsAt(svg, x) : [];
+    readout.hidden = rows.length < 2;
+    readout.textContent = rows.join("\n");
+    readout.style.top = `${(pointer?.[1] ?? 0) + 14}px`;
+    readout.style.left = `${Math.min((pointer?.[0] ?? 0) + 14, innerWidth - readout.offsetWidth - 4)}px`;
+  };
+
+  // Marks of the part that is shown: multiples of 1, 2 or 5.
+  const marks = ({ low, high }) => {
+    const wanted = (high - low) / 5, decade = 10 ** Math.floor(Math.log10(wanted));
+    const step = decade * [1, 2, 5, 10].find((m) => m * decade >= wanted), digits = Math.max(0, -Math.floor(Math.log10(step)));
+    return Array.from({ length: Math.floor(high / step) - Math.ceil(low / step) + 1 }, (_, n) => (Math.ceil(low / step) + n) * step).map((v) => [v, v.toFixed(digits)]);
+  };
+  let clips = 0;
+  const show = (svg, range) => {
+    const whole = (svg.whole ??= svg.innerHTML), all = axis(svg.dataset.x), [left, top, right, bottom] = frame(svg), width = right - left;
+    svg.innerHTML = whole;
+    if (!range) return delete svg.dataset.shown;
+    svg.dataset.shown = `${range[0]} ${range[1]} ${all.log ? "log" : "linear"}`;
+    const part = axis(svg.dataset.shown), to = (x) => left + width * part.share(all.at((x - left) / width)), cut = (x) => Math.min(right, Math.max(left, x));
+    const clip = make("clipPath", { id: `part-${++clips}` }, svg);
+    make("rect", { x: left, y: top - 6, width, height: bottom - top + 12 }, clip);
+    for (const element of svg.querySelectorAll(".curves > *, .bands > *")) {
+      const d = element.tagName === "path" && element.getAttribute("d"), box = element.getBBox();
+      if (d && !/[HV]/.test(d)) {
+        element.setAttribute("d", d.replace(/([ML]) ([-\d.]+)/g, (_, letter, x) => `${letter} ${to(Number(x)).toFixed(1)}`));
+        element.setAttribute("clip-path", `url(#${clip.id})`);
+      } else if (element.tagName === "rect") {
+        const [from, end] = [cut(to(box.x)), cut(to(box.x + box.width))];
+        element.setAttribute("x", from);
+        element.setAttribute("width", end - from);
+      } else {
+        const middle = box.x + box.width / 2, x = to(middle);
+        element.setAttribute("transform", `translate(${x - middle} 0)`);
+        if (x < left || x > right) element.style.display = "none";
+      }
+    }
+    const group = svg.querySelector(".marks");
+    if (!group?.childNodes.length) return;
+    group.replaceChildren();
+    for (const [value, text] of marks(part)) {
+      const x = left + width * part.share(value);
+      make("line", { x1: x, x2: x, y1: top, y2: bottom, class: "grid" }, group);
+      make("text", { x, y: bottom + 16, "text-anchor": "middle", class: "ink" }, group).textContent = text;
+    }
+  };
+  // Plots over a common axis show the same part.
+  const shown = new Map(), key = (svg) => svg.closest("#curves") && svg.closest("[data-axis]")?.dataset.axis;
+  const choose = (svg, range) => {
+    if (key(svg)) shown.set(key(svg), range);
+    const all = key(svg) ? document.querySelectorAll(`#curves [data-axis=${key(svg)}] svg[data-frame]`) : [svg];
+    all.forEach((one) => show(one, range));
+  };
+  document.addEventListener("pointerdown", (e) => {
+    const svg = e.pointerType === "mouse" && e.button === 0 && e.target.closest?.("svg[data-frame]");
+    if (svg) drag = { svg, from: place(svg, e.clientX) };
+  });
+  document.addEventListener("pointermove", (e) => {
+    pointer = [e.clientX, e.clientY];
+    showValues();
+    if (!drag) return;
+    const [left, top, right, bottom] = frame(drag.svg), x = Math.min(right, Math.max(left, place(drag.svg, e.clientX)));
+    drag.mark ??= make("rect", { y: top, height: bottom - top, class: "chosen" }, drag.svg);
+    drag.ends = [Math.max(left, Math.min(x, drag.from)), Math.max(x, drag.from)];
+    drag.mark.setAttribute("x", drag.ends[0]);
+    drag.mark.setAttribute("width", drag.ends[1] - drag.ends[0]);
+  });
+  document.addEventListener("pointerup", () => {
+    const { svg, mark, ends } = drag ?? {};
+    drag = null;
+    mark?.remove();
+    if (!ends || ends[1] - ends[0] < 6) return;
+    const [left, , right] = frame(svg), across = axis(svg.dataset.shown ?? svg.dataset.x);
+    choose(svg, ends.map((x) => across.at((x - left) / (right - left))));
+  });
+  document.addEventListener("dblclick", (e) => {
+    const svg = e.target.closest?.("svg[data-frame]");
+    if (svg) choose(svg, null);
+  });
+  document.documentElement.addEventListener("pointerleave", () => { pointer = null; showValues(); });
+  addEventListener("scroll", showValues, { passive: true });
+  document.addEventListener("curveschange", () => {
+    document.querySelectorAll("#curves svg[data-frame]").forEach((svg) => { if (shown.get(key(svg))) show(svg, shown.get(key(svg))); });
+    showValues();
+  });
+})();
