@@ -4,7 +4,7 @@
 //! The parsers take the content of a file; [`load`] and [`each`] take a path, decompress `.gz` and select the parser by
 //! content. For every source, the result is a validated [`grainlab_core::Packing`] in its conventions:
 //! contacts `i < j` by index, normal from `i` to the image of `j`, tangential force on `i`. If a source does
-//! not list contacts, they are found from positions, with Hertz normal forces and without tangential forces.
+//! not list contacts, they are found from positions, with the normal forces of their law and without tangential ones.
 
 mod assemble;
 mod columns;

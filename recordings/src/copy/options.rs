@@ -68,7 +68,7 @@ impl CopyOptions {
     pub(super) fn writer(&self, profile: &str) -> mcap::WriteOptions {
         mcap::WriteOptions::new()
             .profile(profile)
-            .library(format!("grainlab {} (copied)", env!("CARGO_PKG_VERSION")))
+            .library(format!("grainlab {}, copy", env!("CARGO_PKG_VERSION")))
             .compression(self.compression.of_chunks())
             .compression_level(self.level)
             .compression_threads(0)

@@ -25,7 +25,7 @@ pub enum ImportError {
         source: Box<ImportError>,
     },
     /// The file, its sidecar and the options lack these quantities.
-    #[error("the file lacks {}", list(.0))]
+    #[error("{}", missing(.0))]
     Missing(Vec<Setting>),
     /// Data that were given do not fit the file.
     #[error("{0}")]
@@ -85,6 +85,17 @@ impl ImportError {
     pub(super) fn unknown_id(line: usize, id: u32) -> Self {
         Self::line(line, format_args!("a contact names grain {id}, which does not exist"))
     }
+}
+
+/// Most quantities that a packing may lack; a file that lacks more is something else.
+const OF_A_PACKING: usize = 3;
+
+fn missing(settings: &[Setting]) -> String {
+    let about = match settings.len() {
+        0..=OF_A_PACKING => "the file lacks",
+        _ => "this does not look like a file of a packing: it lacks",
+    };
+    format!("{about} {}", list(settings))
 }
 
 fn list(settings: &[Setting]) -> String {

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use chrono::{DateTime, SecondsFormat};
+use grainlab_console::{Table, wrapped};
 use serde::Serialize;
 
 use super::definition::StoredDefinition;
@@ -151,29 +152,34 @@ impl fmt::Display for Info {
         let definitions =
             if same { "none of a type of this program differs" } else { "differ, as listed below" };
         writeln!(f, "definitions  {definitions}")?;
-        let width = |text: &dyn Fn(&TopicInfo) -> usize, least: usize| {
-            self.topics.iter().map(text).max().unwrap_or(0).max(least)
-        };
-        let (name, ros_type) = (width(&|t| t.name.len(), 5), width(&|t| t.ros_type.len(), 4));
-        write!(
-            f,
-            "\n{:name$}  {:ros_type$}  {:>9}  {:>9}  {:>5}  {:>8}",
-            "topic", "type", "messages", "published", "lost", "repeated"
-        )?;
         let count = |n: Option<u64>| n.map_or_else(|| "-".to_owned(), |n| n.to_string());
+        // The counts of a recorder are there where they differ from the messages.
+        let (lost, repeated) = (
+            self.topics.iter().any(|t| t.lost != Some(0)),
+            self.topics.iter().any(|t| t.repeated.is_some_and(|n| n > 0)),
+        );
+        let columns = |t: [String; 5]| {
+            let [name, ros_type, messages, l, r] = t;
+            let more =
+                [(lost, l), (repeated, r)].into_iter().filter(|(shown, _)| *shown).map(|(_, cell)| cell);
+            [name, ros_type, messages].into_iter().chain(more).collect::<Vec<_>>()
+        };
+        let mut table =
+            Table::new(columns(["topic", "type", "messages", "lost", "repeated"].map(str::to_owned)));
         for t in &self.topics {
-            write!(
-                f,
-                "\n{:name$}  {:ros_type$}  {:>9}  {:>9}  {:>5}  {:>8}{}",
-                t.name,
-                t.ros_type,
-                t.messages,
-                count(t.published),
+            table.row(columns([
+                t.name.clone(),
+                t.ros_type.clone(),
+                t.messages.to_string(),
                 count(t.lost),
                 count(t.repeated),
-                if t.latched { "  latched" } else { "" }
-            )?;
+            ]));
         }
+        let latched: Vec<&str> = self.topics.iter().filter(|t| t.latched).map(|t| t.name.as_str()).collect();
+        if !latched.is_empty() {
+            write!(f, "{}", wrapped("latched      ", &latched.join(" ")))?;
+        }
+        write!(f, "\n{}", table.text().trim_end())?;
         for line in &self.definitions {
             write!(f, "\n{line}")?;
         }

@@ -240,6 +240,9 @@ pub(crate) struct Args {
     /// to the model, and the probability of the moduli under the posterior of each model that states one
     #[arg(long, conflicts_with = "table")]
     explain: bool,
+    /// Print every model, not the recommended one alone; so do several --model
+    #[arg(long, conflicts_with = "table")]
+    verbose: bool,
     /// Format of the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -307,7 +310,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return Ok(Exit::Done);
     }
     let defaults = args.defaults()?;
-    let printer = Printer { cases: &cases };
+    let verbose = args.verbose || !args.model.is_empty() && cases.len() > 1;
+    let printer = Printer { cases: &cases, verbose };
     if let Some(path) = &args.table {
         let of_one_state = [
             ("--pressure-sigma", args.pressure_sigma != 0.0),

@@ -108,7 +108,7 @@ pub enum EmtError {
         value: f64,
     },
     /// An input that the model needs is not known.
-    #[error("model {model} needs {missing}, which is not known")]
+    #[error("needs {missing}, which is not known")]
     Missing {
         /// Name of the model.
         model: &'static str,
@@ -180,8 +180,8 @@ pub enum EmtError {
     },
     /// No coordination number of the calibration gives such moduli.
     #[error(
-        "no coordination number in [{low:.3}, {high:.3}], the range of calibration `{calibration}`, fits the moduli \
-         ({nearest:.3} is nearest): check units, pressure and material"
+        "no coordination number of calibration `{calibration}` (from {low:.3} to {high:.3}) gives such moduli; those of {nearest:.3} \
+         differ least: check units, pressure and material"
     )]
     NoCoordination {
         /// The coordination number with the best fit.

@@ -85,7 +85,7 @@ fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
     if let (Some(packing), Some(first)) = (packing, phases.first()) {
         start::refused(first, packing).into_iter().for_each(|m| r.fault("phase", m));
     }
-    if friction.is_some() && !inherited.taken && !phases.is_empty() {
+    if friction.is_some() && !inherited.taken && !phases.is_empty() && r.is_sound() {
         let message =
             "is taken by no phase: each names its own; set phase.NAME.friction, or phase.*.friction";
         r.fault("friction", message);

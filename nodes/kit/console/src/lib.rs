@@ -4,7 +4,7 @@
 //! - [`Format`], [`Table`], [`print()`], [`say!`]: its output
 //! - [`write_whole`]: files that are written whole or not at all
 //! - [`Cell`]: a typed value of a table
-//! - [`count()`]: counts with their noun; [`duration()`]: times; [`Pace`]: rates and the time left
+//! - [`wrapped()`]: text in lines of a terminal; [`count()`]: counts with their noun; [`duration()`]: times; [`Pace`]: rates and the time left
 //! - [`Terminal`]: its width and colours, and a line that is drawn again; [`Signals`]: SIGINT, SIGTERM and SIGHUP
 
 mod cell;
@@ -16,6 +16,7 @@ mod pace;
 mod signals;
 mod terminal;
 mod whole_file;
+mod wrap;
 
 pub use cell::Cell;
 pub use count::count;
@@ -26,3 +27,4 @@ pub use pace::Pace;
 pub use signals::Signals;
 pub use terminal::{Terminal, colour_wanted, draw_live_line, erase_live_line, write_above_live_line};
 pub use whole_file::write_whole;
+pub use wrap::{COLUMNS, wrapped};

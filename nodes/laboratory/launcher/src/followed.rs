@@ -10,6 +10,7 @@ use crate::nodes::NodeKind;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
 use std::collections::{BTreeMap, BTreeSet};
+use std::time::Instant;
 
 /// The last packing is being measured by the probe, or is in its queue.
 const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
@@ -62,6 +63,8 @@ pub(super) struct Followed {
     pub(super) pending: PendingResults,
     /// The probe reported work since the last check.
     probing: bool,
+    /// Step of the packing that the probe measures, and when that was first seen.
+    probed: Option<(u64, Instant)>,
     /// State of the results for which the last time limit was set.
     limited: Option<ResultState>,
     /// Why the run did not end as it should.
@@ -86,6 +89,7 @@ impl Followed {
             blind: false,
             pending: PendingResults::of(plans),
             probing: false,
+            probed: None,
             limited: None,
             reasons: Vec::new(),
             results: BTreeMap::new(),
@@ -148,8 +152,13 @@ impl Followed {
             Event::Declined(topic, step) => self.pending.declined(topic, step),
             Event::Probing(step) => {
                 self.probing = true;
+                let (of, since) = *self.probed.get_or_insert_with(|| (step, Instant::now()));
+                let since = if of == step { since } else { self.probed.insert((step, Instant::now())).1 };
                 if self.finished.is_some() {
-                    self.progress.still(&format!("measuring waves through the packing of step {step}"));
+                    let seconds = since.elapsed().as_secs();
+                    self.progress.still(&format!(
+                        "measuring waves through the packing of step {step}, for {seconds} s"
+                    ));
                 }
             }
             Event::Microstructure { source, step, member, nothing } => {

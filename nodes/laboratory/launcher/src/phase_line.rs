@@ -72,16 +72,9 @@ pub(crate) fn live(seconds: f64, phase: &PhaseName, rest: &Rest, width: usize, c
 }
 
 /// A phase that is over, `took` seconds and so many steps after it was first seen.
-pub(crate) fn done(
-    seconds: f64,
-    phase: &PhaseName,
-    (steps, took): (u64, f64),
-    note: &str,
-    width: usize,
-) -> String {
+pub(crate) fn done(seconds: f64, phase: &PhaseName, (steps, took): (u64, f64), width: usize) -> String {
     let (time, place, name) = (time(seconds), phase.place(), fit(&phase.name, NAME));
-    let line =
-        format!("{time} {place}  {name:NAME$}{steps:>10} steps{:>12}  {note}", format!("  {took:.2} s"));
+    let line = format!("{time} {place}  {name:NAME$}{steps:>10} steps{:>12}", format!("  {took:.2} s"));
     fit(line.trim_end(), width.saturating_sub(MARGIN))
 }
 
@@ -140,7 +133,7 @@ mod tests {
                     let line = live(12_345.678, &phase(name), rest, width, false);
                     assert!(columns(&line) <= width.saturating_sub(MARGIN), "{width}: {line}");
                 }
-                let line = done(12_345.678, &phase(name), (123_456_789, 4321.0), "without spins", width);
+                let line = done(12_345.678, &phase(name), (123_456_789, 4321.0), width);
                 assert!(columns(&line) <= width.saturating_sub(MARGIN), "{width}: {line}");
             }
         }
@@ -155,11 +148,8 @@ mod tests {
         let unmet = Rest::Unmet(UNMET.to_owned());
         assert_eq!(line(&unmet, 130).split("  ").last(), Some(&*format!("not yet: {UNMET}")));
         assert!(line(&unmet, 100).ends_with("above 1e-3, unbalan…"), "{}", line(&unmet, 100));
-        let done = |width| done(3.75, &phase("load"), (7, 0.4), "without spins", width);
-        assert_eq!(
-            done(90),
-            "[   3.75 s]  6 of 10  load                       7 steps      0.40 s  without spins"
-        );
+        let done = |width| done(3.75, &phase("load"), (7, 0.4), width);
+        assert_eq!(done(90), "[   3.75 s]  6 of 10  load                       7 steps      0.40 s");
         assert_eq!(done(60), "[   3.75 s]  6 of 10  load                       7 steps…");
     }
 

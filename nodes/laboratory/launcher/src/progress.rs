@@ -31,8 +31,6 @@ struct Phase {
     /// When it was first seen, and the step.
     began: Instant,
     first_step: u64,
-    /// Note of the simulator at the begin of the phase.
-    note: String,
     /// Last report of the simulator.
     report: PhaseReport,
     pace: Pace<PACE>,
@@ -113,14 +111,12 @@ impl Progress {
             name: name.clone(),
             began: Instant::now(),
             first_step: state.step,
-            note: state.message.clone(),
             report: PhaseReport::default(),
             pace: Pace::default(),
         });
         if Terminal::on_stderr().is_none() {
             let PhaseName { number, of, name } = name;
-            let note = after(", ", &state.message);
-            self.say(&format!("phase {number} of {of}, {name} from step {}{note}", state.step));
+            self.say(&format!("phase {number} of {of}, {name} from step {}", state.step));
         }
     }
 
@@ -144,7 +140,7 @@ impl Progress {
     fn end_phase(&mut self, step: u64) {
         let (Some(phase), Some(terminal)) = (self.phase.take(), Terminal::on_stderr()) else { return };
         let counts = (step.saturating_sub(phase.first_step), phase.began.elapsed().as_secs_f64());
-        say_line(phase_line::done(self.seconds(), &phase.name, counts, &phase.note, terminal.width));
+        say_line(phase_line::done(self.seconds(), &phase.name, counts, terminal.width));
     }
 
     /// Draws the live line again; nothing where there is no terminal.
@@ -172,9 +168,4 @@ impl Phase {
             (None, unmet) => Rest::Unmet(unmet.to_owned()),
         }
     }
-}
-
-/// A text after a separator; nothing if the text is empty.
-fn after(separator: &str, text: &str) -> String {
-    if text.is_empty() { String::new() } else { format!("{separator}{text}") }
 }

@@ -145,15 +145,15 @@ fn done(state: &InvertedPacking) -> String {
     };
     let anisotropy = eps(r).map_or_else(String::new, |e| format!(", and the contact anisotropy ε is {e:.3}"));
     format!(
-        "{} grains at {:.4} kPa{stress}. Counted: {:.2} contacts per grain without rattlers (z){anisotropy}.",
+        "{} grains at {} kPa{stress}. Counted: {:.2} contacts per grain without rattlers (z){anisotropy}.",
         r.contacts.grains,
-        six(r.pressure() / 1e3),
+        four_digits(r.pressure() / 1e3),
         r.contacts.mechanical_coordination,
     )
 }
 
 /// A number rounded to four significant digits, so that 50.000003 is 50.
-fn six(value: f64) -> f64 {
+fn four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 

@@ -1,7 +1,7 @@
 //! Results of the models, as cells of a table or of CSV.
 
 use crate::inference::Inference;
-use grainlab_console::{CsvText, Table, fixed};
+use grainlab_console::{CsvText, Table, fixed, wrapped};
 use grainlab_core::results::InferredQuantity;
 
 impl Inference {
@@ -52,16 +52,41 @@ impl Inference {
 
 /// The warnings of several results as lines, each with its models.
 pub fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>) -> String {
-    let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut seen: Vec<(&String, Vec<&str>)> = Vec::new();
     for r in results {
         for w in &r.warnings {
-            match seen.iter_mut().find(|(known, _)| known == w) {
+            match seen.iter_mut().find(|(known, _)| *known == w) {
                 Some((_, models)) => models.push(&r.model),
                 None => seen.push((w, vec![&r.model])),
             }
         }
     }
-    seen.iter().map(|(text, models)| format!("  {}: {text}\n", models.join(", "))).collect()
+    let line =
+        |(text, models): &(&String, Vec<&str>)| wrapped("  ", &format!("{}: {text}", models.join(", ")));
+    seen.iter().map(line).collect()
+}
+
+/// The recommended result with its intervals and notes, and the number of the others; without one, all of them with their reasons.
+pub fn recommended(results: &[Inference]) -> String {
+    let Some(best) = Inference::recommended(&results.iter().collect::<Vec<_>>()) else {
+        return table(results);
+    };
+    let mut text = format!("model {}, status {}\n", best.model, best.status);
+    let mut t = Table::new(["", "value", "sigma", "95 % interval", ""]);
+    for q in InferredQuantity::ALL {
+        let (Some(value), digits) = (best.values[q], q.digits()) else { continue };
+        let interval = best.interval.bounds[q].map(|b| b.map(|end| format!("{end:.digits$}")).join(" to "));
+        let sigma = fixed(best.sigma[q], digits);
+        let cells = [format!("{value:.digits$}"), sigma, interval.unwrap_or_else(|| "-".to_owned())];
+        t.row([q.text().to_owned()].into_iter().chain(cells).chain([q.meaning().to_owned()]));
+    }
+    text += &t.text();
+    best.warnings.iter().for_each(|warning| text += &wrapped("note: ", warning));
+    let others = results.len() - 1;
+    if others > 0 {
+        text += &format!("{others} other models: --verbose\n");
+    }
+    text
 }
 
 /// Results as a text table, warnings below.

@@ -3,7 +3,7 @@
 use crate::measured_packing::{MeasuredPacking, ORIGIN};
 use crate::printer::Printed;
 use crate::quantities::{cells, columns, typed_cells};
-use grainlab_console::{Cell, Table, count};
+use grainlab_console::{Cell, Table, count, wrapped};
 use grainlab_core::quantity::by_key;
 use grainlab_core::results::{PackingReport, QUANTITIES};
 
@@ -33,12 +33,15 @@ const SHOWN: &str = "k z eps eps_stiffness fabric reference_axis g_total g_elast
     theta_bound_pa symmetry symmetry_tolerance symmetry_axis residual_isotropic \
     residual_transversely_isotropic";
 
+/// Components in a row.
+const ROW: usize = 3;
+
 /// The block of one packing: what it is made of in a line, and its quantities by their keys.
 pub(crate) fn text(m: &MeasuredPacking) -> String {
     let (r, c) = (&m.report, &m.report.contacts);
     let small = |ratio: Option<f64>| ratio.map_or_else(|| "-".to_owned(), |r| format!("{r:.1e}"));
-    let mut text = format!(
-        "  {}, {}, {}; phi {:.4}, p {:.4} kPa, q/p {}, unbalanced {}\n",
+    let about = format!(
+        "{}, {}, {}; phi {:.4}, p {:.4} kPa, q/p {}, unbalanced {}",
         count(c.grains, "grain"),
         count(c.contacts, "contact"),
         count(c.rattlers, "rattler"),
@@ -47,15 +50,21 @@ pub(crate) fn text(m: &MeasuredPacking) -> String {
         small(r.stress_ratio()),
         small(r.unbalanced_force_ratio),
     );
+    let mut text = wrapped("  ", &about);
     let mut table = Table::new(["quantity", "value", "symbol"]);
     for q in SHOWN.split(' ').filter_map(|key| by_key(QUANTITIES, key)) {
         let words: Vec<String> = typed_cells([q], r).map(|cell| rounded(&cell)).collect();
-        if words.iter().any(|word| word != "-") {
-            table.row([q.key.to_owned(), words.join(" "), q.symbol.to_owned()]);
+        if words.iter().all(|word| word == "-") {
+            continue;
+        }
+        // A tensor has its normal and its shear components in two rows.
+        for (n, row) in words.chunks(ROW).enumerate() {
+            let names = if n == 0 { [q.key, q.symbol] } else { [""; 2] };
+            table.row([names[0].to_owned(), row.join(" "), names[1].to_owned()]);
         }
     }
     text += &indented(&table.text());
-    m.warnings.iter().for_each(|warning| text += &format!("  note: {warning}\n"));
+    m.warnings.iter().for_each(|warning| text += &wrapped("  note: ", warning));
     text
 }
 

@@ -27,6 +27,7 @@ pub(crate) fn figure(rows: &[Row]) -> Figure {
             let of_colour = series.iter().filter(|s| s.colour == Some(colour(row))).count();
             keys.push(key);
             series.push(Series {
+                name: String::new(),
                 colour: Some(colour(row)),
                 marker: Some(Marker::of(of_colour)),
                 hollow: row.upper_bound,

@@ -29,17 +29,44 @@
       to[n].removeAttribute("class");
     });
     if (before) root.dataset.theme = before; else delete root.dataset.theme;
-    const box = svg.viewBox.baseVal;
-    copy.setAttribute("width", box.width);
-    copy.setAttribute("height", box.height);
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + new XMLSerializer().serializeToString(copy);
+    copy.querySelectorAll("clipPath rect").forEach((rect) => rect.removeAttribute("fill"));
+    return copy;
+  };
+  // A file has the width of a column of a journal, or of its page, and the caption below the plots.
+  const file = (drawing) => {
+    const svgs = [...drawing.querySelectorAll("svg")].filter((svg) => svg.getClientRects().length > 0), gap = 16;
+    const boxes = svgs.map((svg) => svg.viewBox.baseVal), across = Math.min(svgs.length, svgs.length === 3 ? 3 : 2);
+    const unit = Math.max(...boxes.map((b) => b.width)), row = Math.max(...boxes.map((b) => b.height)) + gap;
+    const whole = document.createElementNS("http://www.w3.org/2000/svg", "svg"), width = across * (unit + gap) - gap;
+    svgs.forEach((svg, n) => {
+      const copy = standalone(svg), at = { x: (n % across) * (unit + gap), y: Math.floor(n / across) * row, width: boxes[n].width, height: boxes[n].height };
+      for (const [key, value] of Object.entries(at)) copy.setAttribute(key, value);
+      whole.append(copy);
+    });
+    const words = [drawing.querySelector("h3"), drawing.querySelector("figcaption > span:not(.save)")].flatMap((e) => (e ? e.textContent.trim().split(/\s+/) : []));
+    const lines = words.reduce((all, word) => {
+      if ((all[all.length - 1] + word).length * 6.2 > width) all.push("");
+      all[all.length - 1] += `${word} `;
+      return all;
+    }, [""]);
+    let y = Math.ceil(svgs.length / across) * row + 4;
+    for (const line of lines) {
+      const text = document.createElementNS("http://www.w3.org/2000/svg", "text");
+      for (const [key, value] of Object.entries({ x: 8, y, "font-size": 11, "font-family": "sans-serif" })) text.setAttribute(key, value);
+      text.textContent = line.trim();
+      whole.append(text);
+      y += 15;
+    }
+    whole.setAttribute("viewBox", `0 0 ${width} ${y}`);
+    whole.setAttribute("width", across === 1 ? "85mm" : "178mm");
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + new XMLSerializer().serializeToString(whole);
   };
   document.addEventListener("click", (e) => {
     const kind = e.target.dataset && e.target.dataset.save;
     if (!kind) return;
     const drawing = e.target.closest(".drawing"), name = `${drawing.id.replace(/^plot-/, "")}.${kind}`;
     if (kind === "csv") save(name, "text/csv", drawing.querySelector("script").textContent);
-    else save(name, "image/svg+xml", standalone([...drawing.querySelectorAll("svg")].find((svg) => svg.getClientRects().length > 0)));
+    else save(name, "image/svg+xml", file(drawing));
   });
 
   document.querySelectorAll(".sortable thead th").forEach((header) => {

@@ -14,9 +14,47 @@ pub struct Claim {
     pub text: String,
     /// Result in words.
     pub found: String,
-    /// True if it holds; `None` if it could not be checked.
-    pub holds: Option<bool>,
+    /// Result in one word.
+    pub verdict: Verdict,
 }
+
+/// Result of checking a statement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The means agree with it.
+    Holds,
+    /// They do not, by less than two of their standard errors beyond its limit.
+    Undecided,
+    /// They do not.
+    Missed,
+    /// A mean is missing.
+    Unchecked,
+}
+
+impl Verdict {
+    /// The verdict in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Undecided => "within the scatter",
+            Self::Missed => "does not hold",
+            Self::Unchecked => "not checked",
+        }
+    }
+
+    /// Of a statement whose limit is exceeded by these numbers of standard errors, infinite where no error is known.
+    fn of(exceeded: impl IntoIterator<Item = f64>) -> Self {
+        let worst = exceeded.into_iter().fold(0.0, f64::max);
+        match worst {
+            0.0 => Self::Holds,
+            errors if errors <= ERRORS => Self::Undecided,
+            _ => Self::Missed,
+        }
+    }
+}
+
+/// Standard errors beyond a limit that scatter alone may cause.
+const ERRORS: f64 = 2.0;
 
 /// Largest differences that count as reproduced: coordination relative, the others absolute.
 pub const COORDINATION: f64 = 0.035;
@@ -66,7 +104,7 @@ pub fn claims(compared: &[Comparison], judged: &[Judged]) -> Vec<Claim> {
             "coordination k (all grains) within 3.5 % of the paper's k",
             true,
         ),
-        within(&means, Quantity::Eps, EPS, "eps within 0.012 of Table III", false),
+        within(&means, Quantity::Eps, EPS, "ε within 0.012 of Table III", false),
         within(
             &means,
             Quantity::SolidFraction,
@@ -74,9 +112,9 @@ pub fn claims(compared: &[Comparison], judged: &[Judged]) -> Vec<Claim> {
             "solid fraction within 0.006 of Table I",
             false,
         ),
-        within(&means, Quantity::StrainTotal, STRAIN_RATIO, "gamma/Delta within 0.015 of Table II", false),
+        within(&means, Quantity::StrainTotal, STRAIN_RATIO, "γ/Δ within 0.015 of Table II", false),
         ordered(&means, Quantity::Z, "coordination in the order S1 > S2 > S4 > S3 at every pressure", true),
-        ordered(&means, Quantity::Eps, "eps in the order S1 < S2 < S4 < S3 at every pressure", false),
+        ordered(&means, Quantity::Eps, "ε in the order S1 < S2 < S4 < S3 at every pressure", false),
         constant_fabric(&means),
         shear_moduli(&means),
     ];
@@ -87,68 +125,79 @@ pub fn claims(compared: &[Comparison], judged: &[Judged]) -> Vec<Claim> {
 
 fn within(means: &Means<'_>, quantity: Quantity, limit: f64, text: &str, relative: bool) -> Claim {
     let size = if relative { Comparison::relative } else { Comparison::difference };
-    let worst = means.worst(quantity, size);
-    let found = worst.map_or_else(String::new, |(size, sample, pressure)| {
-        let size = if relative { format!("{:+.1} %", 100.0 * size) } else { format!("{size:+.4}") };
-        format!("at most {size}, {}", place(sample, pressure))
+    let Some((worst, sample, pressure)) = means.worst(quantity, size) else { return unchecked(text) };
+    let worst = if relative { format!("{:+.1} %", 100.0 * worst) } else { format!("{worst:+.4}") };
+    let exceeded = means.0.iter().filter(|c| c.quantity == quantity).filter_map(|c| {
+        let scale = if relative { c.paper?.value } else { 1.0 };
+        Some(in_errors((size(c)?.abs() - limit).max(0.0), c.error().map(|e| e / scale)))
     });
-    Claim { text: text.into(), found, holds: worst.map(|(size, ..)| size.abs() <= limit) }
+    let found = format!("at most {worst}, {}", place(sample, pressure));
+    Claim { text: text.into(), found, verdict: Verdict::of(exceeded) }
+}
+
+/// An excess over a limit in standard errors.
+fn in_errors(excess: f64, error: Option<f64>) -> f64 {
+    match error {
+        _ if excess == 0.0 => 0.0,
+        Some(error) if error > 0.0 => excess / error,
+        _ => f64::INFINITY,
+    }
+}
+
+fn unchecked(text: &str) -> Claim {
+    Claim { text: text.into(), found: String::new(), verdict: Verdict::Unchecked }
 }
 
 fn ordered(means: &Means<'_>, quantity: Quantity, text: &str, falling: bool) -> Claim {
-    let mut broken = Vec::new();
-    let mut known = true;
+    let (mut broken, mut exceeded) = (Vec::new(), Vec::new());
     for pressure in 0..PRESSURES {
         for pair in ORDER.windows(2) {
-            match (means.value(quantity, pair[0], pressure), means.value(quantity, pair[1], pressure)) {
-                (Some(a), Some(b)) if (a > b) == falling => {}
-                (Some(_), Some(_)) => {
-                    broken.push(format!("{} and {}", place(pair[0], pressure), PAPER[pair[1]].name))
-                }
-                _ => known = false,
+            let found = [0, 1].map(|n| Comparison::find(means.0, quantity, pair[n], pressure));
+            let [Some(a), Some(b)] = found else { return unchecked(text) };
+            let step = if falling { b.ours.value - a.ours.value } else { a.ours.value - b.ours.value };
+            if step >= 0.0 {
+                broken.push(format!("{} and {}", place(pair[0], pressure), PAPER[pair[1]].name));
+                let error = a.error().zip(b.error()).map(|(a, b)| a.hypot(b));
+                exceeded.push(in_errors(step.max(f64::MIN_POSITIVE), error));
             }
         }
     }
-    everywhere(text, &broken, known)
+    Claim { text: text.into(), found: everywhere(&broken), verdict: Verdict::of(exceeded) }
 }
 
-/// A claim on all means, and the places for which it does not hold; `known` if every mean is.
-fn everywhere(text: &str, broken: &[String], known: bool) -> Claim {
-    let found =
-        if broken.is_empty() { "in all means".to_owned() } else { format!("not for {}", broken.join(", ")) };
-    Claim { text: text.into(), found, holds: known.then_some(broken.is_empty()) }
+/// The places for which a statement on all means does not hold.
+fn everywhere(broken: &[String]) -> String {
+    if broken.is_empty() { "in all means".to_owned() } else { format!("not for {}", broken.join(", ")) }
 }
 
 fn constant_fabric(means: &Means<'_>) -> Claim {
-    let spread = |sample: usize| {
-        let values: Option<Vec<f64>> =
-            (0..PRESSURES).map(|p| means.value(Quantity::DeviatoricFabric, sample, p)).collect();
-        let values = values?;
-        let (low, high) =
-            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        Some((high - low) / mean.abs())
-    };
-    let spreads: Option<Vec<f64>> = (0..SAMPLES).map(spread).collect();
-    let found = spreads.as_ref().map_or_else(String::new, |all| {
-        let each = all.iter().zip(&PAPER).map(|(s, sample)| format!("{} {:.1} %", sample.name, 100.0 * s));
-        format!("largest less smallest over the mean: {}", each.collect::<Vec<_>>().join(", "))
-    });
-    let holds = spreads.map(|all| all.iter().all(|s| *s <= DEVIATORIC_FABRIC));
-    Claim { text: "L^D constant with pressure to 10 % (Fig. 1)".into(), found, holds }
+    let text = "deviatoric fabric constant with pressure to 10 % (Fig. 1)";
+    let (mut each, mut exceeded) = (Vec::new(), Vec::new());
+    for (sample, paper) in PAPER.iter().enumerate() {
+        let all = (0..PRESSURES).map(|p| Comparison::find(means.0, Quantity::DeviatoricFabric, sample, p));
+        let Some(all) = all.collect::<Option<Vec<_>>>() else { return unchecked(text) };
+        let values = || all.iter().map(|c| c.ours.value);
+        let mean = values().sum::<f64>() / all.len() as f64;
+        let spread = (values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min))
+            / mean.abs();
+        let error = all[0].error().map(|e| std::f64::consts::SQRT_2 * e / mean.abs());
+        each.push(format!("{} {:.1} %", paper.name, 100.0 * spread));
+        exceeded.push(in_errors((spread - DEVIATORIC_FABRIC).max(0.0), error));
+    }
+    let found = format!("largest less smallest over the mean: {}", each.join(", "));
+    Claim { text: text.into(), found, verdict: Verdict::of(exceeded) }
 }
 
 fn shear_moduli(means: &Means<'_>) -> Claim {
     let [g12, g13] = [Modulus::G12, Modulus::G13].map(Quantity::Modulus);
+    let text = "G13 > G12, and both grow with pressure (Fig. 2)";
     let mut broken = Vec::new();
-    let mut known = true;
     for sample in 0..SAMPLES {
         for pressure in 0..PRESSURES {
             let (Some(across), Some(along)) =
                 (means.value(g12, sample, pressure), means.value(g13, sample, pressure))
             else {
-                known = false;
-                continue;
+                return unchecked(text);
             };
             let before = pressure.checked_sub(1);
             let grows =
@@ -158,7 +207,8 @@ fn shear_moduli(means: &Means<'_>) -> Claim {
             }
         }
     }
-    everywhere("G13 > G12, and both grow with pressure (Fig. 2)", &broken, known)
+    let verdict = if broken.is_empty() { Verdict::Holds } else { Verdict::Missed };
+    Claim { text: text.into(), found: everywhere(&broken), verdict }
 }
 
 /// The conclusion of the paper: ratios of moduli give k, absolute moduli do not. k by absolute moduli is that of Eq. 14 with
@@ -178,7 +228,7 @@ fn ratios_beat_absolute_moduli(means: &Means<'_>, judged: &[Judged]) -> Option<C
             "mean error of k {:.2} by ratios, {:.2} by absolute moduli (the paper's: {:.2} and {:.2})",
             ratio.magnitude, emt.magnitude, of_ratio.magnitude, of_emt.magnitude
         ),
-        holds: Some(ratio.magnitude < emt.magnitude),
+        verdict: if ratio.magnitude < emt.magnitude { Verdict::Holds } else { Verdict::Missed },
     })
 }
 
@@ -190,12 +240,15 @@ fn ours_beats_the_paper(judged: &[Judged]) -> Option<Claim> {
     Some(Claim {
         text: "the inversion of grainlab has at most half the paper's error, on these packings".into(),
         found: format!(
-            "mean error of eps {:.4} and {:.4}, of k {:.3} and {:.3}",
+            "mean error of ε {:.4} and {:.4}, of k {:.3} and {:.3}",
             own.0.magnitude, theirs.0.magnitude, own.1.magnitude, theirs.1.magnitude
         ),
-        holds: Some(
-            2.0 * own.0.magnitude <= theirs.0.magnitude && 2.0 * own.1.magnitude <= theirs.1.magnitude,
-        ),
+        verdict: match 2.0 * own.0.magnitude <= theirs.0.magnitude
+            && 2.0 * own.1.magnitude <= theirs.1.magnitude
+        {
+            true => Verdict::Holds,
+            false => Verdict::Missed,
+        },
     })
 }
 

@@ -2,7 +2,11 @@
 
 use crate::quantity::{Printed, Quantity};
 use crate::sample::States;
+use crate::scatter::of_one;
 use grainlab_page::Mean;
+
+/// Seeds from which their own scatter gives the error.
+const ENOUGH: usize = 5;
 
 /// One quantity of one state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +19,8 @@ pub struct Comparison {
     pub pressure: usize,
     /// Mean over seeds.
     pub ours: Mean,
+    /// Standard error expected of packings of this size and number, from those of other seeds.
+    pub expected: Option<f64>,
     /// Number of the paper.
     pub paper: Option<Printed>,
 }
@@ -35,10 +41,15 @@ impl Comparison {
         Some(self.difference()? / self.paper?.value)
     }
 
+    /// Standard error of our mean: that over seeds, or the expected one of a few.
+    pub fn error(&self) -> Option<f64> {
+        self.ours.error.filter(|_| self.ours.count >= ENOUGH).or(self.expected).or(self.ours.error)
+    }
+
     /// The difference in units of its error: that of our mean and of the paper's rounding. The paper's own scatter, of one
-    /// sample each, is not known. `None` with one seed.
+    /// sample each, is not known.
     pub fn in_errors(&self) -> Option<f64> {
-        let error = self.ours.error?.hypot(self.paper?.rounding);
+        let error = self.error()?.hypot(self.paper?.rounding);
         (error > 0.0).then_some(self.difference()? / error)
     }
 }
@@ -47,7 +58,11 @@ impl Comparison {
 pub fn compare(states: &States) -> Vec<Comparison> {
     let one = |quantity: Quantity, (sample, pressure): (usize, usize)| {
         let ours = Mean::of(states.of(sample, pressure).filter_map(|o| quantity.measured(&o.report)))?;
-        Some(Comparison { quantity, sample, pressure, ours, paper: quantity.in_paper(sample, pressure) })
+        let grains = states.of(sample, pressure).map(|o| o.report.contacts.grains).min()?;
+        let expected =
+            of_one(quantity, sample, ours.value, grains as f64).map(|s| s / (ours.count as f64).sqrt());
+        let paper = quantity.in_paper(sample, pressure);
+        Some(Comparison { quantity, sample, pressure, ours, expected, paper })
     };
     let all = Quantity::ALL.into_iter();
     all.flat_map(|(q, _)| States::places().filter_map(move |place| one(q, place))).collect()

@@ -13,6 +13,7 @@ mod distance;
 pub mod inversion;
 mod quantity;
 mod sample;
+mod scatter;
 mod tables;
 
 pub use compare::{Comparison, compare};

@@ -210,7 +210,12 @@ impl Run {
             };
             others.map(row).collect()
         };
-        let rows = self.states.iter().flat_map(|s| std::iter::once(row(s)).chain(further(s)));
+        let rows: Vec<_> =
+            self.states.iter().flat_map(|s| std::iter::once(row(s)).chain(further(s))).collect();
+        // The values of a single state are beside those of its cards.
+        if rows.len() < 2 {
+            return Html::default();
+        }
         table(
             "Packings at the ends of phases: counted, measured, and inferred with standard deviations.",
             header,

@@ -3,7 +3,7 @@
 use crate::run::Run;
 use crate::settings::{Setting, differing};
 use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
-use grainlab_page::{Html, Mean, csv, figure, grid, paragraph, six_digits};
+use grainlab_page::{Html, Mean, csv, figure, grid, paragraph, plus_minus, six_digits};
 use std::collections::BTreeSet;
 
 /// Ratio of the ends from which an axis is logarithmic.
@@ -11,6 +11,9 @@ const DECADE: f64 = 10.0;
 
 /// Most curves: what a legend has room for.
 const CURVES: usize = 20;
+
+/// Relative difference up to which values count as equal.
+const ALIKE: f64 = 1e-3;
 
 /// Most curves that are described in sentences.
 const DESCRIBED: usize = 3;
@@ -80,8 +83,8 @@ impl<'a> OverSettings<'a> {
             let means = self.means(quantity, curve);
             let [(from, a), .., (to, b)] = means.as_slice() else { return None };
             let value = |m: &Mean| {
-                three_digits(m.value)
-                    + &m.error.map_or_else(String::new, |e| format!(" ± {}", three_digits(e)))
+                let digits = digits(m.error.unwrap_or(0.1 * m.value));
+                format!("{:.digits$}", m.value) + &plus_minus(m.error, digits)
             };
             let of = match &self.by {
                 Some(by) => format!("For {} {curve}, {symbol}", by.name),
@@ -126,7 +129,12 @@ impl<'a> OverSettings<'a> {
             let data = csv([along.as_str(), by, "n", "mean", "standard_error"], rows);
             figure(&format!("over-settings-{}", q + 1), drawn.element(), "", &data)
         };
-        let has_value = |(q, _): &(usize, _)| self.whole.iter().any(|(_, values)| values[*q].1.is_some());
+        // Equal values, such as those of a target, need no figure.
+        let has_value = |(q, _): &(usize, _)| {
+            let of_runs = self.whole.iter().filter_map(|(_, values)| values[*q].1);
+            let ends = of_runs.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+            ends[1] - ends[0] > ALIKE * ends[1].abs()
+        };
         let drawn: Html = self.whole[0].1.iter().enumerate().filter(has_value).map(draw).collect();
         let curves =
             self.by.as_ref().map_or_else(String::new, |s| format!(", with a curve for each {}", s.name));
@@ -166,7 +174,7 @@ pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
     grid(all[0].1.iter().enumerate().filter_map(draw).collect())
 }
 
-fn three_digits(value: f64) -> String {
-    let digits = if value == 0.0 { 0.0 } else { (2.0 - value.abs().log10().floor()).clamp(0.0, 6.0) };
-    format!("{value:.0$}", digits as usize)
+/// Decimal places that give a standard error two digits.
+fn digits(error: f64) -> usize {
+    if error == 0.0 { 3 } else { (1.0 - error.abs().log10().floor()).clamp(0.0, 6.0) as usize }
 }

@@ -75,12 +75,14 @@ impl Run {
             "{% if missing %}<div class=\"missing\"><b>Missing or not readable</b>{{ missing }}</div>\n{% endif %}",
             missing
         );
+        let about = if about.is_empty() { Html::default() } else { paragraph(format!("The scene: {about}")) };
         let Findings { done, found, mut doubts } = Findings::of(&self.states);
         let more = self.summary.warnings.iter().filter(|w| !doubts.iter().any(|d| d.contains(w.as_str())));
         let more: Vec<String> = more.take(MOST_WARNINGS).cloned().collect();
         doubts.extend(more);
-        heading(&format!("grainlab · {}", self.name()), &self.headline(), &about)
+        heading(&format!("grainlab · {}", self.name()), &self.headline(), "")
             + finding(&done, &found, &doubts)
+            + about
             + self.verdict()
             + missing
     }

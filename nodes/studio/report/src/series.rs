@@ -3,7 +3,7 @@
 use crate::page::STYLE;
 use grainlab_emt::{SeriesEstimate, SpeedMode, SpeedSeries};
 use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
-use grainlab_page::{Cell, Html, Page, Section, csv, figure, heading, html, list, paragraph, table};
+use grainlab_page::{Cell, Html, Page, Section, csv, figure, finding, heading, html, paragraph, table};
 use std::f64::consts::PI;
 
 /// A sample on the page.
@@ -27,7 +27,7 @@ pub fn series_page(samples: &[InferredSample<'_>]) -> String {
     };
     let title = format!("Wave speeds of {}", grainlab_console::count(samples.len(), "sample"));
     let page = Page {
-        heading: heading("grainlab", &title, ""),
+        heading: heading("grainlab", &title, "") + samples.iter().map(found).collect::<Html>(),
         title,
         sections: vec![
             Section { id: "structure", title: "Structure", content: content(structure) },
@@ -41,12 +41,42 @@ pub fn series_page(samples: &[InferredSample<'_>]) -> String {
     page.text()
 }
 
+/// The findings about a sample.
+fn found(sample: &InferredSample<'_>) -> Html {
+    let InferredSample { series, estimate: e, notes, .. } = sample;
+    let kpa = |p: f64| format!("{} kPa", p / 1e3);
+    let at = |p: &grainlab_emt::PressureEstimate| {
+        format!("{:.2} ± {:.2} at {}", p.z.mean, p.z.stddev, kpa(p.pressure))
+    };
+    let (z, over) = match e.pressures.as_slice() {
+        [] => return Html::default(),
+        [one] => (at(one), format!("at {}", kpa(one.pressure))),
+        [first, .., last] => (
+            format!("{} and {}", at(first), at(last)),
+            format!("at {} pressures, {} to {}", e.pressures.len(), first.pressure / 1e3, kpa(last.pressure)),
+        ),
+    };
+    let speeds = grainlab_console::count(series.rows.iter().filter(|r| r.speed.is_some()).count(), "speed");
+    let done = format!(
+        "{} {over}. z is the number of contacts per grain without rattlers, and was not counted.",
+        named(sample, &speeds)
+    );
+    let law = e.laws.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
+    let law =
+        law.map(|l| format!("The most probable contact law is {} ({:.2}).", l.law.name(), l.probability));
+    let found: Vec<String> = [format!("The speeds give z {z}.")].into_iter().chain(law).collect();
+    let contradicted =
+        sample.is_contradictory.then(|| "The speeds contradict each other or the model.".to_owned());
+    let doubts: Vec<String> = contradicted.into_iter().chain(notes.iter().cloned()).collect();
+    finding(&done, &found, &doubts)
+}
+
 fn named(sample: &InferredSample<'_>, what: &str) -> String {
     if sample.name.is_empty() { what.to_owned() } else { format!("{}: {what}", sample.name) }
 }
 
 fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
-    let InferredSample { estimate: e, notes, .. } = sample;
+    let e = sample.estimate;
     let line = |of: fn(&grainlab_emt::Interval) -> f64, line: Line| Series {
         colour: Some(0),
         line: Some(line),
@@ -82,15 +112,11 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
         .iter()
         .map(|p| [p.pressure, p.z.mean, p.z.stddev, p.z.low, p.z.high].map(|v| v.to_string()));
     let data = csv(["pressure_pa", "z", "z_sigma", "z_low", "z_high"], rows);
-    let verdict = match sample.is_contradictory {
-        true => "These speeds contradict each other or the model.".to_owned(),
-        false => format!("The model fits these speeds: less probable ones have a probability of {:.2}.", e.p),
-    };
+    let fit = format!("Probability of speeds that fit the model less well than these: {:.2}.", e.p);
     html!(
-        "{{ verdict }}{{ drawn }}{{ notes }}",
-        verdict => paragraph(verdict),
-        drawn => figure(&format!("z-{n}"), drawn.element(), "Mean and 95 % of the posterior.", &data),
-        notes => list(notes.iter().map(String::as_str))
+        "{{ fit }}{{ drawn }}",
+        fit => paragraph(fit),
+        drawn => figure(&format!("z-{n}"), drawn.element(), "Mean and 95 % of the posterior.", &data)
     )
 }
 

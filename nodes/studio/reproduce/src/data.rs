@@ -12,12 +12,13 @@ use std::collections::BTreeMap;
 type Column = (&'static str, fn(&Comparison) -> Cell);
 
 /// Columns of the comparisons.
-const COLUMNS: [Column; 11] = [
+const COLUMNS: [Column; 12] = [
     ("quantity", |c| Cell::Text(c.quantity.key().to_owned())),
     ("sample", |c| Cell::Text(PAPER[c.sample].name.to_owned())),
     ("pressure_pa", |c| Cell::Number(PRESSURE[c.pressure])),
     ("ours", |c| Cell::Number(c.ours.value)),
     ("standard_error", |c| number(c.ours.error)),
+    ("expected_error", |c| number(c.expected)),
     ("seeds", |c| Cell::Count(c.ours.count as u64)),
     ("paper", |c| number(c.paper.map(|p| p.value))),
     ("paper_rounding", |c| number(c.paper.map(|p| p.rounding))),
@@ -41,8 +42,10 @@ impl Reproduction {
     /// Provenance, claims, comparisons and errors of the models.
     pub fn json(&self) -> Result<String, Failure> {
         let p = &self.provenance;
-        let claims =
-            self.claims.iter().map(|c| object!({"claim": c.text, "holds": c.holds, "found": c.found}));
+        let claims = self
+            .claims
+            .iter()
+            .map(|c| object!({"claim": c.text, "verdict": c.verdict.words(), "found": c.found}));
         let compared =
             self.compared.iter().map(|c| BTreeMap::from(COLUMNS.map(|(name, cell)| (name, cell(c)))));
         let judged = self.judged.iter().map(|j| {

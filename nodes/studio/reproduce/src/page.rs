@@ -1,7 +1,10 @@
 //! The HTML page: one file, without references to others.
 
 use crate::Reproduction;
-use grainlab_page::{Cell, Html, Page, Section, code, heading, html, lines, list, paragraph, signed, table};
+use grainlab_page::{
+    Cell, Html, Page, Section, code, finding, heading, html, lines, list, paragraph, signed, table,
+};
+use grainlab_paper::claims::Verdict;
 use grainlab_paper::{PAPER, PRESSURE};
 
 /// Parts of the scenes that the text of the paper does not have, or has otherwise.
@@ -54,7 +57,7 @@ impl Reproduction {
         ];
         let page = Page {
             title: title.to_owned(),
-            heading: heading("grainlab", title, &about) + missing,
+            heading: heading("grainlab", title, "") + self.found() + paragraph(about) + missing,
             sections: sections.map(|(id, title, content)| Section { id, title, content }).into(),
             styles: vec![include_str!("../assets/reproduction.css")],
             has_bar: true,
@@ -63,13 +66,52 @@ impl Reproduction {
         page.text()
     }
 
+    /// The findings.
+    fn found(&self) -> Html {
+        let p = &self.provenance;
+        let count = |verdict| self.claims.iter().filter(|c| c.verdict == verdict).count();
+        let seeds = grainlab_console::count(p.seeds.len(), "seed");
+        let done =
+            format!("The paper's four samples at four pressures, with {} grains and {seeds} each.", p.grains);
+        let found = [
+            Some(format!("Of {} statements, {} hold.", self.claims.len(), count(Verdict::Holds))),
+            self.judged("relaxed", None, "grainlab").and_then(|j| j.eps).zip(self.judged("ratio", Some("total"), "paper").and_then(|j| j.eps)).map(|(ours, theirs)| {
+                format!(
+                    "From the moduli of these packings, the model relaxed infers ε with a mean error of {:.4}, and the paper's model with one of {:.4}.",
+                    ours.magnitude, theirs.magnitude
+                )
+            }),
+        ];
+        let named = |verdict: Verdict, why: &str| {
+            let texts: Vec<&str> =
+                self.claims.iter().filter(|c| c.verdict == verdict).map(|c| c.text.as_str()).collect();
+            (!texts.is_empty()).then(|| format!("{why}: {}.", texts.join("; ")))
+        };
+        let within = format!(
+            "Missed by less than the scatter of {seeds} of {} grains, which cannot decide it",
+            p.grains
+        );
+        let doubts = [
+            named(Verdict::Missed, "Not reproduced"),
+            named(Verdict::Undecided, &within),
+            named(Verdict::Unchecked, "Not checked"),
+        ];
+        finding(
+            &done,
+            &found.into_iter().flatten().collect::<Vec<_>>(),
+            &doubts.into_iter().flatten().collect::<Vec<_>>(),
+        )
+    }
+
     fn claims_table(&self) -> Html {
         let rows = self.claims.iter().map(|claim| {
-            let (verdict, class) = match claim.holds {
-                Some(true) => ("holds", "yes"),
-                Some(false) => ("does not hold", "no"),
-                None => ("not checked", ""),
+            let class = match claim.verdict {
+                Verdict::Holds => "yes",
+                Verdict::Missed => "no",
+                Verdict::Undecided => "open",
+                Verdict::Unchecked => "",
             };
+            let verdict = claim.verdict.words();
             [Cell::text(&claim.text), Cell::classed(verdict, class), Cell::text(&claim.found)]
         });
         let caption = html!(
@@ -83,8 +125,9 @@ impl Reproduction {
 
     fn tables(&self) -> Html {
         let scatter = match self.provenance.seeds.len() {
-            1 => "One packing of each state: its scatter is not known.",
-            2..5 => "Mean ± standard error over seeds, which is rough with so few.",
+            1..5 => {
+                "The errors of so few seeds are those expected of packings of this size, from 12 seeds of 500 grains."
+            }
             _ => "Mean ± standard error over seeds.",
         };
         let about = paragraph(format!(

@@ -24,7 +24,7 @@ fn cells(c: Option<&Comparison>, scale: f64, digits: usize, relative: bool) -> [
     };
     let difference = || signed(c.and_then(Comparison::difference).map(|d| d / scale), digits);
     [
-        mean(c.map(|c| &c.ours), scale, digits),
+        mean(c.map(|c| Mean { error: c.error(), ..c.ours }).as_ref(), scale, digits),
         of_paper(fixed(paper, digits)),
         Cell::number(if relative { percent() } else { difference() }),
         Cell::signed(c.and_then(Comparison::in_errors), 1),

@@ -1,7 +1,7 @@
 //! A summary for a terminal.
 
 use crate::Reproduction;
-use grainlab_console::{Table, fixed};
+use grainlab_console::{Table, fixed, wrapped};
 use grainlab_paper::{Comparison, PAPER, PRESSURE, Quantity, States};
 
 impl Reproduction {
@@ -29,12 +29,10 @@ impl Reproduction {
         }
         let mut text = table.text();
         for claim in &self.claims {
-            let verdict = match claim.holds {
-                Some(true) => "holds ",
-                Some(false) => "MISSED",
-                None => "?     ",
-            };
-            text += &format!("{verdict}  {}: {}\n", claim.text, claim.found);
+            text += &wrapped(
+                &format!("{:18}  ", claim.verdict.words()),
+                &format!("{}: {}", claim.text, claim.found),
+            );
         }
         text
     }

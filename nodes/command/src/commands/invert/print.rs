@@ -9,6 +9,8 @@ use grainlab_results::{Inference, inference_text};
 /// Converts results to text.
 pub(super) struct Printer<'a> {
     pub(super) cases: &'a [Case],
+    /// True for every model in the text of one state, instead of the recommended one.
+    pub(super) verbose: bool,
 }
 
 impl Printer<'_> {
@@ -51,7 +53,9 @@ impl Printer<'_> {
 
     /// One state, warnings below.
     pub(super) fn state(&self, answer: &Answer, more: &More) -> String {
-        let mut text = inference_text::table(&answer.inferences(self.cases));
+        let all = answer.inferences(self.cases);
+        let mut text =
+            if self.verbose { inference_text::table(&all) } else { inference_text::recommended(&all) };
         text += &more.explained.as_deref().map_or_else(String::new, explain::people);
         text += &more.predictive.as_deref().map_or_else(String::new, predictive::people);
         text + &more.evidence.as_deref().map_or_else(String::new, evidence::people)

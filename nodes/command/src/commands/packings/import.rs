@@ -14,7 +14,7 @@ the finished results and ends with 130. Formats are recognised by content: a rec
 c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
 (atom_style sphere), extended XYZ (pos, radius), VTKHDF (grains_1.vtkhdf, with the contacts of contacts_1.vtkhdf beside it), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
 comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). If a file lists no contacts, they are found
-from positions, with Hertz normal forces and without tangential ones. A flag replaces what a file says, which is noted. The contact forces of a LAMMPS dump or data file need these lines,
+from positions, with the normal forces of their law and without tangential ones. A flag replaces what a file says, which is noted. The contact forces of a LAMMPS dump or data file need these lines,
 all of them with friction (fx fy fz of granular pair styles is only the normal force):
   compute pl all property/local patom1 patom2
   compute pf all pair/local dist fx fy fz p1 p2 p3

@@ -71,7 +71,7 @@ impl Intervals {
             let style = format!("class=\"ink\" font-size=\"{size}\" paint-order=\"stroke\"");
             drawing.text([SIDES[0], y + 16.0], "start", &style, &row.name);
             drawing.text([SIDES[1], y + 16.0], "end", &style, &row.text);
-            drawing.text([SIDES[1], y + 50.0], "end", "class=\"faint\"", &row.below);
+            drawing.text([SIDES[1], y + 50.0], "end", "class=\"faint\" paint-order=\"stroke\"", &row.below);
             let at = y + if is_first { 30.0 } else { 24.0 };
             if let Some([low, high]) = row.interval.map(|ends| ends.map(|end| range.at(end))) {
                 drawing.add(format_args!(
