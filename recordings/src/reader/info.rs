@@ -164,12 +164,19 @@ impl fmt::Display for Info {
                 [(lost, l), (repeated, r)].into_iter().filter(|(shown, _)| *shown).map(|(_, cell)| cell);
             [name, ros_type, messages].into_iter().chain(more).collect::<Vec<_>>()
         };
-        let mut table =
-            Table::new(columns(["topic", "type", "messages", "lost", "repeated"].map(str::to_owned)));
+        // Types are aligned left, as names are.
+        let width = self.topics.iter().map(|t| t.ros_type.len()).max().unwrap_or(0);
+        let mut table = Table::new(columns([
+            "topic".to_owned(),
+            format!("{:width$}", "type"),
+            "messages".to_owned(),
+            "lost".to_owned(),
+            "repeated".to_owned(),
+        ]));
         for t in &self.topics {
             table.row(columns([
                 t.name.clone(),
-                t.ros_type.clone(),
+                format!("{:width$}", t.ros_type),
                 t.messages.to_string(),
                 count(t.lost),
                 count(t.repeated),

@@ -145,8 +145,8 @@ fn done(state: &InvertedPacking) -> String {
     };
     let anisotropy = eps(r).map_or_else(String::new, |e| format!(", and the contact anisotropy ε is {e:.3}"));
     format!(
-        "{} grains at {} kPa{stress}. Counted: {:.2} contacts per grain without rattlers (z){anisotropy}.",
-        r.contacts.grains,
+        "{} at {} kPa{stress}. Counted: {:.2} contacts per grain without rattlers (z){anisotropy}.",
+        count(r.contacts.grains, "grain"),
         four_digits(r.pressure() / 1e3),
         r.contacts.mechanical_coordination,
     )
@@ -166,7 +166,8 @@ fn done_of_several(states: &[InvertedPacking]) -> String {
     };
     let grains = states.iter().map(|s| s.packing.report.contacts.grains).max().unwrap_or(0);
     format!(
-        "{grains} grains in {} states: pressure {}. Counted: z {}, ε {}.",
+        "{} in {} states: pressure {}. Counted: z {}, ε {}.",
+        count(grains, "grain"),
         states.len(),
         range(&|r| r.pressure() / 1e3, 1, " kPa"),
         range(&|r| r.contacts.mechanical_coordination, 2, ""),
@@ -290,4 +291,97 @@ fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
     format!("{first}{}.", letters.as_str().trim_end_matches('.'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measured_packing::tests::{lattice, measured};
+    use grainlab_msgs::boundary::ModelResult;
+
+    /// The result of a model with z ± its standard deviation.
+    fn result(status: &'static str, z: Option<(f64, f64)>, warnings: &[&str]) -> Inference {
+        let warnings = warnings.iter().map(|w| (*w).to_owned()).collect();
+        let mut found = ModelResult::unknown("relaxed", "grainlab", warnings);
+        if let Some((value, sigma)) = z {
+            (found.values.0[InferredQuantity::Z as usize], found.status) = (Some(value), status);
+            found.sigma.0[InferredQuantity::Z as usize] = Some(sigma);
+        }
+        found.into()
+    }
+
+    /// A lattice, of which every grain has six contacts.
+    fn state(step: u64, touching: bool, result: Inference) -> InvertedPacking {
+        let mut packing = measured(&lattice(touching));
+        packing.step = step;
+        InvertedPacking { packing, acoustic: None, further_acoustic: Vec::new(), results: vec![result] }
+    }
+
+    fn of(touching: bool, result: Inference) -> Findings {
+        Findings::of(&[state(1, touching, result)])
+    }
+
+    #[test]
+    fn a_value_beside_its_count_has_its_distance_and_is_inside_or_outside_of_its_interval() {
+        let found = of(true, result("ok", Some((5.9, 0.1)), &[])).found;
+        assert_eq!(
+            found,
+            [
+                "From its moduli alone, the model relaxed infers z 5.900 ± 0.100 (counted 6.000, 1.0 σ away).",
+                "The counted z lies in the 95 % interval."
+            ]
+        );
+        let found = of(true, result("ok", Some((5.0, 0.1)), &[])).found;
+        assert!(
+            found[0].contains("10.0 σ away")
+                && found[1] == "The counted z lies outside of the 95 % interval."
+        );
+    }
+
+    #[test]
+    fn an_estimate_with_another_status_is_doubted_with_its_first_reason() {
+        assert!(of(true, result("ok", Some((6.0, 0.1)), &["a note"])).doubts.is_empty());
+        for status in ["extrapolated", "contradictory"] {
+            let doubts = of(true, result(status, Some((6.0, 0.1)), &["why", "more"])).doubts;
+            assert_eq!(doubts, [format!("The estimate is {status}: why.")]);
+        }
+    }
+
+    #[test]
+    fn without_an_estimate_the_reason_is_the_doubt_and_nothing_is_found() {
+        let unknown = of(true, result("unknown", None, &["smooth contacts"]));
+        assert!(unknown.found.is_empty());
+        assert_eq!(unknown.doubts, ["Nothing was inferred: model relaxed: smooth contacts."]);
+        let gas = of(false, result("unknown", None, &[]));
+        assert!(
+            gas.found.is_empty()
+                && gas.doubts[0].starts_with("Nothing was inferred: there is no stiffness: ")
+        );
+        assert_eq!(Findings::of(&[]).done, "No packing at the end of a phase was measured.");
+    }
+
+    #[test]
+    fn several_states_have_one_sentence_and_a_doubt_names_the_number_of_its_states() {
+        let states = [
+            state(1, true, result("ok", Some((6.3, 0.2)), &[])),
+            state(2, true, result("extrapolated", Some((5.6, 0.1)), &["far"])),
+        ];
+        let Findings { done, found, doubts } = Findings::of(&states);
+        assert!(done.starts_with("1 grain in 2 states: pressure "), "{done}");
+        assert_eq!(
+            found,
+            [
+                "The microstructure of 2 states was inferred, by relaxed; the rms difference from the count is z 0.354.",
+                "1 of 2 counted values lie in their 95 % intervals."
+            ]
+        );
+        assert_eq!(doubts, ["In 1 of 2 states: The estimate is extrapolated: far."]);
+    }
+
+    #[test]
+    fn of_many_doubts_the_first_are_written_out_and_the_others_counted() {
+        let mut one = state(1, true, result("ok", Some((6.0, 0.1)), &[]));
+        one.packing.warnings = ["a", "b", "c", "d", "e"].map(str::to_owned).to_vec();
+        assert_eq!(Findings::of(&[one]).doubts, ["A.", "B.", "C.", "And 2 further warnings."]);
+    }
 }

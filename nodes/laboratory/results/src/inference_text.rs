@@ -78,7 +78,7 @@ pub fn recommended(results: &[Inference]) -> String {
         let interval = best.interval.bounds[q].map(|b| b.map(|end| format!("{end:.digits$}")).join(" to "));
         let sigma = fixed(best.sigma[q], digits);
         let cells = [format!("{value:.digits$}"), sigma, interval.unwrap_or_else(|| "-".to_owned())];
-        t.row([q.text().to_owned()].into_iter().chain(cells).chain([q.meaning().to_owned()]));
+        t.row([q.text().to_owned()].into_iter().chain(cells).chain([format!("{:32}", q.meaning())]));
     }
     text += &t.text();
     best.warnings.iter().for_each(|warning| text += &wrapped("note: ", warning));

@@ -3,7 +3,9 @@
 use crate::page::STYLE;
 use grainlab_emt::{SeriesEstimate, SpeedMode, SpeedSeries};
 use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
-use grainlab_page::{Cell, Html, Page, Section, csv, figure, finding, heading, html, paragraph, table};
+use grainlab_page::{
+    Cell, Html, Page, Section, csv, details, figure, finding, grid, heading, html, list, paragraph, table,
+};
 use std::f64::consts::PI;
 
 /// A sample on the page.
@@ -67,7 +69,9 @@ fn found(sample: &InferredSample<'_>) -> Html {
     let found: Vec<String> = [format!("The speeds give z {z}.")].into_iter().chain(law).collect();
     let contradicted =
         sample.is_contradictory.then(|| "The speeds contradict each other or the model.".to_owned());
-    let doubts: Vec<String> = contradicted.into_iter().chain(notes.iter().cloned()).collect();
+    let of_notes =
+        notes.iter().filter(|n| n.contains("contradict") || n.contains("nothing is stated")).cloned();
+    let doubts: Vec<String> = contradicted.into_iter().chain(of_notes).collect();
     finding(&done, &found, &doubts)
 }
 
@@ -100,10 +104,10 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
     let middle =
         Series { marker: Some(Marker::Circle), points: points.collect(), ..line(|z| z.mean, Line::Straight) };
     let drawn = Figure {
-        title: named(sample, "coordination number"),
+        title: named(sample, "coordination number z"),
         subtitle: "mean and 95 % of the posterior".to_owned(),
         x: Axis::log("pressure, kPa"),
-        y: Axis::linear("z"),
+        y: Axis::default(),
         series: vec![line(|z| z.low, Line::Faint), middle, line(|z| z.high, Line::Faint)],
         legend: Vec::new(),
     };
@@ -114,9 +118,10 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
     let data = csv(["pressure_pa", "z", "z_sigma", "z_low", "z_high"], rows);
     let fit = format!("Probability of speeds that fit the model less well than these: {:.2}.", e.p);
     html!(
-        "{{ fit }}{{ drawn }}",
+        "{{ fit }}{{ drawn }}{{ notes }}",
         fit => paragraph(fit),
-        drawn => figure(&format!("z-{n}"), drawn.element(), "Mean and 95 % of the posterior.", &data)
+        drawn => grid(figure(&format!("z-{n}"), drawn.element(), "Mean and 95 % of the posterior.", &data)),
+        notes => details("Notes", list(sample.notes.iter().map(String::as_str)))
     )
 }
 
@@ -153,10 +158,10 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
         legend.push(Entry::Shape(marker, colour, false, name.clone()));
     }
     let drawn = Figure {
-        title: named(sample, "wave speeds"),
+        title: named(sample, "wave speeds, m/s"),
         subtitle: "markers: measured; lines with errors: predicted from the others".to_owned(),
         x: Axis::log("pressure, kPa"),
-        y: Axis::log("speed, m/s"),
+        y: Axis::log(""),
         series: drawn,
         legend,
     };
@@ -165,12 +170,12 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
         [row.pressure.to_string(), kind(row), measured, to.predicted.to_string(), to.stddev.to_string()]
     });
     let data = csv(["pressure_pa", "mode", "speed", "predicted", "predicted_sigma"], rows);
-    figure(
+    grid(figure(
         &format!("speeds-{n}"),
         drawn.element(),
         "Markers: measured. Lines with errors: predicted from the other speeds.",
         &data,
-    )
+    ))
 }
 
 fn contact(_: usize, sample: &InferredSample<'_>) -> Html {

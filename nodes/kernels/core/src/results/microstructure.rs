@@ -104,7 +104,7 @@ inferred_quantities! {
     /// Anisotropy ε of the number of contacts about the axis, Eq. 6.
     Eps eps "eps" "ε" 4 "contact anisotropy" |_, f| Some(f.contact_anisotropy);
     /// Anisotropy ε_k of the contacts about the axis, each weighted by its normal stiffness.
-    EpsStiffness eps_stiffness "eps_k" "ε_k" 4 "contact anisotropy, weighted by stiffness"
+    EpsStiffness eps_stiffness "eps_k" "ε_k" 4 "anisotropy weighted by stiffness"
         |c, f| (c.contacts > 0).then(|| f.stiffness_anisotropy());
 }
 

@@ -74,8 +74,8 @@ mod tests {
             let at = block.find(&format!("{name}:#")).unwrap() + name.len() + 1;
             luminance(&block[at..at + 7])
         };
-        let mut blocks = sheet.split(":root").skip(1);
-        for block in [blocks.next().unwrap(), blocks.next_back().unwrap()] {
+        let blocks: Vec<&str> = sheet.split(":root").skip(1).collect();
+        for block in [blocks[0], blocks[2]] {
             for ground in ["--paper", "--band", "--stage"] {
                 let numbered = (0..Series::COLOURS).map(|n| format!("--c{n}"));
                 for ink in ["--ink", "--faint", "--good", "--warn", "--bad"]

@@ -1,7 +1,7 @@
 //! Answers on a series as text and as CSV, and the sentences on what they depend on.
 
 use super::sample::Sample;
-use grainlab_console::{CsvText, Table, fixed};
+use grainlab_console::{CsvText, Table, fixed, wrapped};
 use grainlab_emt::{Interval, PressureEstimate, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode};
 use std::f64::consts::PI;
 
@@ -60,7 +60,10 @@ pub(super) fn text(sample: &Sample) -> String {
         ]);
     }
     out += &format!("\n{}", table.without_empty_columns().text());
-    out += "of prior: share of the prior's standard deviation that is left; p: chance of speeds that agree less well with the other pressures, suspicious below 0.01\n";
+    out += &wrapped(
+        "",
+        "of prior: share of the prior's standard deviation that is left; p: chance of speeds that agree less well with the other pressures, suspicious below 0.01",
+    );
     if !has_eps {
         out += "eps is not determined: speeds of one mode in two directions determine it\n";
     }
@@ -117,7 +120,7 @@ pub(super) fn text(sample: &Sample) -> String {
     }
     out.push('\n');
     for note in sample.assumed.iter().chain(&sample.notes) {
-        out += &format!("note: {note}\n");
+        out += &wrapped("note: ", note);
     }
     out
 }
