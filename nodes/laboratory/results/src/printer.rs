@@ -85,8 +85,13 @@ impl<R: Printed> Printer<R> {
             return Ok(table.csv());
         }
         let unknown = |name| {
-            let known = table.header().join(", ");
-            Failure::usage(format!("--columns: there is no column {name:?}; there are: {known}"))
+            // Of hundreds of columns, those that begin alike.
+            let stem = name.split('_').next().unwrap_or_default();
+            let near: Vec<&str> =
+                table.header().iter().map(String::as_str).filter(|h| h.starts_with(stem)).collect();
+            let near =
+                if near.is_empty() { String::new() } else { format!("; there are: {}", near.join(", ")) };
+            Failure::usage(format!("--columns: there is no column {name:?}{near}. --format csv has all"))
         };
         Ok(table.select(&self.columns).map_err(unknown)?.csv())
     }
