@@ -6,7 +6,7 @@ use grainlab_console::{Failure, count, print, write_whole};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::{Imported, each};
 use grainlab_report::write_page;
-use grainlab_viewer::{Film, Picture, Quantity, Size, View, page};
+use grainlab_viewer::{Film, Ground, Picture, Quantity, Size, View, page};
 use std::ffi::OsStr;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -58,6 +58,9 @@ pub(crate) struct Args {
     /// carries force [default: coordination]
     #[arg(long, value_name = "QUANTITY", value_parser = Quantity::ALL.map(Quantity::name), requires = "png")]
     color: Option<String>,
+    /// Light letters on a dark ground in the PNG
+    #[arg(long, requires = "png")]
+    dark: bool,
     #[command(flatten)]
     import: import::Args,
 }
@@ -169,7 +172,8 @@ fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
     })?;
     let named = |quantity: &Quantity| args.color.as_deref() == Some(quantity.name());
     let colour = Quantity::ALL.into_iter().find(named).unwrap_or_default();
-    let bytes = Picture::with_legend(&view, colour, size).png().map_err(Failure::failed)?;
+    let ground = if args.dark { Ground::Dark } else { Ground::Light };
+    let bytes = Picture::new(&view, colour, size, ground).png().map_err(Failure::failed)?;
     write_whole(png, bytes).map_err(Failure::at(png))?;
     print(&format!("{}\n", png.display()))?;
     Ok(exit)

@@ -2,7 +2,7 @@
 
 use crate::encode;
 use crate::palette::Quantity;
-use crate::picture::{Picture, PictureError, Size};
+use crate::picture::{Ground, Picture, PictureError, Size};
 use crate::view::View;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -29,7 +29,7 @@ const POSTER: Size = Size { width: 720, height: 540 };
 /// If the picture cannot be written.
 pub fn figure(name: &str, views: &[&View]) -> Result<Html, PictureError> {
     let Some(last) = views.last() else { return Ok(Html::default()) };
-    let poster = STANDARD.encode(Picture::plain(last, Quantity::Coordination, POSTER).png()?);
+    let poster = STANDARD.encode(Picture::new(last, Quantity::Coordination, POSTER, Ground::Clear).png()?);
     let part = last.part.as_ref().map_or_else(String::new, |part| format!("; {part}"));
     let alt = format!(
         "{} grains in their periodic cell, coloured by the number of their contacts: {}{part}",
