@@ -20,6 +20,9 @@ Examples:
   grainlab view --live --open                            the run on the bus, and the next one when it ends
   grainlab view --live --port 0 --ros-args -r __ns:=/left
 
+The PNG is in parallel projection, with a scale bar and the directions of x, y and z. The cell is periodic: each grain is drawn
+once, whole, where its centre is, and its contacts through the faces are counted.
+
 The page of --live is served on 127.0.0.1 until Ctrl-C. Without ROS_DOMAIN_ID it finds the run that was launched on this host.
 It belongs to no run, and no process waits for it.";
 

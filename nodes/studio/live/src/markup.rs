@@ -12,6 +12,25 @@ use serde_json::json;
 
 const KPA: f64 = 1e-3;
 
+/// Three digits of a number, without those that say nothing: a power of ten only below 1/10,000.
+fn three_digits(value: f64) -> String {
+    let size = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    if size >= -4 {
+        let text = format!("{value:.*}", usize::try_from(2 - size).unwrap_or(0));
+        return if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        };
+    }
+    let raised = |c: char| match c {
+        '-' => '⁻',
+        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
+    };
+    let power: String = size.to_string().chars().map(raised).collect();
+    format!("{:.1}·10{power}", value / 10f64.powi(size))
+}
+
 /// A large number in thousands or millions.
 fn large(value: f64) -> Html {
     match value {
@@ -38,10 +57,10 @@ impl Laboratory {
         let ratio = request
             .map(|r| (r.input.stress.mean(), r.input.stress.deviatoric_invariant()))
             .filter(|(p, _)| *p > 0.0);
-        let ratio = ratio.map_or_else(String::new, |(p, q)| format!("q/p {:.2e}", q / p));
+        let ratio = ratio.map_or_else(String::new, |(p, q)| format!("q/p {}", three_digits(q / p)));
         let target = request.and_then(target_pressure);
         let target = target.map_or_else(String::new, |t| format!("target {:.2} kPa · ", t * KPA));
-        let unbalanced = request.map_or_else(|| "–".to_owned(), |r| format!("{:.1e}", r.unbalanced));
+        let unbalanced = request.map_or_else(|| "–".to_owned(), |r| three_digits(r.unbalanced));
         let steps = self.steps.per_second().filter(|_| self.end.is_none());
         let grain_steps = steps.zip(self.grains).map(|(s, n)| s * f64::from(n));
         let rate =
@@ -77,13 +96,17 @@ impl Laboratory {
     pub(crate) fn targets(&self) -> Html {
         let Some(r) = &self.latest else { return paragraph("No stress has been published yet.") };
         let (stress, strain) = (r.input.stress.voigt(), r.strain.voigt());
+        let is_zero = |n: usize| stress[n].abs() < 0.5 && strain[n].abs() < 5e-7 && r.input.rate[n] == 0.0;
+        if (0..6).all(is_zero) {
+            return paragraph("The cell is at rest, and no grains press on one another yet.");
+        }
         let row = |n: usize| {
             let (imposed, off) = match r.input.controls[n] {
                 ComponentControl::Held => ("held".to_owned(), String::new()),
                 ComponentControl::Stress(t) => {
                     (format!("{:.3} kPa", t * KPA), signed((stress[n] - t) * KPA, 3))
                 }
-                ComponentControl::StrainRate(rate) => (format!("{rate} 1/s"), String::new()),
+                ComponentControl::StrainRate(rate) => (format!("{} 1/s", three_digits(rate)), String::new()),
             };
             [
                 Cell::text(SymTensor::COMPONENTS[n]),
@@ -91,7 +114,7 @@ impl Laboratory {
                 Cell::number(imposed),
                 Cell::number(off),
                 Cell::signed(strain[n] * 100.0, 4),
-                Cell::number(format!("{:+.3e}", r.input.rate[n])),
+                Cell::number(three_digits(r.input.rate[n])),
             ]
         };
         let header = ["", "stress, kPa", "imposed", "off target, kPa", "strain, %", "strain rate, 1/s"];

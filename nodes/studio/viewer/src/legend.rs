@@ -21,9 +21,7 @@ impl Legend {
                 "mean normal force of the contacts of a grain",
                 newtons(view.force_of_full_colour()),
             ),
-            Quantity::Rattlers => {
-                Self::Swatches("", vec![(CARRIER, "carries force".to_owned()), rattler])
-            }
+            Quantity::Rattlers => Self::Swatches("", vec![(CARRIER, "carries force".to_owned()), rattler]),
             Quantity::Coordination => {
                 let most = view.coordination.iter().copied().max().unwrap_or(0) as usize;
                 let (table, last) = (by_coordination(), most.min(MOST_CONTACTS));

@@ -30,7 +30,9 @@ impl Lettering {
     pub(crate) fn write(self, text: &str, [left, top]: [usize; 2], mut ink: impl FnMut([usize; 2], f64)) {
         let wide = self.width_of("x");
         for (n, letter) in text.chars().enumerate() {
-            let Some(raster) = get_raster(letter, FontWeight::Regular, RasterHeight::Size32) else { continue };
+            let Some(raster) = get_raster(letter, FontWeight::Regular, RasterHeight::Size32) else {
+                continue;
+            };
             for (x, y) in (0..self.height).flat_map(|y| (0..wide).map(move |x| (x, y))) {
                 let mean = mean(raster.raster(), [x, y], 32.0 / self.height as f64);
                 if mean > 0.0 {

@@ -75,7 +75,10 @@ impl Light {
         let glint = (dot(n, half) / dot(half, half).sqrt()).max(0.0);
         let rim = 0.8 + 0.2 * (n[2] / 0.5).min(1.0);
         let glint = (0..5).fold(glint, |g, _| g * g);
-        [rim * (0.18 + 0.56 * open + 0.4 * key * (0.45 + 0.55 * lit) * (0.4 + 0.6 * open)), 22.0 * glint * lit]
+        [
+            rim * (0.18 + 0.56 * open + 0.4 * key * (0.45 + 0.55 * lit) * (0.4 + 0.6 * open)),
+            22.0 * glint * lit,
+        ]
     }
 }
 

@@ -12,11 +12,12 @@ use grainlab_page::{Html, Page, data, heading, html};
 pub const STYLE: &str = include_str!("../assets/viewer.css");
 
 /// Scripts of the figure, in order: three.js and ours.
-pub static SCRIPTS: [&str; 5] = [
+pub static SCRIPTS: [&str; 6] = [
     include_str!("../assets/three.min.js"),
     include_str!("../assets/viewer_data.js"),
     include_str!("../assets/viewer_scene.js"),
     include_str!("../assets/viewer_visible.js"),
+    include_str!("../assets/viewer_marks.js"),
     include_str!("../assets/viewer.js"),
 ];
 

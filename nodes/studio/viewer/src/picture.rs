@@ -97,7 +97,12 @@ impl Picture {
         }
         let margin = 3 * line / 4;
         let below = size.height.saturating_sub(margin + legend.rows() * line);
-        let room = [margin, margin + above.len() * line + line / 4, size.width - margin, below - line.min(below) / 4];
+        let room = [
+            margin,
+            margin + above.len() * line + line / 4,
+            size.width - margin,
+            below - line.min(below) / 4,
+        ];
         let scene = scene(view, quantity, size.width, room.map(|v| v as f64));
         let mut picture = Self { size, ground, letters, pixels: scene.draw(size.height) };
         if let Some(paper) = ground.paper() {

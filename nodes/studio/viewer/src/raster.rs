@@ -66,10 +66,8 @@ impl Scene {
         let [right, up, toward] = frame();
         let turned = |x: &Vec3| [x.dot(&right), -x.dot(&up), x.dot(&toward)];
         let ends = |k: usize| {
-            let of_spheres = spheres
-                .iter()
-                .map(|s| (turned(&s.centre)[k], s.radius))
-                .flat_map(|(x, r)| [x - r, x + r]);
+            let of_spheres =
+                spheres.iter().map(|s| (turned(&s.centre)[k], s.radius)).flat_map(|(x, r)| [x - r, x + r]);
             let all = of_spheres.chain(corners.iter().map(|c| turned(c)[k]));
             all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
         };
@@ -83,11 +81,7 @@ impl Scene {
             let at = |k: usize| 0.5 * (area[k] + area[k + 2]) + (p[k] - middle[k]) * scale;
             [at(0), at(1), p[2] * scale]
         };
-        let ball = |s: &Sphere| Ball {
-            centre: place(&s.centre),
-            radius: s.radius * scale,
-            colour: s.colour,
-        };
+        let ball = |s: &Sphere| Ball { centre: place(&s.centre), radius: s.radius * scale, colour: s.colour };
         let mut balls: Vec<Ball> = spheres.iter().map(ball).collect();
         balls.sort_by(|a, b| (b.centre[2] + b.radius).total_cmp(&(a.centre[2] + a.radius)));
         let corners = corners.map(|c| place(&c));
