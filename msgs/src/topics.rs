@@ -36,7 +36,7 @@ impl Topic {
 
     /// True if recorders write it: parts of messages and copies of messages are left out.
     pub fn is_recorded(&self) -> bool {
-        !self.is_transport() && self.name != STRESS_SAMPLED.name
+        !self.is_transport() && ![STRESS_SAMPLED.name, PACKING_SAMPLED.name].contains(&self.name)
     }
 
     /// True if it carries only parts of another topic's messages: it is never recorded, but the whole
@@ -66,6 +66,10 @@ pub const STRAIN_RATE: Topic = exact::<msg::StrainRate>("strain_rate", Qos::STRE
 
 /// The complete mechanical state: grains, contacts, loading path.
 pub const PACKING: Topic = exact::<msg::Packing>("packing", Qos::LATCHED, "dem_simulator");
+
+/// The state now and then, for viewers, while somebody reads it: which states follows from clocks. They are never recorded.
+pub const PACKING_SAMPLED: Topic =
+    row::<msg::Packing>("packing_sampled", Qos { depth: 1, ..Qos::SAMPLED }, "dem_simulator");
 
 /// Parts of packings that are too large for one sample of [`PACKING`]. Recorders write the whole packing.
 pub const PACKING_CHUNK: Topic = row::<msg::PackingChunk>("packing_chunk", Qos::PARTS, "dem_simulator");
@@ -127,6 +131,7 @@ pub const TOPICS: &[Topic] = &[
     STRESS_SAMPLED,
     STRAIN_RATE,
     PACKING,
+    PACKING_SAMPLED,
     PACKING_CHUNK,
     PACKING_CREDIT,
     PACKING_REPORT,

@@ -5,15 +5,17 @@ use crate::drawn::Drawn;
 /// Red, green and blue, 0 to 255.
 pub type Colour = [u8; 3];
 
-/// From little to much: the lighter part of the map `batlow` (Crameri), equal steps of which look equal.
-pub const RAMP: [Colour; 7] = [
-    [26, 62, 94],
-    [40, 96, 101],
-    [84, 120, 79],
-    [143, 136, 56],
-    [214, 148, 84],
-    [247, 173, 146],
-    [252, 205, 222],
+/// From little to much, from dark to light: as many colours as there are numbers of contacts. Neighbours differ by 9 or more
+/// (CIEDE2000) with and without colour blindness, all of them from [`RATTLER`] by 14.
+pub const RAMP: [Colour; 8] = [
+    [40, 44, 120],
+    [48, 95, 162],
+    [4, 136, 126],
+    [120, 151, 69],
+    [168, 169, 20],
+    [253, 165, 108],
+    [252, 196, 177],
+    [249, 238, 226],
 ];
 
 /// Contacts of a grain with a colour of their own; grains with more have that of the last.

@@ -73,6 +73,9 @@ fn another_dds_lists_the_nodes_and_reads_every_topic_field_by_field() {
     }
     for topic in topics::TOPICS {
         let name = topic.absolute_name();
+        if *topic == topics::PACKING_SAMPLED {
+            continue;
+        }
         let Some(messages) = heard["topics"][&name].as_array() else { continue };
         // A sample is one of the requests.
         let from = if *topic == topics::STRESS_SAMPLED { topics::STRESS } else { *topic };

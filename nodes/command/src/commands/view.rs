@@ -6,7 +6,7 @@ use grainlab_console::{Failure, count, print, write_whole};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::{Imported, each};
 use grainlab_report::write_page;
-use grainlab_viewer::{Film, Picture, Quantity, Size, View, page};
+use grainlab_viewer::{Film, Ground, Picture, Quantity, Size, View, page};
 use std::ffi::OsStr;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -19,6 +19,9 @@ Examples:
   grainlab view recordings/runs/s2-1-1 --png s2.png --color force --size 1600x1200
   grainlab view --live --open                            the run on the bus, and the next one when it ends
   grainlab view --live --port 0 --ros-args -r __ns:=/left
+
+The PNG is in parallel projection, with a scale bar and the directions of x, y and z. The cell is periodic: each grain is drawn
+once, whole, where its centre is, and its contacts through the faces are counted.
 
 The page of --live is served on 127.0.0.1 until Ctrl-C. Without ROS_DOMAIN_ID it finds the run that was launched on this host.
 It belongs to no run, and no process waits for it.";
@@ -58,6 +61,9 @@ pub(crate) struct Args {
     /// carries force [default: coordination]
     #[arg(long, value_name = "QUANTITY", value_parser = Quantity::ALL.map(Quantity::name), requires = "png")]
     color: Option<String>,
+    /// Light letters on a dark ground in the PNG
+    #[arg(long, requires = "png")]
+    dark: bool,
     #[command(flatten)]
     import: import::Args,
 }
@@ -169,7 +175,8 @@ fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
     })?;
     let named = |quantity: &Quantity| args.color.as_deref() == Some(quantity.name());
     let colour = Quantity::ALL.into_iter().find(named).unwrap_or_default();
-    let bytes = Picture::with_legend(&view, colour, size).png().map_err(Failure::failed)?;
+    let ground = if args.dark { Ground::Dark } else { Ground::Light };
+    let bytes = Picture::new(&view, colour, size, ground).png().map_err(Failure::failed)?;
     write_whole(png, bytes).map_err(Failure::at(png))?;
     print(&format!("{}\n", png.display()))?;
     Ok(exit)

@@ -105,6 +105,9 @@ pub trait Bus {
     /// A crashed peer counts until its lease ends, up to a minute: see [`crate::PeerWatch`].
     fn readers(&self, publisher: PublisherId) -> usize;
 
+    /// True if anybody reads this publisher, also a stranger, as known at the last [`Bus::wait`].
+    fn is_read(&self, publisher: PublisherId) -> bool;
+
     /// Writers matched with this subscription, of those that [`Bus::identity`] counts, as known at the last
     /// [`Bus::wait`].
     fn writers(&self, subscription: SubscriptionId) -> usize;

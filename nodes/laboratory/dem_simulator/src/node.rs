@@ -262,6 +262,7 @@ impl Node for DemSimulator {
             return self.fail(bus, &reason);
         }
         self.publish_progress(now);
+        self.samples.offer_state(bus, &self.run)?;
         if !self.send_queue.deliver(bus)? {
             return Ok(Next::Wait(HOLD));
         }

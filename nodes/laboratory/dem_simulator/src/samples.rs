@@ -1,15 +1,25 @@
-//! Some of the requests for viewers, and simulated time with them.
+//! Some of the requests and states for viewers, and simulated time with them.
 
+use grainlab_experiment::Simulation;
+use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::rosgraph_msgs::Clock;
-use grainlab_msgs::{msg, stamp, topics};
-use grainlab_node_kit::{Bus, BusError, Publisher, tolerate_full};
+use grainlab_msgs::{msg, stamp, to_cdr, topics};
+use grainlab_node_kit::{BULK_LIMIT, Bus, BusError, Publisher, tolerate_full};
 use grainlab_servo::ServoRequest;
+use std::time::Duration;
 
 /// Most exchanges between two samples.
 const EXCHANGES: u64 = 64;
 
 /// Particle-steps after which a sample is due earlier: some 30 ms of computation, whatever the number of grains.
 const PARTICLE_STEPS: u64 = 1_000_000;
+
+/// Least time between two states, and between two looks for their readers.
+const PERIOD: Duration = Duration::from_secs(2);
+const LOOK: Duration = Duration::from_millis(250);
+
+/// Least time between two states, in times that one takes: half a percent of a run.
+const PAUSE: u32 = 200;
 
 /// Publishes some of the requests on [`topics::STRESS_SAMPLED`], and their times on `/clock`. Which ones follows from the run
 /// alone, not from clocks.
@@ -18,12 +28,17 @@ pub(crate) struct Samples {
     publisher: Publisher<msg::Stress>,
     pub(crate) clock: Publisher<Clock>,
     due: Due,
+    packing: Publisher<msg::Packing>,
+    /// Time of the next look for readers of states.
+    next_look: Duration,
 }
 
 impl Samples {
     pub(crate) fn advertise(bus: &mut dyn Bus) -> Result<Self, BusError> {
         let publisher = Publisher::advertise(bus, &topics::STRESS_SAMPLED)?;
-        Ok(Self { publisher, clock: Publisher::advertise(bus, &topics::CLOCK)?, due: Due::default() })
+        let clock = Publisher::advertise(bus, &topics::CLOCK)?;
+        let packing = Publisher::advertise(bus, &topics::PACKING_SAMPLED)?;
+        Ok(Self { publisher, clock, due: Due::default(), packing, next_look: Duration::ZERO })
     }
 
     /// Publishes a request, if a sample is due. A viewer that is behind loses it.
@@ -39,6 +54,28 @@ impl Samples {
         }
         tolerate_full(bus.publish(self.publisher.id(), body))?;
         self.tell_time(bus, request.time)
+    }
+
+    /// Publishes the state, if it is due and somebody reads it; a large one, and that of another program, is left out.
+    /// It is read alone: no result of the run depends on it.
+    pub(crate) fn offer_state(&mut self, bus: &mut dyn Bus, run: &Simulation) -> Result<(), BusError> {
+        let began = bus.now();
+        if began < self.next_look {
+            return Ok(());
+        }
+        self.next_look = began + LOOK;
+        if !bus.is_read(self.packing.id()) || run.engine().program().is_some() {
+            return Ok(());
+        }
+        if let Ok(packing) = run.packing() {
+            let body = to_cdr(&packing_message(&packing, &run.scene().name, Vec::new()));
+            if body.len() <= BULK_LIMIT {
+                tolerate_full(bus.publish(self.packing.id(), &body))?;
+            }
+        }
+        let end = bus.now();
+        self.next_look = end + PERIOD.max(PAUSE * end.saturating_sub(began));
+        Ok(())
     }
 
     /// Publishes a simulated time, s.

@@ -84,7 +84,7 @@ impl<R: Printed> Printer<R> {
         if self.columns.is_empty() {
             return Ok(table.csv());
         }
-        let unknown = |name| {
+        let unknown = |name: String| {
             // Of hundreds of columns, those that begin alike.
             let stem = name.split('_').next().unwrap_or_default();
             let near: Vec<&str> =

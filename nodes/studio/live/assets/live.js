@@ -2,7 +2,11 @@
 "use strict";
 (() => {
   const by = (id) => document.getElementById(id), viewer = document.querySelector("[data-viewer]"), lost = by("lost");
+  // A page that pauses keeps what arrives, and shows it when it goes on.
+  const pause = by("pause");
+  let held = null;
   const take = (parts) => {
+    if (held) return Object.assign(held, parts);
     for (const [id, markup] of Object.entries(parts)) {
       if (id === "stage") document.body.dataset.stage = markup;
       else by(id).innerHTML = markup;
@@ -14,7 +18,7 @@
   // One request at a time; what was published meanwhile is fetched after it.
   let wanted = 0, shown = 0, busy = false;
   const fetchPackings = async () => {
-    if (busy || wanted === shown) return;
+    if (busy || held || wanted === shown) return;
     busy = true;
     const version = wanted;
     try {
@@ -29,6 +33,14 @@
     }
     fetchPackings();
   };
+  pause.addEventListener("click", () => {
+    const kept = held;
+    held = held ? null : {};
+    pause.setAttribute("aria-pressed", held !== null);
+    pause.textContent = held ? "Go on" : "Pause";
+    by("paused").textContent = held ? `Paused at ${new Date().toLocaleTimeString()}. The run goes on, and its data are kept.` : "";
+    if (kept) { take(kept); fetchPackings(); }
+  });
   const connect = () => {
     const source = new EventSource("events");
     source.addEventListener("open", () => { lost.hidden = true; });

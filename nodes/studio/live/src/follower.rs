@@ -35,6 +35,7 @@ pub(crate) struct Follower {
     stress: Subscription<Stress>,
     run_state: Subscription<RunState>,
     packings: BulkSubscription,
+    states: Subscription<Packing>,
     packing_reports: Subscription<PackingReport>,
     microstructure: Subscription<Microstructure>,
     watch: PeerWatch,
@@ -63,6 +64,7 @@ impl Follower {
             // Repeated once a second.
             run_state: Subscription::subscribe(&mut bus, &topics::RUN_STATE, Demand::best_effort(16))?,
             packings: BulkSubscription::subscribe(&mut bus, &topics::PACKING, Demand::reliable(PACKINGS))?,
+            states: Subscription::subscribe(&mut bus, &topics::PACKING_SAMPLED, Demand::best_effort(1))?,
             packing_reports: latched(&mut bus, &topics::PACKING_REPORT)?,
             microstructure: latched(&mut bus, &topics::MICROSTRUCTURE)?,
             watch: PeerWatch::subscribe(&mut bus)?,
@@ -117,6 +119,11 @@ impl Follower {
                     Ok(message) => known.packing(&message),
                     Err(_) => known.refused += 1,
                 }
+            }
+        }
+        while let Some((message, info)) = self.states.take_valid(&mut self.bus)? {
+            if let Some(known) = self.of_simulator(laboratory, &info, now) {
+                known.state_of_grains(&message);
             }
         }
         let of_run = |known: &mut Option<Laboratory>, info: &SampleInfo| {

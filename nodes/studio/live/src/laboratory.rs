@@ -5,13 +5,15 @@ use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
 use grainlab_msgs::{msg, simulated_seconds};
 use grainlab_node_kit::{Exit, Report, RunId};
-use grainlab_report::Timeline;
+use grainlab_report::{Timeline, view};
 use grainlab_results::{Inference, Measurement, Origin};
 use grainlab_servo::ServoRequest;
+use grainlab_viewer::View;
 use std::time::Duration;
 
-/// Phases of a run of which nothing is known yet: they share the bins of the curves.
-const PHASES: usize = 6;
+/// Phases of a run of which nothing is known yet: they share the bins of the curves. A phase has twice the bins of a report, to
+/// zoom in.
+const PHASES: usize = 3;
 
 /// Time over which the rate of the simulation is a mean, s.
 const RATE_WINDOW: u64 = 3;
@@ -67,6 +69,8 @@ pub struct Laboratory {
     pub(crate) began: Duration,
     /// When the simulator was heard last.
     pub(crate) heard: Duration,
+    /// The grains between two packings, with their step.
+    sampled: Option<(u64, View)>,
     /// Number of packings taken for pictures.
     pub(crate) pictured: u64,
     /// Messages that do not satisfy the contract.
@@ -112,6 +116,27 @@ impl Laboratory {
         if self.timeline.packing(packing) {
             self.pictured += 1;
         }
+    }
+
+    /// Takes the grains between two packings: in the pictures until there is a later state.
+    pub fn state_of_grains(&mut self, message: &msg::Packing) {
+        let Ok(packing) = Packing::try_from(message) else { return self.refused += 1 };
+        self.scene.clone_from(&message.scene);
+        let mut view = view(&packing);
+        view.label += ", now";
+        self.sampled = Some((packing.step, view));
+        self.pictured += 1;
+    }
+
+    /// The states for pictures: the packings, and the grains of now if they are later and as many.
+    pub(crate) fn views(&self) -> Vec<&View> {
+        let mut views = self.timeline.film().states();
+        let last = self.timeline.last().map(|p| (p.step, p.grains()));
+        let sampled = self.sampled.as_ref().filter(|(step, view)| {
+            self.end.is_none() && last.is_none_or(|(s, n)| s < *step && n == view.grains())
+        });
+        views.extend(sampled.map(|(_, view)| view));
+        views
     }
 
     /// Takes the report of a packing.

@@ -158,7 +158,7 @@ impl Show {
         if self.drawn.pictured != known.pictured {
             self.drawn.pictured = known.pictured;
             self.drawn.version += 1;
-            let views = known.timeline.film().states();
+            let views = known.views();
             parts.pictures = (!views.is_empty()).then(|| Pictures {
                 version: self.drawn.version,
                 json: grainlab_viewer::states(&known.scene, &views).into(),

@@ -4,13 +4,34 @@ use crate::laboratory::Laboratory;
 use grainlab_console::count;
 use grainlab_core::results::InferredQuantity;
 use grainlab_core::{ComponentControl, SymTensor};
-use grainlab_page::{Cell, Html, card, fixed, grid, paragraph, plus_minus, signed, table, with_unit};
+use grainlab_page::{Cell, Html, card, finding, fixed, grid, paragraph, signed, table, with_unit};
+use grainlab_results::MeasuredPacking;
 use grainlab_results::brief::moduli;
-use grainlab_results::{Inference, by_origin};
+use grainlab_results::findings::{Findings, Judged, recommended};
+use grainlab_results::read_back::InvertedPacking;
 use grainlab_servo::ServoRequest;
 use serde_json::json;
 
 const KPA: f64 = 1e-3;
+
+/// Three digits of a number, without those that say nothing: a power of ten only below 1/10,000.
+fn three_digits(value: f64) -> String {
+    let size = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    if size >= -4 {
+        let text = format!("{value:.*}", usize::try_from(2 - size).unwrap_or(0));
+        return if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        };
+    }
+    let raised = |c: char| match c {
+        '-' => '⁻',
+        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
+    };
+    let power: String = size.to_string().chars().map(raised).collect();
+    format!("{:.1}·10{power}", value / 10f64.powi(size))
+}
 
 /// A large number in thousands or millions.
 fn large(value: f64) -> Html {
@@ -38,10 +59,10 @@ impl Laboratory {
         let ratio = request
             .map(|r| (r.input.stress.mean(), r.input.stress.deviatoric_invariant()))
             .filter(|(p, _)| *p > 0.0);
-        let ratio = ratio.map_or_else(String::new, |(p, q)| format!("q/p {:.2e}", q / p));
+        let ratio = ratio.map_or_else(String::new, |(p, q)| format!("q/p {}", three_digits(q / p)));
         let target = request.and_then(target_pressure);
         let target = target.map_or_else(String::new, |t| format!("target {:.2} kPa · ", t * KPA));
-        let unbalanced = request.map_or_else(|| "–".to_owned(), |r| format!("{:.1e}", r.unbalanced));
+        let unbalanced = request.map_or_else(|| "–".to_owned(), |r| three_digits(r.unbalanced));
         let steps = self.steps.per_second().filter(|_| self.end.is_none());
         let grain_steps = steps.zip(self.grains).map(|(s, n)| s * f64::from(n));
         let rate =
@@ -77,13 +98,17 @@ impl Laboratory {
     pub(crate) fn targets(&self) -> Html {
         let Some(r) = &self.latest else { return paragraph("No stress has been published yet.") };
         let (stress, strain) = (r.input.stress.voigt(), r.strain.voigt());
+        let is_zero = |n: usize| stress[n].abs() < 0.5 && strain[n].abs() < 5e-7 && r.input.rate[n] == 0.0;
+        if (0..6).all(is_zero) {
+            return paragraph("The cell is at rest, and no grains press on one another yet.");
+        }
         let row = |n: usize| {
             let (imposed, off) = match r.input.controls[n] {
                 ComponentControl::Held => ("held".to_owned(), String::new()),
                 ComponentControl::Stress(t) => {
                     (format!("{:.3} kPa", t * KPA), signed((stress[n] - t) * KPA, 3))
                 }
-                ComponentControl::StrainRate(rate) => (format!("{rate} 1/s"), String::new()),
+                ComponentControl::StrainRate(rate) => (format!("{} 1/s", three_digits(rate)), String::new()),
             };
             [
                 Cell::text(SymTensor::COMPONENTS[n]),
@@ -91,7 +116,7 @@ impl Laboratory {
                 Cell::number(imposed),
                 Cell::number(off),
                 Cell::signed(strain[n] * 100.0, 4),
-                Cell::number(format!("{:+.3e}", r.input.rate[n])),
+                Cell::number(three_digits(r.input.rate[n])),
             ]
         };
         let header = ["", "stress, kPa", "imposed", "off target, kPa", "strain, %", "strain rate, 1/s"];
@@ -104,30 +129,32 @@ impl Laboratory {
             return paragraph("No packing has been measured yet: at the states set in the scene.");
         };
         let (step, (inferred_step, results)) = (report.step, &self.inferred);
-        let best = by_origin(results)
-            .iter()
-            .find_map(|(_, results)| Inference::recommended(results))
-            .filter(|_| *inferred_step == step);
+        let results = if *inferred_step == step { results.clone() } else { Vec::new() };
+        let packing = MeasuredPacking::new(String::new(), report.clone());
+        let state = InvertedPacking { packing, acoustic: None, further_acoustic: Vec::new(), results };
+        let best = recommended(&state);
+        let judged = best.map_or_else(Vec::new, |best| Judged::of(best, report));
         let rows = InferredQuantity::countable().map(|q| {
-            let (counted, digits) = (report.counted(q), q.digits());
-            let value = best.and_then(|b| b.values[q]);
-            let error = value.zip(counted).map(|(v, c)| signed(v - c, digits));
+            let found = judged.iter().find(|j| j.quantity == q);
+            let text = |of: fn(&Judged) -> String| Cell::number(found.map(of).unwrap_or_default());
+            let counted = Cell::fixed(report.counted(q), q.digits());
             [
                 Cell::text(q.symbol()),
                 Cell::text(q.meaning()),
-                Cell::fixed(counted, digits),
-                Cell::fixed(value, digits),
-                Cell::number(plus_minus(best.and_then(|b| b.sigma[q]), digits)),
-                Cell::number(error.unwrap_or_default()),
+                counted,
+                text(Judged::value),
+                text(Judged::distance),
             ]
         });
+        let Findings { done, found, doubts } = Findings::of(std::slice::from_ref(&state));
+        let found = if best.is_some() { finding(&done, &found, &doubts) } else { Html::default() };
         let which = best.filter(|b| b.origin.measurement.is_some()).and_then(|b| b.origin.data());
         let which = which.map_or_else(String::new, |data| format!(" from {data}"));
         let by = best.map_or_else(String::new, |b| format!(", by model {}{which}", b.model));
         let caption = format!("Packing of step {step}{by}");
-        let inferred = table(caption, ["", "", "counted", "inferred", "", "error"], rows);
+        let inferred = table(caption, ["", "", "counted", "inferred", "less counted"], rows);
         if report.stiffness().is_none() {
-            return grid(inferred);
+            return found + grid(inferred);
         }
         let names =
             [("G12", "shear across the axis"), ("G13", "shear along the axis"), ("Θ", "bulk modulus")];
@@ -135,7 +162,7 @@ impl Laboratory {
             .into_iter()
             .zip(moduli(report))
             .map(|((name, meaning), value)| [Cell::text(name), Cell::text(meaning), Cell::fixed(value, 2)]);
-        grid(inferred + table("Moduli", ["", "", "MPa"], rows))
+        found + grid(inferred + table("Moduli", ["", "", "MPa"], rows))
     }
 
     /// The latest request for programs: SI units, Voigt order xx, yy, zz, yz, xz, xy; null where no stress is imposed.

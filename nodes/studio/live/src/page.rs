@@ -4,11 +4,12 @@ use grainlab_page::{Html, Page, Section, html};
 
 /// The page, which loads nothing but the events and packings of its own server.
 pub fn page() -> String {
-    let about = "Samples of the exchanges, each line with the extremes in bins about a pixel wide. The recording has every exchange.";
+    let about =
+        "Samples of the exchanges, each line with the extremes in bins. The recording has every exchange.";
     let curves = grainlab_report::curves(about, Html::default(), Html::default());
-    let packing = html!("<p id=\"no-packing\">No packing has been published yet.</p>\n");
+    let packing = html!("<p id=\"no-packing\">No packing has been received yet.</p>\n");
     let contents = [
-        ("time", "Against time", html!("<div id=\"targets\"></div>\n") + curves),
+        ("time", "Against time", curves + html!("<div id=\"targets\"></div>\n")),
         ("packing", "The packing", packing + grainlab_viewer::empty_figure()),
         ("measured", "Moduli and microstructure", html!("<div id=\"structure\"></div>\n")),
         ("processes", "Processes", html!("<div id=\"nodes\"></div>\n")),

@@ -89,7 +89,9 @@ impl Laboratory {
     pub(crate) fn no_packing(&self) -> String {
         let published = self.state.as_ref().map_or(0, |s| s.packings);
         match published {
-            0 => "No packing has been published yet.".to_owned(),
+            0 => "No packing has been received yet. States of the grains come every two seconds, up to 2 MB (some 6,000 grains \
+                  in contact) and not from LAMMPS; larger ones are shown when the scene asks for a packing."
+                .to_owned(),
             n => format!(
                 "{} published, none received by this page. A packing over 2 MB (some 6,000 grains) is sent in parts, which a run \
                  does not repeat for a page that joins later: the next one is shown. All are in the recording.",
@@ -189,6 +191,6 @@ mod tests {
     fn a_page_without_packings_says_why() {
         let lab = reported("extension", &[]);
         assert!(lab.no_packing().starts_with("1 packing published, none received"));
-        assert!(Laboratory::new(None, Duration::ZERO).no_packing().contains("No packing has been"));
+        assert!(Laboratory::new(None, Duration::ZERO).no_packing().contains("No packing has been received"));
     }
 }

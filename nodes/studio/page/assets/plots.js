@@ -101,6 +101,11 @@
     const all = key(svg) ? document.querySelectorAll(`#curves [data-axis=${key(svg)}] svg[data-frame]`) : [svg];
     all.forEach((one) => show(one, range));
   };
+  // A page that follows a run may have drawn the plot anew.
+  const still = () => {
+    if (!drag.svg.isConnected) drag = under() ? { svg: under(), from: drag.from, ends: drag.ends } : null;
+    return drag;
+  };
   document.addEventListener("pointerdown", (e) => {
     const svg = e.pointerType === "mouse" && e.button === 0 && e.target.closest?.("svg[data-frame]");
     if (svg) drag = { svg, from: place(svg, e.clientX) };
@@ -108,7 +113,7 @@
   document.addEventListener("pointermove", (e) => {
     pointer = [e.clientX, e.clientY];
     showValues();
-    if (!drag) return;
+    if (!drag || !still()) return;
     const [left, top, right, bottom] = frame(drag.svg), x = Math.min(right, Math.max(left, place(drag.svg, e.clientX)));
     drag.mark ??= make("rect", { y: top, height: bottom - top, class: "chosen" }, drag.svg);
     drag.ends = [Math.max(left, Math.min(x, drag.from)), Math.max(x, drag.from)];
@@ -116,7 +121,8 @@
     drag.mark.setAttribute("width", drag.ends[1] - drag.ends[0]);
   });
   document.addEventListener("pointerup", () => {
-    const { svg, mark, ends } = drag ?? {};
+    if (!drag || !still()) return;
+    const { svg, mark, ends } = drag;
     drag = null;
     mark?.remove();
     if (!ends || ends[1] - ends[0] < 6) return;

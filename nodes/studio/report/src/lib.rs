@@ -34,5 +34,5 @@ pub use many::overview;
 pub use page::{SCRIPT, STYLE};
 pub use run::Run;
 pub use series::{InferredSample, series_page};
-pub use timeline::Timeline;
+pub use timeline::{Timeline, view};
 pub use write::{FILE, ReportError, write_page, write_report};

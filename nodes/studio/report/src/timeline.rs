@@ -178,7 +178,7 @@ impl Timeline {
         if self.last.as_ref().is_some_and(|p| p.step >= packing.step) {
             return false;
         }
-        self.film.push(View::new(&packing, label(&packing)));
+        self.film.push(view(&packing));
         self.end = self.end.max(packing.time);
         self.last = Some(packing);
         true
@@ -233,7 +233,8 @@ impl Timeline {
 }
 
 /// A state as readers see it.
-fn label(packing: &Packing) -> String {
+pub fn view(packing: &Packing) -> View {
     let pressure = grainlab_core::stress::stress(packing).tensor.mean() / 1e3;
-    format!("{:.3} ms, p {pressure:.2} kPa, φ {:.4}", packing.time * 1e3, packing.solid_fraction())
+    let phi = packing.solid_fraction();
+    View::new(packing, format!("{:.3} ms, p {pressure:.2} kPa, φ {phi:.4}", packing.time * 1e3))
 }

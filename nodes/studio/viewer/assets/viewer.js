@@ -46,6 +46,7 @@
       uClip: { value: new THREE.Vector4(0, 0, 0, 1) }, uBack: { value: new THREE.Color() }, uFog: { value: { x: 3, y: 5 } },
       uSize: { value: 1 }, uPicked: { value: -1 },
     };
+    const marks = grainlabMarks(stage);
     const reset = () => {
       camera.position.copy(BEGIN);
       controls.target.set(0, 0, 0);
@@ -120,6 +121,7 @@
         grainlabScene.choose(grains, numbers, grainlabVisible(state.spheres, state.n, camera, clip, numbers));
       }
       renderer.render(scene, camera);
+      marks(camera, controls.target, scale);
     };
 
     // Frames are drawn when something changes; while the picture moves slowly, with fewer pixels.

@@ -4,11 +4,15 @@
 //! - [`Film`]: the states of a run, few enough for a page
 //! - [`figure`], [`page`], [`STYLE`], [`SCRIPTS`]: the parts of a page; [`empty_figure`], [`states`]: those of a page that
 //!   receives packings later; `encode`: the states as bytes
-//! - [`Picture`]: one view as pixels and as PNG; `raster`: depth buffer; `lettering`: its few texts
+//! - [`Picture`]: one view as pixels and as PNG, on a [`Ground`]; `raster`: samples and edges; `light`: shades; `legend`,
+//!   `marks`: colours, scale bar and axes; `lettering`: letters
 
 mod encode;
 mod film;
+mod legend;
 mod lettering;
+mod light;
+mod marks;
 mod page;
 mod palette;
 mod picture;
@@ -18,5 +22,5 @@ mod view;
 pub use film::Film;
 pub use page::{SCRIPTS, STYLE, empty_figure, figure, page, states};
 pub use palette::Quantity;
-pub use picture::{Picture, PictureError, Size};
+pub use picture::{Ground, Picture, PictureError, Size};
 pub use view::View;

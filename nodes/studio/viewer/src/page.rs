@@ -2,7 +2,7 @@
 
 use crate::encode;
 use crate::palette::Quantity;
-use crate::picture::{Picture, PictureError, Size};
+use crate::picture::{Ground, Picture, PictureError, Size};
 use crate::view::View;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -12,11 +12,12 @@ use grainlab_page::{Html, Page, data, heading, html};
 pub const STYLE: &str = include_str!("../assets/viewer.css");
 
 /// Scripts of the figure, in order: three.js and ours.
-pub static SCRIPTS: [&str; 5] = [
+pub static SCRIPTS: [&str; 6] = [
     include_str!("../assets/three.min.js"),
     include_str!("../assets/viewer_data.js"),
     include_str!("../assets/viewer_scene.js"),
     include_str!("../assets/viewer_visible.js"),
+    include_str!("../assets/viewer_marks.js"),
     include_str!("../assets/viewer.js"),
 ];
 
@@ -29,7 +30,7 @@ const POSTER: Size = Size { width: 720, height: 540 };
 /// If the picture cannot be written.
 pub fn figure(name: &str, views: &[&View]) -> Result<Html, PictureError> {
     let Some(last) = views.last() else { return Ok(Html::default()) };
-    let poster = STANDARD.encode(Picture::plain(last, Quantity::Coordination, POSTER).png()?);
+    let poster = STANDARD.encode(Picture::new(last, Quantity::Coordination, POSTER, Ground::Clear).png()?);
     let part = last.part.as_ref().map_or_else(String::new, |part| format!("; {part}"));
     let alt = format!(
         "{} grains in their periodic cell, coloured by the number of their contacts: {}{part}",

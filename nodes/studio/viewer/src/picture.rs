@@ -1,20 +1,15 @@
 //! One view of a packing as pixels, without a display.
 
-use crate::lettering::{self, LINE, width_of};
-use crate::palette::{CARRIER, Colour, MOST_CONTACTS, Quantity, RATTLER, by_coordination, colours, ramp};
-use crate::raster::{Sphere, draw};
+use crate::legend::Legend;
+use crate::lettering::Lettering;
+use crate::marks::{scale_bar, triad};
+use crate::palette::{Colour, Quantity, colours};
+use crate::raster::{Scene, Sphere, beside, over, stroke};
 use crate::view::View;
 use grainlab_core::Vec3;
 
-/// Paper and ink of a picture with a legend.
-const PAPER: Colour = [255, 255, 255];
-const INK: Colour = [40, 40, 46];
-
-/// Room around the legend, pixels.
-const MARGIN: usize = 18;
-
-/// Width of the ramp of colours, pixels.
-const BAR: usize = 220;
+/// What a reader must know of a periodic packing.
+const CAPTION: &str = "Periodic cell: each grain is drawn once, whole, where its centre is.";
 
 /// Largest side of a picture, pixels.
 const LARGEST: usize = 8192;
@@ -50,32 +45,76 @@ pub enum PictureError {
     Png(#[from] png::EncodingError),
 }
 
+/// Ground of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ground {
+    /// White, with the name of the state.
+    #[default]
+    Light,
+    /// Nearly black, with the name of the state.
+    Dark,
+    /// None: for a page of either theme, which has the name itself.
+    Clear,
+}
+
+impl Ground {
+    /// Colour of texts and lines.
+    fn ink(self) -> Colour {
+        match self {
+            Self::Light => [40, 40, 46],
+            Self::Dark => [214, 214, 222],
+            Self::Clear => [126, 126, 138],
+        }
+    }
+
+    fn paper(self) -> Option<Colour> {
+        match self {
+            Self::Light => Some([255, 255, 255]),
+            Self::Dark => Some([20, 20, 23]),
+            Self::Clear => None,
+        }
+    }
+}
+
 /// Pixels of a picture.
 #[derive(Clone, Debug)]
 pub struct Picture {
     size: Size,
+    ground: Ground,
+    letters: Lettering,
     /// Red, green, blue and opacity.
     pixels: Vec<u8>,
 }
 
 impl Picture {
-    /// The packing without a legend, on a transparent ground.
-    pub fn plain(view: &View, quantity: Quantity, size: Size) -> Self {
-        Self { size, pixels: packing(view, quantity, size, 0.94) }
-    }
-
-    /// The packing on white, with a legend and the name of the state.
-    pub fn with_legend(view: &View, quantity: Quantity, size: Size) -> Self {
-        let mut picture = Self { size, pixels: packing(view, quantity, size, 0.84) };
-        for pixel in picture.pixels.chunks_exact_mut(4) {
-            let share = f64::from(pixel[3]) / 255.0;
-            let over = |c: usize| f64::from(pixel[c]) * share + f64::from(PAPER[c]) * (1.0 - share);
-            let [r, g, b] = [over(0), over(1), over(2)].map(|v| v.round() as u8);
-            pixel.copy_from_slice(&[r, g, b, 255]);
+    /// The packing in parallel projection, with a legend, a scale bar and the directions of the axes.
+    pub fn new(view: &View, quantity: Quantity, size: Size, ground: Ground) -> Self {
+        let letters = Lettering::of(size.height.min(size.width));
+        let (line, legend) = (letters.line(), Legend::new(view, quantity));
+        let mut above = Vec::new();
+        if ground != Ground::Clear {
+            above.extend([view.label.as_str(), view.part.as_deref().unwrap_or(CAPTION)]);
         }
-        picture.write(&view.label, [MARGIN, MARGIN]);
-        picture.write(view.part.as_deref().unwrap_or_default(), [MARGIN, MARGIN + LINE]);
-        picture.legend(view, quantity);
+        let margin = 3 * line / 4;
+        let below = size.height.saturating_sub(margin + legend.rows() * line);
+        let room = [
+            margin,
+            margin + above.len() * line + line / 4,
+            size.width - margin,
+            below - line.min(below) / 4,
+        ];
+        let scene = scene(view, quantity, size.width, room.map(|v| v as f64));
+        let mut picture = Self { size, ground, letters, pixels: scene.draw(size.height) };
+        if let Some(paper) = ground.paper() {
+            picture.lay_on(paper.map(f64::from));
+        }
+        for (n, text) in above.into_iter().enumerate() {
+            picture.write(text, [margin, margin + n * line]);
+        }
+        legend.draw(&mut picture, [margin, below]);
+        let corner = [size.width - margin, size.height - margin].map(|v| v as f64);
+        scale_bar(&mut picture, scene.scale, corner);
+        triad(&mut picture, [corner[0], corner[1] - 1.8 * line as f64]);
         picture
     }
 
@@ -100,84 +139,68 @@ impl Picture {
         (x < self.size.width).then(|| self.pixels.get(at..at + 4)?.try_into().ok())?
     }
 
-    fn legend(&mut self, view: &View, quantity: Quantity) {
-        let bottom = self.size.height.saturating_sub(MARGIN + LINE);
-        match quantity {
-            Quantity::Force => {
-                self.write(
-                    "mean normal force of the contacts of a grain",
-                    [MARGIN, bottom.saturating_sub(2 * LINE + 4)],
-                );
-                for x in 0..BAR {
-                    self.fill([MARGIN + x, bottom - LINE + 2], [1, 10], ramp(x as f64 / (BAR - 1) as f64));
-                }
-                let full = newtons(view.force_of_full_colour());
-                self.write("0", [MARGIN, bottom]);
-                self.write(&full, [(MARGIN + BAR).saturating_sub(width_of(&full)), bottom]);
-            }
-            Quantity::Rattlers => {
-                self.swatches(bottom, "", &[(CARRIER, "carries force".into()), (RATTLER, "rattler".into())])
-            }
-            Quantity::Coordination => {
-                let most = view.coordination.iter().copied().max().unwrap_or(0) as usize;
-                let table = by_coordination();
-                let name =
-                    |n: usize| if n == MOST_CONTACTS && most > n { format!(">={n}") } else { n.to_string() };
-                let mut entries: Vec<_> =
-                    (2..=most.min(MOST_CONTACTS)).map(|n| (table[n], name(n))).collect();
-                entries.push((RATTLER, "rattler".into()));
-                self.swatches(bottom, "contacts of a grain, without rattlers", &entries);
+    pub(crate) fn letters(&self) -> Lettering {
+        self.letters
+    }
+
+    pub(crate) fn width(&self) -> usize {
+        self.size.width
+    }
+
+    fn lay_on(&mut self, paper: [f64; 3]) {
+        for pixel in self.pixels.chunks_exact_mut(4) {
+            let share = f64::from(pixel[3]) / 255.0;
+            let of = |c: usize| (f64::from(pixel[c]) * share + paper[c] * (1.0 - share)).round() as u8;
+            pixel.copy_from_slice(&[of(0), of(1), of(2), 255]);
+        }
+    }
+
+    /// A share of ink over a pixel, if it is in the picture.
+    fn blend(&mut self, [x, y]: [usize; 2], ink: Colour, share: f64) {
+        if x < self.size.width && y < self.size.height {
+            let pixel = &mut self.pixels[4 * (y * self.size.width + x)..][..4];
+            let before = [pixel[0], pixel[1], pixel[2]].map(f64::from);
+            let (colour, opacity) = over(before, f64::from(pixel[3]) / 255.0, ink.map(f64::from), share);
+            let [r, g, b] = colour.map(|v| v.round() as u8);
+            pixel.copy_from_slice(&[r, g, b, (255.0 * opacity).round() as u8]);
+        }
+    }
+
+    /// A text with its upper left corner.
+    pub(crate) fn write(&mut self, text: &str, at: [usize; 2]) {
+        let ink = self.ground.ink();
+        self.letters.write(text, at, |at, share| self.blend(at, ink, share));
+    }
+
+    /// A line of ink.
+    pub(crate) fn line(&mut self, ends: [[f64; 2]; 2], width: f64) {
+        let range = |k: usize| {
+            let [low, high] = [ends[0][k].min(ends[1][k]), ends[0][k].max(ends[1][k])];
+            (low - width - 1.0).max(0.0) as usize..(high + width + 2.0).max(0.0) as usize
+        };
+        for y in range(1) {
+            for x in range(0) {
+                let (distance, _) = beside([x as f64 + 0.5, y as f64 + 0.5], ends);
+                self.blend([x, y], self.ground.ink(), stroke(distance, width));
             }
         }
     }
 
-    fn swatches(&mut self, bottom: usize, title: &str, entries: &[(Colour, String)]) {
-        self.write(title, [MARGIN, bottom.saturating_sub(LINE + 2)]);
-        let mut left = MARGIN;
-        for (colour, text) in entries {
-            self.fill([left, bottom + 3], [11, 11], *colour);
-            self.write(text, [left + 16, bottom]);
-            left += 16 + width_of(text) + 14;
-        }
-    }
-
-    fn write(&mut self, text: &str, at: [usize; 2]) {
-        lettering::write(text, at, |[x, y], share| {
-            if x < self.size.width && y < self.size.height {
-                let pixel = &mut self.pixels[4 * (y * self.size.width + x)..][..3];
-                for (value, ink) in pixel.iter_mut().zip(INK) {
-                    *value = (f64::from(*value) * (1.0 - share) + f64::from(ink) * share).round() as u8;
-                }
-            }
-        });
-    }
-
-    fn fill(&mut self, [left, top]: [usize; 2], [width, height]: [usize; 2], colour: Colour) {
-        for y in top..(top + height).min(self.size.height) {
-            for x in left..(left + width).min(self.size.width) {
-                self.pixels[4 * (y * self.size.width + x)..][..3].copy_from_slice(&colour);
-            }
+    /// A rectangle from its upper left corner.
+    pub(crate) fn fill(&mut self, [left, top]: [usize; 2], [width, height]: [usize; 2], colour: Colour) {
+        for y in top..top + height {
+            (left..left + width).for_each(|x| self.blend([x, y], colour, 1.0));
         }
     }
 }
 
-/// A force with its unit.
-fn newtons(force: f64) -> String {
-    let units = [(1.0, "N"), (1e-3, "mN"), (1e-6, "uN"), (1e-9, "nN")];
-    let (size, name) = units.into_iter().find(|(size, _)| force >= *size).unwrap_or(units[3]);
-    format!(">={:.3} {name}", force / size)
-}
-
-/// Spheres at their places and the edges of the cell.
-fn packing(view: &View, quantity: Quantity, size: Size, fill: f64) -> Vec<u8> {
+/// Spheres at their places and the cell.
+fn scene(view: &View, quantity: Quantity, width: usize, room: [f64; 4]) -> Scene {
     let cell = view.matrix();
     let colours = colours(view, quantity);
     let sphere =
         |n: usize| Sphere { centre: cell * view.places[n], radius: view.radii[n], colour: colours[n] };
     let spheres: Vec<Sphere> = (0..view.grains()).map(sphere).collect();
     let corner = |n: usize| cell * Vec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2 & 1) as f64);
-    let edges =
-        (0..8).flat_map(|n| [1, 2, 4].into_iter().filter(move |k| n & k == 0).map(move |k| [n, n | k]));
-    let edges: Vec<[Vec3; 2]> = edges.map(|ends| ends.map(corner)).collect();
-    draw(&spheres, &edges, [size.width, size.height], fill)
+    Scene::placed(&spheres, std::array::from_fn(corner), width, room)
 }

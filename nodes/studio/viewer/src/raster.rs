@@ -1,40 +1,29 @@
-//! Spheres and lines in parallel projection, by a depth buffer. The same input gives the same pixels on every machine: only
-//! additions, multiplications, divisions and square roots.
+//! Spheres and lines in parallel projection, with sixteen samples a pixel. The same input gives the same pixels on every
+//! machine: only additions, multiplications, divisions and square roots.
 
+use crate::light::{Light, dot};
 use crate::palette::Colour;
 use grainlab_core::Vec3;
+use rayon::prelude::*;
 
-/// Samples of a pixel along each side.
-const SAMPLES: usize = 2;
+/// Samples of a pixel along each side; each has a row and a column of its own.
+const SIDE: usize = 4;
+const SAMPLES: usize = SIDE * SIDE;
+
+/// Rows of pixels that are drawn at a time: their samples fit into the cache of a processor.
+const ROWS: usize = 8;
 
 /// Towards the viewer, as in the page: from the right, the front and above.
 const VIEWER: [f64; 3] = [2.55, -2.15, 1.45];
 
-/// Towards the light, in the frame of the picture: from the upper left.
-const LIGHT: [f64; 3] = [-0.45, 0.7, 0.75];
-
-/// Numbers of things that are not spheres.
+/// Owner of a sample without a sphere.
 const NOTHING: u32 = u32::MAX;
-const LINE: u32 = u32::MAX - 1;
 
-/// Colour of lines.
-const OUTLINE: Colour = [138, 138, 150];
+/// Colour of lines, seen on a light and on a dark ground.
+const OUTLINE: [f64; 3] = [122.0, 122.0, 134.0];
 
-/// Directions in which the depth of a neighbourhood is sampled, and share of its radius.
-const AROUND: [[f64; 2]; 12] = [
-    [0.25, 0.0],
-    [-0.15, 0.35],
-    [-0.2, -0.3],
-    [0.35, -0.45],
-    [0.45, 0.45],
-    [-0.6, 0.1],
-    [0.0, -0.7],
-    [0.1, 0.75],
-    [0.8, 0.1],
-    [-0.65, -0.6],
-    [-0.6, 0.65],
-    [0.65, -0.65],
-];
+/// Opacity of a line within a sphere: an edge of the cell remains one line where grains lie on it.
+const WITHIN: f64 = 0.3;
 
 /// A sphere in metres.
 #[derive(Clone, Copy, Debug)]
@@ -45,158 +34,172 @@ pub(crate) struct Sphere {
 }
 
 /// Right, up and towards the viewer.
-fn frame() -> [Vec3; 3] {
+pub(crate) fn frame() -> [Vec3; 3] {
     let toward = Vec3::from(VIEWER).normalize();
     let right = Vec3::z().cross(&toward).normalize();
     [right, toward.cross(&right), toward]
 }
 
-/// A scene in the frame of the picture, pixels.
-struct Scene {
-    spheres: Vec<([f64; 3], f64)>,
-    lines: Vec<[[f64; 3]; 2]>,
-    size: [usize; 2],
+/// A sphere in the frame of the picture, pixels: right, down and towards the viewer.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball {
+    pub(crate) centre: [f64; 3],
+    pub(crate) radius: f64,
+    colour: Colour,
 }
 
-/// Draws spheres and lines into a picture of this width and height, as red, green, blue and opacity. `fill` is the largest
-/// part of the picture that they cover along a side.
-pub(crate) fn draw(
-    spheres: &[Sphere],
-    lines: &[[Vec3; 2]],
-    [width, height]: [usize; 2],
-    fill: f64,
-) -> Vec<u8> {
-    let scene = placed(spheres, lines, [width * SAMPLES, height * SAMPLES], fill);
-    let (depth, owner) = visible(&scene);
-    let mut pixels = vec![0u8; 4 * width * height];
-    let behind = depth.iter().copied().filter(|d| d.is_finite()).fold(f32::INFINITY, f32::min);
-    let front = depth.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    for (n, pixel) in pixels.chunks_exact_mut(4).enumerate() {
-        let (x, y) = (n % width * SAMPLES, n / width * SAMPLES);
-        let (mut sum, mut hits) = ([0.0; 3], 0.0);
-        for (dx, dy) in (0..SAMPLES * SAMPLES).map(|s| (s % SAMPLES, s / SAMPLES)) {
-            let at = (y + dy) * scene.size[0] + x + dx;
-            let colour = match owner[at] {
-                NOTHING => continue,
-                LINE => OUTLINE.map(f64::from),
-                grain => {
-                    let far = f64::from((front - depth[at]) / (front - behind).max(1.0));
-                    let open = openness(&scene, &depth, [x + dx, y + dy], scene.spheres[grain as usize].1);
-                    shaded(&scene, &spheres[grain as usize], grain, [x + dx, y + dy], open, far)
-                }
-            };
-            sum = std::array::from_fn(|c| sum[c] + colour[c]);
-            hits += 1.0;
-        }
-        if hits > 0.0 {
-            pixel[..3].copy_from_slice(&sum.map(|v| (v / hits).round().clamp(0.0, 255.0) as u8));
-            pixel[3] = (255.0 * hits / (SAMPLES * SAMPLES) as f64).round() as u8;
-        }
+/// A scene in the frame of the picture.
+pub(crate) struct Scene {
+    /// From the nearest to the farthest.
+    balls: Vec<Ball>,
+    /// Ends of each edge, and whether nothing but a sphere on it can hide it.
+    edges: Vec<([[f64; 3]; 2], bool)>,
+    width: usize,
+    /// Pixels of a metre.
+    pub(crate) scale: f64,
+}
+
+impl Scene {
+    /// Spheres and the twelve edges between the corners of a cell, numbered by the bits of their vectors, in the middle of the
+    /// part of a picture at `area`: left, top, right, bottom.
+    pub(crate) fn placed(spheres: &[Sphere], corners: [Vec3; 8], width: usize, area: [f64; 4]) -> Self {
+        let [right, up, toward] = frame();
+        let turned = |x: &Vec3| [x.dot(&right), -x.dot(&up), x.dot(&toward)];
+        let ends = |k: usize| {
+            let of_spheres =
+                spheres.iter().map(|s| (turned(&s.centre)[k], s.radius)).flat_map(|(x, r)| [x - r, x + r]);
+            let all = of_spheres.chain(corners.iter().map(|c| turned(c)[k]));
+            all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+        };
+        let (across, along) = (ends(0), ends(1));
+        let room = [area[2] - area[0], area[3] - area[1]].map(|room| room.max(1.0));
+        let extent = [across[1] - across[0], along[1] - along[0]].map(|e| e.max(f64::MIN_POSITIVE));
+        let scale = (room[0] / extent[0]).min(room[1] / extent[1]);
+        let middle = [across, along].map(|[low, high]| 0.5 * (low + high));
+        let place = |x: &Vec3| {
+            let p = turned(x);
+            let at = |k: usize| 0.5 * (area[k] + area[k + 2]) + (p[k] - middle[k]) * scale;
+            [at(0), at(1), p[2] * scale]
+        };
+        let ball = |s: &Sphere| Ball { centre: place(&s.centre), radius: s.radius * scale, colour: s.colour };
+        let mut balls: Vec<Ball> = spheres.iter().map(ball).collect();
+        balls.sort_by(|a, b| (b.centre[2] + b.radius).total_cmp(&(a.centre[2] + a.radius)));
+        let corners = corners.map(|c| place(&c));
+        let last = (0..8).min_by(|a, b| corners[*a][2].total_cmp(&corners[*b][2])).unwrap_or(0);
+        let from = |n: usize| [1, 2, 4].into_iter().filter(move |k| n & k == 0).map(move |k| [n, n | k]);
+        let edges = (0..8).flat_map(from).map(|ends| (ends.map(|n| corners[n]), !ends.contains(&last)));
+        Self { balls, edges: edges.collect(), width, scale }
     }
-    pixels
-}
 
-/// Everything in the frame of the picture, in its middle.
-fn placed(spheres: &[Sphere], lines: &[[Vec3; 2]], size: [usize; 2], fill: f64) -> Scene {
-    let [right, up, toward] = frame();
-    let turned = |x: &Vec3| [x.dot(&right), x.dot(&up), x.dot(&toward)];
-    let mut spheres: Vec<_> = spheres.iter().map(|s| (turned(&s.centre), s.radius)).collect();
-    let mut lines: Vec<_> = lines.iter().map(|l| [turned(&l[0]), turned(&l[1])]).collect();
-    let ends = |k: usize| {
-        let of_spheres = spheres.iter().flat_map(|(c, r)| [c[k] - r, c[k] + r]);
-        let all = of_spheres.chain(lines.iter().flatten().map(|p| p[k]));
-        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
-    };
-    let (across, along) = (ends(0), ends(1));
-    let extent = [across[1] - across[0], along[1] - along[0]].map(|e| e.max(f64::MIN_POSITIVE));
-    let scale = fill * (size[0] as f64 / extent[0]).min(size[1] as f64 / extent[1]);
-    let middle = [0.5 * (across[0] + across[1]), 0.5 * (along[0] + along[1])];
-    let place = |p: &mut [f64; 3]| {
-        *p = [
-            0.5 * size[0] as f64 + (p[0] - middle[0]) * scale,
-            0.5 * size[1] as f64 - (p[1] - middle[1]) * scale,
-            p[2] * scale,
-        ];
-    };
-    for (centre, radius) in &mut spheres {
-        place(centre);
-        *radius *= scale;
+    /// The pixels: red, green, blue and opacity.
+    pub(crate) fn draw(&self, height: usize) -> Vec<u8> {
+        let light = Light::new(&self.balls);
+        let mut pixels = vec![0u8; 4 * self.width * height];
+        let bands = pixels.par_chunks_mut(4 * self.width * ROWS).enumerate();
+        bands.for_each(|(n, pixels)| {
+            let samples = self.samples(n * ROWS, pixels.len() / 4 / self.width);
+            for (at, pixel) in pixels.chunks_exact_mut(4).enumerate() {
+                let place = [at % self.width, n * ROWS + at / self.width].map(|v| v as f64);
+                pixel.copy_from_slice(&self.pixel(&light, &samples, at, place));
+            }
+        });
+        pixels
     }
-    lines.iter_mut().flatten().for_each(place);
-    Scene { spheres, lines, size }
-}
 
-/// Depth (greater is nearer) and number of what is seen at each sample.
-fn visible(scene: &Scene) -> (Vec<f32>, Vec<u32>) {
-    let [width, height] = scene.size;
-    let (mut depth, mut owner) = (vec![f32::NEG_INFINITY; width * height], vec![NOTHING; width * height]);
-    let mut put = |at: usize, z: f64, thing: u32| {
-        if z as f32 > depth[at] {
-            (depth[at], owner[at]) = (z as f32, thing);
-        }
-    };
-    let pixels = |middle: f64, half: f64, end: usize| {
-        let from = (middle - half).floor().max(0.0) as usize;
-        from..((middle + half).ceil().max(0.0) as usize).min(end)
-    };
-    for (n, ([x, y, z], radius)) in scene.spheres.iter().enumerate() {
-        for row in pixels(*y, *radius, height) {
-            let dy = row as f64 + 0.5 - y;
-            let half = (radius * radius - dy * dy).max(0.0).sqrt();
-            for column in pixels(*x, half, width) {
-                let dx = column as f64 + 0.5 - x;
-                let under = radius * radius - dx * dx - dy * dy;
-                if under > 0.0 {
-                    put(row * width + column, z + under.sqrt(), n as u32);
+    /// Depth (greater is nearer) and sphere at each sample of some rows, for one sample of all pixels after the other.
+    fn samples(&self, top: usize, rows: usize) -> Vec<Vec<(f32, u32)>> {
+        let mut samples = vec![vec![(f32::NEG_INFINITY, NOTHING); rows * self.width]; SAMPLES];
+        let within = |low: f64, high: f64, end: usize| {
+            low.ceil().max(0.0) as usize..((high.floor() + 1.0).max(0.0) as usize).min(end)
+        };
+        for (number, Ball { centre: [x, y, z], radius, .. }) in self.balls.iter().enumerate() {
+            let nearest = (z + radius) as f32;
+            for (of_sample, (right, down)) in samples.iter_mut().zip(offsets()) {
+                let (x, y) = (x - right, y - down - top as f64);
+                for row in within(y - radius, y + radius, rows) {
+                    let square = radius * radius - (row as f64 - y) * (row as f64 - y);
+                    let half = square.max(0.0).sqrt();
+                    for column in within(x - half, x + half, self.width) {
+                        let sample = &mut of_sample[row * self.width + column];
+                        if sample.0 < nearest {
+                            let dx = column as f64 - x;
+                            let depth = (z + (square - dx * dx).max(0.0).sqrt()) as f32;
+                            if depth > sample.0 {
+                                *sample = (depth, number as u32);
+                            }
+                        }
+                    }
                 }
             }
         }
+        samples
     }
-    let half = 0.0009 * width as f64;
-    for [from, to] in &scene.lines {
-        let length = (0..2).map(|k| (to[k] - from[k]).abs()).fold(1.0, f64::max);
-        for step in 0..=length as usize {
-            let t = step as f64 / length;
-            let [x, y, z] = std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
-            for row in pixels(y, half, height) {
-                for column in pixels(x, half, width) {
-                    put(row * width + column, z, LINE);
-                }
+
+    /// A pixel whose corner is at this place: each sphere is shaded in the middle of its samples.
+    fn pixel(&self, light: &Light, samples: &[Vec<(f32, u32)>], at: usize, [x, y]: [f64; 2]) -> [u8; 4] {
+        let mut found = [(NOTHING, [0.0; 3]); SAMPLES];
+        let mut count = 0;
+        for (of_sample, (right, down)) in samples.iter().zip(offsets()) {
+            let owner = of_sample[at].1;
+            if owner == NOTHING {
+                continue;
+            }
+            let n = found[..count].iter().position(|(known, _)| *known == owner).unwrap_or(count);
+            count = count.max(n + 1);
+            let [a, b, hits] = found[n].1;
+            found[n] = (owner, [a + right, b + down, hits + 1.0]);
+        }
+        let (mut sum, mut all) = ([0.0; 3], 0.0);
+        for (owner, [right, down, hits]) in &found[..count] {
+            let ball = &self.balls[*owner as usize];
+            let shade = light.shade(ball, *owner, [x + right / hits, y + down / hits]);
+            sum = std::array::from_fn(|c| sum[c] + hits * (f64::from(ball.colour[c]) * shade[0] + shade[1]));
+            all += hits;
+        }
+        let mut colour = sum.map(|v| (v / f64::max(all, 1.0)).min(255.0));
+        let mut opacity = all / SAMPLES as f64;
+        for ([from, to], is_in_front) in &self.edges {
+            let (distance, t) = beside([x + 0.5, y + 0.5], [from, to].map(|p| [p[0], p[1]]));
+            let ink = stroke(distance, self.line());
+            if ink > 0.0 {
+                let depth = (from[2] + t * (to[2] - from[2])) as f32;
+                let seen = samples.iter().filter(|s| s[at].0 < depth).count() as f64 / SAMPLES as f64;
+                let ink = ink * (seen + if *is_in_front { WITHIN * (1.0 - seen) } else { 0.0 });
+                (colour, opacity) = over(colour, opacity, OUTLINE, ink);
             }
         }
+        let [r, g, b] = colour.map(|v| v.round() as u8);
+        [r, g, b, (255.0 * opacity).round() as u8]
     }
-    (depth, owner)
+
+    /// Width of a line, pixels.
+    fn line(&self) -> f64 {
+        (0.0012 * self.width as f64).max(1.2)
+    }
 }
 
-/// Share of the neighbourhood of a sample that is not nearer, from 0 to 1: gaps between grains are dark.
-fn openness(scene: &Scene, depth: &[f32], [x, y]: [usize; 2], radius: f64) -> f64 {
-    let [width, height] = scene.size;
-    let here = f64::from(depth[y * width + x]);
-    let mut closed = 0.0;
-    for [dx, dy] in AROUND {
-        let (i, j) = (x as f64 + 1.4 * radius * dx, y as f64 + 1.4 * radius * dy);
-        if i >= 0.0 && j >= 0.0 && (i as usize) < width && (j as usize) < height {
-            let nearer = f64::from(depth[j as usize * width + i as usize]) - here;
-            closed += (nearer / radius - 0.12).clamp(0.0, 1.0);
-        }
-    }
-    1.0 - closed / AROUND.len() as f64
+/// Places of the samples in a pixel.
+fn offsets() -> impl Iterator<Item = (f64, f64)> {
+    let place = |a: usize, b: usize| (a as f64 + (b as f64 + 0.5) / SIDE as f64) / SIDE as f64;
+    (0..SAMPLES).map(move |s| (place(s % SIDE, s / SIDE), place(s / SIDE, s % SIDE)))
 }
 
-fn shaded(scene: &Scene, sphere: &Sphere, grain: u32, [x, y]: [usize; 2], open: f64, far: f64) -> [f64; 3] {
-    let ([cx, cy, _], radius) = scene.spheres[grain as usize];
-    let (nx, ny) = ((x as f64 + 0.5 - cx) / radius, (cy - y as f64 - 0.5) / radius);
-    let nz = (1.0 - nx * nx - ny * ny).max(0.0).sqrt();
-    let light = Vec3::from(LIGHT).normalize();
-    let key = (nx * light.x + ny * light.y + nz * light.z).max(0.0);
-    let edge = (nz / 0.5).min(1.0);
-    let brightness = (0.36 + 0.74 * key) * (0.7 + 0.3 * edge) * (0.35 + 0.65 * open);
-    let glint = {
-        let half = (light + Vec3::z()).normalize();
-        let cos = (nx * half.x + ny * half.y + nz * half.z).max(0.0);
-        let (c4, c8) = (cos.powi(4), cos.powi(8));
-        26.0 * c4 * c8.powi(4)
-    };
-    let paler = 0.22 * far;
-    sphere.colour.map(|c| (f64::from(c) * brightness + glint) * (1.0 - paler) + 236.0 * paler)
+/// A colour with this share of ink over it, and its opacity.
+pub(crate) fn over(colour: [f64; 3], opacity: f64, ink: [f64; 3], share: f64) -> ([f64; 3], f64) {
+    let all = share + opacity * (1.0 - share);
+    let part = if all > 0.0 { share / all } else { 0.0 };
+    (std::array::from_fn(|c| colour[c] + part * (ink[c] - colour[c])), all)
+}
+
+/// Distance from a line between two places, and the share of the line up to there.
+pub(crate) fn beside(p: [f64; 2], [from, to]: [[f64; 2]; 2]) -> (f64, f64) {
+    let [a, b] = [[to[0] - from[0], to[1] - from[1]], [p[0] - from[0], p[1] - from[1]]];
+    let t = ((a[0] * b[0] + a[1] * b[1]) / (a[0] * a[0] + a[1] * a[1]).max(1e-12)).clamp(0.0, 1.0);
+    let d = [b[0] - t * a[0], b[1] - t * a[1], 0.0];
+    (dot(d, d).sqrt(), t)
+}
+
+/// Share of a pixel at this distance that a line of this width covers.
+pub(crate) fn stroke(distance: f64, width: f64) -> f64 {
+    (0.5 * width + 0.5 - distance).clamp(0.0, 1.0)
 }

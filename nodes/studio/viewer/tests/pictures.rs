@@ -1,7 +1,7 @@
 //! Pictures of packings: what is in them, and that they are the same every time.
 
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
-use grainlab_viewer::{Film, Picture, Quantity, Size, View, page};
+use grainlab_viewer::{Film, Ground, Picture, Quantity, Size, View, page};
 
 /// Four grains on a line along x, each touching the next, the last one the image of the first; and one alone.
 fn chain() -> Packing {
@@ -56,14 +56,14 @@ fn colours(picture: &Picture) -> std::collections::BTreeMap<[u8; 4], usize> {
 #[test]
 fn the_same_packing_gives_the_same_bytes() {
     let view = View::new(&chain(), "a chain");
-    let png = || Picture::with_legend(&view, Quantity::Force, SIZE).png().unwrap();
+    let png = || Picture::new(&view, Quantity::Force, SIZE, Ground::Light).png().unwrap();
     assert_eq!(png(), png());
     assert!(png().starts_with(b"\x89PNG\r\n\x1a\n"));
 }
 
 #[test]
 fn grains_cover_some_of_the_picture_and_leave_the_corners_free() {
-    let picture = Picture::plain(&View::new(&chain(), ""), Quantity::Coordination, SIZE);
+    let picture = Picture::new(&View::new(&chain(), ""), Quantity::Coordination, SIZE, Ground::Clear);
     for (x, y) in [(0, 0), (SIZE.width - 1, 0), (0, SIZE.height - 1), (SIZE.width - 1, SIZE.height - 1)] {
         assert_eq!(picture.pixel(x, y).unwrap()[3], 0, "({x}, {y}) is transparent");
     }
@@ -76,7 +76,7 @@ fn grains_cover_some_of_the_picture_and_leave_the_corners_free() {
 #[test]
 fn a_rattler_is_grey_and_a_grain_that_carries_force_is_not() {
     let greys = |packing: &Packing| {
-        let picture = Picture::plain(&View::new(packing, ""), Quantity::Rattlers, SIZE);
+        let picture = Picture::new(&View::new(packing, ""), Quantity::Rattlers, SIZE, Ground::Clear);
         let grey =
             |c: &[u8; 4]| c[3] == 255 && c[0] > 90 && c[0].abs_diff(c[1]) < 12 && c[2].abs_diff(c[1]) < 16;
         colours(&picture).iter().filter(|(c, _)| grey(c)).map(|(_, n)| *n).sum::<usize>()
@@ -90,7 +90,7 @@ fn a_rattler_is_grey_and_a_grain_that_carries_force_is_not() {
 #[test]
 fn the_colour_follows_what_is_asked_for() {
     let view = View::new(&chain(), "");
-    let of = |quantity| Picture::plain(&view, quantity, SIZE).png().unwrap();
+    let of = |quantity| Picture::new(&view, quantity, SIZE, Ground::Clear).png().unwrap();
     let all = Quantity::ALL.map(of);
     assert!(all[0] != all[1] && all[1] != all[2] && all[0] != all[2]);
 }

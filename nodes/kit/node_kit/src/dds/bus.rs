@@ -384,6 +384,10 @@ impl Bus for DdsBus {
             .map_or(0, |w| self.graph.matches_of(w.id, |guid| self.gate.admits(guid)))
     }
 
+    fn is_read(&self, publisher: PublisherId) -> bool {
+        self.writers.get(publisher.0).is_some_and(|w| self.graph.matches_of(w.id, |_| true) > 0)
+    }
+
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let reader = self.subscribers.get(subscription.0).and_then(|s| self.readers.get(s.reader));
         reader.map_or(0, |r| self.graph.matches_of(r.guid, |guid| self.counts(guid, &r.info)))

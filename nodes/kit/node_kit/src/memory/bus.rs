@@ -177,6 +177,12 @@ impl Bus for MemoryBus {
         state.readers.iter().filter(counts).count()
     }
 
+    fn is_read(&self, publisher: PublisherId) -> bool {
+        let state = self.state.borrow();
+        let writer = self.writers.get(publisher.0).map(|w| &state.writers[*w]);
+        writer.is_some_and(|w| state.readers.iter().any(|r| r.alive && r.topic == w.topic))
+    }
+
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let state = self.state.borrow();
         let Some(reader) = self.readers.get(subscription.0).map(|r| &state.readers[*r]) else { return 0 };
