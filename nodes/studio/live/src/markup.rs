@@ -14,16 +14,14 @@ use serde_json::json;
 
 const KPA: f64 = 1e-3;
 
-/// Three digits of a number, without those that say nothing: a power of ten only below 1/10,000.
+/// A number with three digits; a power of ten only below 1/10,000.
 fn three_digits(value: f64) -> String {
-    let size = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let size = value.abs().log10().floor() as i32;
     if size >= -4 {
-        let text = format!("{value:.*}", usize::try_from(2 - size).unwrap_or(0));
-        return if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        };
+        return format!("{value:.*}", usize::try_from(2 - size).unwrap_or(0));
     }
     let raised = |c: char| match c {
         '-' => '⁻',
@@ -63,6 +61,7 @@ impl Laboratory {
         let target = request.and_then(target_pressure);
         let target = target.map_or_else(String::new, |t| format!("target {:.2} kPa · ", t * KPA));
         let unbalanced = request.map_or_else(|| "–".to_owned(), |r| three_digits(r.unbalanced));
+        let pressure = request.map_or_else(|| "–".to_owned(), |r| three_digits(r.input.stress.mean() * KPA));
         let steps = self.steps.per_second().filter(|_| self.end.is_none());
         let grain_steps = steps.zip(self.grains).map(|(s, n)| s * f64::from(n));
         let rate =
@@ -77,12 +76,7 @@ impl Laboratory {
             format!("z {:.3} without rattlers, last packing", f.contacts.mechanical_coordination)
         });
         let all = [
-            card(
-                "p",
-                with_unit(value(|r| r.input.stress.mean() * KPA, 2), "kPa"),
-                "pressure",
-                target + &ratio,
-            ),
+            card("p", with_unit(pressure, "kPa"), "pressure", target + &ratio),
             card("φ", value(|r| r.solid_fraction, 4), "solid fraction", ""),
             card("k", value(|r| r.coordination, 3), "coordination number", z),
             card("u", unbalanced, "unbalanced force", "mean net force over mean contact force"),
@@ -112,7 +106,7 @@ impl Laboratory {
             };
             [
                 Cell::text(SymTensor::COMPONENTS[n]),
-                Cell::number(signed(stress[n] * KPA, 3).trim_start_matches('+')),
+                Cell::number(three_digits(stress[n] * KPA)),
                 Cell::number(imposed),
                 Cell::number(off),
                 Cell::signed(strain[n] * 100.0, 4),
@@ -178,5 +172,16 @@ impl Laboratory {
             "solid_fraction": r.solid_fraction, "coordination": r.coordination, "unbalanced": r.unbalanced,
         })
         .to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_as_people_write_them() {
+        let values = [0.0, 0.96, -4.0, 2345.6, 1.5e-4, -9.62e-5, 2e-12].map(three_digits);
+        assert_eq!(values, ["0", "0.960", "-4.00", "2346", "0.000150", "-9.6·10⁻⁵", "2.0·10⁻¹²"]);
     }
 }

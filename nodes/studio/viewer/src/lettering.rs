@@ -5,7 +5,7 @@ use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_wid
 /// Letters of one size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lettering {
-    /// Height, pixels.
+    /// Height of a letter, pixels.
     height: usize,
 }
 

@@ -5,8 +5,9 @@
 //! - [`figure`], [`page`], [`STYLE`], [`SCRIPTS`]: the parts of a page; [`empty_figure`], [`states`]: those of a page that
 //!   receives packings later; `encode`: the states as bytes
 //! - [`Picture`]: one view as pixels and as PNG, on a [`Ground`]; `raster`: samples and edges; `light`: shades; `legend`,
-//!   `marks`: colours, scale bar and axes; `lettering`: letters
+//!   `marks`: colours, scale bar and axes; `canvas`, `lettering`: pixels and letters
 
+mod canvas;
 mod encode;
 mod film;
 mod legend;
@@ -19,8 +20,9 @@ mod picture;
 mod raster;
 mod view;
 
+pub use canvas::Ground;
 pub use film::Film;
 pub use page::{SCRIPTS, STYLE, empty_figure, figure, page, states};
 pub use palette::Quantity;
-pub use picture::{Ground, Picture, PictureError, Size};
+pub use picture::{Picture, PictureError, Size};
 pub use view::View;

@@ -1,7 +1,7 @@
 //! Light on spheres: that of a sky of which the neighbours hide a part, and a lamp with soft shadows. Both are sums over the
 //! neighbours instead of rays, so that there is no noise.
 
-use crate::raster::Ball;
+use crate::palette::Colour;
 
 /// Towards the lamp, in the frame of the picture: from the upper left. Its length is 1 within rounding.
 const LAMP: [f64; 3] = [-0.40169, -0.62485, 0.66948];
@@ -11,6 +11,14 @@ const REACH: f64 = 4.0;
 
 /// Most cells of a grid along a side.
 const CELLS: f64 = 128.0;
+
+/// A sphere in the frame of the picture, pixels: right, down and towards the viewer.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball {
+    pub(crate) centre: [f64; 3],
+    pub(crate) radius: f64,
+    pub(crate) colour: Colour,
+}
 
 /// Spheres of one range of sizes, in cells at least as long as their reach.
 struct Grid {
@@ -26,7 +34,7 @@ struct Grid {
 /// The light in a scene.
 pub(crate) struct Light(Vec<Grid>);
 
-pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

@@ -1,6 +1,6 @@
 //! Length and directions in a picture.
 
-use crate::picture::Picture;
+use crate::canvas::Canvas;
 use crate::raster::frame;
 
 /// Part of the width that a scale bar has at most.
@@ -16,27 +16,27 @@ pub(crate) fn round_length(most: f64) -> (f64, String) {
 }
 
 /// A scale bar with its lower right corner; `scale` is in pixels a metre.
-pub(crate) fn scale_bar(picture: &mut Picture, scale: f64, [right, bottom]: [f64; 2]) {
-    let (length, text) = round_length(PART * picture.width() as f64 / scale);
-    let (letters, left) = (picture.letters(), right - length * scale);
+pub(crate) fn scale_bar(canvas: &mut Canvas, scale: f64, [right, bottom]: [f64; 2]) {
+    let (length, text) = round_length(PART * canvas.width as f64 / scale);
+    let (letters, left) = (canvas.letters, right - length * scale);
     let (line, middle) = (letters.line() as f64, 0.5 * (left + right));
     let thick = 0.16 * line;
-    picture.line([[left, bottom - thick], [right, bottom - thick]], thick);
+    canvas.line([[left, bottom - thick], [right, bottom - thick]], thick);
     let at = [middle - 0.5 * letters.width_of(&text) as f64, bottom - 1.5 * line];
-    picture.write(&text, at.map(|v| v.round().max(0.0) as usize));
+    canvas.write(&text, at.map(|v| v.round().max(0.0) as usize));
 }
 
 /// The directions of x, y and z, with the right end and the bottom of their letters.
-pub(crate) fn triad(picture: &mut Picture, [right, bottom]: [f64; 2]) {
+pub(crate) fn triad(canvas: &mut Canvas, [right, bottom]: [f64; 2]) {
     let [to_right, up, _] = frame();
-    let (letters, line) = (picture.letters(), picture.letters().line() as f64);
+    let (letters, line) = (canvas.letters, canvas.letters.line() as f64);
     let origin = [right - 2.0 * line, bottom - 1.4 * line];
     for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
         let end = |length: f64| [origin[0] + length * to_right[k], origin[1] - length * up[k]];
-        picture.line([origin, end(1.5 * line)], 0.09 * line);
+        canvas.line([origin, end(1.5 * line)], 0.09 * line);
         let at = end(1.95 * line);
         let at = [at[0] - 0.5 * letters.width_of(name) as f64, at[1] - 0.45 * line];
-        picture.write(name, at.map(|v| v.round().max(0.0) as usize));
+        canvas.write(name, at.map(|v| v.round().max(0.0) as usize));
     }
 }
 

@@ -1,8 +1,9 @@
 //! The parts of a page with a packing in three dimensions, which needs no other file.
 
+use crate::canvas::Ground;
 use crate::encode;
 use crate::palette::Quantity;
-use crate::picture::{Ground, Picture, PictureError, Size};
+use crate::picture::{Picture, PictureError, Size};
 use crate::view::View;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

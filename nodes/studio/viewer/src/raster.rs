@@ -1,7 +1,8 @@
 //! Spheres and lines in parallel projection, with sixteen samples a pixel. The same input gives the same pixels on every
 //! machine: only additions, multiplications, divisions and square roots.
 
-use crate::light::{Light, dot};
+use crate::canvas::{beside, over, stroke};
+use crate::light::{Ball, Light};
 use crate::palette::Colour;
 use grainlab_core::Vec3;
 use rayon::prelude::*;
@@ -38,14 +39,6 @@ pub(crate) fn frame() -> [Vec3; 3] {
     let toward = Vec3::from(VIEWER).normalize();
     let right = Vec3::z().cross(&toward).normalize();
     [right, toward.cross(&right), toward]
-}
-
-/// A sphere in the frame of the picture, pixels: right, down and towards the viewer.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ball {
-    pub(crate) centre: [f64; 3],
-    pub(crate) radius: f64,
-    colour: Colour,
 }
 
 /// A scene in the frame of the picture.
@@ -182,24 +175,4 @@ impl Scene {
 fn offsets() -> impl Iterator<Item = (f64, f64)> {
     let place = |a: usize, b: usize| (a as f64 + (b as f64 + 0.5) / SIDE as f64) / SIDE as f64;
     (0..SAMPLES).map(move |s| (place(s % SIDE, s / SIDE), place(s / SIDE, s % SIDE)))
-}
-
-/// A colour with this share of ink over it, and its opacity.
-pub(crate) fn over(colour: [f64; 3], opacity: f64, ink: [f64; 3], share: f64) -> ([f64; 3], f64) {
-    let all = share + opacity * (1.0 - share);
-    let part = if all > 0.0 { share / all } else { 0.0 };
-    (std::array::from_fn(|c| colour[c] + part * (ink[c] - colour[c])), all)
-}
-
-/// Distance from a line between two places, and the share of the line up to there.
-pub(crate) fn beside(p: [f64; 2], [from, to]: [[f64; 2]; 2]) -> (f64, f64) {
-    let [a, b] = [[to[0] - from[0], to[1] - from[1]], [p[0] - from[0], p[1] - from[1]]];
-    let t = ((a[0] * b[0] + a[1] * b[1]) / (a[0] * a[0] + a[1] * a[1]).max(1e-12)).clamp(0.0, 1.0);
-    let d = [b[0] - t * a[0], b[1] - t * a[1], 0.0];
-    (dot(d, d).sqrt(), t)
-}
-
-/// Share of a pixel at this distance that a line of this width covers.
-pub(crate) fn stroke(distance: f64, width: f64) -> f64 {
-    (0.5 * width + 0.5 - distance).clamp(0.0, 1.0)
 }

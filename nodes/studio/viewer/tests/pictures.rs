@@ -69,7 +69,7 @@ fn grains_cover_some_of_the_picture_and_leave_the_corners_free() {
     }
     let opaque: usize = colours(&picture).iter().filter(|(c, _)| c[3] == 255).map(|(_, n)| n).sum();
     let share = opaque as f64 / (SIZE.width * SIZE.height) as f64;
-    assert!((0.05..0.6).contains(&share), "{share}");
+    assert!((0.03..0.6).contains(&share), "{share}");
     assert_eq!(picture.pixel(SIZE.width, 0), None);
 }
 
@@ -77,14 +77,15 @@ fn grains_cover_some_of_the_picture_and_leave_the_corners_free() {
 fn a_rattler_is_grey_and_a_grain_that_carries_force_is_not() {
     let greys = |packing: &Packing| {
         let picture = Picture::new(&View::new(packing, ""), Quantity::Rattlers, SIZE, Ground::Clear);
+        // The letters are darker.
         let grey =
-            |c: &[u8; 4]| c[3] == 255 && c[0] > 90 && c[0].abs_diff(c[1]) < 12 && c[2].abs_diff(c[1]) < 16;
+            |c: &[u8; 4]| c[3] == 255 && c[0] > 150 && c[0].abs_diff(c[1]) < 12 && c[2].abs_diff(c[1]) < 16;
         colours(&picture).iter().filter(|(c, _)| grey(c)).map(|(_, n)| *n).sum::<usize>()
     };
     let mut loose = chain();
     loose.contacts.clear();
     let (one, all) = (greys(&chain()), greys(&loose));
-    assert!(all > 3 * one && one > 200, "one rattler has {one} grey pixels, five have {all}");
+    assert!(all > 3 * one && one > 100, "one rattler has {one} grey pixels, five have {all}");
 }
 
 #[test]

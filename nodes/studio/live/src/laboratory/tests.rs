@@ -59,3 +59,42 @@ fn messages_that_do_not_satisfy_the_contract_are_counted_and_change_nothing() {
     assert_eq!(lab.refused, 3);
     assert!(lab.latest.is_none() && lab.state.is_none() && lab.timeline.count() == 0);
 }
+
+#[test]
+fn the_grains_of_now_are_shown_until_a_later_packing_comes_and_never_after_the_end() {
+    let at = |step: u64| {
+        let mut packing = grainlab_msgs::boundary::packing_message(&pair(), "two", Vec::new());
+        packing.step = step;
+        packing
+    };
+    let mut lab = Laboratory::new(None, Duration::ZERO);
+    lab.state_of_grains(&at(10));
+    assert_eq!((lab.views().len(), lab.timeline.last().is_none()), (1, true));
+    lab.packing(&at(20));
+    assert_eq!(lab.views().len(), 1, "the packing is later");
+    lab.state_of_grains(&at(30));
+    assert_eq!((lab.views().len(), lab.timeline.film().count()), (2, 1));
+    lab.left();
+    assert_eq!(lab.views().len(), 1);
+}
+
+/// Two grains that do not touch.
+fn pair() -> Packing {
+    use grainlab_core::{Cell, Mat3, Material, Vec3};
+    Packing {
+        step: 0,
+        time: 0.0,
+        cell: Cell::cube(8.0).unwrap(),
+        deformation: Mat3::identity(),
+        ids: vec![1, 2],
+        radii: vec![1.0; 2],
+        positions: vec![Vec3::repeat(1.0), Vec3::repeat(5.0)],
+        velocities: vec![Vec3::zeros(); 2],
+        spins: vec![Vec3::zeros(); 2],
+        contacts: Vec::new(),
+        material: Material::GLASS,
+        law: Default::default(),
+        friction: 0.3,
+        time_step: 1e-6,
+    }
+}
