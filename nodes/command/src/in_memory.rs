@@ -1,6 +1,8 @@
-//! Commands on data in memory, for programs that link them: what `grainlab analyze`, `probe` and `invert --table` print, as values.
+//! Commands on data in memory, for programs that link them: what `grainlab analyze`, `probe`, `invert --table` and `bag export` give.
 
-pub use crate::commands::invert::in_memory::{Inverted, invert};
+#[cfg(feature = "studio")]
+pub use crate::commands::bag::export::export;
+pub use crate::commands::invert::in_memory::{By, Inverted, InvertedRow, invert};
 use crate::commands::packings::Found;
 use crate::commands::{analyze, probe};
 use grainlab_console::Failure;
@@ -9,8 +11,8 @@ use grainlab_recordings::import::Imported;
 use grainlab_results::{MeasuredPacking, Probed};
 use rayon::prelude::*;
 
-/// Results in the order of the packings, or the reason why a packing has none.
-pub type Results<R> = Vec<Result<R, String>>;
+/// Results in the order of the packings, each with true if it lacks what was sought, or the reason why a packing has none.
+pub type Results<R> = Vec<Result<(R, bool), String>>;
 
 /// Structure, stress and stiffness of packings, on all cores.
 pub fn analyze(settings: &Settings, packings: &[&Imported]) -> Results<MeasuredPacking> {
@@ -30,5 +32,5 @@ fn all<R: Send>(
     packings: &[&Imported],
     measure: impl Fn(&Imported) -> Result<Found<R>, String> + Sync,
 ) -> Results<R> {
-    packings.par_iter().map(|packing| measure(packing).map(|found| found.shown)).collect()
+    packings.par_iter().map(|packing| measure(packing).map(|found| (found.shown, found.is_without))).collect()
 }

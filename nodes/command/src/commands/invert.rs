@@ -286,7 +286,20 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     } else if of_series != Contact::Hertz {
         return Err(Failure::usage("--contact other than hertz is for --speeds: give the speeds"));
     }
-    let mut cases = args.cases()?;
+    let mut cases = cases(&args.models(), &args.calibration, args.gamma.as_deref())?;
+    if cases.iter().any(|case| case.model == grainlab_emt::free_contact()) {
+        let of_others = [
+            ("--prior", args.prior.is_some()),
+            ("--print-prior", args.print_prior),
+            ("--draws", args.draws.is_some()),
+            ("--evidence", args.evidence),
+            ("--explain", args.explain),
+        ];
+        refuse(
+            &of_others,
+            "is not for model free-contact, whose prior is that of --print-prior --contact free",
+        )?;
+    }
     if let Some(path) = &args.prior {
         prior::apply(path, &mut cases)?;
     }
@@ -356,25 +369,6 @@ fn refuse(flags: &[(&str, bool)], why: &str) -> Result<(), Failure> {
 }
 
 impl Args {
-    /// The cases to invert by, without their priors.
-    fn cases(&self) -> Result<Vec<case::Case>, Failure> {
-        let cases = cases(&self.models(), &self.calibration, self.gamma.as_deref())?;
-        if cases.iter().any(|case| case.model == grainlab_emt::free_contact()) {
-            let of_others = [
-                ("--prior", self.prior.is_some()),
-                ("--print-prior", self.print_prior),
-                ("--draws", self.draws.is_some()),
-                ("--evidence", self.evidence),
-                ("--explain", self.explain),
-            ];
-            refuse(
-                &of_others,
-                "is not for model free-contact, whose prior is that of --print-prior --contact free",
-            )?;
-        }
-        Ok(cases)
-    }
-
     /// The names of the models: for a prior, the recommended one.
     fn models(&self) -> Vec<String> {
         let of_prior = self.print_prior && self.model.is_empty();

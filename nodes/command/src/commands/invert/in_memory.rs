@@ -1,65 +1,83 @@
 //! A table in memory, inverted by one model.
 
 use super::answer::Answer;
+use super::case::cases;
 use super::columns::Row;
 use super::rows::Rows;
-use super::{Args, drawn, prior};
-use clap::Parser;
+use super::state::State;
+use super::{drawn, prior};
+use crate::commands::packings::import::in_range;
 use grainlab_console::Failure;
 use grainlab_emt::Draws;
 use grainlab_node_kit::Exit;
 use grainlab_results::Inference;
 
-/// The flags of a table.
-#[derive(Debug, Parser)]
-#[command(name = "invert")]
-struct Flags {
-    #[command(flatten)]
-    args: Args,
+/// The model, and what goes with it.
+#[derive(Clone, Copy, Debug)]
+pub struct By<'a> {
+    /// Name of the model.
+    pub model: &'a str,
+    /// Name of the calibration, path of its file, or text of the file.
+    pub calibration: &'a str,
+    /// Text of a file of a prior.
+    pub prior: Option<&'a str>,
+    /// Relative error of each modulus without its own.
+    pub error: Option<f64>,
+    /// Number and seed of draws from the posterior of the first row.
+    pub draws: Option<(usize, u64)>,
+}
+
+/// The answer of a row.
+#[derive(Debug)]
+pub struct InvertedRow {
+    /// Name of the sample, if a column has it.
+    pub sample: Option<String>,
+    /// The answer, with the reason if there is none.
+    pub inference: Inference,
+    /// The exit code that the command would have without an answer; `None` with one.
+    pub failed: Option<Exit>,
 }
 
 /// The answers of a table.
 #[derive(Debug)]
 pub struct Inverted {
-    /// Sample and answer of each row.
-    pub rows: Vec<(Option<String>, Inference)>,
+    /// One for each row.
+    pub rows: Vec<InvertedRow>,
     /// Draws from the posterior of the first row, if asked for.
     pub draws: Option<Draws>,
 }
 
-/// Inverts each row of `table`, text of the form of `grainlab invert --table`, by one model, on all cores. `flags` are those of the
-/// command, and `prior` is the text of a file of a prior. With `draws`, a number and a seed, the first row is drawn from.
+/// Inverts each row of `table`, text of the form of `grainlab invert --table`, on all cores.
 ///
 /// # Errors
-/// Wrong flags, columns or priors; draws of a row that has no answer.
-pub fn invert(
-    flags: &[String],
-    table: Vec<u8>,
-    prior: Option<&str>,
-    draws: Option<(usize, u64)>,
-) -> Result<Inverted, Failure> {
-    let words = ["invert", "--table", "-"].iter().map(|&word| word.to_owned()).chain(flags.iter().cloned());
-    let Flags { args } = Flags::try_parse_from(words).map_err(|e| Failure::usage(e.to_string().trim()))?;
-    let mut cases = args.cases()?;
-    if let Some(text) = prior {
+/// Wrong names, columns or priors; draws of a row that has no answer.
+pub fn invert(table: Vec<u8>, by: &By<'_>) -> Result<Inverted, Failure> {
+    let mut cases = cases(&[by.model.to_owned()], &[by.calibration.to_owned()], None)?;
+    if let Some(text) = by.prior {
         prior::apply_text("prior", text, &mut cases)?;
     }
-    let [case] = &cases[..] else { return Err(Failure::usage("name one model, one calibration and one gamma")) };
-    let mut rows = Rows::of_text(table, args.defaults()?)?;
-    let (mut found, mut drawn) = (Vec::new(), None);
+    let [case] = &cases[..] else { return Err(Failure::usage("name one model and one calibration")) };
+    if case.model == grainlab_emt::free_contact() && (by.prior.is_some() || by.draws.is_some()) {
+        return Err(Failure::usage("prior and draws are not for model free-contact"));
+    }
+    in_range("error", by.error, "0 to 1", |v| (0.0..=1.0).contains(&v))?;
+    let mut rows = Rows::of_text(table, State { relative_error: by.error, ..State::default() })?;
+    let (mut found, mut draws) = (Vec::new(), None);
     let answer = |number, row| match row {
         Ok(Row { state, .. }) => Answer::of(state, Some(number), &cases),
         Err(bad) => Answer::of_bad_row(bad, number),
     };
     while let Some(answers) = rows.next(answer)? {
         for answer in answers {
-            if let (Some((count, seed)), None, Ok(state)) = (draws, &drawn, &answer.state) {
+            let (sample, exit) = (answer.sample().map(str::to_owned), answer.exit(&cases));
+            let failed = (!matches!(answer.outcomes[..], [Ok(_)])).then_some(exit);
+            if let (Some((count, seed)), None, None, Ok(state)) = (by.draws, &draws, failed, &answer.state) {
                 let of_row = drawn::drawn(state, case, count, seed);
-                drawn = Some(of_row.map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?.0);
+                draws = Some(of_row.map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?.0);
             }
-            let sample = answer.sample().map(str::to_owned);
-            found.extend(answer.inferences(&cases).into_iter().map(|inference| (sample.clone(), inference)));
+            let inference = answer.inferences(&cases).into_iter().next();
+            found.extend(inference.map(|inference| InvertedRow { sample, inference, failed }));
         }
     }
-    Ok(Inverted { rows: found, draws: drawn })
+    Ok(Inverted { rows: found, draws })
 }
