@@ -13,13 +13,15 @@ from . import _grainlab
 
 #: Words that start the program: by the Python that runs, without a file on the PATH.
 WORDS = [sys.executable, "-m", "grainlab"]
+#: Variable of a command that ends with the Python that called it.
+CHILD = "GRAINLAB_CHILD"
 
 
 def main() -> None:
     """Runs the command line of this process, and exits with its code."""
     # Python only notes an interrupt, and sees the note between two of its own instructions.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    sys.exit(_grainlab.run(["grainlab", *sys.argv[1:]], WORDS))
+    sys.exit(_grainlab.run(["grainlab", *sys.argv[1:]], WORDS, os.environ.pop(CHILD, "") == "1"))
 
 
 def flags(options: dict[str, Any]) -> list[str]:
@@ -40,7 +42,8 @@ def call(*words: Any, input: str | None = None, wrong: type = ValueError, answer
     pipe = subprocess.PIPE
     command = [*WORDS, *map(os.fspath, words)]
     # A group of its own: an interrupt comes from here, once, so that a run can save its state.
-    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True, start_new_session=True) as process:
+    settings = {"text": True, "start_new_session": True, "env": {**os.environ, CHILD: "1"}}
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, **settings) as process:
         try:
             out, said = process.communicate(input)
         except BaseException:
