@@ -117,7 +117,7 @@ pub(crate) fn stiffness<'py>(
     Ok(matrix(py, 6, |i, j| c.0[(i, j)]))
 }
 
-/// The keys of :func:`analyze`, each with (symbol, unit, meaning).
+/// The keys of :func:`analyze`, each with (symbol, unit, meaning). Raises nothing.
 ///
 /// >>> grainlab.quantities()["phi"]
 /// ('φ', '1', 'solid fraction')

@@ -65,7 +65,8 @@ def to_ovito(packing: Packing) -> Any:
 
 
 def to_arviz(draws: dict[str, Any]) -> Any:
-    """Draws of :func:`invert` for ArviZ: an ``InferenceData`` by ArviZ 0.x, a ``DataTree`` by ArviZ 1. Moduli in Pa, their ln densities in MPa.
+    """Draws of :func:`invert`, or of a file of ``grainlab invert --draws draws.json``, for ArviZ: an ``InferenceData`` by ArviZ 0.x, a
+    ``DataTree`` by ArviZ 1. Moduli in Pa, their ln densities in MPa.
 
     Needs the package ``arviz``, or ``arviz-base`` of ArviZ 1, and raises ImportError without it.
 
@@ -78,7 +79,10 @@ def to_arviz(draws: dict[str, Any]) -> Any:
         from arviz_base import from_dict
     import inspect
 
-    groups = {name: group for name, group in draws.items() if name not in ("coords", "dims")}
+    import numpy as np
+
+    of_draws = {name: group for name, group in draws.items() if name not in ("coords", "dims", "attrs")}
+    groups = {name: {key: np.asarray(values) for key, values in group.items()} for name, group in of_draws.items()}
     of_names = {"coords": draws["coords"], "dims": draws["dims"]}
     if "posterior" in inspect.signature(from_dict).parameters:
         return from_dict(**groups, **of_names)

@@ -74,6 +74,8 @@ def launch(
 class Campaign:
     """A campaign of runs: a folder with its members and tables of their states, in SI units. Made by :func:`campaign`, or from the folder.
 
+    Its methods raise GrainlabError for what is no campaign.
+
     >>> grainlab.Campaign("recordings/campaigns/friction").status()["counts"]
     """
 
