@@ -10,7 +10,7 @@ use grainlab_console::Failure;
 #[cfg(feature = "studio")]
 use grainlab_graph::{doctor, interface, node, param, service, topic};
 use grainlab_node_kit::Exit;
-use std::process::ExitCode;
+use std::ffi::OsString;
 
 /// Exit codes, shown by every help.
 const EXIT_CODES: &str = "\
@@ -97,10 +97,11 @@ enum Studio {
     Bench(bench::Command),
 }
 
-/// Parses, runs, reports.
-pub(crate) fn main() -> ExitCode {
-    let cli = Cli::try_parse().unwrap_or_else(|error| {
-        let words: Vec<String> = std::env::args().skip(1).collect();
+/// Parses the words of a command line, of which the first is the program, runs the command, and reports. Wrong words end the process.
+pub fn main(words: Vec<OsString>) -> Exit {
+    crate::memory::bound();
+    let cli = Cli::try_parse_from(&words).unwrap_or_else(|error| {
+        let words: Vec<String> = words[1..].iter().map(|word| word.to_string_lossy().into_owned()).collect();
         if let Some(form) = crate::ros2::hint(&words).filter(|_| error.use_stderr()) {
             _ = error.print();
             grainlab_console::say!("grainlab: instead of ros2 {}: {form}", words.join(" "));
@@ -123,10 +124,7 @@ pub(crate) fn main() -> ExitCode {
         #[cfg(feature = "studio")]
         Some(Command::Studio(command)) => studio(&command),
     };
-    match outcome {
-        Ok(exit) => exit.into(),
-        Err(failure) => report(&failure).into(),
-    }
+    outcome.unwrap_or_else(|failure| report(&failure))
 }
 
 #[cfg(feature = "studio")]

@@ -1,6 +1,6 @@
 //! Runs of scenes in one process.
 
-use crate::{Error, State};
+use crate::{Error, Mat3, State};
 use grainlab_dem::{Compute, Simd};
 use grainlab_recordings::scenes;
 use std::time::{Duration, Instant};
@@ -73,6 +73,38 @@ impl Simulation {
         &self.run.scene().name
     }
 
+    /// Name of the phase under way; `None` once the path is done.
+    pub fn phase(&self) -> Option<&str> {
+        self.run.path().phase(self.run.scene()).map(|phase| phase.name.as_str())
+    }
+
+    /// Share of that phase that is done, 0 to 1; `None` if its end is not known beforehand.
+    pub fn progress(&self) -> Option<f64> {
+        self.run.phase_share()
+    }
+
+    /// Simulated time, s.
+    pub fn time(&self) -> f64 {
+        self.run.engine().time()
+    }
+
+    /// Stress, Pa, positive in compression.
+    ///
+    /// # Errors
+    /// An engine that does not answer.
+    pub fn stress(&self) -> Result<Mat3, Error> {
+        let seen = self.run.engine().observables().map_err(|e| Error::Simulation(e.to_string()))?;
+        Ok(seen.stress.tensor.matrix())
+    }
+
+    /// The present state, whether a packing is due or not.
+    ///
+    /// # Errors
+    /// An engine that does not answer.
+    pub fn state(&self) -> Result<State, Error> {
+        present(&self.run).map_err(|e| Error::Simulation(e.to_string()))
+    }
+
     /// Steps so far.
     pub fn steps(&self) -> u64 {
         self.run.engine().steps()
@@ -88,8 +120,8 @@ impl Simulation {
         &self.notes
     }
 
-    /// Goes on until a packing is due, `limit` has passed, or the path is done, for one exchange at least; the packing, if one
-    /// is due. For programs that have to look for signals.
+    /// Goes on until a packing is due, a phase has ended, `limit` has passed, or the path is done, for one exchange at least; the
+    /// packing, if one is due. For programs that have to look for signals, or at the run.
     ///
     /// # Errors
     /// If the run cannot go on; it has ended then.
@@ -110,10 +142,11 @@ impl Simulation {
         while let Some(request) = self.run.request() {
             let simulation = |e: &dyn std::fmt::Display| Error::Simulation(e.to_string());
             let output = grainlab_servo::control(&request.input).map_err(|e| simulation(&e))?;
-            if self.run.advance(&output.rate).map_err(|e| simulation(&e))?.packing_due {
-                return present(&self.run).map(Some).map_err(|e| simulation(&e));
+            let outcome = self.run.advance(&output.rate).map_err(|e| simulation(&e))?;
+            if outcome.packing_due {
+                return self.state().map(Some);
             }
-            if began.elapsed() >= limit {
+            if outcome.ended.is_some() || began.elapsed() >= limit {
                 break;
             }
         }

@@ -4,6 +4,7 @@
 
 mod measure;
 
+pub(crate) use measure::measure;
 use super::packings::files;
 use super::packings::import::{self, in_range};
 use super::packings::writer::ResultWriter;
@@ -118,7 +119,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let recorded = [topics::PACKING_REPORT];
     let create = |at: &PathBuf| OfflineRecording::create(at, &recorded, "analyze");
     let recording = args.record.as_ref().map(create).transpose()?;
-    let measure = |source: &str, imported: &_| measure::measure(&settings, source, imported);
+    let measure = |source: &str, imported: &_| measure(&settings, source, imported);
     files::run(&args.files, &options, measure, ResultWriter::new(printer, recording))
 }
 

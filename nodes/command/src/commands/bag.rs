@@ -2,7 +2,7 @@
 
 mod check;
 #[cfg(feature = "studio")]
-mod export;
+pub(crate) mod export;
 mod info;
 mod record;
 mod recorded;

@@ -11,6 +11,7 @@
 //! - `plan`: speeds before they are measured
 //! - [`judge`]: results against the truth in a table
 //! - [`calibrations`]: by name
+//! - [`in_memory`]: a table in memory
 
 mod answer;
 mod calibrations;
@@ -19,6 +20,7 @@ mod columns;
 mod drawn;
 mod evidence;
 mod explain;
+pub(crate) mod in_memory;
 mod inputs;
 mod judge;
 mod plan;
@@ -60,7 +62,7 @@ Examples:
   The same of smooth spheres, at one pressure, by angle to the axis in degrees and mode:
     printf 'angle_deg,mode,speed,speed_sigma\n0,p,439,4\n90,p,426,4\n45,p,430,4\n0,sv,268,3\n90,sh,265,3\n' |
       grainlab invert --speeds - --contact hertz --density 1498 --pressure 50e3 --stress-ratio 0 --size-spread 0
-  Prior knowledge, and draws that ArviZ (arviz.from_json), corner and pandas read:
+  Prior knowledge, and draws that ArviZ, corner and pandas read:
     grainlab invert --print-prior > prior.toml
     grainlab invert --g12 104.2e6 --g13 112.4e6 --theta 136e6 --pressure 50e3 --stress-ratio 0 --size-spread 0 --error 0.01 \\
       --model relaxed --prior prior.toml --draws draws.json
@@ -216,8 +218,9 @@ pub(crate) struct Args {
     /// Print the prior of a model (default: relaxed) as a file for --prior, and do nothing else
     #[arg(long, conflicts_with_all = ["table", "draws", "evidence", "explain"])]
     print_prior: bool,
-    /// Write independent draws from the posterior of one model: .csv, or .json for arviz.from_json; with ln likelihood (of each
-    /// modulus given the others), ln prior, predicted and observed moduli
+    /// Write independent draws from the posterior of one model: .csv, or .json for ArviZ (0.x: arviz.from_json(FILE);
+    /// 1: grainlab.to_arviz(json.load(open(FILE))), by grainlab's Python package); with ln likelihood (of each modulus given the others),
+    /// ln prior, predicted and observed moduli
     #[arg(long, value_name = "FILE", conflicts_with = "table")]
     draws: Option<PathBuf>,
     /// Number of draws of each chain

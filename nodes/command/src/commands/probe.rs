@@ -9,6 +9,7 @@ use super::packings::writer::ResultWriter;
 use super::packings::{files, import};
 use crate::offline_recording::OfflineRecording;
 use flags::Flags;
+pub(crate) use measure::measure;
 use grainlab_console::{Failure, Format};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
@@ -54,6 +55,11 @@ pub(crate) struct Args {
     flags: Flags,
 }
 
+/// The settings of these parameters of the node, by name.
+pub(crate) fn settings(given: &[(String, String)]) -> Result<grainlab_acoustic_probe::Settings, Failure> {
+    Flags::of(given)?.settings()
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     args.import.topic_has_use(&args.files)?;
@@ -63,6 +69,6 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let recorded = [topics::WAVE_SPEEDS, topics::WAVEFORM];
     let create = |at: &PathBuf| OfflineRecording::create(at, &recorded, "probe");
     let recording = args.record.as_ref().map(create).transpose()?;
-    let measure = |source: &str, imported: &_| measure::measure(&settings, source, imported);
+    let measure = |source: &str, imported: &_| measure(&settings, source, imported);
     files::run(&args.files, &options, measure, ResultWriter::new(printer, recording))
 }

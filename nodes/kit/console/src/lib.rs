@@ -4,6 +4,7 @@
 //! - [`Format`], [`Table`], [`print()`], [`say!`]: its output
 //! - [`write_whole`]: files that are written whole or not at all
 //! - [`Cell`]: a typed value of a table
+//! - [`program()`]: the words that start this program again
 //! - [`wrapped()`]: text in lines of a terminal; [`count()`]: counts with their noun; [`duration()`]: times; [`Pace`]: rates and the time left
 //! - [`Terminal`]: its width and colours, and a line that is drawn again; [`Signals`]: SIGINT, SIGTERM and SIGHUP
 
@@ -13,6 +14,7 @@ mod duration;
 mod failure;
 mod output;
 mod pace;
+mod program;
 mod signals;
 mod terminal;
 mod whole_file;
@@ -24,6 +26,7 @@ pub use duration::duration;
 pub use failure::{Failure, worse};
 pub use output::{CsvText, Format, Table, exact, fixed, json, print, print_more, say_line};
 pub use pace::Pace;
+pub use program::{called, program, set_program};
 pub use signals::Signals;
 pub use terminal::{Terminal, colour_wanted, draw_live_line, erase_live_line, write_above_live_line};
 pub use whole_file::write_whole;

@@ -102,6 +102,11 @@ impl Table {
         self.rows.first().map_or(&[], Vec::as_slice)
     }
 
+    /// The rows below them.
+    pub fn rows(&self) -> &[Vec<String>] {
+        self.rows.get(1..).unwrap_or_default()
+    }
+
     /// Removes the columns in which no row has a value: every cell is a `-`.
     #[must_use]
     pub fn without_empty_columns(mut self) -> Self {

@@ -2,7 +2,7 @@
 
 use super::plan::NodePlan;
 use crate::pipe::VARIABLE;
-use grainlab_console::Failure;
+use grainlab_console::{Failure, program};
 use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId};
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -66,15 +66,14 @@ impl Child {
         let failed = |e: io::Error| Failure::failed(format!("{}: cannot be started: {e}", self.plan.name));
         let log = open_log(logs, &self.plan.name).map_err(failed)?;
         let ours = self.plan.node.is_some();
-        let program =
-            if ours { std::env::current_exe().map_err(failed)? } else { self.plan.program.clone().into() };
-        let mut command = Command::new(program);
+        let words = if ours { program().map_err(failed)? } else { vec![self.plan.program.clone().into()] };
+        let mut command = Command::new(&words[0]);
         if ours {
             command.env(VARIABLE, "1");
         } else {
             end_with_launcher(&mut command);
         }
-        command.args(&self.plan.arguments);
+        command.args(&words[1..]).args(&self.plan.arguments);
         if let Some(recording) = &self.resume_from {
             let path = serde_json::Value::from(recording.to_string_lossy());
             command.args(["--ros-args", "-p", &format!("resume:={path}")]);

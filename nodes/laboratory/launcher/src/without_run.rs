@@ -2,7 +2,7 @@
 
 use crate::child::end_with_launcher;
 use crate::plan::NodePlan;
-use grainlab_console::{Failure, print_more, say};
+use grainlab_console::{Failure, print_more, program, say};
 use grainlab_node_kit::Exit;
 use std::collections::BTreeMap;
 use std::io;
@@ -30,13 +30,14 @@ impl Running {
     fn start(&mut self, index: usize) -> Result<(), Failure> {
         let plan = &self.plans[index];
         let failed = |e: io::Error| Failure::failed(format!("{}: cannot be started: {e}", plan.name));
-        let program = match plan.node {
-            Some(_) => std::env::current_exe().map_err(failed)?,
-            None => plan.program.clone().into(),
+        let words = match plan.node {
+            Some(_) => program().map_err(failed)?,
+            None => vec![plan.program.clone().into()],
         };
-        let mut command = Command::new(program);
+        let mut command = Command::new(&words[0]);
         end_with_launcher(&mut command);
         command
+            .args(&words[1..])
             .args(&plan.arguments)
             .envs(plan.environment.iter().map(|(name, value)| (name, value)))
             .env("ROS_DOMAIN_ID", self.domain.to_string())

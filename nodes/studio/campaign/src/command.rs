@@ -3,13 +3,14 @@
 use crate::campaign::Campaign;
 use crate::folder::Folder;
 use crate::member::Member;
-use grainlab_console::Failure;
+use grainlab_console::{Failure, program};
 use grainlab_results::brief::quoted;
 
 /// Program and arguments that begin, continue or keep the run of a member, in one process or several.
 pub(crate) fn command(campaign: &Campaign, folder: &Folder, member: &Member) -> Result<Vec<String>, Failure> {
-    let program = std::env::current_exe().map_err(|e| Failure::failed(format!("own path: {e}")))?;
-    let mut words = vec![program.to_string_lossy().into_owned(), "launch".into(), campaign.launch.clone()];
+    let program = program().map_err(|e| Failure::failed(format!("own path: {e}")))?;
+    let mut words: Vec<String> = program.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    words.extend(["launch".into(), campaign.launch.clone()]);
     words.extend(campaign.arguments.iter().cloned());
     words.extend(["--scene".into(), member.scene.clone(), "--seed".into(), member.seed.to_string()]);
     for set in member.sets() {

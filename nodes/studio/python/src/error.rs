@@ -1,6 +1,8 @@
 //! Exceptions, with the texts of the errors of Rust.
 
-use pyo3::exceptions::PyException;
+use grainlab_console::Failure;
+use grainlab_msgs::Exit;
+use pyo3::exceptions::{PyException, PyValueError};
 use pyo3::prelude::*;
 use pyo3::{PyErr, create_exception};
 use std::fmt::Display;
@@ -26,6 +28,15 @@ pub(crate) fn of(error: grainlab::Error) -> PyErr {
         grainlab::Error::Scene(_) => scene(error),
         grainlab::Error::File(_) => file(error),
         _ => physics(error),
+    }
+}
+
+/// The exception of a command that failed: wrong usage is a `ValueError`, and a file that cannot be read a `FileError`.
+pub(crate) fn failure(failure: Failure) -> PyErr {
+    match failure.exit {
+        Exit::Usage => PyValueError::new_err(failure.to_string()),
+        Exit::PhysicsInvalid => physics(failure),
+        _ => file(failure),
     }
 }
 

@@ -10,7 +10,10 @@ use pyo3::prelude::*;
 use std::ffi::CString;
 use std::path::PathBuf;
 
-/// All packings of a file or run directory.
+/// All packings of a recording, CSV, LAMMPS dump or data file, or YADE export; keywords give what the file lacks, in SI
+/// units: cell (3, 3) and radius, m; shear modulus, Pa; density, kg/m3. Raises FileError.
+///
+/// >>> (packing,) = grainlab.load("packing.data", shear_modulus=29e9, poisson_ratio=0.2, friction=0.3)
 #[pyfunction]
 #[pyo3(signature = (path, *, cell=None, shear_modulus=None, poisson_ratio=None, density=None, friction=None, radius=None,
     topic=None))]

@@ -1,14 +1,14 @@
-//! The Python module `grainlab`: packings as numpy arrays without copies, measurements, inversion, simulation.
+//! The Python module `grainlab`: packings as numpy arrays without copies, measurements, inversion, simulation, and the program.
 //!
 //! - `packing`: a packing and its arrays; `arrays`: views of Rust memory as numpy arrays
 //! - `recording`: recordings, their packings and messages; `files`: packings from files of other programs
-//! - `measure`, `invert`, `simulate`: the kernels, with the interpreter lock released
+//! - `measure`, `invert`, `simulate`: kernels and commands, with the interpreter lock released; `program`: the command line
 //! - `posterior`: draws from a posterior
 //! - `values`: messages and quantities as Python objects; `error`: exceptions
 //!
-//! The Python half is in `python/grainlab`, the types for type checkers in `python/grainlab/_grainlab.pyi`.
+//! The Python half is in `python/grainlab`. The classes and functions that users see have their texts here; `tests/test_texts.py`
+//! compares them with the types for type checkers in `python/grainlab/_grainlab.pyi`.
 
-// The documentation is in the type stubs, which Python users see.
 #![allow(missing_docs)]
 
 mod arrays;
@@ -18,6 +18,7 @@ mod invert;
 mod measure;
 mod packing;
 mod posterior;
+mod program;
 mod recording;
 mod simulate;
 mod values;
@@ -31,14 +32,22 @@ fn _grainlab(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<recording::PyRecording>()?;
     module.add_class::<recording::PackingIterator>()?;
     module.add_class::<recording::MessageIterator>()?;
-    module.add_class::<simulate::PySimulation>()?;
+    module.add_class::<simulate::Run>()?;
     module.add_function(wrap_pyfunction!(recording::open, module)?)?;
     module.add_function(wrap_pyfunction!(files::load, module)?)?;
-    module.add_function(wrap_pyfunction!(measure::analyze, module)?)?;
+    module.add_function(wrap_pyfunction!(packing::unpickled, module)?)?;
+    module.add_function(wrap_pyfunction!(packing::page, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::analyze_one, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::analyze_all, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::probe_all, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::export, module)?)?;
     module.add_function(wrap_pyfunction!(measure::stiffness, module)?)?;
     module.add_function(wrap_pyfunction!(measure::quantities, module)?)?;
-    module.add_function(wrap_pyfunction!(invert::invert, module)?)?;
+    module.add_function(wrap_pyfunction!(invert::inverted, module)?)?;
     module.add_function(wrap_pyfunction!(invert::models, module)?)?;
-    module.add_function(wrap_pyfunction!(simulate::simulate, module)?)?;
+    module.add_function(wrap_pyfunction!(simulate::begin, module)?)?;
+    module.add_function(wrap_pyfunction!(simulate::scene, module)?)?;
+    module.add_function(wrap_pyfunction!(simulate::scenes_built_in, module)?)?;
+    module.add_function(wrap_pyfunction!(program::run, module)?)?;
     error::add(module)
 }

@@ -4,14 +4,17 @@ use crate::arrays::matrix;
 use crate::error;
 use crate::packing::PyPacking;
 use crate::values;
+use grainlab_command::in_memory::{self, Results};
 use grainlab_core::Vec3;
 use grainlab_core::results::QUANTITIES;
 use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
 use grainlab_micromechanics::{PackingView, Settings, analyze as measure};
+use grainlab_recordings::import::Imported;
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::path::PathBuf;
 
 fn settings(axis: [f64; 3], springs: &str, tolerance: Option<f64>) -> PyResult<Settings> {
     Ok(Settings {
@@ -32,8 +35,7 @@ fn settings(axis: [f64; 3], springs: &str, tolerance: Option<f64>) -> PyResult<S
 
 /// Everything that `grainlab analyze` reports of a packing, by key.
 #[pyfunction]
-#[pyo3(signature = (packing, *, axis=[0.0, 0.0, 1.0], springs="carried", tolerance=None))]
-pub(crate) fn analyze<'py>(
+pub(crate) fn analyze_one<'py>(
     py: Python<'py>,
     packing: &Bound<'py, PyPacking>,
     axis: [f64; 3],
@@ -47,7 +49,52 @@ pub(crate) fn analyze<'py>(
     values::quantities(py, QUANTITIES, &found.report)
 }
 
-/// The stiffness of the contact network, Pa, shape `(6, 6)`: relaxed, or affine (Voigt).
+/// The columns of `grainlab analyze --format csv`, a row for each packing.
+#[pyfunction]
+pub(crate) fn analyze_all<'py>(
+    py: Python<'py>,
+    packings: Vec<Py<PyPacking>>,
+    axis: [f64; 3],
+    springs: &str,
+    tolerance: Option<f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let settings = settings(axis, springs, tolerance)?;
+    values::columns(py, py.detach(|| in_memory::analyze(&settings, &imported(&packings))))
+}
+
+/// The columns of `grainlab probe --format csv`, a row for each packing, and for each its JSON, or none.
+#[pyfunction]
+pub(crate) fn probe_all<'py>(
+    py: Python<'py>,
+    packings: Vec<Py<PyPacking>>,
+    flags: Vec<(String, String)>,
+) -> PyResult<(Bound<'py, PyDict>, Vec<Option<String>>)> {
+    let found: Results<_> =
+        py.detach(|| in_memory::probe(&flags, &imported(&packings))).map_err(error::failure)?;
+    let json = |result: &Result<(_, bool), String>| serde_json::to_string(&result.as_ref().ok()?.0).ok();
+    let texts = found.iter().map(json).collect();
+    Ok((values::columns(py, found)?, texts))
+}
+
+/// Writes packings in a format of `grainlab bag export` into a folder; notes on them.
+#[pyfunction]
+pub(crate) fn export(
+    py: Python<'_>,
+    packings: Vec<Py<PyPacking>>,
+    format: &str,
+    folder: PathBuf,
+) -> PyResult<Vec<String>> {
+    py.detach(|| in_memory::export(format, &folder, &imported(&packings))).map_err(error::failure)
+}
+
+fn imported(packings: &[Py<PyPacking>]) -> Vec<&Imported> {
+    packings.iter().map(|packing| packing.get().imported()).collect()
+}
+
+/// Stiffness of the contact network, Pa, (6, 6), Voigt order with engineering shear: with relaxation of the grains, or
+/// affine. Springs and tolerance are those of :func:`analyze`. Raises PhysicsError if the packing is not jammed.
+///
+/// >>> grainlab.stiffness(packing)[2, 2]
 #[pyfunction]
 #[pyo3(signature = (packing, *, affine=false, springs="carried", tolerance=None))]
 pub(crate) fn stiffness<'py>(
@@ -70,7 +117,10 @@ pub(crate) fn stiffness<'py>(
     Ok(matrix(py, 6, |i, j| c.0[(i, j)]))
 }
 
-/// Quantities of `analyze`: by key, symbol, unit and meaning.
+/// The keys of :func:`analyze`, each with (symbol, unit, meaning). Raises nothing.
+///
+/// >>> grainlab.quantities()["phi"]
+/// ('φ', '1', 'solid fraction')
 #[pyfunction]
 pub(crate) fn quantities(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let dict = PyDict::new(py);

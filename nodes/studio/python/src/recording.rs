@@ -35,7 +35,9 @@ impl Stream {
     }
 }
 
-/// Opens a recording: an MCAP file or a run directory.
+/// Opens a recording: an MCAP file or a run directory. Its values are in SI units. Raises FileError.
+///
+/// >>> recording = grainlab.open("recordings/runs/demo-1-1")
 #[pyfunction]
 pub(crate) fn open(py: Python<'_>, path: PathBuf) -> PyResult<PyRecording> {
     let recording = py.detach(|| Recording::open(&path)).map_err(error::file)?;
@@ -44,7 +46,10 @@ pub(crate) fn open(py: Python<'_>, path: PathBuf) -> PyResult<PyRecording> {
     }
     Ok(PyRecording { recording: Arc::new(recording) })
 }
-
+/// An opened recording: its packings, and its messages of any type. SI units. Made by :func:`open`, which raises FileError.
+///
+/// >>> recording = grainlab.open("recordings/runs/demo-1-1")
+/// >>> recording.topics["/packing"]["messages"]
 #[pyclass(name = "Recording", module = "grainlab", frozen)]
 pub(crate) struct PyRecording {
     recording: Arc<Recording>,
@@ -59,12 +64,13 @@ impl PyRecording {
         format!("<grainlab.Recording {path}: {messages} messages on {topics} topics>")
     }
 
+    /// The path that it was opened by.
     #[getter]
     fn path(&self) -> PathBuf {
         self.recording.path().to_owned()
     }
 
-    /// By topic: type, number of messages, published, lost.
+    /// By topic: type, messages, published, lost (None where no recorder counted them).
     #[getter]
     fn topics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -85,7 +91,7 @@ impl PyRecording {
         self.recording.warnings().iter().map(ToString::to_string).collect()
     }
 
-    /// The text of the scene; `None` if the recording has none.
+    /// Text of the scene.
     #[getter]
     fn scene(&self) -> Option<String> {
         let files = self.recording.stored_files();
@@ -93,13 +99,18 @@ impl PyRecording {
         Some(String::from_utf8_lossy(&scene.bytes).into_owned())
     }
 
-    /// The packings, one by one.
+    /// Its packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have.
     #[pyo3(signature = (topic="packing"))]
-    fn packings(&self, topic: &str) -> PyResult<PackingIterator> {
+    fn packings<'py>(slf: Bound<'py, Self>, topic: &str) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("grainlab.recordings")?.getattr("Packings")?.call1((slf, topic))
+    }
+
+    /// The packings, one by one.
+    fn _packings(&self, topic: &str) -> PyResult<PackingIterator> {
         Ok(PackingIterator(Mutex::new(Stream::of(&self.recording, Some(vec![topic.to_owned()]))?)))
     }
 
-    /// The last packing.
+    /// Its last packing. Raises IndexError if it has none.
     #[pyo3(signature = (topic="packing"))]
     fn last_packing(&self, py: Python<'_>, topic: &str) -> PyResult<PyPacking> {
         let message = py.detach(|| self.recording.last(topic)).map_err(error::file)?;
@@ -107,7 +118,7 @@ impl PyRecording {
         Ok(packing(&message).map_err(error::file)?.into())
     }
 
-    /// The messages of some topics, or of all: topic, time of arrival (ns since 1970), fields.
+    /// (topic, time of arrival in ns since 1970, fields) of the messages of these topics, or of all, of any type. Raises FileError.
     #[pyo3(signature = (*topics))]
     fn messages(&self, topics: Vec<String>) -> PyResult<MessageIterator> {
         let topics = (!topics.is_empty()).then_some(topics);
@@ -123,6 +134,12 @@ pub(crate) struct PackingIterator(Mutex<Stream>);
 impl PackingIterator {
     fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
         slf
+    }
+
+    /// Passes over this number of packings, which are not decoded.
+    fn skip(&self, py: Python<'_>, number: usize) {
+        let next = |_| self.0.lock().unwrap_or_else(PoisonError::into_inner).next();
+        py.detach(|| (0..number).map_while(next).for_each(drop));
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<PyPacking>> {

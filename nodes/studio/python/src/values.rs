@@ -1,7 +1,9 @@
 //! Quantities and messages as Python objects.
 
 use grainlab_any_message::{Array, Message, Value as Field};
+use grainlab_command::in_memory::Results;
 use grainlab_core::quantity::{Quantity, Shape, Value};
+use grainlab_results::Printed;
 use numpy::IntoPyArray;
 use numpy::ndarray::Array2;
 use pyo3::prelude::*;
@@ -38,6 +40,43 @@ pub(crate) fn quantities<'py, R>(
         dict.set_item(quantity.key, value)?;
     }
     Ok(dict)
+}
+
+/// Columns of a table of results, with `status` (ok, or unknown for a row without an answer) and `reason`: numbers as arrays with NaN
+/// for what is unknown, flags as arrays, words as lists.
+pub(crate) fn columns<'py, R: Printed>(py: Python<'py>, results: Results<R>) -> PyResult<Bound<'py, PyDict>> {
+    let mut names = R::table(&[]).header().to_vec();
+    let width = names.len();
+    names.extend(["status", "reason"].map(str::to_owned));
+    let row = |result: Result<(R, bool), String>| match result {
+        Err(reason) => (vec![String::new(); width], false, reason),
+        Ok((found, is_without)) => {
+            let cells = R::table(std::slice::from_ref(&found)).rows().concat();
+            (cells, !is_without, found.warnings().join("; "))
+        }
+    };
+    let rows = results.into_iter().map(row).map(|(mut cells, is_known, reason)| {
+        cells.extend([if is_known { "ok" } else { "unknown" }.to_owned(), reason]);
+        cells
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    let dict = PyDict::new(py);
+    for (at, name) in names.iter().enumerate() {
+        dict.set_item(name, column(py, rows.iter().map(|row| row[at].as_str()).collect(), at < width)?)?;
+    }
+    Ok(dict)
+}
+
+/// One column of cells; it may be numbers or flags.
+fn column<'py>(py: Python<'py>, cells: Vec<&str>, may_be_numbers: bool) -> PyResult<Bound<'py, PyAny>> {
+    let number = |cell: &&str| if cell.is_empty() { Ok(f64::NAN) } else { cell.parse::<f64>() };
+    let flags = cells.iter().map(|cell| cell.parse::<bool>()).collect::<Result<Vec<_>, _>>();
+    let numbers = cells.iter().map(number).collect::<Result<Vec<_>, _>>();
+    Ok(match (numbers, flags) {
+        (Ok(numbers), _) if may_be_numbers => numbers.into_pyarray(py).into_any(),
+        (_, Ok(flags)) if may_be_numbers => flags.into_pyarray(py).into_any(),
+        _ => PyList::new(py, cells)?.into_any(),
+    })
 }
 
 /// A message as a dictionary, its arrays of numbers as numpy arrays.

@@ -61,16 +61,39 @@ def test_wrong_input_raises(golden):
         grainlab.analyze(golden, axis=(0, 0, 0))
     with pytest.raises(grainlab.PhysicsError, match="tolerance"):
         grainlab.stiffness(golden, tolerance=float("nan"))
-    with pytest.raises(ValueError, match="one of"):
+    with pytest.raises(ValueError, match="no model"):
         grainlab.invert(pressure=1e5, g12=1e8, g13=1e8, theta=1e8, model="none")
-    with pytest.raises(grainlab.PhysicsError):
+    with pytest.raises(ValueError, match="pressure"):
         grainlab.invert(pressure=-1e5, g12=1e8, g13=1e8, theta=1e8)
-    with pytest.raises(grainlab.PhysicsError):
+    with pytest.raises(ValueError, match="no column of a modulus"):
         grainlab.invert(pressure=1e5)
+    with pytest.raises(grainlab.PhysicsError):
+        grainlab.invert(pressure=1e5, g12=1e8, g13=1e8, theta=1e6, phi=0.64)
+    with pytest.raises(TypeError, match="presure"):
+        grainlab.invert(presure=1e5, g12=1e8)
     alone = grainlab.Packing(np.eye(3), np.zeros((1, 3)), np.array([0.1]))
     with pytest.raises(grainlab.PhysicsError):
         grainlab.stiffness(alone)
     assert grainlab.analyze(alone)["stiffness_pa"] is None
+
+
+def test_packings_are_measured_as_columns_and_one_without_an_answer_is_named(golden, smooth):
+    alone = grainlab.Packing(np.eye(3), np.zeros((1, 3)), np.array([0.1]))
+    found = grainlab.analyze([golden, alone, smooth])
+    assert list(found["status"]) == ["ok", "unknown", "ok"] and "touches" in found["reason"][1]
+    assert np.isnan(found["g12_pa"][1]) and found["g12_pa"][0] == grainlab.analyze(golden)["g12_pa"]
+    assert grainlab.analyze([])["z"].shape == (0,)
+    with pytest.raises(TypeError, match="packings are needed, or the path of a file, not int"):
+        grainlab.analyze([1])
+
+
+def test_the_speeds_of_waves_give_the_moduli_of_the_network(golden):
+    found = grainlab.probe(golden)["acoustic"]
+    assert abs(found["g13_pa"] / grainlab.analyze(golden)["g13_pa"] - 1) < 0.01
+    columns = grainlab.probe([golden], speed_noise=0.003, seed=2)
+    assert columns["g13_pa"] != found["g13_pa"] and list(columns["status"]) == ["ok"]
+    with pytest.raises(ValueError, match="no parameter foo"):
+        grainlab.probe(golden, foo=1)
 
 
 def test_other_threads_run_during_a_computation(golden):

@@ -1,4 +1,6 @@
 import gc
+import multiprocessing
+import pickle
 
 import grainlab
 import numpy as np
@@ -76,6 +78,42 @@ def test_a_packing_without_contacts_has_empty_arrays():
 def test_wrong_arrays_raise_and_never_abort(cell, positions, radii, words):
     with pytest.raises(ValueError, match=words):
         grainlab.Packing(cell, positions, np.array(radii))
+
+
+def test_a_pickle_loses_nothing(packing, golden):
+    for one in (packing, golden):
+        again = pickle.loads(pickle.dumps(one))
+        assert pickle.dumps(again) == pickle.dumps(one)
+        for name in ("time", "phase", "source", "notes", "friction", "step", "end_of_phase"):
+            assert getattr(again, name) == getattr(one, name), name
+        for name in ("positions", "velocities", "contact_overlaps", "contact_tangential_forces", "cell"):
+            assert getattr(again, name).tobytes() == getattr(one, name).tobytes(), name
+
+
+def test_processes_return_packings(packing):
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        (again,) = pool.map(pickle.loads, [pickle.dumps(packing)])
+    assert again.positions.tobytes() == packing.positions.tobytes()
+
+
+def test_the_stress_is_that_of_the_contact_forces(packing):
+    forces = packing.contact_normal_forces[:, None] * packing.contact_normals - packing.contact_tangential_forces
+    stress = forces.T @ packing.contact_branches / np.linalg.det(packing.cell)
+    assert np.allclose(packing.stress, (stress + stress.T) / 2, rtol=1e-12, atol=1e-9)
+    assert packing.phase == 10 and packing.end_of_phase and np.allclose(np.trace(packing.stress) / 3, 5e4, rtol=1e-3)
+
+
+def test_pictures_and_files_have_the_packing(packing, tmp_path):
+    assert grainlab.view(packing, tmp_path / "p.png", color="force").read_bytes()[:4] == b"\x89PNG"
+    assert "<iframe" in grainlab.view([packing])._repr_html_()
+    for name in ("csv", "lammps", "lammps-data", "xyz", "vtk", "vtkhdf"):
+        assert grainlab.export([packing], tmp_path / name, format=name), name
+    (again,) = grainlab.load(tmp_path / "csv/packing_1.csv")
+    assert again.contact_tangential_forces.tobytes() == packing.contact_tangential_forces.tobytes()
+    with pytest.raises(grainlab.FileError, match="exists"):
+        grainlab.export([packing], tmp_path / "csv", format="csv")
+    with pytest.raises(ValueError, match="vtkhdf"):
+        grainlab.export([packing], tmp_path, format="stl")
 
 
 def test_fortran_order_and_strides_are_read_as_they_are(packing):

@@ -1,5 +1,7 @@
 """Priors, and draws from the posterior."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -30,7 +32,22 @@ def test_a_narrow_prior_is_the_estimate_and_wrong_ones_raise():
     for text, match in [
         ("[z]\n", "distribution"),
         ('[z]\ndistribution = "uniform"\nlow = 8\nhigh = 9\n', "domain"),
-        ('[k_hat]\ndistribution = "uniform"\nlow = 4\nhigh = 5\n', "does not infer"),
+        ('[k_hat]\ndistribution = "uniform"\nlow = 4\nhigh = 5\n', "no model infers"),
     ]:
         with pytest.raises(ValueError, match=match):
             grainlab.invert(**STATE, prior=text)
+
+
+def test_draws_are_read_by_the_arviz_that_is_there():
+    found = grainlab.invert(**STATE, draws=50)
+    data = pytest.importorskip("arviz") and grainlab.to_arviz(found["draws"])
+    assert data["posterior"]["z"].shape == (4, 50)
+    assert data["posterior_predictive"]["moduli"].dims == ("chain", "draw", "modulus")
+    assert list(data["observed_data"]["modulus"].values) == ["G12", "G13", "Theta"]
+
+
+def test_draws_are_read_by_the_base_of_arviz_1(monkeypatch):
+    pytest.importorskip("arviz_base")
+    monkeypatch.setitem(sys.modules, "arviz", None)
+    data = grainlab.to_arviz(grainlab.invert(**STATE, draws=50)["draws"])
+    assert data["posterior"]["eps"].shape == (4, 50) and data["log_likelihood"]["moduli"].dims[2] == "modulus"

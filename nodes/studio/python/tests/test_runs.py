@@ -19,8 +19,30 @@ def test_a_scene_is_a_name_a_file_or_a_text(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(text)
     (of_text,) = grainlab.simulate(text)
-    (of_file,) = grainlab.simulate(str(path))
+    (of_file,) = grainlab.simulate(path)
     assert np.array_equal(of_text.positions, of_file.positions) and len(of_text) == 40
+
+
+def test_settings_are_mappings_lists_and_numbers_as_in_a_scene():
+    nested = grainlab.Scene("s2", set={"grains": {"count": 200}, "phase.load-50kPa.control": {"xx": {"stress": np.float64(1e5)}}})
+    flat = grainlab.Scene("s2", set={"grains.count": 200, "phase.load-50kPa.control.xx.stress": 1e5})
+    assert nested.text == flat.text and "count = 200" in nested.text and nested.name == "s2"
+    assert "demo" in grainlab.scenes() and "grains.count" in grainlab.scene_keys() and grainlab.scene_check("s2") == nested.check()
+    with pytest.raises(TypeError, match="no value of TOML"):
+        grainlab.Scene("s2", set={"grains.count": object()})
+
+
+def test_a_run_is_advanced_and_looked_at_and_starts_from_a_packing(run):
+    ended = []
+    other = grainlab.simulate("demo", seed=3, set={"grains.count": 150}, on_phase=lambda run, name: ended.append((name, run.phase)))
+    assert other.phase == "gas" and other.step() is None and other.steps > 0 and not other.finished
+    assert other.run(5000) == [] and other.steps >= 5000 and 0 <= (other.progress or 0) <= 1 and other.time > 0
+    (last,) = other.run()
+    assert last.positions.tobytes() == run[-1].positions.tobytes() and ended[0] == ("gas", "rest") and ended[-1] == ("settle", None)
+    assert other.finished and np.allclose(other.stress, last.stress, rtol=1e-6, atol=1) and np.array_equal(other.strain, last.strain)
+    path = "name='go'\nfriction=0.3\n[start]\npacking='-'\n[[phase]]\nkind='relax'\nname='rest'\nuntil={hold=0.0,pressure_below=1e9,timeout=0.001}\n"
+    first = next(grainlab.simulate(path, start=last))
+    assert first.contact_tangential_forces.tobytes() == last.contact_tangential_forces.tobytes() and first.phase == 0
 
 
 @pytest.mark.parametrize(
@@ -81,8 +103,48 @@ def test_messages_of_every_topic_are_dictionaries(recording):
         opened.messages("strss")
 
 
-def test_the_notebook_runs():
+def test_the_packings_of_a_recording_are_a_sequence(recording):
+    packings = grainlab.open(recording).packings()
+    every = list(packings)
+    assert len(packings) == len(every) and packings[-1].positions.tobytes() == every[-1].positions.tobytes()
+    assert [p.step for p in packings[::-1]] == [p.step for p in every[::-1]] and packings[5:] == []
+    with pytest.raises(IndexError):
+        packings[len(every)]
+    pytest.importorskip("matplotlib").use("Agg")
+    assert len(grainlab.plot(recording, "stress").lines) == 6
+    with pytest.raises(ValueError, match="coordination"):
+        grainlab.plot(recording, "colour")
+
+
+def test_a_launched_run_has_the_packings_of_a_simulation_and_a_report(run, tmp_path):
+    made = grainlab.launch("demo", seed=3, set={"grains.count": 150}, out=tmp_path)
+    assert made.packings()[-1].positions.tobytes() == run[-1].positions.tobytes() and made.summary["exit"] == 0
+    assert "<iframe" in grainlab.report(made)._repr_html_()
+    for call, error in ((lambda: grainlab.launch("demo", set={"grains.cuont": 5}), grainlab.SceneError), (lambda: grainlab.report(tmp_path / "x"), grainlab.GrainlabError)):
+        with pytest.raises(error, match="cuont|x: No such file"):
+            call()
+
+
+def test_a_campaign_is_gathered_as_columns(tmp_path):
+    file = {"name": "two", "scenes": ["demo"], "seeds": [3, 4], "set": {"grains.count": 150}}
+    made = grainlab.campaign(file, tmp_path / "two", jobs=2)
+    assert made.status()["counts"] == {"finished": 2} and len(made.runs) == 2
+    assert np.isfinite(made.gather()["z"]).all() and list(made.gather()["seed"]) == [3, 4]
+    with pytest.raises(grainlab.SceneError, match="seeds"):
+        grainlab.campaign({"name": "x", "scenes": ["demo"]}, tmp_path / "x")
+
+
+def test_the_program_is_in_the_package():
+    assert "demo" in grainlab.command("scene", "list")
+    with pytest.raises(ValueError, match="unrecognized subcommand"):
+        grainlab.command("inverse")
+    rows = grainlab.verify("chung-ooi")
+    assert {row["verdict"] for row in rows} <= {"passed", "explained", "differs", "not_comparable"}
+
+
+@pytest.mark.parametrize("name", ["tour", "figure", "inversion", "campaign"])
+def test_the_notebooks_run(name, tmp_path):
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
-    path = pathlib.Path(__file__).parents[1] / "examples/tour.ipynb"
+    path = pathlib.Path(__file__).parents[1] / f"examples/{name}.ipynb"
     notebook = nbformat.read(path, as_version=4)
-    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(path.parent)}}).execute()
+    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()

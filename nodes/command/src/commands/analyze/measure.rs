@@ -17,7 +17,7 @@ use std::time::Instant;
 const ONE_SIDED: f64 = 0.01;
 
 /// Measures one packing of `source`; the error names both.
-pub(super) fn measure(
+pub(crate) fn measure(
     settings: &Settings,
     source: &str,
     imported: &Imported,

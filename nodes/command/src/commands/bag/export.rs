@@ -1,6 +1,7 @@
 //! `grainlab bag export`.
 
 use crate::commands::packings::import as import_flags;
+use clap::ValueEnum;
 use grainlab_console::{Failure, print, say};
 use grainlab_core::Packing;
 use grainlab_experiment::{PathPosition, StrainOrigin};
@@ -56,7 +57,10 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut writer = Writer::new(args.format, &args.path, &args.out);
     let mut failure = None;
     let warnings = import::each(&args.path, &options, &mut |imported| match writer.write(&imported) {
-        Ok(()) => ControlFlow::Continue(()),
+        Ok(notes) => {
+            notes.iter().for_each(|note| say!("grainlab: {note}"));
+            ControlFlow::Continue(())
+        }
         Err(error) => {
             failure = Some(error);
             ControlFlow::Break(())
@@ -74,6 +78,23 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     ))?;
     warnings.iter().for_each(|w| say!("grainlab: {w}"));
     Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
+}
+
+/// Writes packings in a format of the command into a folder, made if it does not exist; notes on them.
+///
+/// # Errors
+/// A format that does not exist or cannot hold a packing, and files that exist or cannot be written; then none is left.
+pub fn export(format: &str, folder: &Path, packings: &[&Imported]) -> Result<Vec<String>, Failure> {
+    let format = ExportFormat::from_str(format, false).map_err(|_| {
+        let known = ExportFormat::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+        let known: Vec<String> = known.map(|value| value.get_name().to_owned()).collect();
+        Failure::usage(format!("no format {format:?}; there are: {}", known.join(", ")))
+    })?;
+    std::fs::create_dir_all(folder).map_err(Failure::at(folder))?;
+    let mut writer = Writer::new(format, Path::new("packing"), folder);
+    let written: Result<Vec<_>, _> = packings.iter().map(|packing| writer.write(packing)).collect();
+    let written = written.and_then(|notes| writer.finish().map(|()| notes.concat()));
+    written.inspect_err(|_| writer.remove())
 }
 
 /// Writes packings into a folder.
@@ -106,25 +127,26 @@ impl<'a> Writer<'a> {
         Self { exporter, path, folder, packings: 0, made: BTreeSet::new(), strain_is_left_out: false }
     }
 
-    fn write(&mut self, imported: &Imported) -> Result<(), Failure> {
+    /// Writes the next packing; notes on it.
+    fn write(&mut self, imported: &Imported) -> Result<Vec<String>, Failure> {
         let source = self.path.display();
-        imported.notes.iter().for_each(|note| say!("grainlab: {source}: {note}"));
+        let mut notes: Vec<String> = imported.notes.iter().map(|note| format!("{source}: {note}")).collect();
         if self.packings == 0 && imported.packing.law.rolling.is_some() && self.exporter.loses_rolling() {
-            say!(
-                "grainlab: {source}: contacts resist rolling, and files for LAMMPS have neither this law nor its forces"
-            );
+            notes.push(format!(
+                "{source}: contacts resist rolling, and files for LAMMPS have neither this law nor its forces"
+            ));
         }
         let packing = referred(imported);
         if !self.strain_is_left_out && matches!(packing, Cow::Owned(_)) {
             self.strain_is_left_out = true;
-            say!(
-                "grainlab: {source}, from step {}: the strain is left out: no phase of the run has set a reference state",
+            notes.push(format!(
+                "{source}, from step {}: the strain is left out: no phase of the run has set a reference state",
                 imported.step
-            );
+            ));
         }
         let parts = self.exporter.next(&packing).map_err(Failure::failed)?;
         self.packings += 1;
-        parts.iter().try_for_each(|part| self.append(part))
+        parts.iter().try_for_each(|part| self.append(part)).map(|()| notes)
     }
 
     fn finish(&mut self) -> Result<(), Failure> {

@@ -14,8 +14,11 @@ pub(super) fn named(name: &str) -> Result<Option<Arc<Calibration>>, Failure> {
     if name == DEFAULT { Ok(None) } else { load(name).map(Arc::new).map(Some) }
 }
 
-/// A built-in calibration by its name, or one from a file.
+/// A built-in calibration by its name, one from a file, or the text of a file.
 fn load(name: &str) -> Result<Calibration, Failure> {
+    if name.contains('\n') {
+        return Calibration::parse(name).map_err(|e| Failure::usage(format!("calibration: {e}")));
+    }
     if let Some(calibration) = Calibration::builtin(name) {
         return Ok(calibration.clone());
     }

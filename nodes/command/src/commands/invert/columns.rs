@@ -8,6 +8,7 @@ use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt::{Moduli, Modulus, check_structure};
 use std::io::Read as _;
+use std::sync::LazyLock;
 
 /// Share of the largest entry of a stiffness up to which two values of one entry are the same, rounded to four digits.
 const SAME: f64 = 1e-3;
@@ -75,7 +76,7 @@ impl Columns {
         }
         let there = || format!("there are: {}", names.join(", "));
         let stiffness = stiffness_columns(&find)?;
-        let entries = entries();
+        let (entries, ..) = &*NAMES;
         let mut inputs = Vec::new();
         for input in INPUTS.iter() {
             let mut found = Vec::new();
@@ -380,20 +381,19 @@ fn entries() -> Vec<String> {
     (0..36).map(|n| format!("c{}{}_pa", n / 6 + 1, n % 6 + 1)).collect()
 }
 
+/// Entries of a stiffness, columns that are read, and columns that an analysis prints.
+static NAMES: LazyLock<(Vec<String>, Vec<&str>, Vec<String>)> = LazyLock::new(|| {
+    let of_inputs = INPUTS.iter().flat_map(Input::names).map(|alias| alias.name);
+    let others = ["contact_law", "smooth", "axis_found"];
+    let axis = ["reference_axis_x", "reference_axis_y", "reference_axis_z"];
+    let read = of_inputs.chain(others).chain(axis).collect();
+    (entries(), read, QUANTITIES.iter().flat_map(|q| q.columns()).collect())
+});
+
 /// Refuses a column that is not read, is not to group by, and is named almost like one that is read, or is one of a part of
 /// the entries of a stiffness.
 fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), String> {
-    let entries = entries();
-    let mut read: Vec<&str> = INPUTS.iter().flat_map(|i| i.names()).map(|alias| alias.name).collect();
-    read.extend([
-        "contact_law",
-        "smooth",
-        "axis_found",
-        "reference_axis_x",
-        "reference_axis_y",
-        "reference_axis_z",
-    ]);
-    let printed: Vec<String> = QUANTITIES.iter().flat_map(|q| q.columns()).collect();
+    let (entries, read, printed) = &*NAMES;
     let labels = ["sample", "source", "step"];
     for name in names {
         let is_known = labels.contains(&name.as_str()) || read.contains(&name.as_str());
@@ -406,8 +406,8 @@ fn no_slips(names: &[String], by: &[String], has_stiffness: bool) -> Result<(), 
                  leave it out"
             ));
         }
-        let extended = || slips::extended(name, &read).filter(|_| !printed.contains(name));
-        let Some(meant) = slips::meant(name, &read).or_else(extended) else { continue };
+        let extended = || slips::extended(name, read).filter(|_| !printed.contains(name));
+        let Some(meant) = slips::meant(name, read).or_else(extended) else { continue };
         // An axis changes nothing but a stiffness: moduli of a medium are given about it.
         if meant.starts_with("reference_axis") && !has_stiffness {
             continue;

@@ -12,7 +12,12 @@ use std::sync::Arc;
 pub(super) fn apply(path: &Path, cases: &mut [Case]) -> Result<(), Failure> {
     let name = path.display();
     let text = input::text(path, input::SETTINGS).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
-    let prior = Prior::parse(&text).map_err(|e| Failure::usage(format!("{name}: {e}")))?;
+    apply_text(&name.to_string(), &text, cases)
+}
+
+/// As [`apply`], with the text of the file of this name.
+pub(super) fn apply_text(name: &str, text: &str, cases: &mut [Case]) -> Result<(), Failure> {
+    let prior = Prior::parse(text).map_err(|e| Failure::usage(format!("{name}: {e}")))?;
     for quantity in prior.quantities() {
         let without = |case: &&Case| !case.model.quantities(&case.calibration).contains(&quantity);
         let mut models: Vec<&str> = cases.iter().filter(without).map(|case| case.model.name()).collect();

@@ -6,7 +6,7 @@ use grainlab_console::Failure;
 use grainlab_recordings::input;
 use rayon::prelude::*;
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Cursor, Read};
 use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 
@@ -88,7 +88,15 @@ pub(crate) struct Rows {
 impl Rows {
     /// Opens a table; `-` is the standard input.
     pub(crate) fn open(path: &Path, by: &[&[String]], defaults: State) -> Result<Self, Failure> {
-        let mut lines = Lines::open(path)?;
+        Self::below_header(Lines::open(path)?, by, defaults)
+    }
+
+    /// The table of this text.
+    pub(super) fn of_text(text: Vec<u8>, defaults: State) -> Result<Self, Failure> {
+        Self::below_header(Lines::new(Box::new(Cursor::new(text)), "table".to_owned()), &[], defaults)
+    }
+
+    fn below_header(mut lines: Lines, by: &[&[String]], defaults: State) -> Result<Self, Failure> {
         while let Some(line) = lines.line()? {
             // Some spreadsheets begin their files with a byte order mark.
             let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&line);

@@ -1,7 +1,7 @@
 //! The result of a run, read back from its recording.
 
 use super::output::Output;
-use grainlab_console::{Failure, Format, json, print, worse, write_whole};
+use grainlab_console::{Failure, Format, called, json, print, worse, write_whole};
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::{Received, Supervised};
 use grainlab_node_kit::{Exit, RunId};
@@ -121,7 +121,7 @@ pub(super) fn finish(
         Format::Csv => MeasuredPacking::table(&packings).csv(),
         Format::Table => {
             let all = if output.verbose { summary_text::text(&summary) + "\n" } else { String::new() };
-            all + &brief::text(&summary, &from_here(directory), &files, &program())
+            all + &brief::text(&summary, &from_here(directory), &files, &called())
         }
     });
     for failure in [written, printed].into_iter().filter_map(Result::err) {
@@ -153,9 +153,4 @@ fn report(output: Output, directory: &Path) {
 fn from_here(path: &Path) -> PathBuf {
     let here = std::env::current_dir().and_then(|d| d.canonicalize());
     here.ok().and_then(|d| path.strip_prefix(d).ok()).unwrap_or(path).to_owned()
-}
-
-/// This program as it was called.
-fn program() -> String {
-    std::env::args().next().unwrap_or_else(|| "grainlab".to_owned())
 }

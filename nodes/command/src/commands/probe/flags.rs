@@ -13,6 +13,18 @@ const NODE: NodeKind = NodeKind::AcousticProbe;
 pub(super) struct Flags(Vec<(&'static str, String)>);
 
 impl Flags {
+    /// Parameters of the node, by name.
+    pub(super) fn of(given: &[(String, String)]) -> Result<Self, Failure> {
+        let specs = parameters();
+        let one = |(name, text): &(String, String)| {
+            let spec = specs.iter().find(|spec| spec.name == name);
+            let known = || specs.iter().map(|spec| spec.name).collect::<Vec<_>>().join(", ");
+            let spec = spec.ok_or_else(|| Failure::usage(format!("no parameter {name}; there are: {}", known())))?;
+            Ok((spec.name, text.clone()))
+        };
+        given.iter().map(one).collect::<Result<_, _>>().map(Self)
+    }
+
     /// The settings of the node with these parameters.
     pub(super) fn settings(&self) -> Result<Settings, Failure> {
         let specs = parameters();

@@ -12,7 +12,7 @@ use grainlab_recordings::import::Imported;
 use grainlab_results::{AcousticReport, MeasuredPacking, Probed, state_warnings};
 
 /// Measures one packing of `source`; the error names both.
-pub(super) fn measure(
+pub(crate) fn measure(
     settings: &Settings,
     source: &str,
     imported: &Imported,

@@ -35,9 +35,9 @@ struct Process(Child);
 impl Process {
     fn start(domain: &FreeDomain, arguments: &[&str]) -> Result<Self, Failure> {
         let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", arguments.join(" ")));
-        let binary = std::env::current_exe().map_err(failed)?;
-        let mut command = Command::new(binary);
-        command.args(arguments).env("ROS_DOMAIN_ID", domain.id.to_string());
+        let words = grainlab_console::program().map_err(failed)?;
+        let mut command = Command::new(&words[0]);
+        command.args(&words[1..]).args(arguments).env("ROS_DOMAIN_ID", domain.id.to_string());
         Ok(Self(command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().map_err(failed)?))
     }
 

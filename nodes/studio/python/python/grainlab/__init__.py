@@ -1,11 +1,11 @@
-"""Packings of elastic spheres: recordings as numpy arrays, fabric and stiffness, inversion, simulation.
+"""Packings of elastic spheres: recordings as numpy arrays, simulation, fabric and stiffness, waves, inversion, campaigns, reports.
 
-SI units. Stress is positive in compression. Voigt order is xx, yy, zz, yz, xz, xy. Arrays of a packing share its memory
-and are read-only.
+SI units. Stress is positive in compression, strain in extension. Voigt order is xx, yy, zz, yz, xz, xy. Arrays of a packing share its
+memory and are read-only. Recorded runs, campaigns and reports are made by processes of the program ``grainlab``, which this package has.
 
 >>> import grainlab
->>> *_, packing = grainlab.simulate("demo", set={"grains.count": 200})   # doctest: +SKIP
->>> grainlab.stiffness(packing)                                          # doctest: +SKIP
+>>> *_, packing = grainlab.simulate("demo", set={"grains.count": 200})
+>>> grainlab.stiffness(packing)
 """
 
 from ._grainlab import (
@@ -15,36 +15,62 @@ from ._grainlab import (
     PhysicsError,
     Recording,
     SceneError,
-    Simulation,
     __version__,
-    analyze,
-    invert,
     load,
     models,
     open,
     quantities,
-    simulate,
     stiffness,
 )
-from .handover import to_freud, to_ovito
+from .handover import to_arviz, to_freud, to_ovito
+from .inversion import calibrate, invert, pick, plan
+from .measurement import Page, analyze, export, probe, view
+from .plots import plot
+from .program import command
+from .recordings import Packings
+from .runs import Campaign, Run, campaign, launch, report, reproduce, verify
+from .scenes import Scene, scene_check, scene_keys, scenes
+from .simulation import Simulation, simulate
 
 __all__ = [
+    "Campaign",
     "FileError",
     "GrainlabError",
     "Packing",
+    "Packings",
+    "Page",
     "PhysicsError",
     "Recording",
+    "Run",
+    "Scene",
     "SceneError",
     "Simulation",
     "__version__",
     "analyze",
+    "calibrate",
+    "campaign",
+    "command",
+    "export",
     "invert",
+    "launch",
     "load",
     "models",
     "open",
+    "pick",
+    "plan",
+    "plot",
+    "probe",
     "quantities",
+    "report",
+    "reproduce",
+    "scene_check",
+    "scene_keys",
+    "scenes",
     "simulate",
     "stiffness",
+    "to_arviz",
     "to_freud",
     "to_ovito",
+    "verify",
+    "view",
 ]

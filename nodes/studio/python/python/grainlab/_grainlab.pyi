@@ -1,11 +1,13 @@
-"""Types of the compiled module. Shapes: n grains, m contacts. SI units."""
+"""Types of the compiled module. Shapes: n grains, m contacts. SI units. tests/test_texts.py writes the texts."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from os import PathLike
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+
+from .recordings import Packings
 
 __version__: str
 
@@ -22,13 +24,20 @@ class PhysicsError(GrainlabError):
     """Physics that cannot go on: a packing that is not jammed, an unstable run, moduli without a solution."""
 
 class Packing:
-    """A packing of spheres in a periodic cell, which never changes. ``len(packing)`` is the number of grains.
+    """A packing of spheres in a periodic cell, which never changes. ``len(packing)`` is the number of grains n; m is that of contacts. SI units.
 
-    Its arrays share its memory, without copies, and are read-only; each keeps the packing in memory.
+    Its arrays share its memory, without copies, and are read-only; each keeps the packing in memory. It can be pickled, without loss.
+
+    Made from arrays: cell (3, 3) with its edge vectors as columns, positions (n, 3), radii (n,), m; velocities (n, 3), m/s; shear modulus,
+    Pa; density, kg/m3. Contacts are those of overlapping spheres, with Hertz forces and without tangential forces. Raises ValueError for
+    wrong shapes, numbers that are not finite, and spheres that coincide.
+
+    >>> packing = grainlab.Packing(1e-3 * numpy.eye(3), centres, radii, friction=0.3)
+    >>> packing.contact_normals @ packing.stress
     """
 
-    def __init__(
-        self,
+    def __new__(
+        cls,
         cell: NDArray[np.float64],
         positions: NDArray[np.float64],
         radii: NDArray[np.float64],
@@ -38,13 +47,7 @@ class Packing:
         poisson_ratio: float = 0.2,
         density: float = 2500.0,
         friction: float = 0.0,
-    ) -> None:
-        """From arrays: cell (3, 3) with its edge vectors as columns, positions (n, 3), radii (n,), m; velocities (n, 3), m/s;
-        shear modulus, Pa; density, kg/m3.
-
-        Contacts are those of overlapping spheres, with Hertz forces and without tangential forces.
-        Raises ValueError for wrong shapes, numbers that are not finite, and spheres that coincide.
-        """
+    ) -> Packing: ...
 
     def __len__(self) -> int: ...
     @property
@@ -62,6 +65,21 @@ class Packing:
     @property
     def solid_fraction(self) -> float:
         """Volume of the spheres over that of the cell."""
+    @property
+    def stress(self) -> NDArray[np.float64]:
+        """Stress, Pa, shape (3, 3), positive in compression: a new array."""
+    @property
+    def strain(self) -> NDArray[np.float64] | None:
+        """Logarithmic strain, shape (3, 3), positive in extension, of the same origin as the deformation: a new array. None for a packing
+        that has none.
+        """
+    @property
+    def phase(self) -> int | None:
+        """Number of the phase of its scene, from 1; 0 for the packing that a run started from; None for a packing of no run."""
+    @property
+    def end_of_phase(self) -> bool | None:
+        """True if the phase met its end conditions at this packing; one within a phase need not be at rest. None for a packing of no run."""
+    def _png(self, color: str, size: str) -> bytes: ...
     @property
     def friction(self) -> float:
         """Friction coefficient in force; may be infinite."""
@@ -130,8 +148,17 @@ class Packing:
     def rattlers(self) -> NDArray[np.bool_]:
         """Whether each grain carries no force, (n,): a copy."""
 
+class PackingIterator(Iterator[Packing]):
+    def skip(self, number: int) -> None:
+        """Passes over this number of packings, which are not decoded."""
+    def __next__(self) -> Packing: ...
+
 class Recording:
-    """An opened recording."""
+    """An opened recording: its packings, and its messages of any type. SI units. Made by :func:`open`, which raises FileError.
+
+    >>> recording = grainlab.open("recordings/runs/demo-1-1")
+    >>> recording.topics["/packing"]["messages"]
+    """
 
     @property
     def path(self) -> PathLike[str]:
@@ -145,20 +172,19 @@ class Recording:
     @property
     def scene(self) -> str | None:
         """Text of the scene."""
-    def packings(self, topic: str = "packing") -> Iterator[Packing]:
-        """Its packings, read one by one. Raises FileError for a topic that it does not have."""
+    def _packings(self, topic: str) -> PackingIterator: ...
+    def packings(self, topic: str = "packing") -> Packings:
+        """Its packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have."""
     def last_packing(self, topic: str = "packing") -> Packing:
         """Its last packing. Raises IndexError if it has none."""
     def messages(self, *topics: str) -> Iterator[tuple[str, int, dict[str, Any]]]:
-        """(topic, time of arrival in ns since 1970, fields) of the messages of these topics, or of all, of any type."""
-
-class Simulation(Iterator[Packing]):
-    """A run of a scene: iterate over the packings that it publishes."""
-
-    def __next__(self) -> Packing: ...
+        """(topic, time of arrival in ns since 1970, fields) of the messages of these topics, or of all, of any type. Raises FileError."""
 
 def open(path: str | PathLike[str]) -> Recording:
-    """Opens a recording: an MCAP file or a run directory. Raises FileError."""
+    """Opens a recording: an MCAP file or a run directory. Its values are in SI units. Raises FileError.
+
+    >>> recording = grainlab.open("recordings/runs/demo-1-1")
+    """
 
 def load(
     path: str | PathLike[str],
@@ -172,19 +198,10 @@ def load(
     topic: str | None = None,
 ) -> list[Packing]:
     """All packings of a recording, CSV, LAMMPS dump or data file, or YADE export; keywords give what the file lacks, in SI
-    units. Raises FileError."""
+    units: cell (3, 3) and radius, m; shear modulus, Pa; density, kg/m3. Raises FileError.
 
-def analyze(
-    packing: Packing,
-    *,
-    axis: ArrayLike = (0.0, 0.0, 1.0),
-    springs: Literal["carried", "both", "normal"] = "carried",
-    tolerance: float | None = None,
-) -> dict[str, Any]:
-    """Structure, stress and stiffness: all that ``grainlab analyze`` reports, by key (see :func:`quantities`). Unknown values
-    are None, stiffnesses arrays (6, 6), Pa. Springs: "carried" are those that the contacts carry, no tangential ones in a
-    packing without friction. The tolerance is the relative residual of the solve; None: 1e-9, and 1e-5 from 50,000 grains. Raises
-    PhysicsError."""
+    >>> (packing,) = grainlab.load("packing.data", shear_modulus=29e9, poisson_ratio=0.2, friction=0.3)
+    """
 
 def stiffness(
     packing: Packing,
@@ -194,54 +211,65 @@ def stiffness(
     tolerance: float | None = None,
 ) -> NDArray[np.float64]:
     """Stiffness of the contact network, Pa, (6, 6), Voigt order with engineering shear: with relaxation of the grains, or
-    affine; tolerance as in :func:`analyze`. Raises PhysicsError if the packing is not jammed."""
+    affine. Springs and tolerance are those of :func:`analyze`. Raises PhysicsError if the packing is not jammed.
 
+    >>> grainlab.stiffness(packing)[2, 2]
+    """
 def quantities() -> dict[str, tuple[str, str, str]]:
-    """The keys of :func:`analyze`: symbol, unit, meaning."""
+    """The keys of :func:`analyze`, each with (symbol, unit, meaning).
 
+    >>> grainlab.quantities()["phi"]
+    ('φ', '1', 'solid fraction')
+    """
 def models() -> list[str]:
-    """Names of the models of :func:`invert`."""
+    """Names of the models of :func:`invert`, the one with the smallest error on held-out packings first. It has no units and raises nothing.
 
-def invert(
-    *,
-    pressure: float,
-    g12: float | None = None,
-    g13: float | None = None,
-    theta: float | None = None,
-    c11: float | None = None,
-    c33: float | None = None,
-    c13: float | None = None,
-    phi: float | None = None,
-    stress_ratio: float | None = None,
-    size_spread: float | None = None,
-    gamma: float | None = None,
-    error: float = 0.01,
-    shear_modulus: float | None = None,
-    poisson_ratio: float | None = None,
-    pressure_sigma: float = 0.0,
-    stress_ratio_sigma: float = 0.0,
-    shear_modulus_sigma: float = 0.0,
-    poisson_ratio_sigma: float = 0.0,
-    model: str = "relaxed",
-    prior: str | None = None,
-    draws: int | None = None,
-    seed: int = 0,
-) -> dict[str, Any]:
-    """Coordination and anisotropy from moduli and pressure, Pa, each modulus with this relative error. ``k``, ``z``, ``eps`` and
-    others with ``_sigma`` and the 95 % ``_interval``; None is undetermined. ``status`` is ok, extrapolated or contradictory, with the
-    reason in ``warnings``. Raises PhysicsError for moduli without a solution. The standard deviations of pressure and shear modulus
-    are in Pa; 0 takes a value as exact.
+    >>> grainlab.models()[0]
+    'relaxed'
+    """
 
-    ``prior`` is the text of a prior file, as ``grainlab invert --print-prior`` prints it. With ``draws``, the key of this name has
-    so many independent draws from the posterior in each of four chains, the same for the same seed:
-    ``arviz.from_dict(**found["draws"])``. Its log_likelihood is that of each modulus given the others, for moduli in MPa."""
+class Run:
+    """A run of a scene."""
+    def advance(self, limit: float) -> Packing | None:
+        """Goes on until a packing is due, a phase or the path has ended, or this time has passed, s, for one exchange at least."""
+    def packing(self) -> Packing:
+        """The present packing."""
+    def names(self) -> tuple[str, str | None]:
+        """Name of the scene, and of the phase."""
+    def clock(self) -> tuple[int, float, float | None, bool]:
+        """Steps, time (s), share of the phase that is done, and whether the path is done."""
+    def stress(self) -> NDArray[np.float64]:
+        """Stress, Pa, shape `(3, 3)`."""
 
-def simulate(
-    scene: str,
-    *,
-    seed: int | None = None,
-    set: Mapping[str, Any] | None = None,
-    threads: int = 1,
-) -> Simulation:
-    """A run of a scene: the name of a built-in one, a path, or the text of a TOML file. ``set`` has keys such as
-    ``"grains.count": 500``. The packings are those of ``grainlab launch``, bit for bit. Raises SceneError."""
+def begin(scene: str, settings: list[str], threads: int) -> tuple[Run, list[str]]:
+    """Starts a run of a scene with settings such as `grains.count=500`; it and the notes on its start."""
+def scene(scene: str, settings: list[str]) -> tuple[str, str, list[str]]:
+    """The complete text of a scene with settings, its name, and notes on it."""
+def scenes_built_in() -> dict[str, str]:
+    """The built-in scenes: by name, the description."""
+def unpickled(bytes: bytes, source: str, notes: list[str]) -> Packing:
+    """A packing from its bytes in a pickle."""
+def page(name: str, packings: list[Packing]) -> str:
+    """A page that shows packings in three dimensions: HTML."""
+def analyze_one(packing: Packing, axis: Any, springs: str, tolerance: float | None) -> dict[str, Any]:
+    """Everything that `grainlab analyze` reports of a packing, by key."""
+def analyze_all(packings: list[Packing], axis: Any, springs: str, tolerance: float | None) -> dict[str, Any]:
+    """The columns of `grainlab analyze --format csv`, a row for each packing."""
+def probe_all(packings: list[Packing], flags: list[tuple[str, str]]) -> tuple[dict[str, Any], list[str | None]]:
+    """The columns of `grainlab probe --format csv`, a row for each packing, and for each its JSON, or none."""
+def export(packings: list[Packing], format: str, folder: str | PathLike[str]) -> list[str]:
+    """Writes packings in a format of `grainlab bag export` into a folder; notes on them."""
+def inverted(
+    columns: list[tuple[str, Any]],
+    rows: int,
+    text: bytes | None,
+    by: tuple[str, str, str | None, float | None],
+    draws: tuple[int, int] | None,
+) -> tuple[dict[str, Any], dict[str, Any] | None]:
+    """Inverts the rows of a table, given as columns of this many rows or as text: columns of the answers, and draws from the posterior of the
+    first row, if a number of them in each chain and a seed are given. `by` has model, calibration, prior and relative error.
+    """
+def run(words: list[str], again: list[str], ends_with_parent: bool) -> int:
+    """Runs a command line, whose first word is the program; its exit code. The program starts itself again by the words of `again`. With
+    `ends_with_parent` it is told to end, by SIGTERM, when the process that started it has.
+    """

@@ -1,0 +1,5 @@
+"""The program ``grainlab``: ``python -m grainlab``."""
+
+from .program import main
+
+main()

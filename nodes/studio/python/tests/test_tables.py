@@ -1,0 +1,90 @@
+"""Tables in and out of the inversion."""
+
+import grainlab
+import numpy as np
+import pytest
+
+STATE = {"g12": 104.2e6, "g13": 112.4e6, "theta": 136e6, "pressure": 50e3}
+TABLE = {"g12_pa": [104.2e6, 110e6], "g13_pa": [112.4e6, 115e6], "theta_pa": [136e6, 140e6], "pressure_pa": 50e3}
+
+
+def test_a_row_of_an_array_has_the_numbers_of_the_state_alone():
+    scale = np.linspace(0.95, 1.05, 7)
+    given = {**STATE, "g12": STATE["g12"] * scale, "phi": 0.63}
+    found = grainlab.invert(**given)
+    assert found["z"].shape == (7,) and set(found["status"]) <= {"ok", "extrapolated", "contradictory"}
+    for n, value in enumerate(given["g12"]):
+        alone = grainlab.invert(**{**given, "g12": value})
+        assert (alone["z"], alone["z_sigma"], alone["z_interval"]) == (found["z"][n], found["z_sigma"][n], (found["z_low"][n], found["z_high"][n]))
+
+
+def test_a_row_without_an_answer_is_nan_with_its_reason():
+    found = grainlab.invert(**{**STATE, "pressure": [50e3, np.nan, -1, np.inf, 50e3], "g12": [104.2e6, 1e8, 1e8, 1e8, 0]})
+    assert list(found["status"]) == ["ok"] + 4 * ["unknown"] and np.isnan(found["z"][1:]).all()
+    assert all(found["reason"]) and "pressure_pa is empty" in found["reason"][1]
+
+
+def test_errors_of_single_moduli_count():
+    exact = grainlab.invert(**STATE)["z_sigma"]
+    assert grainlab.invert(**STATE, g12_sigma=2e7, g13_sigma=2e7, theta_sigma=3e7)["z_sigma"] > 1.5 * exact
+    with pytest.raises(ValueError, match="g12_sigma is given without g12"):
+        grainlab.invert(g13=1e8, pressure=5e4, g12_sigma=1e6)
+
+
+def test_a_data_frame_gives_one_with_its_index():
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(TABLE, index=["a", "b"]).astype({"g12_pa": "object"})
+    found = grainlab.invert(table=frame)
+    assert list(found.index) == ["a", "b"] and (found.z == grainlab.invert(table=TABLE)["z"]).all()
+    frame["g13_pa"] = pandas.array([112.4e6, None], dtype="Float64")
+    assert grainlab.invert(table=frame).z.notna().all()
+
+
+def test_a_table_is_columns_rows_or_a_file(tmp_path):
+    rows = [{name: values if name == "pressure_pa" else values[n] for name, values in TABLE.items()} for n in (0, 1)]
+    path = tmp_path / "t.csv"
+    path.write_text(grainlab.tables.csv_text(TABLE))
+    for table in (rows, path, str(path)):
+        assert np.array_equal(grainlab.invert(table=table)["z"], grainlab.invert(table=TABLE)["z"])
+    assert grainlab.invert(table={name: [] for name in TABLE})["z"].shape == (0,)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({**STATE, "g12": [1e8, 1e8], "g13": [1e8, 1e8, 1e8]}, "different lengths: g12_pa 2, g13_pa 3"),
+        ({**STATE, "g12": [[1e8, 1e8]]}, r"shape \(1, 2\)"),
+        ({**STATE, "g12": [[1e8], [1e8, 2]]}, "g12"),
+        ({**STATE, "g12": 1e8 + 1j}, "must be real"),
+        ({**STATE, "g12": "much"}, "much"),
+        ({**STATE, "g12": float("nan"), "g13": None, "theta": None}, "."),
+        ({"table": {**TABLE, "g12_sgima_pa": 1.0}}, "almost"),
+        ({"table": {**TABLE, "sample": ["a\nb", "c"]}}, "one line"),
+        ({"table": TABLE, "pressure": 1e5}, "column of the table"),
+        ({"table": [1, 2]}, "row"),
+        ({"table": 3}, "int"),
+        ({"table": TABLE, "draws": 10}, "one state"),
+        ({**STATE, "error": 3}, "0 to 1"),
+        ({**STATE, "calibration": "mine"}, "no calibration"),
+    ],
+)
+def test_wrong_tables_are_refused_with_the_reason(given, words):
+    with pytest.raises((ValueError, grainlab.PhysicsError), match=words):
+        grainlab.invert(**given)
+
+
+def test_numbers_as_integers_and_texts_are_numbers():
+    as_text = {**STATE, "g12": np.array(["104.2e6"], dtype=object), "pressure": 50000}
+    assert grainlab.invert(**as_text)["z"][0] == grainlab.invert(**STATE)["z"]
+    named = grainlab.invert(**{**STATE, "g12": [1e8, 1e8]}, sample=["#1", "a,b"])
+    assert list(named["sample"]) == ["#1", "a,b"]
+
+
+def test_speeds_over_pressure_give_samples_and_a_plan_their_errors():
+    speeds = [dict(pressure_pa=p, mode=m, speed=v) for p, m, v in ((1e5, "p", 420), (1e5, "s", 255), (1e6, "p", 740), (1e6, "s", 455))]
+    (sample,) = grainlab.invert(speeds=speeds, density=1640, shear_modulus=44e9, poisson_ratio=0.08)
+    assert sample["status"] == "ok" and len(sample["lines"]) == 4
+    with pytest.raises(ValueError, match="density"):
+        grainlab.invert(speeds=speeds, shear_modulus=44e9, poisson_ratio=0.08)
+    plan = {"error": 0.01, "pressures": [1e5, 4e5], "speeds": [{"mode": "p", "angles": [0, 90]}, {"mode": "s"}]}
+    assert grainlab.plan(plan, shear_modulus=29e9, poisson_ratio=0.2)["quantities"][0]["sigma"] > 0
