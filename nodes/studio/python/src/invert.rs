@@ -40,7 +40,9 @@ fn table(columns: &[(String, Column<'_>)], rows: usize) -> PyResult<Vec<u8>> {
                     number => text.number(Some(number)),
                 },
                 Column::Texts(texts) if texts[row].contains(['\n', '\r']) => {
-                    return Err(PyValueError::new_err(format!("column {name}, row {row}: a text has one line")));
+                    return Err(PyValueError::new_err(format!(
+                        "column {name}, row {row}: a text has one line"
+                    )));
                 }
                 Column::Texts(texts) => text.cell(&texts[row]),
             }

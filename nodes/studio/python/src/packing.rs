@@ -7,7 +7,7 @@ use grainlab_experiment::PathPosition;
 use grainlab_msgs::boundary::{packing_header, packing_message};
 use grainlab_msgs::{from_cdr, msg, to_cdr};
 use grainlab_recordings::import::{Imported, contacts};
-use grainlab_viewer::{Film, Picture, Quantity, Size, View};
+use grainlab_viewer::{Film, Ground, Picture, Quantity, Size, View};
 use numpy::{Ix1, Ix2, PyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -133,9 +133,10 @@ impl PyPacking {
     fn _png<'py>(&self, py: Python<'py>, color: &str, size: &str) -> PyResult<Bound<'py, PyBytes>> {
         let known = Quantity::ALL.map(Quantity::name);
         let color = Quantity::ALL.into_iter().find(|quantity| quantity.name() == color);
-        let color = color.ok_or_else(|| PyValueError::new_err(format!("color must be one of: {}", known.join(", "))))?;
+        let color = color
+            .ok_or_else(|| PyValueError::new_err(format!("color must be one of: {}", known.join(", "))))?;
         let size: Size = size.parse().map_err(refused)?;
-        let drawn = py.detach(|| Picture::with_legend(&self.view(), color, size).png());
+        let drawn = py.detach(|| Picture::new(&self.view(), color, size, Ground::Light).png());
         Ok(PyBytes::new(py, &drawn.map_err(refused)?))
     }
 
