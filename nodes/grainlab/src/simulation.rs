@@ -1,6 +1,8 @@
 //! Runs of scenes in one process.
 
-use crate::{Error, Mat3, State};
+use crate::error::Error;
+use crate::state::State;
+use grainlab_core::Mat3;
 use grainlab_dem::{Compute, Simd};
 use grainlab_recordings::scenes;
 use std::time::{Duration, Instant};

@@ -31,11 +31,11 @@ pub struct Findings {
 /// An inferred value beside the counted one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
-    /// The quantity.
+    /// Quantity that is judged.
     pub quantity: InferredQuantity,
-    /// Inferred value.
+    /// Value that was inferred.
     pub inferred: f64,
-    /// Counted value.
+    /// Value that was counted.
     pub counted: f64,
     /// Standard deviation of the inferred value, if it has one above 0.
     pub sigma: Option<f64>,
@@ -94,7 +94,7 @@ pub fn recommended(state: &InvertedPacking) -> Option<&Inference> {
 }
 
 impl Findings {
-    /// Of the packings at the ends of the phases of a run, in their order.
+    /// Findings of the packings at the ends of the phases of a run, in their order.
     pub fn of(states: &[InvertedPacking]) -> Self {
         let mut doubts = Doubts { states: states.len(), ..Doubts::default() };
         states.iter().for_each(|s| doubts.of(s));

@@ -85,7 +85,7 @@ impl<R: Printed> Printer<R> {
             return Ok(table.csv());
         }
         let unknown = |name: String| {
-            // Of hundreds of columns, those that begin alike.
+            // Columns that begin alike, of hundreds.
             let stem = name.split('_').next().unwrap_or_default();
             let near: Vec<&str> =
                 table.header().iter().map(String::as_str).filter(|h| h.starts_with(stem)).collect();

@@ -42,7 +42,7 @@ impl Verdict {
         }
     }
 
-    /// Of a statement whose limit is exceeded by these numbers of standard errors, infinite where no error is known.
+    /// Verdict on a statement whose limit is exceeded by these numbers of standard errors, infinite where no error is known.
     fn of(exceeded: impl IntoIterator<Item = f64>) -> Self {
         let worst = exceeded.into_iter().fold(0.0, f64::max);
         match worst {

@@ -99,7 +99,7 @@ impl PyRecording {
         Some(String::from_utf8_lossy(&scene.bytes).into_owned())
     }
 
-    /// Its packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have.
+    /// The packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have.
     #[pyo3(signature = (topic="packing"))]
     fn packings<'py>(slf: Bound<'py, Self>, topic: &str) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("grainlab.recordings")?.getattr("Packings")?.call1((slf, topic))
@@ -110,7 +110,7 @@ impl PyRecording {
         Ok(PackingIterator(Mutex::new(Stream::of(&self.recording, Some(vec![topic.to_owned()]))?)))
     }
 
-    /// Its last packing. Raises IndexError if it has none.
+    /// The last packing. Raises IndexError if it has none.
     #[pyo3(signature = (topic="packing"))]
     fn last_packing(&self, py: Python<'_>, topic: &str) -> PyResult<PyPacking> {
         let message = py.detach(|| self.recording.last(topic)).map_err(error::file)?;

@@ -66,7 +66,7 @@ impl Reproduction {
         page.text()
     }
 
-    /// The findings.
+    /// Findings of the reproduction.
     fn found(&self) -> Html {
         let p = &self.provenance;
         let count = |verdict| self.claims.iter().filter(|c| c.verdict == verdict).count();

@@ -52,7 +52,7 @@ class Packing:
     def __len__(self) -> int: ...
     @property
     def source(self) -> str:
-        """Where it comes from."""
+        """File or recording that it comes from."""
     @property
     def notes(self) -> list[str]:
         """Remarks of the reader of its file."""
@@ -85,13 +85,13 @@ class Packing:
         """Friction coefficient in force; may be infinite."""
     @property
     def shear_modulus(self) -> float:
-        """Of the grains, Pa."""
+        """Shear modulus of the grains, Pa."""
     @property
     def poisson_ratio(self) -> float:
-        """Of the grains."""
+        """Poisson's ratio of the grains."""
     @property
     def density(self) -> float:
-        """Of the grains, kg/m3."""
+        """Density of the grains, kg/m3."""
     @property
     def contact_law(self) -> str:
         """Name of the contact law."""
@@ -107,7 +107,7 @@ class Packing:
         """Persistent ids, (n,)."""
     @property
     def radii(self) -> NDArray[np.float64]:
-        """m, (n,)."""
+        """Radii of the grains, m, (n,)."""
     @property
     def positions(self) -> NDArray[np.float64]:
         """Centres, unwrapped, m, (n, 3)."""
@@ -146,7 +146,7 @@ class Packing:
         """From the centre of i to the image of j, m, (m, 3): a copy."""
     @property
     def rattlers(self) -> NDArray[np.bool_]:
-        """Whether each grain carries no force, (n,): a copy."""
+        """True for each grain that carries no force, (n,): a copy."""
 
 class PackingIterator(Iterator[Packing]):
     def skip(self, number: int) -> None:
@@ -174,9 +174,9 @@ class Recording:
         """Text of the scene."""
     def _packings(self, topic: str) -> PackingIterator: ...
     def packings(self, topic: str = "packing") -> Packings:
-        """Its packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have."""
+        """The packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have."""
     def last_packing(self, topic: str = "packing") -> Packing:
-        """Its last packing. Raises IndexError if it has none."""
+        """The last packing. Raises IndexError if it has none."""
     def messages(self, *topics: str) -> Iterator[tuple[str, int, dict[str, Any]]]:
         """(topic, time of arrival in ns since 1970, fields) of the messages of these topics, or of all, of any type. Raises FileError."""
 
