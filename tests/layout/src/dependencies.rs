@@ -8,7 +8,7 @@ use std::path::Path;
 const DDS: &str = "grainlab_rustdds";
 
 /// Packages of the workspace that may link DDS.
-const LINK_DDS: usize = 14;
+const LINK_DDS: usize = 15;
 
 /// Packages that the binary links, with those of the workspace and procedural macros.
 const IN_BINARY: usize = 255;

@@ -4,7 +4,6 @@
 
 mod measure;
 
-pub(crate) use measure::measure;
 use super::packings::files;
 use super::packings::import::{self, in_range};
 use super::packings::writer::ResultWriter;
@@ -20,6 +19,7 @@ use grainlab_node_kit::Exit;
 use grainlab_recordings::import::yade;
 use grainlab_results::Printer;
 use grainlab_results::quantities::help;
+pub(crate) use measure::measure;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

@@ -9,12 +9,12 @@ use super::packings::writer::ResultWriter;
 use super::packings::{files, import};
 use crate::offline_recording::OfflineRecording;
 use flags::Flags;
-pub(crate) use measure::measure;
 use grainlab_console::{Failure, Format};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use grainlab_results::quantities::help;
 use grainlab_results::{ACOUSTIC, Printer};
+pub(crate) use measure::measure;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

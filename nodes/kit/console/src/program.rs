@@ -17,11 +17,14 @@ pub fn set_program(words: Vec<OsString>) {
 /// # Errors
 /// If the executable is not known.
 pub fn program() -> io::Result<Vec<OsString>> {
-    OF_HOST.get().map_or_else(|| std::env::current_exe().map(|path| vec![path.into()]), |words| Ok(words.clone()))
+    OF_HOST
+        .get()
+        .map_or_else(|| std::env::current_exe().map(|path| vec![path.into()]), |words| Ok(words.clone()))
 }
 
 /// This program as it was called, for advice to a reader.
 pub fn called() -> String {
-    let of_host = OF_HOST.get().map(|words| words.iter().map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" "));
+    let of_host =
+        OF_HOST.get().map(|words| words.iter().map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" "));
     of_host.or_else(|| std::env::args().next()).unwrap_or_else(|| "grainlab".to_owned())
 }

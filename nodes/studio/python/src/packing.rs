@@ -133,7 +133,8 @@ impl PyPacking {
     fn _png<'py>(&self, py: Python<'py>, color: &str, size: &str) -> PyResult<Bound<'py, PyBytes>> {
         let known = Quantity::ALL.map(Quantity::name);
         let color = Quantity::ALL.into_iter().find(|quantity| quantity.name() == color);
-        let color = color.ok_or_else(|| PyValueError::new_err(format!("color must be one of: {}", known.join(", "))))?;
+        let color = color
+            .ok_or_else(|| PyValueError::new_err(format!("color must be one of: {}", known.join(", "))))?;
         let size: Size = size.parse().map_err(refused)?;
         let drawn = py.detach(|| Picture::with_legend(&self.view(), color, size).png());
         Ok(PyBytes::new(py, &drawn.map_err(refused)?))

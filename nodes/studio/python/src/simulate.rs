@@ -42,8 +42,13 @@ pub(crate) fn begin(
 
 /// The complete text of a scene with settings, its name, and notes on it.
 #[pyfunction]
-pub(crate) fn scene(py: Python<'_>, scene: &str, settings: Vec<String>) -> PyResult<(String, String, Vec<String>)> {
-    let found = py.detach(|| scenes::read(scene, &settings, None)).map_err(|e| error::scene(e.to_string()))?;
+pub(crate) fn scene(
+    py: Python<'_>,
+    scene: &str,
+    settings: Vec<String>,
+) -> PyResult<(String, String, Vec<String>)> {
+    let found =
+        py.detach(|| scenes::read(scene, &settings, None)).map_err(|e| error::scene(e.to_string()))?;
     let notes = found.notes.into_iter().chain(found.scene.notes()).collect();
     Ok((found.text, found.scene.name, notes))
 }

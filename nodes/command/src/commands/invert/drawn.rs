@@ -71,7 +71,12 @@ fn unlike(draws: &Draws, estimate: &Estimate, quantity: InferredQuantity) -> Opt
 }
 
 /// Draws of the only case, and its estimate.
-pub(super) fn drawn(state: &State, case: &Case, count: usize, seed: u64) -> Result<(Draws, Estimate), EmtError> {
+pub(super) fn drawn(
+    state: &State,
+    case: &Case,
+    count: usize,
+    seed: u64,
+) -> Result<(Draws, Estimate), EmtError> {
     let settings = PosteriorSettings { seed, ..PosteriorSettings::default() };
     // A state without an estimate has no posterior worth drawing from: it is far outside the packings of the calibration.
     let estimate = case.model.infer(&state.observation(case)?, &case.calibration)?;

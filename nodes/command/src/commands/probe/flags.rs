@@ -19,7 +19,8 @@ impl Flags {
         let one = |(name, text): &(String, String)| {
             let spec = specs.iter().find(|spec| spec.name == name);
             let known = || specs.iter().map(|spec| spec.name).collect::<Vec<_>>().join(", ");
-            let spec = spec.ok_or_else(|| Failure::usage(format!("no parameter {name}; there are: {}", known())))?;
+            let spec =
+                spec.ok_or_else(|| Failure::usage(format!("no parameter {name}; there are: {}", known())))?;
             Ok((spec.name, text.clone()))
         };
         given.iter().map(one).collect::<Result<_, _>>().map(Self)
