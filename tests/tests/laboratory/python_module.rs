@@ -7,7 +7,8 @@ use system_tests::lab::Lab;
 use system_tests::python;
 
 /// Packages that build the module, and those of its tests.
-const NEEDED: &str = "maturin, numpy, pytest, nbclient, ipykernel, freud, ovito";
+const NEEDED: &str =
+    "maturin, numpy, pytest, nbclient, ipykernel, freud, ovito, arviz, arviz_base, matplotlib, pandas";
 
 #[test]
 fn the_python_module_installs_and_its_tests_pass_on_a_recorded_run() {

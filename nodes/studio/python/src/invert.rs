@@ -2,12 +2,10 @@
 
 use crate::{error, posterior};
 use grainlab_command::in_memory::{self, By, InvertedRow};
-use grainlab_console::CsvText;
 use grainlab_core::results::InferredQuantity;
 use grainlab_msgs::Exit;
 use grainlab_results::Inference;
-use numpy::{IntoPyArray, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -20,57 +18,19 @@ pub(crate) fn models() -> Vec<&'static str> {
     grainlab_emt::models().iter().map(|m| m.name()).collect()
 }
 
-/// A column of a table.
-#[derive(FromPyObject)]
-pub(crate) enum Column<'py> {
-    Numbers(PyReadonlyArray1<'py, f64>),
-    Texts(Vec<String>),
-}
-
-/// Columns as the text of a table. The first one, of no input, keeps a row from being blank, or a comment.
-fn table(columns: &[(String, Column<'_>)], rows: usize) -> PyResult<Vec<u8>> {
-    let mut text = CsvText::default();
-    text.row(std::iter::once("_row").chain(columns.iter().map(|(name, _)| name.as_str())));
-    for row in 0..rows {
-        text.number(Some(row as f64));
-        for (name, column) in columns {
-            match column {
-                Column::Numbers(numbers) => match numbers.as_array()[row] {
-                    infinite if infinite.is_infinite() => text.cell(&infinite.to_string()),
-                    number => text.number(Some(number)),
-                },
-                Column::Texts(texts) if texts[row].contains(['\n', '\r']) => {
-                    return Err(PyValueError::new_err(format!(
-                        "column {name}, row {row}: a text has one line"
-                    )));
-                }
-                Column::Texts(texts) => text.cell(&texts[row]),
-            }
-        }
-        text.end();
-    }
-    Ok(text.finish().into_bytes())
-}
-
-/// Inverts the rows of a table, given as columns of this many rows or as text: columns of the answers, and draws from the posterior of the
-/// first row, if a number of them in each chain and a seed are given. `by` has model, calibration, prior and relative error.
+/// Inverts the rows of a table, the text of a file: columns of the answers, and draws from the posterior of the first row, if a number of
+/// them in each chain and a seed are given. `by` has model, calibration, prior and relative error.
 #[pyfunction]
 pub(crate) fn inverted<'py>(
     py: Python<'py>,
-    columns: Vec<(String, Column<'py>)>,
-    rows: usize,
-    text: Option<Vec<u8>>,
+    table: Vec<u8>,
     by: (String, String, Option<String>, Option<f64>),
     draws: Option<(usize, u64)>,
 ) -> PyResult<(Bound<'py, PyDict>, Option<Bound<'py, PyDict>>)> {
-    let (has_text, text) = (text.is_some(), text.map_or_else(|| table(&columns, rows), Ok)?);
     let draws = draws.map(|(each, seed)| (posterior::CHAINS * each, seed));
     let (model, calibration, prior, error) = &by;
     let by = By { model, calibration, prior: prior.as_deref(), error: *error, draws };
-    let found = py.detach(|| in_memory::invert(text, &by)).map_err(error::failure)?;
-    if !has_text && found.rows.len() != rows {
-        return Err(PyValueError::new_err(format!("{} answers of {rows} rows", found.rows.len())));
-    }
+    let found = py.detach(|| in_memory::invert(table, &by)).map_err(error::failure)?;
     let drawn = found.draws.map(|draws| posterior::groups(py, &draws)).transpose()?;
     Ok((answers(py, &found.rows)?, drawn))
 }

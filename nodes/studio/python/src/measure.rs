@@ -4,7 +4,7 @@ use crate::arrays::matrix;
 use crate::error;
 use crate::packing::PyPacking;
 use crate::values;
-use grainlab_command::in_memory::{self, Results};
+use grainlab_command::in_memory;
 use grainlab_core::Vec3;
 use grainlab_core::results::QUANTITIES;
 use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
@@ -49,31 +49,29 @@ pub(crate) fn analyze_one<'py>(
     values::quantities(py, QUANTITIES, &found.report)
 }
 
-/// The columns of `grainlab analyze --format csv`, a row for each packing.
+/// The text of `grainlab analyze --format csv`, a row for each packing, with its status and reason.
 #[pyfunction]
-pub(crate) fn analyze_all<'py>(
-    py: Python<'py>,
+pub(crate) fn analyze_all(
+    py: Python<'_>,
     packings: Vec<Py<PyPacking>>,
     axis: [f64; 3],
     springs: &str,
     tolerance: Option<f64>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<String> {
     let settings = settings(axis, springs, tolerance)?;
-    values::columns(py, py.detach(|| in_memory::analyze(&settings, &imported(&packings))))
+    Ok(py.detach(|| values::csv(&in_memory::analyze(&settings, &imported(&packings)))))
 }
 
-/// The columns of `grainlab probe --format csv`, a row for each packing, and for each its JSON, or none.
+/// The text of `grainlab probe --format csv`, a row for each packing, with its status and reason; and the JSON of the first, if it has any.
 #[pyfunction]
-pub(crate) fn probe_all<'py>(
-    py: Python<'py>,
+pub(crate) fn probe_all(
+    py: Python<'_>,
     packings: Vec<Py<PyPacking>>,
     flags: Vec<(String, String)>,
-) -> PyResult<(Bound<'py, PyDict>, Vec<Option<String>>)> {
-    let found: Results<_> =
-        py.detach(|| in_memory::probe(&flags, &imported(&packings))).map_err(error::failure)?;
-    let json = |result: &Result<(_, bool), String>| serde_json::to_string(&result.as_ref().ok()?.0).ok();
-    let texts = found.iter().map(json).collect();
-    Ok((values::columns(py, found)?, texts))
+) -> PyResult<(String, Option<String>)> {
+    let found = py.detach(|| in_memory::probe(&flags, &imported(&packings))).map_err(error::failure)?;
+    let first = found.first().and_then(|result| result.as_ref().ok());
+    Ok((values::csv(&found), first.and_then(|(found, _)| serde_json::to_string(found).ok())))
 }
 
 /// Writes packings in a format of `grainlab bag export` into a folder; notes on them.

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use self_cell::self_cell;
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -89,6 +90,19 @@ impl PyRecording {
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.recording.warnings().iter().map(ToString::to_string).collect()
+    }
+
+    /// What a launched run printed: states with measurements and estimates, topics, messages lost, exit code. Raises FileError for others.
+    #[getter]
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let path = self.recording.path().join("summary.json");
+        let text =
+            std::fs::read_to_string(&path).map_err(|e| error::file(format!("{}: {e}", path.display())))?;
+        py.import("json")?.call_method1("loads", (text,))
+    }
+
+    fn __fspath__(&self) -> &OsStr {
+        self.recording.path().as_os_str()
     }
 
     /// Text of the scene.

@@ -2,6 +2,7 @@
 
 use grainlab_any_message::{Array, Message, Value as Field};
 use grainlab_command::in_memory::Results;
+use grainlab_console::CsvText;
 use grainlab_core::quantity::{Quantity, Shape, Value};
 use grainlab_results::Printed;
 use numpy::IntoPyArray;
@@ -42,41 +43,22 @@ pub(crate) fn quantities<'py, R>(
     Ok(dict)
 }
 
-/// Columns of a table of results, with `status` (ok, or unknown for a row without an answer) and `reason`: numbers as arrays with NaN
-/// for what is unknown, flags as arrays, words as lists.
-pub(crate) fn columns<'py, R: Printed>(py: Python<'py>, results: Results<R>) -> PyResult<Bound<'py, PyDict>> {
-    let mut names = R::table(&[]).header().to_vec();
-    let width = names.len();
-    names.extend(["status", "reason"].map(str::to_owned));
-    let row = |result: Result<(R, bool), String>| match result {
-        Err(reason) => (vec![String::new(); width], false, reason),
-        Ok((found, is_without)) => {
-            let cells = R::table(std::slice::from_ref(&found)).rows().concat();
-            (cells, !is_without, found.warnings().join("; "))
-        }
-    };
-    let rows = results.into_iter().map(row).map(|(mut cells, is_known, reason)| {
-        cells.extend([if is_known { "ok" } else { "unknown" }.to_owned(), reason]);
-        cells
-    });
-    let rows: Vec<Vec<String>> = rows.collect();
-    let dict = PyDict::new(py);
-    for (at, name) in names.iter().enumerate() {
-        dict.set_item(name, column(py, rows.iter().map(|row| row[at].as_str()).collect(), at < width)?)?;
+/// Results as CSV, with the columns `status` (ok, or unknown for a row without an answer) and `reason`.
+pub(crate) fn csv<R: Printed>(results: &Results<R>) -> String {
+    let header = R::table(&[]).header().to_vec();
+    let mut text = CsvText::default();
+    text.row(header.iter().map(String::as_str).chain(["status", "reason"]));
+    for result in results {
+        let (cells, is_without, reason) = match result {
+            Ok((found, without)) => {
+                (R::table(std::slice::from_ref(found)).rows().concat(), *without, found.warnings().join("; "))
+            }
+            Err(reason) => (vec![String::new(); header.len()], true, reason.clone()),
+        };
+        let status = if is_without { "unknown" } else { "ok" };
+        text.row(cells.iter().map(String::as_str).chain([status, &reason]));
     }
-    Ok(dict)
-}
-
-/// One column of cells; it may be numbers or flags.
-fn column<'py>(py: Python<'py>, cells: Vec<&str>, may_be_numbers: bool) -> PyResult<Bound<'py, PyAny>> {
-    let number = |cell: &&str| if cell.is_empty() { Ok(f64::NAN) } else { cell.parse::<f64>() };
-    let flags = cells.iter().map(|cell| cell.parse::<bool>()).collect::<Result<Vec<_>, _>>();
-    let numbers = cells.iter().map(number).collect::<Result<Vec<_>, _>>();
-    Ok(match (numbers, flags) {
-        (Ok(numbers), _) if may_be_numbers => numbers.into_pyarray(py).into_any(),
-        (_, Ok(flags)) if may_be_numbers => flags.into_pyarray(py).into_any(),
-        _ => PyList::new(py, cells)?.into_any(),
-    })
+    text.finish()
 }
 
 /// A message as a dictionary, its arrays of numbers as numpy arrays.

@@ -8,69 +8,21 @@ memory and are read-only. Recorded runs, campaigns and reports are made by proce
 >>> grainlab.stiffness(packing)
 """
 
-from ._grainlab import (
-    FileError,
-    GrainlabError,
-    Packing,
-    PhysicsError,
-    Recording,
-    SceneError,
-    __version__,
-    load,
-    models,
-    open,
-    quantities,
-    stiffness,
-)
+from ._grainlab import FileError, GrainlabError, Packing, PhysicsError, Recording, SceneError, __version__
+from ._grainlab import load, models, open, quantities, stiffness
 from .handover import to_arviz, to_freud, to_ovito
 from .inversion import calibrate, invert, pick, plan
 from .measurement import Page, analyze, export, probe, view
 from .plots import plot
 from .program import command
 from .recordings import Packings
-from .runs import Campaign, Run, campaign, launch, report, reproduce, verify
+from .runs import Campaign, campaign, launch, report, reproduce, verify
 from .scenes import Scene, scene_check, scene_keys, scenes
 from .simulation import Simulation, simulate
 
 __all__ = [
-    "Campaign",
-    "FileError",
-    "GrainlabError",
-    "Packing",
-    "Packings",
-    "Page",
-    "PhysicsError",
-    "Recording",
-    "Run",
-    "Scene",
-    "SceneError",
-    "Simulation",
-    "__version__",
-    "analyze",
-    "calibrate",
-    "campaign",
-    "command",
-    "export",
-    "invert",
-    "launch",
-    "load",
-    "models",
-    "open",
-    "pick",
-    "plan",
-    "plot",
-    "probe",
-    "quantities",
-    "report",
-    "reproduce",
-    "scene_check",
-    "scene_keys",
-    "scenes",
-    "simulate",
-    "stiffness",
-    "to_arviz",
-    "to_freud",
-    "to_ovito",
-    "verify",
-    "view",
+    "Campaign", "FileError", "GrainlabError", "Packing", "Packings", "Page", "PhysicsError", "Recording", "Scene", "SceneError",
+    "Simulation", "__version__", "analyze", "calibrate", "campaign", "command", "export", "invert", "launch", "load", "models", "open",
+    "pick", "plan", "plot", "probe", "quantities", "report", "reproduce", "scene_check", "scene_keys", "scenes", "simulate", "stiffness",
+    "to_arviz", "to_freud", "to_ovito", "verify", "view",
 ]

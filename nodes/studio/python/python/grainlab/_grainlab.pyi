@@ -170,6 +170,10 @@ class Recording:
     def warnings(self) -> list[str]:
         """Parts that could not be read so far."""
     @property
+    def summary(self) -> dict[str, Any]:
+        """What a launched run printed: states with measurements and estimates, topics, messages lost, exit code. Raises FileError for others."""
+    def __fspath__(self) -> str: ...
+    @property
     def scene(self) -> str | None:
         """Text of the scene."""
     def _packings(self, topic: str) -> PackingIterator: ...
@@ -216,7 +220,7 @@ def stiffness(
     >>> grainlab.stiffness(packing)[2, 2]
     """
 def quantities() -> dict[str, tuple[str, str, str]]:
-    """The keys of :func:`analyze`, each with (symbol, unit, meaning).
+    """The keys of :func:`analyze`, each with (symbol, unit, meaning). Raises nothing.
 
     >>> grainlab.quantities()["phi"]
     ('φ', '1', 'solid fraction')
@@ -253,21 +257,17 @@ def page(name: str, packings: list[Packing]) -> str:
     """A page that shows packings in three dimensions: HTML."""
 def analyze_one(packing: Packing, axis: Any, springs: str, tolerance: float | None) -> dict[str, Any]:
     """Everything that `grainlab analyze` reports of a packing, by key."""
-def analyze_all(packings: list[Packing], axis: Any, springs: str, tolerance: float | None) -> dict[str, Any]:
-    """The columns of `grainlab analyze --format csv`, a row for each packing."""
-def probe_all(packings: list[Packing], flags: list[tuple[str, str]]) -> tuple[dict[str, Any], list[str | None]]:
-    """The columns of `grainlab probe --format csv`, a row for each packing, and for each its JSON, or none."""
+def analyze_all(packings: list[Packing], axis: Any, springs: str, tolerance: float | None) -> str:
+    """The text of `grainlab analyze --format csv`, a row for each packing, with its status and reason."""
+def probe_all(packings: list[Packing], flags: list[tuple[str, str]]) -> tuple[str, str | None]:
+    """The text of `grainlab probe --format csv`, a row for each packing, with its status and reason; and the JSON of the first, if it has any."""
 def export(packings: list[Packing], format: str, folder: str | PathLike[str]) -> list[str]:
     """Writes packings in a format of `grainlab bag export` into a folder; notes on them."""
 def inverted(
-    columns: list[tuple[str, Any]],
-    rows: int,
-    text: bytes | None,
-    by: tuple[str, str, str | None, float | None],
-    draws: tuple[int, int] | None,
+    table: bytes, by: tuple[str, str, str | None, float | None], draws: tuple[int, int] | None
 ) -> tuple[dict[str, Any], dict[str, Any] | None]:
-    """Inverts the rows of a table, given as columns of this many rows or as text: columns of the answers, and draws from the posterior of the
-    first row, if a number of them in each chain and a seed are given. `by` has model, calibration, prior and relative error.
+    """Inverts the rows of a table, the text of a file: columns of the answers, and draws from the posterior of the first row, if a number of
+    them in each chain and a seed are given. `by` has model, calibration, prior and relative error.
     """
 def run(words: list[str], again: list[str], ends_with_parent: bool) -> int:
     """Runs a command line, whose first word is the program; its exit code. The program starts itself again by the words of `again`. With

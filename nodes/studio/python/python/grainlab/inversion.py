@@ -81,22 +81,21 @@ def invert(
         if without and name in given:
             raise ValueError(f"{name} is given without {of}")
     of_keywords = {COLUMNS[name]: tables.column(name, value) for name, value in given.items()}
-    text, of_table = None, {}
     if isinstance(table, (str, PathLike)):
         if of_keywords:
             raise ValueError(f"{', '.join(given)}: the columns of a file have the states")
         text = _bytes(table)
-    elif table is not None:
-        of_table = tables.columns(table)
+    else:
+        of_table = {} if table is None else tables.columns(table)
         twice = [name for name in of_keywords if name in of_table]
         if twice:
             raise ValueError(f"{twice[0]} is a column of the table, and a keyword")
-    columns, rows, is_array = tables.broadcast({**of_table, **of_keywords})
-    is_table = is_array or table is not None
+        text = tables.csv_text({**of_table, **of_keywords}, numbered=True).encode()
+    is_table = table is not None or any(isinstance(column, list) for column in of_keywords.values())
     if draws is not None and (is_table or draws < 1):
         raise ValueError("draws are of one state, and 1 or more in each chain")
     by = (model, os.fspath(calibration), prior, error)
-    answers, drawn = _grainlab.inverted(columns, rows, text, by, None if draws is None else (draws, seed))
+    answers, drawn = _grainlab.inverted(text, by, None if draws is None else (draws, seed))
     failed, warnings = answers.pop("failed"), answers.pop("warnings")
     if is_table:
         return tables.like(table, answers)
@@ -136,7 +135,7 @@ def _of_speeds(speeds: Any, error: Any, model: str, calibration: Any, prior: str
             elif text not in (None, "default"):
                 options[flag] = text
         words = ["invert", f"--speeds={speeds if is_path else '-'}", "--format=json", *flags({"error": error, **options})]
-        return json.loads(call(*words, input=None if is_path else tables.csv_text(speeds)))
+        return json.loads(call(*words, input=None if is_path else tables.csv_text(tables.columns(speeds))))
 
 
 def plan(plan: str | PathLike[str] | Mapping[str, Any], *, shear_modulus: float, poisson_ratio: float, **options: Any) -> dict[str, Any]:
@@ -170,7 +169,7 @@ def calibrate(isotropic: Any, anisotropic: Any = None, other: Any = None, *, nam
     with tempfile.TemporaryDirectory() as folder:
         for flag, table in (("isotropic", isotropic), ("anisotropic", anisotropic), ("other", other)):
             if table is not None and not isinstance(table, (str, PathLike)):
-                table, rows = Path(folder, flag + ".csv"), tables.csv_text(table)
+                table, rows = Path(folder, flag + ".csv"), tables.csv_text(tables.columns(table))
                 table.write_text(rows)
             options[flag] = table
         return call("calibrate", *flags({"name": name, **options}), answers=(0,))

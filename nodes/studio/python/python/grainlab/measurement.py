@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Literal
 
-from . import _grainlab
+from . import _grainlab, tables
 from ._grainlab import Packing
 from .scenes import warn
 
@@ -48,7 +48,7 @@ def analyze(
     """
     if isinstance(packing, Packing):
         return _grainlab.analyze_one(packing, axis, springs, tolerance)
-    return _grainlab.analyze_all(packings_of(packing), axis, springs, tolerance)
+    return tables.parsed(_grainlab.analyze_all(packings_of(packing), axis, springs, tolerance))
 
 
 def probe(packing: Packings, **parameters: Any) -> dict[str, Any]:
@@ -61,14 +61,14 @@ def probe(packing: Packings, **parameters: Any) -> dict[str, Any]:
 
     >>> grainlab.probe(packing, speed_noise=0.003)["acoustic"]["speeds"]
     """
-    several = [(name, "inf" if v == float("inf") else v) for name, v in parameters.items()]
-    words = [(name, ",".join(map(str, v)) if isinstance(v, (list, tuple)) else str(v)) for name, v in several]
-    columns, texts = _grainlab.probe_all(packings_of(packing), words)
+    words = [(name, ",".join(map(str, v)) if isinstance(v, (list, tuple)) else str(v)) for name, v in parameters.items()]
+    text, first = _grainlab.probe_all(packings_of(packing), words)
+    columns = tables.parsed(text)
     if not isinstance(packing, Packing):
         return columns
-    if texts[0] is None:
+    if first is None:
         raise _grainlab.PhysicsError(columns["reason"][0])
-    return json.loads(texts[0])
+    return json.loads(first)
 
 
 def export(packings: Packings, out: str | os.PathLike[str], *, format: str = "vtk") -> list[Path]:

@@ -18,7 +18,7 @@ FIGURES: dict[str, tuple[str, dict[str, Any]]] = {
 START = 10**9
 
 
-def plot(run: str | os.PathLike[str] | _grainlab.Recording, what: str = "stress", axes: Any = None) -> Any:
+def plot(run: str | os.PathLike[str], what: str = "stress", axes: Any = None) -> Any:
     """Draws a curve of a recorded run over its simulated time, s, by matplotlib.
 
     ``what`` is one of stress (kPa, positive in compression), strain (positive in extension), solid_fraction and coordination. ``axes`` are
@@ -30,8 +30,7 @@ def plot(run: str | os.PathLike[str] | _grainlab.Recording, what: str = "stress"
         raise ValueError(f"no figure {what!r}; there are: {', '.join(FIGURES)}")
     import matplotlib.pyplot
 
-    recording = run if isinstance(run, _grainlab.Recording) else _grainlab.open(run)
-    messages = [fields for _, _, fields in recording.messages("stress")]
+    messages = [fields for _, _, fields in _grainlab.open(run).messages("stress")]
     stamps = [message["header"]["stamp"] for message in messages]
     times = [stamp["sec"] - START + stamp["nanosec"] * 1e-9 for stamp in stamps]
     ordinate, curves = FIGURES[what]

@@ -2,50 +2,21 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import os
+import re
 import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from . import _grainlab
+from . import _grainlab, tables
+from ._grainlab import Recording
 from .measurement import Page
 from .program import call, flags
 from .scenes import Scene, toml
 
 PathOrText = str | os.PathLike[str]
-
-
-class Run:
-    """A recorded run: a folder with the recording, ``summary.json`` and ``scene.toml``. SI units. Raises FileError if it is none.
-
-    >>> run = grainlab.Run("recordings/runs/demo-1-1")
-    >>> run.packings()[-1].solid_fraction
-    """
-
-    def __init__(self, path: PathOrText) -> None:
-        self.path = Path(path)
-        self.recording: _grainlab.Recording = _grainlab.open(self.path)
-
-    def __fspath__(self) -> str:
-        return str(self.path)
-
-    def __repr__(self) -> str:
-        return f"<grainlab.Run {self.path}>"
-
-    @property
-    def summary(self) -> dict[str, Any]:
-        """What the run printed: states with measurements and estimates, topics, messages lost, exit code. Raises FileError."""
-        try:
-            return json.loads((self.path / "summary.json").read_text())
-        except OSError as error:
-            raise _grainlab.FileError(f"{error.filename}: {error.strerror}") from None
-
-    def packings(self, topic: str = "packing") -> Any:
-        """Its packings: a sequence, read as they are asked for."""
-        return self.recording.packings(topic)
 
 
 def launch(
@@ -55,10 +26,11 @@ def launch(
     set: Mapping[str, Any] | None = None,
     out: PathOrText = "recordings/runs",
     **options: Any,
-) -> Run:
+) -> Recording:
     """A recorded run of a scene, with all nodes of the laboratory in one process: simulated, measured, inverted.
 
-    ``scene``, ``seed`` and ``set`` are those of :func:`simulate`, in SI units; the run is a new folder SCENE-SEED-N in ``out``. Keywords are the
+    ``scene``, ``seed`` and ``set`` are those of :func:`simulate`, in SI units; the run is a new folder SCENE-SEED-N in ``out``, and
+    the answer its recording, with a ``summary``. Keywords are the
     flags of ``grainlab launch``: ``record="results"``, ``one_process=False`` for a process for each node over DDS. Data loss (exit code 3) and
     invalid physics (4) are a warning, with the run as it is. Raises SceneError for faults of the scene, and GrainlabError.
 
@@ -68,7 +40,7 @@ def launch(
     sets = [word for setting in of.settings for word in ("--set", setting)]
     words = ["launch", "--scene", of.source, *sets, "--out", out, "--format=json"]
     options = {"one_process": True, "no_report": True, **options}
-    return Run(json.loads(call(*words, *flags(options), wrong=_grainlab.SceneError))["recording"])
+    return _grainlab.open(json.loads(call(*words, *flags(options), wrong=_grainlab.SceneError))["recording"])
 
 
 class Campaign:
@@ -93,24 +65,13 @@ class Campaign:
         """Columns of the states of all finished members, in SI units: arrays, of texts where one is no number. It also writes states.csv,
         groups.csv and both as Parquet. Missing members are a warning. Raises GrainlabError."""
         call("campaign", "gather", self.path)
-        with (self.path / "states.csv").open(newline="") as file:
-            rows = list(csv.DictReader(file))
-        return {name: _numbers([row[name] for row in rows]) for name in (rows[0] if rows else {})}
+        return tables.parsed((self.path / "states.csv").read_text())
 
     @property
-    def runs(self) -> list[Run]:
-        """The finished members."""
+    def runs(self) -> list[Recording]:
+        """The recordings of the finished members."""
         members = self.status()["members"]
-        return [Run(self.path / "members" / m["name"]) for m in members if m["state"] == "finished"]
-
-
-def _numbers(cells: list[str]) -> Any:
-    import numpy as np
-
-    try:
-        return np.array([float(cell) if cell else np.nan for cell in cells])
-    except ValueError:
-        return np.array(cells)
+        return [_grainlab.open(self.path / "members" / m["name"]) for m in members if m["state"] == "finished"]
 
 
 def campaign(file: PathOrText | Mapping[str, Any], out: PathOrText | None = None, **options: Any) -> Campaign:
@@ -127,20 +88,13 @@ def campaign(file: PathOrText | Mapping[str, Any], out: PathOrText | None = None
         path = Path(folder, "campaign.toml") if isinstance(file, Mapping) else Path(file)
         if isinstance(file, Mapping):
             path.write_text("".join(f"{key} = {toml(value)}\n" for key, value in file.items()))
-        name = file.get("name") if isinstance(file, Mapping) else _name(path)
-        out = Path("recordings/campaigns", str(name)) if out is None else Path(out)
+        name = re.search(r"""^name\s*=\s*["']([^"']+)""", path.read_text() if path.is_file() else "", re.MULTILINE)
+        out = Path("recordings/campaigns", name.group(1) if name else "") if out is None else Path(out)
         call("campaign", path, "--out", out, *flags(options), wrong=_grainlab.SceneError, answers=(0, 1, 3, 4))
     return Campaign(out)
 
 
-def _name(path: Path) -> str | None:
-    import re
-
-    found = re.search(r"""^name\s*=\s*["']([^"']+)""", path.read_text() if path.is_file() else "", re.MULTILINE)
-    return found and found.group(1)
-
-
-def report(runs: PathOrText | Run | Campaign | Iterable[PathOrText | Run], out: PathOrText | None = None) -> Page:
+def report(runs: PathOrText | Campaign | Iterable[PathOrText], out: PathOrText | None = None) -> Page:
     """Reports runs: a page with results, plots and packings of a run, or one row per run, with SI units; a notebook shows it.
 
     ``out`` is the file of the page; without it, none is left of a single run. Many runs have a page each in their folders. What could not be

@@ -1,48 +1,41 @@
-"""Tables in and out: mappings of columns, lists of rows, data frames."""
+"""Tables in and out: mappings of columns, lists of rows, data frames, CSV."""
 
 from __future__ import annotations
 
 import csv
 import io
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    import numpy as np
+from typing import Any
 
 
 def text_of(value: Any) -> str:
     """A cell as text; empty if it is unknown."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    unknown = value is None or type(value).__name__ in ("NAType", "NaTType") or (isinstance(value, float) and value != value)
-    return "" if unknown else str(value)
+    if value is None or value != value or type(value).__name__ == "NaTType":
+        return ""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def column(name: str, values: Any) -> np.ndarray | list[str]:
-    """A column as float64, shape () or (n,), or as texts, of which a list has one for each row."""
+def column(name: str, values: Any) -> list[str] | str:
+    """A column as texts, or as one for every row. Raises ValueError for arrays of more dimensions, and for complex numbers."""
     import numpy as np
 
     try:
         array = np.asarray(values)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
-    if array.ndim > 1:
-        raise ValueError(f"{name} has shape {array.shape}; it must be one number, or (n,)")
-    if array.dtype.kind in "iuf":
-        return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
-    if array.dtype.kind not in "bOUmM":
-        raise ValueError(f"{name} has numbers of type {array.dtype}; they must be real")
+    if array.ndim > 1 or array.dtype.kind == "c":
+        raise ValueError(f"{name} has shape {array.shape} and type {array.dtype}; it must be one real number, or (n,)")
+    if array.dtype.kind == "O":
+        array = np.array([None if type(v).__name__ == "NAType" else v for v in array.flat], dtype=object).reshape(array.shape)
     texts = [text_of(value) for value in array.reshape(-1).tolist()]
+    if any("\n" in text or "\r" in text for text in texts):
+        raise ValueError(f"{name}: a text has one line")
     return texts if array.ndim else texts[0]
 
 
-def columns(table: Any) -> dict[str, np.ndarray | list[str]]:
+def columns(table: Any) -> dict[str, list[str] | str]:
     """The columns of a mapping of arrays, of a data frame, or of a list of rows, which are mappings."""
-    if isinstance(table, (list, tuple)):
-        if not all(hasattr(row, "keys") for row in table):
-            raise ValueError("a list is a table if each row is a mapping of names to values")
-        names = dict.fromkeys(name for row in table for name in row)
-        table = {name: [row.get(name) for row in table] for name in names}
+    if isinstance(table, (list, tuple)) and all(hasattr(row, "keys") for row in table):
+        table = {name: [row.get(name) for row in table] for name in dict.fromkeys(name for row in table for name in row)}
     elif not hasattr(table, "keys") and not hasattr(table, "columns"):
         raise ValueError(f"a table is a mapping of columns, a data frame, a list of rows or a path, not {type(table).__name__}")
     names = list(table.columns if hasattr(table, "columns") else table.keys())
@@ -51,38 +44,39 @@ def columns(table: Any) -> dict[str, np.ndarray | list[str]]:
     return {str(name): column(str(name), table[name]) for name in names}
 
 
-def broadcast(given: dict[str, Any]) -> tuple[list[tuple[str, Any]], int, bool]:
-    """Columns of one length, that length, and whether there is any but of single values. Raises ValueError for two lengths."""
-    import numpy as np
-
-    sizes = {name: len(c) for name, c in given.items() if isinstance(c, list) or getattr(c, "ndim", 0)}
+def csv_text(given: dict[str, list[str] | str], numbered: bool = False) -> str:
+    """Columns as CSV; a number before each row, of no input, keeps it from being blank, or a comment. Raises ValueError for two lengths."""
+    sizes = {name: len(c) for name, c in given.items() if isinstance(c, list)}
     if len(set(sizes.values())) > 1:
         raise ValueError("columns have different lengths: " + ", ".join(f"{name} {size}" for name, size in sizes.items()))
     rows = next(iter(sizes.values()), 1)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    given = {**({"_row": list(map(str, range(rows)))} if numbered else {}), **given}
+    writer.writerow(given)
+    writer.writerows(zip(*([c] * rows if isinstance(c, str) else c for c in given.values())))
+    return text.getvalue()
 
-    def spread(c: Any) -> Any:
-        if isinstance(c, str):
-            return [c] * rows
-        return c if isinstance(c, list) or c.ndim else np.full(rows, float(c))
 
-    return [(name, spread(c)) for name, c in given.items()], rows, bool(sizes)
+def parsed(text: str) -> dict[str, Any]:
+    """Columns of CSV as arrays: of numbers, with NaN for what is unknown, of flags, or of texts."""
+    import numpy as np
+
+    header, *rows = csv.reader(io.StringIO(text))
+    found = {}
+    for name, cells in zip(header, zip(*rows) if rows else [()] * len(header)):
+        try:
+            found[name] = np.array([float(cell or "nan") for cell in cells])
+        except ValueError:
+            found[name] = np.array(cells) == "true" if set(cells) <= {"true", "false"} else np.array(cells)
+    return found
 
 
 def like(table: Any, answers: dict[str, Any]) -> Any:
     """Columns as a data frame if the table is one, with its index, else as arrays."""
     import numpy as np
 
-    if hasattr(table, "columns") and not isinstance(table, dict):
+    if hasattr(table, "columns") and not hasattr(table, "__fspath__"):
         index = {"index": table.index} if hasattr(table, "index") else {}
         return type(table)(answers, **index)
     return {name: np.asarray(c) for name, c in answers.items()}
-
-
-def csv_text(table: Any) -> str:
-    """A table as CSV."""
-    spread, rows, _ = broadcast(columns(table))
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([name for name, _ in spread])
-    writer.writerows([[text_of(v) for v in row] for row in zip(*(getattr(c, "tolist", lambda c=c: c)() for _, c in spread))])
-    return text.getvalue()
