@@ -39,8 +39,8 @@ pub struct Args {
     /// New folder; for mcap a new recording: a directory, or one file if the name ends with .mcap
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Format of the output [default with --pictures: mcap]
-    #[arg(long, value_enum, required_unless_present = "pictures")]
+    /// Format of the output [default: csv; with --pictures, or a name that ends with .mcap: mcap]
+    #[arg(long, value_enum)]
     format: Option<Format>,
     /// Write a recording with pictures of the packings, for viewers that do not read packings
     #[arg(long)]
@@ -73,11 +73,12 @@ enum Format {
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or the output cannot be written.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let format = match args.format {
-        Some(Format::Parquet) => TableFormat::Parquet,
-        Some(Format::Csv) => TableFormat::Csv,
-        Some(Format::Json) => TableFormat::Json,
-        Some(Format::Mcap) | None => {
+    let is_recording = args.pictures || args.output.extension().is_some_and(|e| e == "mcap");
+    let format = match args.format.unwrap_or(if is_recording { Format::Mcap } else { Format::Csv }) {
+        Format::Parquet => TableFormat::Parquet,
+        Format::Csv => TableFormat::Csv,
+        Format::Json => TableFormat::Json,
+        Format::Mcap => {
             if args.explode.is_some() {
                 return Err(Failure::usage("--explode is for tables: choose --format csv, parquet or json"));
             }
