@@ -14,6 +14,9 @@ const NORMAL_95: f64 = 1.96;
 /// Deviator over mean stress from which a state is not called isotropic.
 const ISOTROPIC: f64 = 0.01;
 
+/// States from which errors of one sign are said.
+const ONE_SIDED: usize = 4;
+
 /// Warnings that are written out; the others are counted.
 const MOST_DOUBTS: usize = 4;
 
@@ -96,14 +99,20 @@ pub fn recommended(state: &InvertedPacking) -> Option<&Inference> {
 impl Findings {
     /// Findings of the packings at the ends of the phases of a run, in their order.
     pub fn of(states: &[InvertedPacking]) -> Self {
-        let mut doubts = Doubts { states: states.len(), ..Doubts::default() };
-        states.iter().for_each(|s| doubts.of(s));
+        let all: Vec<&InvertedPacking> = states.iter().collect();
         let (done, found) = match states {
             [] => ("No packing at the end of a phase was measured.".to_owned(), Vec::new()),
             [state] => (done(state), recommended(state).map_or_else(Vec::new, |best| of_one(state, best))),
-            several => (done_of_several(several), Self::inferred(&several.iter().collect::<Vec<_>>())),
+            several => (done_of_several(several), Self::inferred(&all)),
         };
-        Self { done, found, doubts: doubts.finish() }
+        Self { done, found, doubts: Self::doubts(&all, "state") }
+    }
+
+    /// Reasons to doubt these states, each of which is of one `noun`.
+    pub fn doubts(states: &[&InvertedPacking], noun: &str) -> Vec<String> {
+        let mut doubts = Doubts::default();
+        states.iter().enumerate().for_each(|(n, state)| doubts.of(n, state));
+        doubts.finish(states.len(), noun)
     }
 
     /// The inversion of several states in sentences; none if nothing was inferred.
@@ -122,15 +131,24 @@ impl Findings {
         }
         let models: BTreeSet<&str> = best.iter().map(|(_, b)| b.model.as_str()).collect();
         let mut found = vec![format!(
-            "The microstructure of {} was inferred, by {}; the rms difference from the count is {}.",
-            count(best.len(), "state"),
+            "The model {} inferred the structure of {}; rms differences from the count: {}.",
             and(&models.into_iter().collect::<Vec<_>>()),
+            count(best.len(), "state"),
             and(&errors)
         )];
         let with: Vec<bool> = judged.iter().filter_map(Judged::is_inside).collect();
         if !with.is_empty() {
             let inside = with.iter().filter(|is_inside| **is_inside).count();
             found.push(format!("{inside} of {} counted values lie in their 95 % intervals.", with.len()));
+        }
+        for q in InferredQuantity::countable() {
+            let of: Vec<f64> =
+                judged.iter().filter(|j| j.quantity == q).map(|j| j.inferred - j.counted).collect();
+            let side = [("low", of.iter().all(|e| *e < 0.0)), ("high", of.iter().all(|e| *e > 0.0))];
+            let side = side.into_iter().find(|(_, all)| *all && of.len() >= ONE_SIDED);
+            found.extend(
+                side.map(|(side, _)| format!("{} is inferred too {side} in all of them.", q.symbol())),
+            );
         }
         found
     }
@@ -176,12 +194,14 @@ fn done_of_several(states: &[InvertedPacking]) -> String {
 }
 
 /// Words for the data of a result.
-fn data(result: &Inference) -> String {
-    match result.origin.source.as_deref() {
-        None => "its moduli".to_owned(),
-        Some(source) if source == PACKING_REPORT.name => "its moduli".to_owned(),
-        Some(_) => result.origin.data().unwrap_or_default().replace('_', " "),
-    }
+pub fn data(result: &Inference) -> String {
+    let data = match result.origin.source.as_deref() {
+        Some(source) if source != PACKING_REPORT.name => {
+            result.origin.data().unwrap_or_default().replace('_', " ")
+        }
+        _ => "its moduli".to_owned(),
+    };
+    format!("{data}, the stress, and the sizes and material of the grains")
 }
 
 fn of_one(state: &InvertedPacking, best: &Inference) -> Vec<String> {
@@ -191,8 +211,8 @@ fn of_one(state: &InvertedPacking, best: &Inference) -> Vec<String> {
         |j: &&Judged| main.contains(&j.quantity) || !judged.iter().any(|j| main.contains(&j.quantity));
     let values: Vec<String> = judged.iter().filter(is_shown).map(Judged::words).collect();
     let infers = match values.as_slice() {
-        [] => format!("From {data} alone, the model {model} infers no quantity that can be counted."),
-        values => format!("From {data} alone, the model {model} infers {}.", and(values)),
+        [] => format!("From {data}, the model {model} infers no quantity that can be counted."),
+        values => format!("From {data}, the model {model} infers {}.", and(values)),
     };
     std::iter::once(infers).chain(inside(&judged)).collect()
 }
@@ -203,24 +223,21 @@ fn inside(judged: &[Judged]) -> Option<String> {
         judged.iter().filter(|j| j.is_inside() == Some(wanted)).map(|j| j.quantity.symbol()).collect()
     };
     let (inside, outside) = (of(true), of(false));
-    match (inside.as_slice(), outside.as_slice()) {
-        ([], []) => None,
-        (all, []) => Some(format!(
-            "The counted {} lie{} in the 95 % interval{}.",
-            and(all),
-            s(all.len() == 1),
-            s(all.len() > 1)
-        )),
-        ([], all) => Some(format!(
-            "The counted {} lie{} outside of the 95 % interval{}.",
-            and(all),
-            s(all.len() == 1),
-            s(all.len() > 1)
-        )),
+    let lie = |all: &[&str]| format!("The counted {} lie{}", and(all), s(all.len() == 1));
+    let text = match (inside.as_slice(), outside.as_slice()) {
+        ([], []) => return None,
+        (all, []) => format!("{} in the 95 % interval{}", lie(all), s(all.len() > 1)),
+        ([], all) => format!("{} outside of the 95 % interval{}", lie(all), s(all.len() > 1)),
         (some, others) => {
-            Some(format!("The 95 % intervals contain the counted {}, but not {}.", and(some), and(others)))
+            format!("The 95 % intervals contain the counted {}, but not {}", and(some), and(others))
         }
-    }
+    };
+    let farthest =
+        judged.iter().filter_map(|j| Some((j.sigmas()?, j.quantity))).max_by(|a, b| a.0.total_cmp(&b.0));
+    let farthest = farthest.filter(|_| judged.len() > 1);
+    let farthest =
+        farthest.map_or_else(String::new, |(s, q)| format!("; {} is farthest, {s:.1} σ away", q.symbol()));
+    Some(format!("{text}{farthest}."))
 }
 
 fn s(is_wanted: bool) -> &'static str {
@@ -237,51 +254,46 @@ pub fn and(parts: &[impl AsRef<str>]) -> String {
     }
 }
 
-/// Reasons to doubt, each with the number of states that have it.
+/// Reasons to doubt, each with the numbers of the states that have it, in the order of the first ones.
 #[derive(Default)]
-struct Doubts {
-    states: usize,
-    /// In the order of their first state.
-    found: Vec<(String, BTreeSet<u64>)>,
-}
+struct Doubts(Vec<(String, BTreeSet<usize>)>);
 
 impl Doubts {
-    fn add(&mut self, step: u64, text: String) {
-        match self.found.iter_mut().find(|(known, _)| *known == text) {
-            Some((_, steps)) => _ = steps.insert(step),
-            None => self.found.push((text, BTreeSet::from([step]))),
+    fn add(&mut self, n: usize, text: String) {
+        match self.0.iter_mut().find(|(known, _)| *known == text) {
+            Some((_, of)) => _ = of.insert(n),
+            None => self.0.push((text, BTreeSet::from([n]))),
         }
     }
 
     /// Takes the doubts about a state: of its inversion first, then of the packing.
-    fn of(&mut self, state: &InvertedPacking) {
-        let step = state.packing.step;
+    fn of(&mut self, n: usize, state: &InvertedPacking) {
         match (recommended(state), state.packing.report.elasticity.as_ref()) {
             (Some(best), _) if best.status != "ok" => {
                 let why = best.warnings.first().map_or_else(String::new, |w| format!(": {w}"));
-                self.add(step, format!("The estimate is {}{why}", best.status));
+                self.add(n, format!("the estimate is {}{why}", best.status));
             }
             (Some(_), _) => {}
-            (None, Err(why)) => self.add(step, format!("Nothing was inferred: there is no stiffness: {why}")),
+            (None, Err(why)) => self.add(n, format!("nothing was inferred: there is no stiffness: {why}")),
             (None, Ok(_)) => {
                 let results: Vec<&Inference> = state.results.iter().collect();
                 let why = Inference::why_unknown(&results);
                 let why = why.unwrap_or_else(|| "no moduli were inverted".to_owned());
-                self.add(step, format!("Nothing was inferred: {why}"));
+                self.add(n, format!("nothing was inferred: {why}"));
             }
         }
-        state.packing.warnings.iter().for_each(|w| self.add(step, w.clone()));
+        state.packing.warnings.iter().for_each(|w| self.add(n, w.clone()));
     }
 
-    fn finish(self) -> Vec<String> {
-        let shown = if self.found.len() > MOST_DOUBTS { MOST_DOUBTS - 1 } else { self.found.len() };
-        let more = self.found.len() - shown;
-        let of = |(text, steps): &(String, BTreeSet<u64>)| match (self.states, steps.len()) {
+    fn finish(self, all: usize, noun: &str) -> Vec<String> {
+        let shown = if self.0.len() > MOST_DOUBTS { MOST_DOUBTS - 1 } else { self.0.len() };
+        let more = self.0.len() - shown;
+        let of = |(text, of): &(String, BTreeSet<usize>)| match (all, of.len()) {
             (1, _) => sentence(text),
-            (all, some) if all == some => format!("In every state: {text}."),
-            (all, some) => format!("In {some} of {all} states: {text}."),
+            (all, some) if all == some => format!("In every {noun}: {text}."),
+            (all, some) => format!("In {some} of {}: {text}.", count(all, noun)),
         };
-        let lines = self.found[..shown].iter().map(of);
+        let lines = self.0[..shown].iter().map(of);
         lines.chain((more > 0).then(|| format!("And {}.", count(more, "further warning")))).collect()
     }
 }
@@ -327,7 +339,7 @@ mod tests {
         assert_eq!(
             found,
             [
-                "From its moduli alone, the model relaxed infers z 5.900 ± 0.100 (counted 6.000, 1.0 σ away).",
+                "From its moduli, the stress, and the sizes and material of the grains, the model relaxed infers z 5.900 ± 0.100 (counted 6.000, 1.0 σ away).",
                 "The counted z lies in the 95 % interval."
             ]
         );
@@ -371,11 +383,11 @@ mod tests {
         assert_eq!(
             found,
             [
-                "The microstructure of 2 states was inferred, by relaxed; the rms difference from the count is z 0.354.",
+                "The model relaxed inferred the structure of 2 states; rms differences from the count: z 0.354.",
                 "1 of 2 counted values lie in their 95 % intervals."
             ]
         );
-        assert_eq!(doubts, ["In 1 of 2 states: The estimate is extrapolated: far."]);
+        assert_eq!(doubts, ["In 1 of 2 states: the estimate is extrapolated: far."]);
     }
 
     #[test]

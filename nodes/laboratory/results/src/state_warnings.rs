@@ -15,6 +15,12 @@ const RESTLESS: f64 = 0.01;
 /// Kinetic over elastic energy above which a packing is in motion. Packings at rest are below 1e-6.
 const MOVING: f64 = 0.01;
 
+/// Solid fraction above which spheres of nearly one size are not packed at random, with room for their overlaps.
+const RANDOM: f64 = 0.67;
+
+/// Standard deviation of radii over their mean below which sizes count as one.
+const EQUAL_SIZES: f64 = 0.15;
+
 /// Relative margin of the lower bound of Θ: for packings whose stress is not exactly isotropic.
 const BELOW: f64 = 1e-3;
 
@@ -35,6 +41,7 @@ pub fn state_warnings(
         moving(packing),
         below_its_bound(report),
         unresisted(report),
+        crystalline(report),
         pulling(packing),
         missing(packing, notes),
     ]
@@ -115,6 +122,17 @@ fn unresisted(report: &PackingReport) -> Option<String> {
              no packing at rest"
         };
         text.to_owned()
+    })
+}
+
+/// Random packings of spheres of nearly one size have a solid fraction of at most .64 at small pressures.
+fn crystalline(report: &PackingReport) -> Option<String> {
+    let phi = report.solid_fraction;
+    (report.size_spread < EQUAL_SIZES && phi > RANDOM).then(|| {
+        format!(
+            "solid fraction {phi:.3} is above that of random packings of spheres of one size (0.64): the grains have \
+             crystallised in part, as they do in small cells; the inversion was calibrated on random packings"
+        )
     })
 }
 

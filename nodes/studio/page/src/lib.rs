@@ -23,7 +23,7 @@ pub use elements::{
 pub use markup::Html;
 #[doc(hidden)]
 pub use markup::rendered;
-pub use mean::Mean;
+pub use mean::{Mean, student};
 #[doc(hidden)]
 pub use minijinja;
 pub use page::{Page, Section};

@@ -131,7 +131,7 @@ fn within(means: &Means<'_>, quantity: Quantity, limit: f64, text: &str, relativ
         let scale = if relative { c.paper?.value } else { 1.0 };
         Some(in_errors((size(c)?.abs() - limit).max(0.0), c.error().map(|e| e / scale)))
     });
-    let found = format!("at most {worst}, {}", place(sample, pressure));
+    let found = format!("largest difference {worst}, {}", place(sample, pressure));
     Claim { text: text.into(), found, verdict: Verdict::of(exceeded) }
 }
 

@@ -9,7 +9,7 @@ use grainlab_page::{
 };
 use grainlab_results::Inference;
 use grainlab_results::brief::moduli;
-use grainlab_results::findings::{Judged, recommended};
+use grainlab_results::findings::{self, Judged, recommended};
 use grainlab_results::read_back::InvertedPacking;
 
 /// Most rows of a plot; its data have all.
@@ -103,8 +103,12 @@ fn over_counted(states: &[InvertedPacking]) -> Html {
             [six_digits(j.counted), six_digits(j.inferred), low, high]
         });
         let title = format!("{} inferred, over the count", q.symbol());
-        let drawn =
-            Figure { title, x: Axis::linear("counted"), series: vec![exact, found], ..Figure::default() };
+        let drawn = Figure {
+            title,
+            x: Axis::linear("counted; grey: equal"),
+            series: vec![exact, found],
+            ..Figure::default()
+        };
         let id = format!("{}-over-counted", q.text().replace('_', "-"));
         (of.len() > 1)
             .then(|| figure(&id, drawn.element(), "", &csv(["counted", "inferred", "low", "high"], rows)))
@@ -142,10 +146,11 @@ impl Run {
         }
         let level = state.results.iter().find_map(|e| e.interval.level).unwrap_or(0.95);
         let which = if self.states.len() > 1 { " Of the last state." } else { "" };
+        let hollow = results[0].0.status != "ok";
+        let hollow = if hollow { " The point is hollow: the estimate has a warning." } else { "" };
         let caption = format!(
-            "Points: inferred, with intervals of {:.0} %, which assume the errors of the data that the inversion was given. \
-             Vertical line: counted. Below the interval: inferred less counted, and that in standard deviations. An outline: the \
-             status of the estimate is not ok.{which}",
+            "Points: inferred, with intervals of {:.0} %, which assume the errors of the data that the inversion was given. Vertical \
+             line: counted. Below the interval: inferred less counted, and that in standard deviations (σ).{hollow}{which}",
             100.0 * level
         );
         let others = match results.len() {
@@ -156,7 +161,10 @@ impl Run {
             ),
         };
         let best = figure("inferred", best, caption, &data(&results[..1]));
-        let about = "The inversion was given the moduli, or wave speeds if there are some, the stress, and the sizes and material of the grains. It was not given the contacts.";
+        let about = format!(
+            "The inversion was given {}. It was not given the contacts.",
+            findings::data(results[0].0)
+        );
         let notes = state.results.iter().flat_map(|e| e.warnings.iter().map(move |w| (e, w)));
         let warnings = list(notes.map(|(e, w)| format!("{}: {w}", name(e))));
         let notes = details("Notes of the models", warnings);

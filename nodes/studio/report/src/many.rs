@@ -12,6 +12,7 @@ use grainlab_page::{
 };
 use grainlab_results::brief::moduli;
 use grainlab_results::findings::{Findings, and, recommended};
+use grainlab_results::read_back::InvertedPacking;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A number of a run: header, decimal places, and value.
@@ -148,7 +149,11 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         [] => " They differ in nothing but the seed.".to_owned(),
         some => format!(" They differ in {}.", and(&some.iter().map(|s| s.name.clone()).collect::<Vec<_>>())),
     };
-    let done = format!("{complete} of {} complete.{differ}", count(runs.len(), "run"));
+    let grains: BTreeSet<u32> =
+        runs.iter().filter_map(|(r, _)| Some(r.last()?.packing.report.contacts.grains)).collect();
+    let grains: Vec<String> = grains.iter().map(u32::to_string).collect();
+    let grains = if grains.is_empty() { String::new() } else { format!(", of {} grains", and(&grains)) };
+    let done = format!("{complete} of {} complete{grains}.{differ}", count(runs.len(), "run"));
     let symbols = [InferredQuantity::Z, InferredQuantity::Eps].map(InferredQuantity::symbol);
     let mut found: Vec<String> =
         over.iter().flat_map(|o| symbols.iter().flat_map(|s| o.sentences(s))).collect();
@@ -160,7 +165,10 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         (marked, "value", "marked in the table: far from those of runs with the same settings"),
     ];
     let doubts = doubts.into_iter().filter(|(n, ..)| *n > 0);
-    let doubts: Vec<String> = doubts.map(|(n, noun, what)| format!("{} {what}.", count(n, noun))).collect();
+    let lasts: Vec<&InvertedPacking> = runs.iter().filter_map(|(run, _)| run.last()).collect();
+    let of_states = Findings::doubts(&lasts, "run");
+    let doubts = doubts.map(|(n, noun, what)| format!("{} {what}.", count(n, noun)));
+    let doubts: Vec<String> = of_states.into_iter().chain(doubts).collect();
     let page = Page {
         heading: heading("grainlab", &title, "") + finding(&done, &found, &doubts),
         title,

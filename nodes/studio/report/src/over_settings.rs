@@ -87,15 +87,13 @@ impl<'a> OverSettings<'a> {
                 format!("{:.digits$}", m.value) + &plus_minus(m.error, digits)
             };
             let of = match &self.by {
-                Some(by) => format!("For {} {curve}, {symbol}", by.name),
-                None => symbol.to_owned(),
+                Some(by) => format!("For {} {curve}, the counted {symbol}", by.name),
+                None => format!("The counted {symbol}"),
             };
-            let change = match (a.error, b.error) {
-                (Some(x), Some(y)) if (b.value - a.value).abs() <= 2.0 * x.hypot(y) => {
-                    "does not change beyond its scatter: it is"
-                }
-                _ if b.value > a.value => "rises from",
-                _ => "falls from",
+            let change = match a.differs_from(b) {
+                false => "does not change beyond its scatter: it is",
+                true if b.value > a.value => "rises from",
+                true => "falls from",
             };
             let along = &self.along.name;
             let to_word = if change.ends_with("is") { "and" } else { "to" };
@@ -138,7 +136,7 @@ impl<'a> OverSettings<'a> {
         let drawn: Html = self.whole[0].1.iter().enumerate().filter(has_value).map(draw).collect();
         let curves =
             self.by.as_ref().map_or_else(String::new, |s| format!(", with a curve for each {}", s.name));
-        let mut about = format!("Mean and standard error over seeds, over {along}{curves}.");
+        let mut about = format!("Points: means over seeds; bars: their standard errors{curves}.");
         if self.left_out > 0 {
             let runs = grainlab_console::count(self.left_out, "run");
             about += &format!(" Left out: {runs}, not complete or repeated.");

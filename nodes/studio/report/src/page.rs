@@ -91,8 +91,10 @@ impl Run {
         let scene = self.scene_name();
         match (self.last(), &self.timeline.last) {
             (Some(s), _) => {
-                let r = &s.packing.report;
-                format!("{scene}: {} grains at {:.2} kPa", r.contacts.grains, r.pressure() / 1e3)
+                let pressures = self.states.iter().map(|s| s.packing.report.pressure() / 1e3);
+                let [low, high] = pressures.fold([f64::INFINITY, 0.0], |[l, h], p| [p.min(l), p.max(h)]);
+                let range = if high - low < 0.01 { String::new() } else { format!("{low:.2} to ") };
+                format!("{scene}: {} grains at {range}{high:.2} kPa", s.packing.report.contacts.grains)
             }
             (None, Some(packing)) => format!("{scene}: {} grains, not measured", packing.grains()),
             (None, None) => format!("{scene}: no packing"),

@@ -18,7 +18,9 @@ pub struct InferredSample<'a> {
     pub estimate: &'a SeriesEstimate,
     /// True if the speeds contradict each other or the model.
     pub is_contradictory: bool,
-    /// Sentences on the result.
+    /// Reasons to doubt the result.
+    pub doubts: &'a [String],
+    /// Further sentences on it.
     pub notes: &'a [String],
 }
 
@@ -45,7 +47,7 @@ pub fn series_page(samples: &[InferredSample<'_>]) -> String {
 
 /// The findings about a sample.
 fn found(sample: &InferredSample<'_>) -> Html {
-    let InferredSample { series, estimate: e, notes, .. } = sample;
+    let InferredSample { series, estimate: e, doubts, .. } = sample;
     let kpa = |p: f64| format!("{} kPa", p / 1e3);
     let at = |p: &grainlab_emt::PressureEstimate| {
         format!("{:.2} ± {:.2} at {}", p.z.mean, p.z.stddev, kpa(p.pressure))
@@ -67,12 +69,7 @@ fn found(sample: &InferredSample<'_>) -> Html {
     let law =
         law.map(|l| format!("The most probable contact law is {} ({:.2}).", l.law.name(), l.probability));
     let found: Vec<String> = [format!("The speeds give z {z}.")].into_iter().chain(law).collect();
-    let contradicted =
-        sample.is_contradictory.then(|| "The speeds contradict each other or the model.".to_owned());
-    let of_notes =
-        notes.iter().filter(|n| n.contains("contradict") || n.contains("nothing is stated")).cloned();
-    let doubts: Vec<String> = contradicted.into_iter().chain(of_notes).collect();
-    finding(&done, &found, &doubts)
+    finding(&done, &found, doubts)
 }
 
 fn named(sample: &InferredSample<'_>, what: &str) -> String {
@@ -116,7 +113,10 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
         .iter()
         .map(|p| [p.pressure, p.z.mean, p.z.stddev, p.z.low, p.z.high].map(|v| v.to_string()));
     let data = csv(["pressure_pa", "z", "z_sigma", "z_low", "z_high"], rows);
-    let fit = format!("Probability of speeds that fit the model less well than these: {:.2}.", e.p);
+    let fit = match sample.is_contradictory {
+        true => "These speeds contradict each other or the model.".to_owned(),
+        false => format!("Fit of the model: p = {:.2}; below 0.01 it would be bad.", e.p),
+    };
     html!(
         "{{ fit }}{{ drawn }}{{ notes }}",
         fit => paragraph(fit),

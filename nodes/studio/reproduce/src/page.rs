@@ -22,7 +22,7 @@ impl Reproduction {
     /// Text of the page.
     pub fn html(&self) -> String {
         let p = &self.provenance;
-        let title = "Contact anisotropy and coordination number: the paper, reproduced";
+        let title = "Contact anisotropy and coordination number: the paper, compared";
         let seeds: Vec<String> = p.seeds.iter().map(u64::to_string).collect();
         let about = format!(
             "La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012), compared with packings of {} grains prepared, measured and \
@@ -74,7 +74,13 @@ impl Reproduction {
         let done =
             format!("The paper's four samples at four pressures, with {} grains and {seeds} each.", p.grains);
         let found = [
-            Some(format!("Of {} statements, {} hold.", self.claims.len(), count(Verdict::Holds))),
+            Some(format!(
+                "Of {} statements, {} hold, {} are undecided at this size, {} do not hold.",
+                self.claims.len(),
+                count(Verdict::Holds),
+                count(Verdict::Undecided),
+                count(Verdict::Missed)
+            )),
             self.judged("relaxed", None, "grainlab").and_then(|j| j.eps).zip(self.judged("ratio", Some("total"), "paper").and_then(|j| j.eps)).map(|(ours, theirs)| {
                 format!(
                     "From the moduli of these packings, the model relaxed infers ε with a mean error of {:.4}, and the paper's model with one of {:.4}.",
@@ -87,10 +93,8 @@ impl Reproduction {
                 self.claims.iter().filter(|c| c.verdict == verdict).map(|c| c.text.as_str()).collect();
             (!texts.is_empty()).then(|| format!("{why}: {}.", texts.join("; ")))
         };
-        let within = format!(
-            "Missed by less than the scatter of {seeds} of {} grains, which cannot decide it",
-            p.grains
-        );
+        let within =
+            format!("Missed by less than {seeds} of {} grains scatter, and therefore undecided", p.grains);
         let doubts = [
             named(Verdict::Missed, "Not reproduced"),
             named(Verdict::Undecided, &within),

@@ -99,8 +99,9 @@ pub(super) fn run(
             sensitivity,
             assumed,
             notes: Vec::new(),
+            doubts: Vec::new(),
         };
-        all.notes = print::notes(&all, &prior);
+        [all.doubts, all.notes] = print::notes(&all, &prior);
         found.push(all);
     }
     format.print(&found, || print::csv(&found), || found.iter().map(print::text).collect())?;
@@ -124,6 +125,7 @@ fn plotted(samples: &[Sample], path: &Path) -> Result<(), Failure> {
             estimate: &s.estimate,
             is_contradictory: s.status == "contradictory",
             notes: &s.notes,
+            doubts: &s.doubts,
         });
     }
     let page = grainlab_report::series_page(&all);

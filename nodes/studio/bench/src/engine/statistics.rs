@@ -5,6 +5,7 @@
 //! the effect, within its standard error.
 
 use crate::numbers::{mean, rms};
+use grainlab_page::student;
 
 /// Measured on the packing at the end of a path: coordination k of all grains, anisotropy ε of the contacts about e3 (Eq. 20),
 /// solid fraction φ, shear modulus G12 and bulk modulus Θ of the frozen network.
@@ -45,15 +46,6 @@ impl Estimate {
     pub(super) fn bound(&self) -> f64 {
         self.mean.abs().max(self.half_width())
     }
-}
-
-/// 97.5 % quantile of Student's t with `freedom` degrees of freedom, 1 or more, never below 2. From five on,
-/// by the expansion of Abramowitz and Stegun, 26.7.5, accurate to 0.2 %.
-fn student(freedom: usize) -> f64 {
-    const FEW: [f64; 4] = [12.706, 4.303, 3.182, 2.776];
-    let v = freedom as f64;
-    let quantile = 1.95996 + 2.3723 / v + 2.8225 / (v * v) + 2.5558 / (v * v * v);
-    FEW.get(freedom.saturating_sub(1)).copied().unwrap_or(quantile).max(2.0)
 }
 
 /// Standard deviation of at least two samples, with n − 1.
@@ -106,14 +98,6 @@ mod tests {
         assert!(effect.resolved() && effect.bound() == 0.21);
         // The scatter of three samples is often too small by chance.
         assert!(!Estimate { samples: 3, ..effect }.resolved());
-    }
-
-    #[test]
-    fn the_interval_is_student_s() {
-        for (freedom, quantile) in [(1, 12.706), (4, 2.776), (5, 2.571), (7, 2.365), (15, 2.131), (30, 2.042)]
-        {
-            assert!((student(freedom) / quantile - 1.0).abs() < 2e-3, "{freedom}: {}", student(freedom));
-        }
     }
 
     #[test]

@@ -8,6 +8,9 @@ use std::f64::consts::PI;
 /// Share of a posterior at an end of a range from which it is said.
 const AT_END: f64 = 0.1;
 
+/// Ratio of the errors of speeds to the stated ones from which it is a reason to doubt.
+const NOISY: f64 = 1.5;
+
 /// ln of a stiffness over that of the law from which the material is doubtful.
 const FAR_LEVEL: f64 = 1.0;
 
@@ -119,7 +122,7 @@ pub(super) fn text(sample: &Sample) -> String {
         out += &format!("{name:<14} {}\n", number(probability.max(0.0), 3));
     }
     out.push('\n');
-    for note in sample.assumed.iter().chain(&sample.notes) {
+    for note in sample.assumed.iter().chain(&sample.doubts).chain(&sample.notes) {
         out += &wrapped("note: ", note);
     }
     out
@@ -182,7 +185,7 @@ pub(super) fn csv(samples: &[Sample]) -> String {
             [Some(p.pressure)].into_iter().chain(all).for_each(|v| text.number(v));
             text.number(Some(p.z_beyond));
             text.cell(sample.status);
-            text.cell(&sample.notes.join("; "));
+            text.cell(&[&sample.doubts[..], &sample.notes].concat().join("; "));
             text.end();
         }
     }
@@ -241,22 +244,22 @@ fn range(values: &[f64]) -> String {
     }
 }
 
-/// The sentences on what is not determined, what contradicts, and what z depends on.
-pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
+/// Reasons to doubt the result, and further sentences: on what is not determined, and what z depends on.
+pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
     let (e, s) = (&sample.estimate, &sample.sensitivity);
-    let mut notes = Vec::new();
+    let (mut doubts, mut notes) = (Vec::new(), Vec::new());
     if sample.status == "contradictory" {
-        notes.push(format!("contradictory: {}", contradiction(sample)));
+        doubts.push(format!("contradictory: {}", contradiction(sample)));
     }
     for p in e.pressures.iter().filter(|p| p.p.is_some_and(|p| p < SeriesEstimate::CONTRADICTORY)) {
-        notes.push(format!(
+        doubts.push(format!(
             "the speeds at {} kPa contradict those at the other pressures ({})",
             kilopascals(p.pressure),
             chance(p.p.unwrap_or(f64::NAN))
         ));
     }
     if e.effective_draws < FEW_DRAWS {
-        notes.push(format!(
+        doubts.push(format!(
             "{:.0} draws represent the posterior, which is too few: the errors are larger than stated",
             e.effective_draws
         ));
@@ -303,26 +306,35 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
         }
     }
     if e.noise.mean > 0.8 * prior.noise[1] {
-        notes.push(format!(
+        doubts.push(format!(
             "the model fits these speeds badly: their errors would be {:.1} times the stated ones, and {} is the most that is assumed",
             e.noise.mean, prior.noise[1]
         ));
+    } else if e.noise.mean > NOISY {
+        doubts.push(format!("the errors of these speeds are {:.1} times the stated ones", e.noise.mean));
     }
     if e.level.mean.abs() > FAR_LEVEL {
-        notes.push(format!(
+        doubts.push(format!(
             "the stiffness is {:.2} times that of the law: check material, density and units",
             e.level.mean.exp()
         ));
     }
     let beyond = e.pressures.iter().map(|p| p.z_beyond).fold(0.0, f64::max);
     if beyond > AT_END {
-        notes.push(format!(
-            "up to {:.0} % of the posterior has z above 6.6, where nothing is stated (packings that taught have none)",
+        doubts.push(format!(
+            "up to {:.0} % of the posterior has z above 6.6, beyond the simulated packings: read it as 6.6 or more",
             100.0 * beyond
         ));
     }
     if e.pressures.len() > 1 {
         let z: Vec<f64> = e.pressures.iter().map(|p| p.z.mean).collect();
+        let growth = |z: &[f64]| z[z.len() - 1] - z[0];
+        if growth(&z) * growth(&s.without_slope) <= 0.0 {
+            doubts.push(format!(
+                "the change of z with pressure follows from the prior: without its slope, z is {} at the lowest and the highest pressure",
+                range(&s.without_slope)
+            ));
+        }
         notes.push(format!(
             "z at the lowest and the highest pressure: {}; if k_t/k_n fell by 10 % per decade of pressure, {}; if it rose so, {}; \
              without the prior's slope of z, {}",
@@ -343,14 +355,19 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> Vec<String> {
     let has = |p: bool| sample.series.rows.iter().any(|r| r.speed.is_some() && (r.mode == SpeedMode::P) == p);
     if has(true) && has(false) {
         let worst = s.bulk_less_shear.iter().map(|[d, sd]| d.abs() / sd).fold(0.0, f64::max);
-        notes.push(format!(
-            "z of the bulk modulus and z of the shear modulus differ by {worst:.1} standard deviations where they differ most; 3 contradict"
-        ));
+        let text = format!(
+            "z of the bulk modulus and z of the shear modulus differ by {worst:.1} standard deviations where they differ most"
+        );
+        if worst >= 3.0 {
+            doubts.push(text + ": they contradict each other");
+        } else {
+            notes.push(text + " (3 or more would be a contradiction)");
+        }
     }
     if has(true) != has(false) {
-        notes.push("only one mode was measured: z follows from its level and its growth with pressure, which contacts and preparation change too, and no other mode tests it".to_owned());
+        doubts.push("only one mode was measured: z follows from its level and its growth with pressure, which contacts and preparation change too, and no other mode tests it".to_owned());
     }
     notes.push("errors of the grain modulus and the density, and rounder or sharper grains, would look the same as this stiffness".to_owned());
     notes.push("isotropic stress is assumed; validated on simulated spheres; on samples, predictions of speeds were tested, and z was not".to_owned());
-    notes
+    [doubts, notes]
 }

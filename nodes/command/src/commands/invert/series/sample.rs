@@ -19,4 +19,6 @@ pub(super) struct Sample {
     pub(super) assumed: Vec<String>,
     /// Sentences on what is not determined, contradicts, or z depends on.
     pub(super) notes: Vec<String>,
+    /// Reasons to doubt the result.
+    pub(super) doubts: Vec<String>,
 }
