@@ -1,6 +1,7 @@
 //! Runs of scenes in one process.
 
-use crate::{Error, Mat3, State};
+use crate::{Error, State};
+use grainlab_core::Mat3;
 use grainlab_dem::{Compute, Simd};
 use grainlab_recordings::scenes;
 use std::time::{Duration, Instant};

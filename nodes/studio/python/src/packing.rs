@@ -154,7 +154,7 @@ impl PyPacking {
         format!("<grainlab.Packing: {n} grains, {m} contacts, phi {phi:.4}, step {}>", p.step)
     }
 
-    /// Where it comes from.
+    /// Origin of the packing, as text.
     #[getter]
     fn source(&self) -> &str {
         &self.imported.source
@@ -217,19 +217,19 @@ impl PyPacking {
         self.packing().friction
     }
 
-    /// Of the grains, Pa.
+    /// Shear modulus of the grains, Pa.
     #[getter]
     fn shear_modulus(&self) -> f64 {
         self.packing().material.shear_modulus
     }
 
-    /// Of the grains.
+    /// Poisson ratio of the grains.
     #[getter]
     fn poisson_ratio(&self) -> f64 {
         self.packing().material.poisson_ratio
     }
 
-    /// Of the grains, kg/m3.
+    /// Density of the grains, kg/m3.
     #[getter]
     fn density(&self) -> f64 {
         self.packing().material.density
@@ -260,7 +260,7 @@ impl PyPacking {
         scalars(slf.clone().into_any(), &slf.get().packing().ids)
     }
 
-    /// m, (n,).
+    /// Radii of the grains, m, (n,).
     #[getter]
     fn radii<'py>(slf: &Bound<'py, Self>) -> Array<'py, f64, Ix1> {
         scalars(slf.clone().into_any(), &slf.get().packing().radii)
@@ -344,7 +344,7 @@ impl PyPacking {
         copied(py, p.contacts.iter().map(|c| p.branch(c)))
     }
 
-    /// Whether each grain carries no force, (n,): a copy.
+    /// True for each grain that carries no force, (n,): a copy.
     #[getter]
     fn rattlers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         let carries = grainlab_core::non_rattlers(self.packing());
