@@ -154,7 +154,7 @@ impl PyPacking {
         format!("<grainlab.Packing: {n} grains, {m} contacts, phi {phi:.4}, step {}>", p.step)
     }
 
-    /// File or recording that it comes from.
+    /// Origin of the packing, as text.
     #[getter]
     fn source(&self) -> &str {
         &self.imported.source
@@ -223,7 +223,7 @@ impl PyPacking {
         self.packing().material.shear_modulus
     }
 
-    /// Poisson's ratio of the grains.
+    /// Poisson ratio of the grains.
     #[getter]
     fn poisson_ratio(&self) -> f64 {
         self.packing().material.poisson_ratio

@@ -92,7 +92,7 @@ impl PyRecording {
         self.recording.warnings().iter().map(ToString::to_string).collect()
     }
 
-    /// What a launched run printed: states with measurements and estimates, topics, messages lost, exit code. Raises FileError for others.
+    /// Summary of a launched run: states with measurements and estimates, topics, messages lost, exit code. Raises FileError for others.
     #[getter]
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let path = self.recording.path().join("summary.json");
@@ -113,7 +113,7 @@ impl PyRecording {
         Some(String::from_utf8_lossy(&scene.bytes).into_owned())
     }
 
-    /// The packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have.
+    /// Packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have.
     #[pyo3(signature = (topic="packing"))]
     fn packings<'py>(slf: Bound<'py, Self>, topic: &str) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("grainlab.recordings")?.getattr("Packings")?.call1((slf, topic))
@@ -124,7 +124,7 @@ impl PyRecording {
         Ok(PackingIterator(Mutex::new(Stream::of(&self.recording, Some(vec![topic.to_owned()]))?)))
     }
 
-    /// The last packing. Raises IndexError if it has none.
+    /// Last packing of the topic. Raises IndexError if it has none.
     #[pyo3(signature = (topic="packing"))]
     fn last_packing(&self, py: Python<'_>, topic: &str) -> PyResult<PyPacking> {
         let message = py.detach(|| self.recording.last(topic)).map_err(error::file)?;

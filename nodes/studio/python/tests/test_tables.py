@@ -27,7 +27,7 @@ def test_a_row_without_an_answer_is_nan_with_its_reason():
 def test_errors_of_single_moduli_count():
     exact = grainlab.invert(**STATE)["z_sigma"]
     assert grainlab.invert(**STATE, g12_sigma=2e7, g13_sigma=2e7, theta_sigma=3e7)["z_sigma"] > 1.5 * exact
-    with pytest.raises(ValueError, match="g12_sigma is given without g12"):
+    with pytest.raises(ValueError, match="g12_sigma_pa is a standard deviation of a quantity that is not there"):
         grainlab.invert(g13=1e8, pressure=5e4, g12_sigma=1e6)
 
 

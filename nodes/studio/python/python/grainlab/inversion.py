@@ -24,8 +24,6 @@ COLUMNS = {
     **{"shear_modulus": "grain_shear_modulus_pa", "shear_modulus_sigma": "grain_shear_modulus_sigma_pa"},
     **{"poisson_ratio": "poisson", "poisson_ratio_sigma": "poisson_sigma"},
 }
-#: What an error of each of these keywords is an error of.
-ERRORS = {name: name.removesuffix("_sigma") for name in COLUMNS if name.endswith("_sigma")}
 
 
 def invert(
@@ -76,10 +74,6 @@ def invert(
     if unknown:
         raise TypeError(f"invert() has no keyword {unknown[0]!r}; of a state there are: {', '.join(COLUMNS)}")
     given = {name: value for name, value in given.items() if value is not None}
-    for name, of in ERRORS.items():
-        without = table is None and of not in ("shear_modulus", "poisson_ratio") and of not in given
-        if without and name in given:
-            raise ValueError(f"{name} is given without {of}")
     of_keywords = {COLUMNS[name]: tables.column(name, value) for name, value in given.items()}
     if isinstance(table, (str, PathLike)):
         if of_keywords:

@@ -26,6 +26,9 @@ def column(name: str, values: Any) -> list[str] | str:
         raise ValueError(f"{name} has shape {array.shape} and type {array.dtype}; it must be one real number, or (n,)")
     if array.dtype.kind == "O":
         array = np.array([None if type(v).__name__ == "NAType" else v for v in array.flat], dtype=object).reshape(array.shape)
+    if array.dtype.kind in "iuf":
+        numbers = ["" if value != value else repr(value) for value in array.reshape(-1).tolist()]
+        return numbers if array.ndim else numbers[0]
     texts = [text_of(value) for value in array.reshape(-1).tolist()]
     if any("\n" in text or "\r" in text for text in texts):
         raise ValueError(f"{name}: a text has one line")
