@@ -143,7 +143,7 @@ fn one(state: &InvertedPacking) -> Vec<String> {
 }
 
 fn recommended(e: &Inference, source: &str, truth: &PackingReport) -> Vec<String> {
-    let title = format!("from {source} alone, by model {} ({}):", e.model, e.status);
+    let title = format!("from {source}, without the contacts, by model {} ({}):", e.model, e.status);
     let values = estimate(e, truth).map(|(name, value, sigma, error)| {
         let sigma = sigma.unwrap_or_else(|| "?".to_owned());
         row("", &format!("{name:6}{value:6} +- {sigma:6}  error {error}"))

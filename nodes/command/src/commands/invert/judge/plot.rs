@@ -35,7 +35,7 @@ pub(super) fn svg(cases: &[Case], points: Vec<Vec<[f64; 2]>>) -> String {
         title: "Contact anisotropy inferred from moduli, against what was counted".into(),
         subtitle: format!(
             "{}; rms error of each model; the line is an inference without error",
-            grainlab_console::count(rows, "packing")
+            grainlab_console::count(rows, "state")
         ),
         x: Axis::linear("contact anisotropy counted"),
         y: Axis::linear("contact anisotropy inferred"),
