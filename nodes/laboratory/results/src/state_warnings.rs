@@ -35,20 +35,13 @@ pub fn state_warnings(
     position: Option<PathPosition>,
     notes: &[String],
 ) -> Vec<String> {
-    [
-        position.and_then(within_phase),
-        restless(report),
-        moving(packing),
-        below_its_bound(report),
-        unresisted(report),
-        crystalline(report),
-        pulling(packing),
-        missing(packing, notes),
-    ]
-    .into_iter()
-    .flatten()
-    .chain(of_springs(report))
-    .collect()
+    let of_packing = [moving(packing), pulling(packing), missing(packing, notes)];
+    position
+        .and_then(within_phase)
+        .into_iter()
+        .chain(of_report(report))
+        .chain(of_packing.into_iter().flatten())
+        .collect()
 }
 
 fn within_phase(position: PathPosition) -> Option<String> {
@@ -147,9 +140,11 @@ fn pulling(packing: &Packing) -> Option<String> {
     Some(format!("{pull} (normal force below 0), the first of grains {i} and {j}: Hertz's law only presses"))
 }
 
-/// Notes on the springs of the stiffness.
-pub(crate) fn of_springs(report: &PackingReport) -> Vec<String> {
-    report.spring_notes().iter().map(|note| format!("stiffness {note}")).collect()
+/// Warnings that follow from the report of a packing alone.
+pub(crate) fn of_report(report: &PackingReport) -> Vec<String> {
+    let springs = report.spring_notes().into_iter().map(|note| format!("stiffness {note}"));
+    let others = [restless(report), below_its_bound(report), unresisted(report), crystalline(report)];
+    others.into_iter().flatten().chain(springs).collect()
 }
 
 /// Contacts by position that are missing in the list; the readers of some files have already reported them.

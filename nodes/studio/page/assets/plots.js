@@ -25,20 +25,23 @@
   readout.hidden = true;
   document.body.append(readout);
   const rowsAt = (svg, x) => {
-    const [left, top, right, bottom] = frame(svg), across = axis(svg.dataset.shown ?? svg.dataset.x), up = axis(svg.dataset.y);
-    const at = across.at((x - left) / (right - left)), of = svg.closest("[data-axis]")?.dataset.axis;
-    const rows = [of === "phase" ? `phase ${Math.floor(at) + 1}` : `${written(at, across)}${of === "time" ? " ms" : ""}`];
-    for (const path of svg.querySelectorAll(".curves path[stroke=currentColor]:not([stroke-opacity])")) {
-      let near = null, first = Infinity, last = -Infinity;
-      for (const corner of path.getAttribute("d").matchAll(/[ML] ([-\d.]+) ([-\d.]+)/g)) {
-        const far = Math.abs(corner[1] - x);
-        [first, last] = [Math.min(first, corner[1]), Math.max(last, corner[1])];
-        if (near === null || far < near.far) near = { far, y: Number(corner[2]) };
-      }
-      // A curve has no value before its first corner and behind its last one, but for a few pixels.
-      if (near && x > first - 4 && x < last + 4) rows.push(`${path.dataset.name ?? ""} ${written(up.at((bottom - near.y) / (bottom - top)), up)}`.trim());
+    const [left, top, right, bottom] = frame(svg), across = axis(svg.dataset.shown ?? svg.dataset.x), up = axis(svg.dataset.up ?? svg.dataset.y);
+    const at = across.at((x - left) / (right - left)), of = svg.closest("[data-axis]")?.dataset.axis, found = [];
+    for (const series of svg.querySelectorAll(".series")) {
+      // Points of the markers, or corners of the line.
+      const marks = [...series.querySelectorAll("circle,polygon")].filter((e) => e.style.display !== "none").map((e) => {
+        const box = e.getBBox(), moved = e.transform.baseVal.consolidate()?.matrix.e ?? 0;
+        return [box.x + box.width / 2 + moved, e.tagName === "circle" ? Number(e.getAttribute("cy")) : box.y + box.height / 2];
+      });
+      const line = series.querySelector("path:not([stroke-opacity])"), corners = line ? [...line.getAttribute("d").matchAll(/[ML] ([-\d.]+) ([-\d.]+)/g)].map((c) => [Number(c[1]), Number(c[2])]) : [];
+      const points = marks.length ? marks : corners, near = points.reduce((best, p) => (best && Math.abs(best[0] - x) <= Math.abs(p[0] - x) ? best : p), null);
+      // A point has a value near it; a curve none before its first corner and behind its last one, but for a few pixels.
+      if (!near || Math.abs(near[0] - x) > (marks.length ? 14 : 4) && (marks.length || x < points[0][0] || x > points.at(-1)[0])) continue;
+      found.push([marks.length ? across.at((near[0] - left) / (right - left)) : at, `${series.dataset.name} ${written(up.at((bottom - near[1]) / (bottom - top)), up)}`.trim()]);
     }
-    return rows;
+    if (!found.length) return [];
+    const [place] = found[0], head = of === "phase" ? `phase ${Math.floor(place) + 1}` : `${svg.dataset.along || "x"} ${written(place, across)}`;
+    return [head, ...found.map((row) => row[1])];
   };
   let pointer = null, drag = null;
   const under = () => pointer && document.elementFromPoint(...pointer)?.closest("svg[data-frame]");
@@ -55,8 +58,9 @@
     readout.style.left = `${Math.min((pointer?.[0] ?? 0) + 14, innerWidth - readout.offsetWidth - 4)}px`;
   };
 
-  // Marks of the part that is shown: multiples of 1, 2 or 5.
-  const marks = ({ low, high }) => {
+  // Marks of the part that is shown: multiples of 1, 2 or 5, or powers of ten.
+  const marks = ({ low, high, log }) => {
+    if (log && high / low > 20) return Array.from({ length: 40 }, (_, n) => 10 ** (Math.floor(Math.log10(low)) + n)).filter((v) => v >= low && v <= high).map((v) => [v, `${v < 1e-3 || v > 1e4 ? v.toExponential(0) : v}`]);
     const wanted = (high - low) / 5, decade = 10 ** Math.floor(Math.log10(wanted));
     const step = decade * [1, 2, 5, 10].find((m) => m * decade >= wanted), digits = Math.max(0, -Math.floor(Math.log10(step)));
     return Array.from({ length: Math.floor(high / step) - Math.ceil(low / step) + 1 }, (_, n) => (Math.ceil(low / step) + n) * step).map((v) => [v, v.toFixed(digits)]);
@@ -65,34 +69,48 @@
   const show = (svg, range) => {
     const whole = (svg.whole ??= svg.innerHTML), all = axis(svg.dataset.x), [left, top, right, bottom] = frame(svg), width = right - left;
     svg.innerHTML = whole;
-    if (!range) return delete svg.dataset.shown;
+    if (!range) {
+      delete svg.dataset.shown;
+      delete svg.dataset.up;
+      return;
+    }
     svg.dataset.shown = `${range[0]} ${range[1]} ${all.log ? "log" : "linear"}`;
     const part = axis(svg.dataset.shown), to = (x) => left + width * part.share(all.at((x - left) / width)), cut = (x) => Math.min(right, Math.max(left, x));
+    // The vertical axis is that of the corners and points that are seen.
+    const seen = [...svg.querySelectorAll(".series path, .series circle")].flatMap((e) => (e.tagName === "circle" ? [[e.getAttribute("cx"), e.getAttribute("cy")]] : [...e.getAttribute("d").matchAll(/[ML] ([-\d.]+) ([-\d.]+)/g)].map((c) => [c[1], c[2]])));
+    const heights = seen.filter(([x]) => to(Number(x)) >= left && to(Number(x)) <= right).map((p) => Number(p[1])), room = 0.06 * (bottom - top);
+    const [high, low] = heights.length ? [Math.min(...heights) - room / 2, Math.max(...heights) + room / 2] : [top, bottom], tall = Math.max(low - high, 1);
+    const up = (y) => top + ((y - high) / tall) * (bottom - top), whole_up = axis(svg.dataset.y), value = (y) => whole_up.at((bottom - y) / (bottom - top));
+    svg.dataset.up = `${value(high + tall)} ${value(high)} ${whole_up.log ? "log" : "linear"}`;
+    svg.querySelector(".ends")?.remove();
     const clip = make("clipPath", { id: `part-${++clips}` }, svg);
     make("rect", { x: left, y: top - 6, width, height: bottom - top + 12 }, clip);
-    for (const element of svg.querySelectorAll(".curves > *, .bands > *")) {
+    for (const element of svg.querySelectorAll(".series > *, .curves > text, .bands > *")) {
       const d = element.tagName === "path" && element.getAttribute("d"), box = element.getBBox();
       if (d && !/[HV]/.test(d)) {
-        element.setAttribute("d", d.replace(/([ML]) ([-\d.]+)/g, (_, letter, x) => `${letter} ${to(Number(x)).toFixed(1)}`));
+        element.setAttribute("d", d.replace(/([ML]) ([-\d.]+) ([-\d.]+)/g, (_, letter, x, y) => `${letter} ${to(Number(x)).toFixed(1)} ${up(Number(y)).toFixed(1)}`));
         element.setAttribute("clip-path", `url(#${clip.id})`);
       } else if (element.tagName === "rect") {
         const [from, end] = [cut(to(box.x)), cut(to(box.x + box.width))];
         element.setAttribute("x", from);
         element.setAttribute("width", end - from);
       } else {
-        const middle = box.x + box.width / 2, x = to(middle);
-        element.setAttribute("transform", `translate(${x - middle} 0)`);
+        const middle = [box.x + box.width / 2, box.y + box.height / 2], x = to(middle[0]), y = element.closest(".bands") ? middle[1] : up(middle[1]);
+        element.setAttribute("transform", `translate(${x - middle[0]} ${y - middle[1]})`);
         if (x < left || x > right) element.style.display = "none";
       }
     }
-    const group = svg.querySelector(".marks");
-    if (!group?.childNodes.length) return;
-    group.replaceChildren();
-    for (const [value, text] of marks(part)) {
-      const x = left + width * part.share(value);
-      make("line", { x1: x, x2: x, y1: top, y2: bottom, class: "grid" }, group);
-      make("text", { x, y: bottom + 16, "text-anchor": "middle", class: "ink" }, group).textContent = text;
-    }
+    const redraw = (name, of, line, text) => {
+      const group = svg.querySelector(name);
+      if (!group?.childNodes.length) return;
+      group.replaceChildren();
+      for (const [v, words] of marks(of)) {
+        make("line", { ...line(of.share(v)), class: "grid" }, group);
+        make("text", { ...text(of.share(v)), class: "ink" }, group).textContent = words;
+      }
+    };
+    redraw(".marks", part, (s) => ({ x1: left + width * s, x2: left + width * s, y1: top, y2: bottom }), (s) => ({ x: left + width * s, y: bottom + 16, "text-anchor": "middle" }));
+    redraw(".marks-up", axis(svg.dataset.up), (s) => ({ x1: left, x2: right, y1: bottom - (bottom - top) * s, y2: bottom - (bottom - top) * s }), (s) => ({ x: left - 8, y: bottom - (bottom - top) * s + 4, "text-anchor": "end" }));
   };
   // Plots over a common axis show the same part.
   const shown = new Map(), key = (svg) => svg.closest("#curves") && svg.closest("[data-axis]")?.dataset.axis;

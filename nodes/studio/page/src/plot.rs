@@ -60,27 +60,29 @@ impl Figure {
         let mut labelled = Vec::new();
         let mut taken = Vec::new();
         for series in &self.series {
-            let drawn: Vec<&Point> = series.points.iter().filter(drawable).collect();
-            let places: Vec<[f64; 2]> = drawn.iter().map(|p| [x.at(p.x), y.at(p.y)]).collect();
-            drawing.line(series, &places);
-            for (point, at) in drawn.iter().zip(&places) {
-                if let Some(error) = point.error {
-                    let end = |value: f64| if y.has(value) { y.at(value) } else { frame[3] };
-                    drawing.error_bar(series.colour, at[0], [end(point.y - error), end(point.y + error)]);
+            drawing.series(&series.name, |drawing| {
+                let drawn: Vec<&Point> = series.points.iter().filter(drawable).collect();
+                let places: Vec<[f64; 2]> = drawn.iter().map(|p| [x.at(p.x), y.at(p.y)]).collect();
+                drawing.line(series, &places);
+                for (point, at) in drawn.iter().zip(&places) {
+                    if let Some(error) = point.error {
+                        let end = |value: f64| if y.has(value) { y.at(value) } else { frame[3] };
+                        drawing.error_bar(series.colour, at[0], [end(point.y - error), end(point.y + error)]);
+                    }
+                    if let Some(marker) = series.marker {
+                        let tooltip = point.tooltip.as_deref().unwrap_or("");
+                        drawing.marker(
+                            *at,
+                            Key { marker, colour: series.colour, hollow: series.hollow },
+                            tooltip,
+                        );
+                        taken.push(labels::around(*at));
+                    }
+                    if let Some(label) = &point.label {
+                        labelled.push((*at, label.as_str(), series.colour));
+                    }
                 }
-                if let Some(marker) = series.marker {
-                    let tooltip = point.tooltip.as_deref().unwrap_or("");
-                    drawing.marker(
-                        *at,
-                        Key { marker, colour: series.colour, hollow: series.hollow },
-                        tooltip,
-                    );
-                    taken.push(labels::around(*at));
-                }
-                if let Some(label) = &point.label {
-                    labelled.push((*at, label.as_str(), series.colour));
-                }
-            }
+            });
         }
         for (place, label, colour) in labels::place(&labelled, taken, frame) {
             drawing.label(place, label, colour);

@@ -92,7 +92,8 @@ fn over_counted(states: &[InvertedPacking]) -> Html {
             .map(|j| j.counted)
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
         let exact = Series {
-            line: Some(Line::Faint),
+            name: "equal".to_owned(),
+            line: Some(Line::Straight),
             points: ends.map(|v| Point::at(v, v)).into(),
             ..Series::default()
         };
@@ -102,13 +103,9 @@ fn over_counted(states: &[InvertedPacking]) -> Html {
             let [low, high] = j.interval.map_or([String::new(), String::new()], |i| i.map(six_digits));
             [six_digits(j.counted), six_digits(j.inferred), low, high]
         });
-        let title = format!("{} inferred, over the count", q.symbol());
-        let drawn = Figure {
-            title,
-            x: Axis::linear("counted; grey: equal"),
-            series: vec![exact, found],
-            ..Figure::default()
-        };
+        let title = format!("{}: inferred against counted", q.symbol());
+        let drawn =
+            Figure { title, x: Axis::linear("counted"), series: vec![exact, found], ..Figure::default() };
         let id = format!("{}-over-counted", q.text().replace('_', "-"));
         (of.len() > 1)
             .then(|| figure(&id, drawn.element(), "", &csv(["counted", "inferred", "low", "high"], rows)))
@@ -141,15 +138,21 @@ impl Run {
         let Some(state) = self.last() else { return paragraph("No packing was measured.") };
         let results = judged(state);
         let (best, all) = (plots(&results[..results.len().min(1)], true), plots(&results, false));
-        if all.is_empty() {
-            return paragraph("Nothing was inferred.") + self.of_instruments();
+        if recommended(state).is_none() {
+            let all = if all.is_empty() {
+                all
+            } else {
+                figure("inferred-by-model", all, "No model is recommended.", &data(&results))
+            };
+            let others = details("Estimates of models that are not recommended", all);
+            return paragraph("Nothing was inferred.") + others + self.of_instruments();
         }
         let level = state.results.iter().find_map(|e| e.interval.level).unwrap_or(0.95);
         let which = if self.states.len() > 1 { " Of the last state." } else { "" };
         let hollow = results[0].0.status != "ok";
         let hollow = if hollow { " The point is hollow: the estimate has a warning." } else { "" };
         let caption = format!(
-            "Points: inferred, with intervals of {:.0} %, which assume the errors of the data that the inversion was given. Vertical \
+            "Points: inferred, ± one standard deviation, with intervals of {:.0} %, which assume the errors of the data that the inversion was given. Vertical \
              line: counted. Below the interval: inferred less counted, and that in standard deviations (σ).{hollow}{which}",
             100.0 * level
         );

@@ -118,8 +118,7 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         rows.push(row);
         csv.row(line);
     }
-    let about = "The last packing of each run; errors are inferred less counted. A value is marked if it lies further from the median of \
-                 the runs of a scene with the same settings (six or more) than chance alone has it in one column of a hundred. \
+    let about = "The last packing of each run; errors are inferred less counted. Marked: outliers among six or more runs with the same settings. \
                  Click a header to sort.";
     let content = html!(
         "{{ about }}<div class=\"drawing sortable\" id=\"runs-table\">{{ table }}\
@@ -145,9 +144,15 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     let scenes: Vec<String> = scenes.into_iter().collect();
     let title = format!("{} of {}", count(runs.len(), "run"), and(&scenes));
     let complete = runs.iter().filter(|(run, _)| run.summary.exit == Some(0) && !run.is_incomplete()).count();
-    let differ = match varied.as_slice() {
-        [] => " They differ in nothing but the seed.".to_owned(),
-        some => format!(" They differ in {}.", and(&some.iter().map(|s| s.name.clone()).collect::<Vec<_>>())),
+    let seeds: BTreeSet<Option<u64>> = runs.iter().map(|(run, _)| run.seed()).collect();
+    let several = [("the scene", scenes.len() > 1), ("the seed", seeds.len() > 1)];
+    let differ = varied.iter().map(|s| s.name.clone());
+    let differ: Vec<String> =
+        differ.chain(several.into_iter().filter(|s| s.1).map(|s| s.0.to_owned())).collect();
+    let differ = if differ.is_empty() {
+        " They do not differ.".to_owned()
+    } else {
+        format!(" They differ in {}.", and(&differ))
     };
     let grains: BTreeSet<u32> =
         runs.iter().filter_map(|(r, _)| Some(r.last()?.packing.report.contacts.grains)).collect();
@@ -185,16 +190,21 @@ fn side_by_side(pair: [&Run; 2]) -> Html {
     let [a, b] = pair.map(numbers);
     let rows = a.into_iter().zip(b).map(|((name, digits, x), (_, _, y))| {
         let difference = x.zip(y).map(|(x, y)| y - x);
-        let cells = [Cell::fixed(x, digits), Cell::fixed(y, digits), Cell::signed(difference, digits)];
+        let cells = match name.as_str() {
+            "unbalanced" => {
+                [x, y, difference].map(|v| Cell::number(v.map(|v| format!("{v:.1e}")).unwrap_or_default()))
+            }
+            _ => [Cell::fixed(x, digits), Cell::fixed(y, digits), Cell::signed(difference, digits)],
+        };
         std::iter::once(Cell::text(name)).chain(cells)
     });
     let [first, second] = pair.map(Run::name);
-    let settings = differing(&pair).into_iter().map(|s| {
-        s.values.iter().fold(vec![Cell::text(&s.name)], |mut row, value| {
-            row.push(Cell::text(value));
-            row
-        })
-    });
+    let [x, y] = pair.map(|run| keys(&run.scene_text));
+    let all: BTreeSet<&String> = x.keys().chain(y.keys()).collect();
+    let of =
+        |keys: &BTreeMap<String, String>, key: &String| keys.get(key).map_or("–", String::as_str).to_owned();
+    let settings = all.into_iter().filter(|key| x.get(*key) != y.get(*key));
+    let settings = settings.map(|key| [key.clone(), of(&x, key), of(&y, key)].map(Cell::text));
     let header = |what: &str| [what.to_owned(), first.clone(), second.clone()];
     let tables = table("Settings", header("setting"), settings)
         + table("Numbers", header("quantity").into_iter().chain(["difference".to_owned()]), rows);

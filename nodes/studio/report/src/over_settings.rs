@@ -2,6 +2,7 @@
 
 use crate::run::Run;
 use crate::settings::{Setting, differing};
+use grainlab_core::results::InferredQuantity;
 use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
 use grainlab_page::{Html, Mean, csv, figure, grid, paragraph, plus_minus, six_digits};
 use std::collections::BTreeSet;
@@ -122,7 +123,7 @@ impl<'a> OverSettings<'a> {
                 let (colour, marker, line) = (Some(c), Some(Marker::of(c)), Some(Line::Straight));
                 series.push(Series { name: of.clone(), colour, marker, line, points, ..Series::default() });
             }
-            let (title, x) = (name.clone(), axis.clone());
+            let (title, x) = (titled(name), axis.clone());
             let drawn = Figure { title, x, series, ..Figure::default() };
             let data = csv([along.as_str(), by, "n", "mean", "standard_error"], rows);
             figure(&format!("over-settings-{}", q + 1), drawn.element(), "", &data)
@@ -161,7 +162,7 @@ pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
             ..Series::default()
         }];
         let drawn = Figure {
-            title: name.clone(),
+            title: titled(name),
             x: Axis::linear("run, in the order of the table"),
             series,
             ..Figure::default()
@@ -170,6 +171,12 @@ pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
         (values().next().is_some()).then(|| figure(&format!("by-run-{}", q + 1), drawn.element(), "", &data))
     };
     grid(all[0].1.iter().enumerate().filter_map(draw).collect())
+}
+
+/// Name of a quantity with its meaning, where its symbol is all that a column has.
+fn titled(name: &str) -> String {
+    let known = InferredQuantity::countable().find(|q| q.symbol() == name);
+    known.map_or_else(|| name.to_owned(), |q| format!("{name}: {}", q.meaning()))
 }
 
 /// Decimal places that give a standard error two digits.

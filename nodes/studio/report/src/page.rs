@@ -68,7 +68,7 @@ impl Run {
         let set: Vec<&str> = words.windows(2).filter(|w| w[0] == "--set").map(|w| w[1].as_str()).collect();
         let about = match set.as_slice() {
             [] => about.to_owned(),
-            set => format!("{about} Changed for this run: {}.", set.join(", ")),
+            set => format!("{} with {}, made from: {about}", self.scene_name(), set.join(", ")),
         };
         let missing = list(&self.missing);
         let missing = html!(

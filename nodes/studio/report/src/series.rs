@@ -8,6 +8,9 @@ use grainlab_page::{
 };
 use std::f64::consts::PI;
 
+/// Share of the posterior beyond the simulated packings from which z has only a lower end.
+const OPEN: f64 = 0.1;
+
 /// A sample on the page.
 pub struct InferredSample<'a> {
     /// Name of the sample; may be empty.
@@ -49,8 +52,10 @@ pub fn series_page(samples: &[InferredSample<'_>]) -> String {
 fn found(sample: &InferredSample<'_>) -> Html {
     let InferredSample { series, estimate: e, doubts, .. } = sample;
     let kpa = |p: f64| format!("{} kPa", p / 1e3);
-    let at = |p: &grainlab_emt::PressureEstimate| {
-        format!("{:.2} ± {:.2} at {}", p.z.mean, p.z.stddev, kpa(p.pressure))
+    // Beyond the packings that were simulated there is only a lower end.
+    let at = |p: &grainlab_emt::PressureEstimate| match p.z_beyond > OPEN {
+        true => format!("{:.2} or more at {}", p.z.low, kpa(p.pressure)),
+        false => format!("{:.2} ± {:.2} at {}", p.z.mean, p.z.stddev, kpa(p.pressure)),
     };
     let (z, over) = match e.pressures.as_slice() {
         [] => return Html::default(),

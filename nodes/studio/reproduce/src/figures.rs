@@ -26,7 +26,9 @@ fn mean(m: &Mean, scale: f64) -> (f64, Option<f64>) {
 impl Reproduction {
     fn simulated(&self, quantity: Quantity, scale: f64, name: &'static str) -> Curve<'_> {
         let values = move |sample| -> Values {
-            std::array::from_fn(|p| self.get(quantity, sample, p).map(|c| mean(&c.ours, scale)))
+            std::array::from_fn(|p| {
+                self.get(quantity, sample, p).map(|c| mean(&Mean { error: c.error(), ..c.ours }, scale))
+            })
         };
         Curve { name, colour: Some(0), marker: Marker::Circle, hollow: false, values: Box::new(values) }
     }

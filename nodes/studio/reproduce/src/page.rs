@@ -10,7 +10,7 @@ use grainlab_paper::{PAPER, PRESSURE};
 /// Parts of the scenes that the text of the paper does not have, or has otherwise.
 const DEPARTURES: [&str; 5] = [
     "An early extension at constant volume, before the grains touch. The deviatoric strain of the compression undoes it, so that \
-     γ/Δ is that of Table II; the paper does not mention it.",
+     γ/Δ is near that of Table II; the paper does not mention it.",
     "Isotropic compression to φ = 0.628, then pure shear until the grains jam, in place of the uniaxial compression.",
     "One cycle at constant lateral stress at μ2. The paper has servo-controlled cycles at constant volume, which targets of \
      stress exclude.",
@@ -83,7 +83,7 @@ impl Reproduction {
             )),
             self.judged("relaxed", None, "grainlab").and_then(|j| j.eps).zip(self.judged("ratio", Some("total"), "paper").and_then(|j| j.eps)).map(|(ours, theirs)| {
                 format!(
-                    "From the moduli of these packings, the model relaxed infers ε with a mean error of {:.4}, and the paper's model with one of {:.4}.",
+                    "From the moduli of these packings, the model relaxed infers ε with errors of {:.4} in the mean, regardless of sign, and the paper's model with {:.4}.",
                     ours.magnitude, theirs.magnitude
                 )
             }),
@@ -136,8 +136,8 @@ impl Reproduction {
         };
         let about = paragraph(format!(
             "{scatter} A difference in errors is divided by that error and the rounding of the paper's \
-             number; the scatter of the paper's own samples, one each, is not known. The paper's k agrees with our z, as if its \
-             rattlers were left out.",
+             number; the scatter of the paper's own samples, one each, is not known. The paper's k is compared with our z, as if its \
+             rattlers were left out: the difference is smaller than that of our k.",
         ));
         about + self.table_one() + self.table_two() + self.table_three() + self.moduli()
     }

@@ -86,6 +86,13 @@ impl Drawing {
         self.add(format_args!("</g>"));
     }
 
+    /// Adds the elements of a series, whose name scripts show.
+    pub(super) fn series(&mut self, name: &str, draw: impl FnOnce(&mut Self)) {
+        self.add(format_args!("<g class=\"series\" data-name=\"{}\">", escaped(name)));
+        draw(self);
+        self.add(format_args!("</g>"));
+    }
+
     /// Adds an element.
     pub(super) fn add(&mut self, element: std::fmt::Arguments<'_>) {
         let _ = writeln!(self.text, "{element}");
@@ -118,11 +125,13 @@ impl Drawing {
     /// Both axes without the marks of the horizontal one.
     pub(super) fn other_axes(&mut self, along: &str, (y, up): (&Range, &str)) {
         let [left, top, right, bottom] = self.frame;
-        for (value, text) in y.marks() {
-            let at = y.at(value);
-            self.segment([left, at, right, at], "grid");
-            self.text([left - 8.0, at + 4.0], "end", "class=\"ink\"", &text);
-        }
+        self.group("marks-up", |drawing| {
+            for (value, text) in y.marks() {
+                let at = y.at(value);
+                drawing.segment([left, at, right, at], "grid");
+                drawing.text([left - 8.0, at + 4.0], "end", "class=\"ink\"", &text);
+            }
+        });
         self.segment([left, bottom, right, bottom], "axis");
         self.segment([left, top, left, bottom], "axis");
         if !along.is_empty() {
@@ -147,13 +156,9 @@ impl Drawing {
             Line::Faint => " stroke-opacity=\"0.35\"",
         };
         let class = class(series.colour);
-        let name = match series.name.as_str() {
-            "" => String::new(),
-            name => format!(" data-name=\"{}\"", escaped(name)),
-        };
         let _ = writeln!(
             self.text,
-            "<path d=\"{path}\" class=\"{class}\" fill=\"none\" stroke=\"currentColor\"{opacity}{name}/>"
+            "<path d=\"{path}\" class=\"{class}\" fill=\"none\" stroke=\"currentColor\"{opacity}/>"
         );
     }
 

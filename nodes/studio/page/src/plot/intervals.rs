@@ -60,7 +60,7 @@ impl Intervals {
         drawing.marks(&range);
         if let Some((value, name)) = &self.reference {
             let (at, half) = (range.at(*value), HALF_LETTER * name.chars().count() as f64);
-            drawing.segment([at, TOP - 3.0, at, bottom], "axis");
+            drawing.segment([at, TOP - 6.0, at, TOP], "axis");
             let middle = at.clamp(SIDES[0] + half, SIDES[1] - half);
             drawing.text([middle, TOP - 8.0], "middle", "class=\"ink\"", name);
         }
@@ -68,10 +68,10 @@ impl Intervals {
         for (row, height) in self.rows.iter().zip(heights) {
             let is_first = !row.below.is_empty();
             let (size, colour) = if is_first { ("14", Some(0)) } else { ("12", None) };
-            let style = format!("class=\"ink\" font-size=\"{size}\" paint-order=\"stroke\"");
+            let style = format!("class=\"ink\" font-size=\"{size}\"");
             drawing.text([SIDES[0], y + 16.0], "start", &style, &row.name);
             drawing.text([SIDES[1], y + 16.0], "end", &style, &row.text);
-            drawing.text([SIDES[1], y + 50.0], "end", "class=\"faint\" paint-order=\"stroke\"", &row.below);
+            drawing.text([SIDES[1], y + 50.0], "end", "class=\"faint\"", &row.below);
             let at = y + if is_first { 30.0 } else { 24.0 };
             if let Some([low, high]) = row.interval.map(|ends| ends.map(|end| range.at(end))) {
                 drawing.add(format_args!(
@@ -79,6 +79,9 @@ impl Intervals {
                     class(colour),
                     if is_first { 4 } else { 2 }
                 ));
+            }
+            if let Some(counted) = self.reference.as_ref().map(|r| range.at(r.0)) {
+                drawing.segment([counted, at - 7.0, counted, at + 7.0], "axis");
             }
             if let Some(value) = row.value {
                 let key = Key { marker: Marker::Circle, colour, hollow: row.hollow };

@@ -46,7 +46,8 @@ impl Rose {
         let about = format!("{}, by |cos θ| from 0 to 1: {}{said}", self.title, values.join(", "));
         let mut drawing = Drawing::small(PICTURE, [0.0; 4], &self.title, &about, "");
         let [x, y] = CENTRE;
-        for ring in (1..).map(|n| 0.5 * f64::from(n)).take_while(|r| r * scale <= RADIUS + 0.5) {
+        let step = [0.5, 1.0, 2.0, 5.0].into_iter().find(|s| s * 3.0 * scale >= RADIUS).unwrap_or(10.0);
+        for ring in (1..).map(|n| step * f64::from(n)).take_while(|r| r * scale <= RADIUS + 0.5) {
             let (radius, dash) = (ring * scale, if ring == 1.0 { "" } else { " stroke-dasharray=\"2 3\"" });
             drawing.add(format_args!(
                 "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius:.1}\" fill=\"none\" class=\"grid\"{dash}/>"
@@ -66,7 +67,7 @@ impl Rose {
                 let ([x1, y1], [x2, y2]) = (at(from), at(to));
                 drawing.add(format_args!(
                     "<path d=\"M {x} {y} L {x1:.1} {y1:.1} A {radius:.1} {radius:.1} 0 0 1 {x2:.1} {y2:.1} Z\" \
-                     class=\"{class_of_bins}\" fill=\"currentColor\" fill-opacity=\"0.3\" stroke=\"currentColor\" stroke-opacity=\"0.45\" stroke-width=\"0.6\"/>"
+                     class=\"{class_of_bins}\" fill=\"currentColor\" fill-opacity=\"0.3\"/>"
                 ));
             }
         }

@@ -68,7 +68,8 @@ impl Strip {
         };
         let [left, ..] = frame;
         let attributes = format!(
-            " data-frame=\"{left} {top} {right} {bottom}\" data-x=\"{}\" data-y=\"{}\"",
+            " data-along=\"{}\" data-frame=\"{left} {top} {right} {bottom}\" data-x=\"{}\" data-y=\"{}\"",
+            escaped(&x.name),
             of(&across, x.scale),
             of(&up, y.scale)
         );
@@ -86,10 +87,12 @@ impl Strip {
         if is_beside {
             let ends =
                 named.iter().filter_map(|s| s.points.iter().rfind(|p| up.has(p.y))).map(|p| up.at(p.y));
-            for (series, at) in named.iter().zip(spread(ends.collect(), [top, bottom])) {
-                let of = format!("class=\"{}\" fill=\"currentColor\"", class(series.colour));
-                drawing.text([right + 5.0, at + 4.0], "start", &of, &series.name);
-            }
+            drawing.group("ends", |drawing| {
+                for (series, at) in named.iter().zip(spread(ends.collect(), [top, bottom])) {
+                    let of = format!("class=\"{}\" fill=\"currentColor\"", class(series.colour));
+                    drawing.text([right + 5.0, at + 4.0], "start", &of, &series.name);
+                }
+            });
         }
         for (n, row) in rows.iter().enumerate() {
             let mut at = 8.0;
@@ -103,6 +106,7 @@ impl Strip {
 
     fn draw_bands(&self, drawing: &mut Drawing, across: &Range) {
         let ([_, top, _, bottom], [low, high]) = (drawing.frame(), across.ends());
+        let mut free = f64::NEG_INFINITY;
         for (n, band) in self.bands.iter().enumerate() {
             let [from, to] = band.range.map(|v| across.at(v.clamp(low, high)));
             let fill = if n % 2 == 0 { "band" } else { "paper" };
@@ -113,8 +117,10 @@ impl Strip {
                 escaped(&band.tooltip)
             ));
             let label_at = if self.by_band { bottom + 16.0 } else { top + 11.0 };
-            if to - from > LETTER * band.label.chars().count() as f64 {
-                drawing.text([0.5 * (from + to), label_at], "middle", "class=\"faint\"", &band.label);
+            let (middle, half) = (0.5 * (from + to), 0.5 * LETTER * band.label.chars().count() as f64);
+            if to - from > 2.0 * half && middle - half > free {
+                drawing.text([middle, label_at], "middle", "class=\"faint\"", &band.label);
+                free = middle + half + LETTER;
             }
         }
     }
