@@ -94,7 +94,7 @@ fn what_is_missing_leaves_undetermined_what_needs_it_and_no_more() {
     assert!(number(&rows[1], "k") > 4.0);
     assert_eq!((rows[2]["status"].as_str(), rows[2]["eps"].as_str()), (Some("unknown"), Some("")));
     assert!(rows[2]["reason"].as_str().unwrap().contains("needs G13"), "{}", rows[2]);
-    assert!(err.contains("line 4: ratio: model ratio needs G13"), "{err}");
+    assert!(err.contains("line 4: ratio: needs G13"), "{err}");
     assert_eq!(code, 2, "nothing at all can be said of the last row");
 
     let arguments =

@@ -15,7 +15,7 @@
   // As many digits as a tenth of the unit of the plot gives.
   const written = (value, { log, low, high }) => {
     if (log) return value.toPrecision(3);
-    return value.toFixed(Math.min(12, Math.max(0, 3 - Math.ceil(Math.log10(high - low)))));
+    return value.toFixed(Math.min(12, Math.max(0, 3 - Math.ceil(Math.log10(high - low))))).replace(/^-(?=[0.]+$)/, "");
   };
   const frame = (svg) => svg.dataset.frame.split(" ").map(Number);
 
