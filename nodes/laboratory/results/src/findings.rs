@@ -141,13 +141,16 @@ impl Findings {
             let inside = with.iter().filter(|is_inside| **is_inside).count();
             found.push(format!("{inside} of {} counted values lie in their 95 % intervals.", with.len()));
         }
-        for q in InferredQuantity::countable() {
-            let of: Vec<f64> =
-                judged.iter().filter(|j| j.quantity == q).map(|j| j.inferred - j.counted).collect();
-            let side = [("low", of.iter().all(|e| *e < 0.0)), ("high", of.iter().all(|e| *e > 0.0))];
-            let side = side.into_iter().find(|(_, all)| *all && of.len() >= ONE_SIDED);
+        for (side, sign) in [("low", -1.0), ("high", 1.0)] {
+            let is_aside = |q: &InferredQuantity| {
+                let of: Vec<&Judged> = judged.iter().filter(|j| j.quantity == *q).collect();
+                of.len() >= ONE_SIDED && of.iter().all(|j| sign * (j.inferred - j.counted) > 0.0)
+            };
+            let of: Vec<&str> =
+                InferredQuantity::countable().filter(is_aside).map(InferredQuantity::symbol).collect();
+            let are = if of.len() == 1 { "is" } else { "are" };
             found.extend(
-                side.map(|(side, _)| format!("{} is inferred too {side} in all of them.", q.symbol())),
+                (!of.is_empty()).then(|| format!("{} {are} inferred too {side} in all of them.", and(&of))),
             );
         }
         found

@@ -81,7 +81,7 @@ impl Intervals {
                 ));
             }
             if let Some(counted) = self.reference.as_ref().map(|r| range.at(r.0)) {
-                drawing.segment([counted, at - 7.0, counted, at + 7.0], "axis");
+                drawing.segment([counted, at - 9.0, counted, at + 9.0], "counted");
             }
             if let Some(value) = row.value {
                 let key = Key { marker: Marker::Circle, colour, hollow: row.hollow };
