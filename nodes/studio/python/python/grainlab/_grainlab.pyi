@@ -52,7 +52,7 @@ class Packing:
     def __len__(self) -> int: ...
     @property
     def source(self) -> str:
-        """File or recording that it comes from."""
+        """Origin of the packing, as text."""
     @property
     def notes(self) -> list[str]:
         """Remarks of the reader of its file."""
@@ -88,7 +88,7 @@ class Packing:
         """Shear modulus of the grains, Pa."""
     @property
     def poisson_ratio(self) -> float:
-        """Poisson's ratio of the grains."""
+        """Poisson ratio of the grains."""
     @property
     def density(self) -> float:
         """Density of the grains, kg/m3."""
@@ -171,16 +171,16 @@ class Recording:
         """Parts that could not be read so far."""
     @property
     def summary(self) -> dict[str, Any]:
-        """What a launched run printed: states with measurements and estimates, topics, messages lost, exit code. Raises FileError for others."""
+        """Summary of a launched run: states with measurements and estimates, topics, messages lost, exit code. Raises FileError for others."""
     def __fspath__(self) -> str: ...
     @property
     def scene(self) -> str | None:
         """Text of the scene."""
     def _packings(self, topic: str) -> PackingIterator: ...
     def packings(self, topic: str = "packing") -> Packings:
-        """The packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have."""
+        """Packings: a sequence, read as they are asked for. Raises FileError for a topic that it does not have."""
     def last_packing(self, topic: str = "packing") -> Packing:
-        """The last packing. Raises IndexError if it has none."""
+        """Last packing of the topic. Raises IndexError if it has none."""
     def messages(self, *topics: str) -> Iterator[tuple[str, int, dict[str, Any]]]:
         """(topic, time of arrival in ns since 1970, fields) of the messages of these topics, or of all, of any type. Raises FileError."""
 
