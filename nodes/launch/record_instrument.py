@@ -63,7 +63,7 @@ class Records:
 
 
 def picked(rows):
-    """What `grainlab pick` finds of each row."""
+    """Pick of `grainlab pick` for each row."""
     with tempfile.NamedTemporaryFile("w", suffix=".csv", newline="") as table:
         writer = csv.DictWriter(table, rows[0])
         writer.writeheader()

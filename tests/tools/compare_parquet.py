@@ -67,7 +67,7 @@ def main(path, folder):
             for row, (time, data) in zip(rows, messages):
                 assert row.pop("log_time") == time, (topic, read.__name__, time)
                 row.pop("publish_time")
-                # Their texts are the same, too: 1 is not True, and not 1.0.
+                # The texts are the same, too: 1 is not True, and not 1.0.
                 assert repr(row) == repr(fields(data)), f"{topic}, {read.__name__}: {row}\nrosbags: {data}"
     print(sum(map(len, topics.values())))
 

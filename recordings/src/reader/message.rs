@@ -48,7 +48,7 @@ impl Message {
     /// their names, and messages of another type are refused.
     ///
     /// # Errors
-    /// What differs.
+    /// The difference between the two definitions.
     pub fn own_bytes(&self) -> Result<Cow<'_, [u8]>, String> {
         self.channel.stored.own(&self.payload)
     }

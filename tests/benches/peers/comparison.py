@@ -77,7 +77,7 @@ class Comparison:
 
     @property
     def measured(self) -> bool:
-        """Whether any run succeeded."""
+        """True if any run succeeded."""
         return any(run for group in self.groups for runs in group.runs.values() for run in runs)
 
     def result(self) -> dict:

@@ -47,7 +47,7 @@ class Dirt:
         return cls(built)
 
     def cases(self, threads: int) -> list[Union[Case, Missing]]:
-        """Its one configuration; it has no servo for the sides of a periodic box."""
+        """The one configuration; the program has no servo for the sides of a periodic box."""
         name = "DIRT Hertz-Mindlin history"
         if threads == 1:
             return [Case(name, False, RATE, self._run)]

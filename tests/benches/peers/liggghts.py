@@ -44,7 +44,7 @@ class Liggghts:
         return cls(Path(path).absolute(), directory)
 
     def cases(self, threads: int) -> list[Union[Case, Missing]]:
-        """Its one configuration; it has no servo for the sides of a periodic box."""
+        """The one configuration; the program has no servo for the sides of a periodic box."""
         name = "LIGGGHTS hertz history"
         if threads == 1:
             return [Case(name, False, RATE, partial(self._run, 1))]

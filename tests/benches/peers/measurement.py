@@ -17,7 +17,7 @@ class Measurement:
     wall_s: float
     """By the clock of the code."""
     cpu_s: Optional[float]
-    """Of all ranks and threads together."""
+    """CPU time of all ranks and threads together."""
     start: Optional[State] = None
     """Before the first step."""
     end: Optional[State] = None
@@ -68,7 +68,7 @@ class Case:
 
     name: str
     servo: bool
-    """Whether the stress is evaluated and the sides move at every step."""
+    """True if the stress is evaluated and the sides move at every step."""
     nominal_rate: float
     """Expected particle-steps per second, from which the number of steps follows."""
     run: Callable[[Job], Measurement]

@@ -8,7 +8,7 @@ class Setting:
     """One setting for all codes; density and diameter come with the packing."""
 
     shear_modulus: float = 29.0e9
-    """Of the grains, Pa."""
+    """Shear modulus of the grains, Pa."""
     poisson: float = 0.2
     friction: float = 0.1
     restitution: float = 0.3

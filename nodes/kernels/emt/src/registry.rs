@@ -37,7 +37,7 @@ const WITHOUT_EPS: &str = "hertz-mindlin";
 const RECOMMENDED: [&str; 2] = [free_contact::NAME, "relaxed"];
 
 /// The model whose estimate is recommended, of all models that were asked, those without an estimate as [`Status::Unknown`].
-/// Where `free-contact` was asked, else where `relaxed` was, it is that one or none: no other model is a substitute for it. Among others,
+/// Among models with `free-contact`, else with `relaxed`, it is that one or none: no other model is a substitute for it. Among others,
 /// the one with the smallest error over the held-out packings of those inside their range, else of those that do not contradict
 /// the data; one that infers no ε only where no other has an estimate.
 pub fn recommended<'a>(asked: impl IntoIterator<Item = (&'a str, Status)>) -> Option<&'a str> {

@@ -9,7 +9,7 @@ const LARGEST: f64 = 0.05;
 /// Relative residual (Mandel norm) up to which the stiffness of a packing of `grains` grains counts as that
 /// of a symmetry class, for [`grainlab_core::symmetry()`]: 1.1/√grains, at most 5 %.
 ///
-/// Of 60 packings prepared isotropically (500 grains, μ = .1, z 5.3, 50 kPa) the residual of the isotropic class times √500
+/// Residuals of 60 packings prepared isotropically (500 grains, μ = .1, z 5.3, 50 kPa): that of the isotropic class times √500
 /// had a median of .89 and exceeded 1.07 in one of ten; that of the transversely isotropic one had .59. Of 24 with 2,000
 /// grains, times √2000: .90, 1.01 and .59.
 /// `cargo run --release -p grainlab_experiment --example fabric_noise nodes/scenes/demo.toml 1-60

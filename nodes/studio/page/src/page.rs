@@ -49,6 +49,8 @@ impl Page {
             .collect();
         let scripts: Vec<Html> = SCRIPTS.iter().chain(&self.scripts).map(fixed).collect();
         let Self { title, heading, sections, has_bar, is_served, .. } = self;
+        // A page from a server gets its plots later.
+        let has_plots = *is_served || sections.iter().any(|s| s.content.contains("data-frame"));
         html!(
             include_str!("../assets/frame.html"),
             title,
@@ -57,6 +59,7 @@ impl Page {
             styles,
             scripts,
             has_bar,
+            has_plots,
             is_served
         )
         .into()

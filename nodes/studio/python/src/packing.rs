@@ -15,7 +15,7 @@ use pyo3::types::{PyBytes, PyTuple};
 
 /// A packing of spheres in a periodic cell, which never changes. ``len(packing)`` is the number of grains n; m is that of contacts. SI units.
 ///
-/// Its arrays share its memory, without copies, and are read-only; each keeps the packing in memory. It can be pickled, without loss.
+/// Arrays of a packing share its memory, without copies, and are read-only; each keeps the packing in memory. It can be pickled, without loss.
 ///
 /// Made from arrays: cell (3, 3) with its edge vectors as columns, positions (n, 3), radii (n,), m; velocities (n, 3), m/s; shear modulus,
 /// Pa; density, kg/m3. Contacts are those of overlapping spheres, with Hertz forces and without tangential forces. Raises ValueError for

@@ -80,6 +80,11 @@ impl Run {
         let more = self.summary.warnings.iter().filter(|w| !doubts.iter().any(|d| d.contains(w.as_str())));
         let more: Vec<String> = more.take(MOST_WARNINGS).cloned().collect();
         doubts.extend(more);
+        if self.summary.exit != Some(0) || self.is_incomplete() {
+            doubts.push(
+                "The run is not complete, or cannot be read whole: the lines below say why.".to_owned(),
+            );
+        }
         heading(&format!("grainlab · {}", self.name()), &self.headline(), "")
             + finding(&done, &found, &doubts)
             + about

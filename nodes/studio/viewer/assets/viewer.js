@@ -110,7 +110,7 @@
         const column = (c) => new THREE.Vector3(cell[c], cell[3 + c], cell[6 + c]);
         normal.crossVectors(column((k + 1) % 3), column((k + 2) % 3)).normalize();
         const at = column(k).multiplyScalar(now.cut - 0.5);
-        // What was nearer at the beginning is cut away.
+        // Grains that were nearer at the beginning are cut away.
         if (normal.dot(BEGIN) < 0) normal.negate();
         const p = at.clone().applyMatrix4(camera.matrixWorldInverse);
         const n = normal.clone().transformDirection(camera.matrixWorldInverse);

@@ -1,4 +1,4 @@
-// What is drawn: spheres as one square each, force chains as prisms, the outline of the cell.
+// Shapes that are drawn: spheres as one square each, force chains as prisms, the outline of the cell.
 "use strict";
 const grainlabScene = (() => {
   const COMMON = `precision highp float; precision highp int;

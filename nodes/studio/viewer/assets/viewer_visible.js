@@ -26,7 +26,7 @@ const grainlabVisible = (() => {
     const half = Math.ceil(scale * tan), rows = 2 * half, columns = Math.ceil(2 * half * camera.aspect), middle = columns / 2;
     if (map.length < rows * columns) map = new Float32Array(rows * columns);
     map.fill(Infinity);
-    // Whether `limit` leaves some cell of a grain open; with `limit` < 0 the grain covers its cells instead.
+    // True if `limit` leaves some cell of a grain open; with `limit` < 0 the grain covers its cells instead.
     const cells = (g, factor, grow, limit) => {
       const depth = view[3 * g + 2];
       if (depth < 1e-3) return true;

@@ -32,7 +32,7 @@ pub struct By<'a> {
 pub struct InvertedRow {
     /// Name of the sample, if a column has it.
     pub sample: Option<String>,
-    /// The answer, with the reason if there is none.
+    /// Estimate of the model; if it has none, its warnings have the reason.
     pub inference: Inference,
     /// The exit code that the command would have without an answer; `None` with one.
     pub failed: Option<Exit>,

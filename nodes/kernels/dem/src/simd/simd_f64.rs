@@ -30,7 +30,7 @@ impl<'a, L: SimdF64> CheckedIndices<'a, L> {
     /// For lanes `lane..lane + WIDTH`.
     ///
     /// # Panics
-    /// Where one of their indices is not below the bound.
+    /// Panics if an index is not below the bound.
     #[inline(always)]
     pub(crate) fn new(indices: &'a [u32; BLOCK_SIZE], lane: usize, bound: usize) -> Self {
         assert!(L::all_below(indices, lane, bound), "row index out of bounds");

@@ -5,7 +5,7 @@
 //! Handbook, 5.4). Θ gives k, and the shear modulus over it f, which stands for all that makes real packs softer in shear.
 //! Without Θ it is C33 − 4/3 G13, or C11 − 4/3 G12, as from one P and one S wave. The contacts have no anisotropy.
 //!
-//! Where the moduli are anisotropic, the shear modulus is that of the isotropic part, or the mean of the known ones.
+//! If the moduli are anisotropic, the shear modulus is that of the isotropic part, or the mean of the known ones.
 
 use super::equivalent::MAX_COORDINATION;
 use crate::calibration::Calibration;

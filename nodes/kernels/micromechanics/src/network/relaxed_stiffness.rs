@@ -113,7 +113,7 @@ pub fn relaxed_stiffness(
 }
 
 /// Error of each entry of C by energy, Pa: √(e_aᵀ K e_a · e_bᵀ K e_b)/V with the errors e of the motions, at least |e_aᵀ K e_b|/V.
-/// Where they cannot be solved for, they are taken to be as large as the motions.
+/// Errors that cannot be solved for are taken to be as large as the motions.
 fn error_left(
     network: &SpringNetwork,
     solver: &Solver<'_>,

@@ -6,7 +6,7 @@
 //! Each round solves for the residual of the last one, computed in double precision with the operator itself,
 //! so that neither the precision of a round nor its recurrences limit the result. Single precision halves the
 //! memory traffic and doubles the work per instruction; double precision follows where it no longer helps.
-//! Where a round is slow, the softest motions of a few grains are left out of the iterations, and balanced exactly before and
+//! If a round is slow, the softest motions of a few grains are left out of the iterations, and balanced exactly before and
 //! after each round ([`super::soft_motions`]).
 //! All operations run in a fixed order on one thread: the same input gives the same bits.
 

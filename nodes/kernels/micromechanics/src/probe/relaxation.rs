@@ -33,7 +33,7 @@ pub struct Relaxation {
 
 impl Relaxation {
     /// Engines with the same fixed time step ([`grainlab_dem::TimeStep::Fixed`]) within the stability bound.
-    /// Their drags are replaced.
+    /// The drags of the engines are replaced.
     pub fn new(engines: Vec<Engine>) -> Self {
         Self { engines, since: 0, square_speed: 0.0 }
     }

@@ -33,7 +33,7 @@ fn bin(x: f64) -> usize {
 ///
 /// The logarithm of the likelihood, Σ ln(1 + ε (3x² − 1)), is concave in ε: its one maximum on [−1/2, 1] is found by
 /// Newton steps kept in a shrinking bracket. `None` without directions, or where ε changes no likelihood (x² = 1/3 for all).
-/// Where the maximum is on a bound, the standard error means little.
+/// The standard error means little if the maximum is on a bound.
 pub fn orientation_fit(cosines: impl Iterator<Item = f64>) -> Option<OrientationFit> {
     let mut counts = [0u32; ORIENTATION_BINS];
     let leverage: Vec<f64> = cosines
