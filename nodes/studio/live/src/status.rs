@@ -79,17 +79,11 @@ impl Laboratory {
                 r.input.stress.mean() / 1e3,
                 self.grains.map_or_else(String::new, |n| format!("{}: ", count(n, "grain"))),
             );
-            let measured = match self.report.as_ref() {
-                Some(report) => {
-                    format!("The last measured packing has z {:.3}.", report.contacts.mechanical_coordination)
-                }
-                None => "No packing was measured yet.".to_owned(),
-            };
             let now = format!(
                 "{grains}pressure {p:.2} kPa, solid fraction {:.4}, {:.2} contacts per grain.",
                 r.solid_fraction, r.coordination
             );
-            paragraph(format!("{now} {measured}"))
+            paragraph(now)
         });
         let phase = self.phase().map(|n| {
             let name = self.timeline.phase_name(n);

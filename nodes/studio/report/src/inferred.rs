@@ -83,9 +83,7 @@ fn over_counted(states: &[InvertedPacking]) -> Html {
         let of: Vec<&Judged> = all.iter().filter(|j| j.quantity == q).collect();
         let points = of.iter().map(|j| {
             let error = j.interval.map(|[low, high]| 0.5 * (high - low));
-            let tooltip =
-                Some(format!("{} (counted {}: {})", j.value(), six_digits(j.counted), j.distance()));
-            Point { error, tooltip, ..Point::at(j.counted, j.inferred) }
+            Point { error, ..Point::at(j.counted, j.inferred) }
         });
         let ends = of
             .iter()

@@ -89,22 +89,7 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
         points: e.pressures.iter().map(|p| Point::at(p.pressure / 1e3, of(&p.z))).collect(),
         ..Series::default()
     };
-    let tooltip = |p: &grainlab_emt::PressureEstimate| {
-        format!(
-            "{:.1} kPa: z {:.2} ± {:.2}, {:.2} to {:.2}",
-            p.pressure / 1e3,
-            p.z.mean,
-            p.z.stddev,
-            p.z.low,
-            p.z.high
-        )
-    };
-    let points = e
-        .pressures
-        .iter()
-        .map(|p| Point { tooltip: Some(tooltip(p)), ..Point::at(p.pressure / 1e3, p.z.mean) });
-    let middle =
-        Series { marker: Some(Marker::Circle), points: points.collect(), ..line(|z| z.mean, Line::Straight) };
+    let middle = Series { marker: Some(Marker::Circle), ..line(|z| z.mean, Line::Straight) };
     let drawn = Figure {
         title: named(sample, "coordination number z"),
         subtitle: "mean and 95 % of the posterior".to_owned(),

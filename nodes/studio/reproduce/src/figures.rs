@@ -123,8 +123,7 @@ fn drawn(id: &str, title: &str, curves: &[Curve<'_>], caption: &str) -> Html {
                             six_digits(y),
                             stated,
                         ]);
-                        let tooltip = Some(format!("{} at {x} kPa, {}: {y:.4}", s.name, curve.name));
-                        Some(Point { error, tooltip, ..Point::at(x, y) })
+                        Some(Point { error, ..Point::at(x, y) })
                     });
                 Series {
                     name: curve.name.to_owned(),
