@@ -37,10 +37,7 @@ pub fn find(
     let mut contacts = Vec::new();
     for i in 0..positions.len() {
         grid.visit(i, |j, lattice| {
-            // Each pair once; of a grain's own images, one of each opposite pair.
-            if j < i || (j == i && lattice <= [0, 0, 0]) {
-                return Ok(());
-            }
+            let (i, j, lattice) = if i <= j { (i, j, lattice) } else { (j, i, lattice.map(|n| -n)) };
             // Computed from unfolded positions, so that `Packing::branch` gives the same number.
             let step =
                 |k: usize| lattice[k].saturating_add(grid.cells[i][k]).saturating_sub(grid.cells[j][k]);

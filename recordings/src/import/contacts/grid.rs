@@ -1,4 +1,5 @@
-//! Grains sorted into boxes, so that only those nearby are compared.
+//! Grains sorted into boxes, so that only those nearby are compared. The size of a box follows the median
+//! grain, as boxes of the largest one would contain all others.
 
 use grainlab_core::{Cell, Vec3, sorted_into_bins};
 
@@ -23,6 +24,12 @@ const MOST_BOXES: i64 = 1 << 20;
 /// Number of grains in one box up to which there is no check for clusters.
 const CLUSTER: usize = 1000;
 
+/// Maximum edge of a box, in diameters of the median grain: most grains need only look into adjacent boxes.
+const MEDIAN_DIAMETERS: f64 = 1.5;
+
+/// Slightly more than a diameter, so that rounding cannot move touching grains out of range.
+const DIAMETER: f64 = 2.0 * (1.0 + 1e-9);
+
 /// The least edge of a box (m) for at most about four boxes per grain, in a cell of any shape: an edge
 /// shorter than a box has one box, and the other edges share the allowed number.
 fn least_edge(cell: &Cell, grains: usize) -> f64 {
@@ -38,11 +45,12 @@ fn least_edge(cell: &Cell, grains: usize) -> f64 {
 }
 
 /// Grains sorted into boxes of the cell.
-pub(super) struct Grid {
+pub(super) struct Grid<'a> {
     /// Number of boxes along each edge vector.
     boxes: [i64; 3],
-    /// Distance in boxes, along each edge vector, at which a touching grain may be.
-    reach: [i64; 3],
+    /// Number of boxes in a metre, along each edge vector.
+    boxes_per_m: [f64; 3],
+    radii: &'a [f64],
     /// Image of the cell that contains each grain's position.
     pub(super) cells: Vec<[i64; 3]>,
     /// Box of each grain.
@@ -52,37 +60,46 @@ pub(super) struct Grid {
     starts: Vec<u32>,
 }
 
-impl Grid {
-    pub(super) fn new(cell: &Cell, positions: &[Vec3], radii: &[f64]) -> Result<Self, SearchError> {
-        // Slightly more than two radii, so that rounding cannot move touching grains out of range.
-        let cutoff = 2.0 * radii.iter().copied().fold(0.0, f64::max) * (1.0 + 1e-9);
-        let edge = cutoff.max(least_edge(cell, positions.len()));
+fn median(radii: &[f64]) -> f64 {
+    let mut radii = radii.to_vec();
+    let half = radii.len() / 2;
+    if radii.is_empty() { 0.0 } else { *radii.select_nth_unstable_by(half, f64::total_cmp).1 }
+}
+
+impl<'a> Grid<'a> {
+    pub(super) fn new(cell: &Cell, positions: &[Vec3], radii: &'a [f64]) -> Result<Self, SearchError> {
+        let cutoff = DIAMETER * radii.iter().copied().fold(0.0, f64::max);
+        let edge = (MEDIAN_DIAMETERS * DIAMETER * median(radii)).min(cutoff);
+        let edge = edge.max(least_edge(cell, positions.len()));
         let boxes: [i64; 3] =
             std::array::from_fn(|k| ((cell.width(k) / edge).floor() as i64).clamp(1, MOST_BOXES));
-        let reach: [i64; 3] =
-            std::array::from_fn(|k| (cutoff * boxes[k] as f64 / cell.width(k)).ceil() as i64);
+        let boxes_per_m = std::array::from_fn(|k| boxes[k] as f64 / cell.width(k));
         let volume: f64 = radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
         let solid_fraction = volume / cell.volume();
         let width = (0..3).map(|k| cell.width(k)).fold(f64::INFINITY, f64::min);
-        let product = |n: [i64; 3]| n.iter().map(|n| *n as f64).product::<f64>();
-        let grains = positions.len() as f64;
-        let pairs =
-            grains * grains * product(reach.map(|r| r.saturating_mul(2).saturating_add(1))) / product(boxes);
+        let mut grid = Self {
+            boxes,
+            boxes_per_m,
+            radii,
+            cells: Vec::new(),
+            homes: Vec::new(),
+            sorted: Vec::new(),
+            starts: Vec::new(),
+        };
+        let looked_into: f64 = (0..radii.len()).map(|i| grid.neighbours(i)).sum();
+        let pairs = looked_into * positions.len() as f64 / boxes.iter().map(|n| *n as f64).product::<f64>();
         if !(solid_fraction <= MOST_FULL && cutoff <= MOST_CELLS * width && pairs <= MOST_PAIRS) {
             return Err(SearchError::Crowded { solid_fraction, diameter: cutoff, width });
         }
-        let mut cells = Vec::with_capacity(positions.len());
-        let mut homes = Vec::with_capacity(positions.len());
         for x in positions {
             let f = cell.fractional(x);
             let copy = [f.x.floor(), f.y.floor(), f.z.floor()];
-            homes.push(std::array::from_fn(|k| {
+            grid.homes.push(std::array::from_fn(|k| {
                 let inside = (f[k] - copy[k]) * boxes[k] as f64;
                 (inside.floor() as i64).clamp(0, boxes[k] - 1)
             }));
-            cells.push(copy.map(|c| c as i64));
+            grid.cells.push(copy.map(|c| c as i64));
         }
-        let mut grid = Self { boxes, reach, cells, homes, sorted: Vec::new(), starts: Vec::new() };
         let boxes = (boxes[0] * boxes[1] * boxes[2]) as usize;
         (grid.starts, grid.sorted) = sorted_into_bins(boxes, grid.homes.iter().map(|home| grid.number(home)));
         grid.require_end()?;
@@ -92,9 +109,9 @@ impl Grid {
     /// Refuses a search that would take too long: the estimate above assumes a uniform distribution.
     fn require_end(&self) -> Result<(), SearchError> {
         let together = self.starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0) as usize;
-        let neighbours: f64 = self.reach.iter().map(|r| (2 * r + 1) as f64).product();
-        let squares: f64 = self.starts.windows(2).map(|w| f64::from(w[1] - w[0]).powi(2)).sum();
-        let pairs = squares * neighbours;
+        let in_box = |number: usize| f64::from(self.starts[number + 1] - self.starts[number]);
+        let of_grain = |(i, home)| self.neighbours(i) * in_box(self.number(home));
+        let pairs: f64 = self.homes.iter().enumerate().map(of_grain).sum();
         // Uniform distributions were checked above; here many boxes are empty.
         if pairs > MOST_PAIRS && together > CLUSTER {
             return Err(SearchError::Clustered { together, pairs });
@@ -102,18 +119,32 @@ impl Grid {
         Ok(())
     }
 
+    /// Distance in boxes, along each edge vector, at which a grain that touches grain `i` and is no larger may
+    /// be.
+    fn reach(&self, i: usize) -> [i64; 3] {
+        self.boxes_per_m.map(|boxes| (DIAMETER * self.radii[i] * boxes).ceil() as i64)
+    }
+
+    /// Number of boxes that are looked into for grain `i`.
+    fn neighbours(&self, i: usize) -> f64 {
+        self.reach(i).map(|r| 2.0 * r as f64 + 1.0).iter().product()
+    }
+
     fn number(&self, home: &[i64; 3]) -> usize {
         ((home[0] * self.boxes[1] + home[1]) * self.boxes[2] + home[2]) as usize
     }
 
-    /// Calls `each` with every grain in range of grain `i`, and its image of the cell relative to that of
-    /// `i`.
+    /// Calls `each` with every grain in range of grain `i` that is smaller, or as large and not before it, and
+    /// its image of the cell relative to that of `i`: so each pair is visited once.
     pub(super) fn visit<E>(
         &self,
         i: usize,
         mut each: impl FnMut(usize, [i64; 3]) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (home, r) = (self.homes[i], self.reach);
+        let (home, r) = (self.homes[i], self.reach(i));
+        let once = |j: usize, lattice| {
+            self.radii[j] < self.radii[i] || (self.radii[j] == self.radii[i] && (j, lattice) > (i, [0; 3]))
+        };
         for a in -r[0]..=r[0] {
             for b in -r[1]..=r[1] {
                 for c in -r[2]..=r[2] {
@@ -122,7 +153,9 @@ impl Grid {
                     let number = self.number(&std::array::from_fn(|k| at[k].rem_euclid(self.boxes[k])));
                     let range = self.starts[number] as usize..self.starts[number + 1] as usize;
                     for &j in &self.sorted[range] {
-                        each(j as usize, lattice)?;
+                        if once(j as usize, lattice) {
+                            each(j as usize, lattice)?;
+                        }
                     }
                 }
             }
