@@ -169,8 +169,17 @@ fn prepared(r: &PackingReport) -> String {
         r.contacts.grains,
         r.pressure() / 1e3,
         r.solid_fraction,
-        r.stress_ratio().map_or_else(|| "-".to_owned(), |q| format!("{q:.0e}")),
+        stress_ratio(r),
     )
+}
+
+/// q/p, by its order of magnitude if it is small.
+fn stress_ratio(r: &PackingReport) -> String {
+    match r.stress_ratio() {
+        None => "-".to_owned(),
+        Some(q) if q.abs() < 0.01 => format!("{q:.0e}"),
+        Some(q) => format!("{q:.3}"),
+    }
 }
 
 fn counted(r: &PackingReport) -> String {
@@ -194,7 +203,9 @@ fn counted(r: &PackingReport) -> String {
 
 fn measured(r: &PackingReport) -> String {
     let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 2));
-    format!("G12 {g12} MPa, G13 {g13} MPa, Theta {theta} MPa")
+    let [c11, c33, c13] = r.projected().map_or([None; 3], |t| [t.c11, t.c33, t.c13].map(Some));
+    let [c11, c33, c13] = [c11, c33, c13].map(|m| fixed(m.map(|m| m / 1e6), 2));
+    format!("G12 {g12}, G13 {g13}, C11 {c11}, C33 {c33}, C13 {c13}, Theta {theta} MPa")
 }
 
 /// Data that were inverted and are not about a packing of the run.

@@ -257,15 +257,74 @@ pub fn and(parts: &[impl AsRef<str>]) -> String {
     }
 }
 
-/// Reasons to doubt, each with the numbers of the states that have it, in the order of the first ones.
+/// Reasons to doubt, each with the numbers of the states that have it, in the order of the first ones. Texts that differ by
+/// numbers alone are one reason.
 #[derive(Default)]
-struct Doubts(Vec<(String, BTreeSet<usize>)>);
+struct Doubts(Vec<(Vec<Word>, BTreeSet<usize>)>);
+
+/// A word of a reason, or the least and greatest of its numbers with the marks around them.
+#[derive(PartialEq)]
+enum Word {
+    Text(String),
+    Numbers([String; 2], [f64; 2], [String; 2]),
+}
+
+impl Word {
+    fn of(word: &str) -> Self {
+        let number = word.trim_matches(['(', ')', ',', ';', ':', '[', ']', '.']);
+        let marks = word.split_once(number).filter(|_| {
+            number.starts_with(['-', '+', '.']) || number.starts_with(|c: char| c.is_ascii_digit())
+        });
+        match (number.parse::<f64>(), marks) {
+            (Ok(value), Some((before, after))) => Self::Numbers(
+                [number.to_owned(), number.to_owned()],
+                [value; 2],
+                [before.to_owned(), after.to_owned()],
+            ),
+            _ => Self::Text(word.to_owned()),
+        }
+    }
+
+    fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Numbers(_, _, marks), Self::Numbers(_, _, others)) => marks == others,
+            _ => self == other,
+        }
+    }
+
+    fn take(&mut self, other: Self) {
+        if let (Self::Numbers([low, high], [least, greatest], _), Self::Numbers([text, _], [value, _], _)) =
+            (self, other)
+        {
+            if value < *least {
+                (*low, *least) = (text, value);
+            } else if value > *greatest {
+                (*high, *greatest) = (text, value);
+            }
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            Self::Text(text) => text.clone(),
+            Self::Numbers([low, high], _, [before, after]) if low == high => format!("{before}{low}{after}"),
+            Self::Numbers([low, high], _, [before, after]) => format!("{before}{low} to {high}{after}"),
+        }
+    }
+}
 
 impl Doubts {
     fn add(&mut self, n: usize, text: String) {
-        match self.0.iter_mut().find(|(known, _)| *known == text) {
-            Some((_, of)) => _ = of.insert(n),
-            None => self.0.push((text, BTreeSet::from([n]))),
+        let words: Vec<Word> = text.split(' ').map(Word::of).collect();
+        let is_known = |(known, _): &&mut (Vec<Word>, BTreeSet<usize>)| {
+            known.len() == words.len() && known.iter().zip(&words).all(|(a, b)| a.is_like(b))
+        };
+        match self.0.iter_mut().find(is_known) {
+            Some((known, of)) => {
+                known.iter_mut().zip(words).for_each(|(known, word)| known.take(word));
+                of.insert(n);
+            }
+            None => self.0.push((words, BTreeSet::from([n]))),
         }
     }
 
@@ -291,10 +350,13 @@ impl Doubts {
     fn finish(self, all: usize, noun: &str) -> Vec<String> {
         let shown = if self.0.len() > MOST_DOUBTS { MOST_DOUBTS - 1 } else { self.0.len() };
         let more = self.0.len() - shown;
-        let of = |(text, of): &(String, BTreeSet<usize>)| match (all, of.len()) {
-            (1, _) => sentence(text),
-            (all, some) if all == some => format!("In every {noun}: {text}."),
-            (all, some) => format!("In {some} of {}: {text}.", count(all, noun)),
+        let of = |(words, of): &(Vec<Word>, BTreeSet<usize>)| {
+            let text = words.iter().map(Word::text).collect::<Vec<_>>().join(" ");
+            match (all, of.len()) {
+                (1, _) => sentence(&text),
+                (all, some) if all == some => format!("In every {noun}: {text}."),
+                (all, some) => format!("In {some} of {}: {text}.", count(all, noun)),
+            }
         };
         let lines = self.0[..shown].iter().map(of);
         lines.chain((more > 0).then(|| format!("And {}.", count(more, "further warning")))).collect()
@@ -391,6 +453,22 @@ mod tests {
             ]
         );
         assert_eq!(doubts, ["In 1 of 2 states: the estimate is extrapolated: far."]);
+    }
+
+    #[test]
+    fn doubts_that_differ_by_numbers_are_one_with_their_range_and_the_number_of_its_states() {
+        let doubt = |n, q: &str| {
+            let mut one = state(n, true, result("ok", Some((6.0, 0.1)), &[]));
+            one.packing.warnings = vec![format!("q/p = {q}, far from C33")];
+            one
+        };
+        let states = [
+            doubt(1, "0.7569"),
+            doubt(2, "0.81"),
+            doubt(3, "-0.6"),
+            state(4, true, result("ok", Some((6.0, 0.1)), &[])),
+        ];
+        assert_eq!(Findings::of(&states).doubts, ["In 3 of 4 states: q/p = -0.6 to 0.81, far from C33."]);
     }
 
     #[test]

@@ -143,7 +143,15 @@ impl Run {
                 figure("inferred-by-model", all, "No model is recommended.", &data(&results))
             };
             let others = details("Estimates of models that are not recommended", all);
-            return paragraph("Nothing was inferred.") + others + self.of_instruments();
+            let with = self.states.iter().filter(|s| recommended(s).is_some()).count();
+            let nothing = match with {
+                0 => "Nothing was inferred.".to_owned(),
+                _ => format!(
+                    "Of the last of {} states nothing was inferred. {with} others have estimates.",
+                    self.states.len()
+                ),
+            };
+            return paragraph(nothing) + over_counted(&self.states) + others + self.of_instruments();
         }
         let level = state.results.iter().find_map(|e| e.interval.level).unwrap_or(0.95);
         let which = if self.states.len() > 1 { " Of the last state." } else { "" };

@@ -158,11 +158,20 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         runs.iter().filter_map(|(r, _)| Some(r.last()?.packing.report.contacts.grains)).collect();
     let grains: Vec<String> = grains.iter().map(u32::to_string).collect();
     let grains = if grains.is_empty() { String::new() } else { format!(", of {} grains", and(&grains)) };
-    let done = format!("{complete} of {} complete{grains}.{differ}", count(runs.len(), "run"));
+    let lasts: Vec<&InvertedPacking> = runs.iter().filter_map(|(run, _)| run.last()).collect();
+    let pressures = lasts.iter().map(|s| s.packing.report.pressure() / 1e3);
+    let [low, high] = pressures.fold([f64::INFINITY, 0.0], |[l, h], p| [p.min(l), p.max(h)]);
+    let [low, high] = [low, high].map(|p| format!("{p:.1}"));
+    let at = if low == high { low } else { format!("{low} to {high}") };
+    let only_last = match runs.iter().any(|(run, _)| run.states.len() > 1) {
+        true => format!(" Of each run the last state counts here, at {at} kPa; its own page has all."),
+        false => String::new(),
+    };
+    let done = format!("{complete} of {} complete{grains}.{differ}{only_last}", count(runs.len(), "run"));
     let symbols = [InferredQuantity::Z, InferredQuantity::Eps].map(InferredQuantity::symbol);
     let mut found: Vec<String> =
         over.iter().flat_map(|o| symbols.iter().flat_map(|s| o.sentences(s))).collect();
-    found.extend(Findings::inferred(&runs.iter().filter_map(|(run, _)| run.last()).collect::<Vec<_>>()));
+    found.extend(Findings::inferred(&lasts));
     let warned = runs.iter().filter(|(run, _)| !run.summary.warnings.is_empty()).count();
     let doubts = [
         (runs.len() - complete, "run", "not complete: the table says why"),
@@ -170,7 +179,6 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         (marked, "value", "marked in the table: far from those of runs with the same settings"),
     ];
     let doubts = doubts.into_iter().filter(|(n, ..)| *n > 0);
-    let lasts: Vec<&InvertedPacking> = runs.iter().filter_map(|(run, _)| run.last()).collect();
     let of_states = Findings::doubts(&lasts, "run");
     let doubts = doubts.map(|(n, noun, what)| format!("{} {what}.", count(n, noun)));
     let doubts: Vec<String> = of_states.into_iter().chain(doubts).collect();

@@ -7,7 +7,7 @@ use super::laws::{
 };
 use super::reach::Reach;
 use grainlab_core::Material;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -19,6 +19,11 @@ const MIN_EXCESS: f64 = 0.05;
 /// the same recipes (`tests/golden/ensembles/large.csv`) have .67 (ε) to .55 (ε weighted by stiffness) of the variance, and
 /// would have a quarter if all of it were.
 const OF_THE_SAMPLE: [f64; 2] = [0.45, 0.6];
+
+/// Relative standard deviation of the effect of q/p on the stiffness at unchanged contacts. Packings that were pressed at a low
+/// friction and then sheared at a high one, within the elastic range, have .65 to .85 of the effect in the packings taught
+/// (`tests/golden/ensembles/locked.csv`).
+pub(crate) const RESPONSE_STDDEV: f64 = 0.35;
 
 /// Number of quantities whose scatter is known: five invariants of the stiffness, ε weighted by stiffness, and k.
 pub const SCATTERED: usize = 7;
@@ -107,6 +112,17 @@ impl RelaxationCalibration {
     pub(crate) fn scatter_at(&self, z: f64, factors: &[f64; SCATTERED]) -> Scatter {
         let w = Self::weights(z);
         Scatter::from_fn(|i, j| self.scatter[i][j] * (factors[i] * factors[j]).sqrt() / (w[i] * w[j]))
+    }
+
+    /// Covariance of the scatter at this z in this state: under a deviator, with that of its effect.
+    pub(crate) fn scatter_in(&self, z: f64, factors: &[f64; SCATTERED], state: &NetworkState) -> Scatter {
+        let mut by_stress = SVector::<f64, SCATTERED>::zeros();
+        for (i, law) in
+            [&self.dilatation, &self.voigt, &self.harmonic, &self.eps_stiffness].into_iter().enumerate()
+        {
+            by_stress[2 + i] = RESPONSE_STDDEV * law.by_stress_ratio(z, state) * state.stress_ratio;
+        }
+        self.scatter_at(z, factors) + by_stress * by_stress.transpose()
     }
 
     /// Variances of the scatter of samples of this size over those of the packings. Only the share that is due to the size of the

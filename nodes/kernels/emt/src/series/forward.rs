@@ -4,7 +4,7 @@ use super::corrections::ContactCorrections;
 use super::gain::ContactKind;
 use super::prior::{PreparationPrior, SeriesPrior};
 use super::sample::{SeriesRow, SpeedMode, SpeedSeries};
-use crate::calibration::{NetworkState, RelaxationCalibration};
+use crate::calibration::{NetworkState, RESPONSE_STDDEV, RelaxationCalibration};
 use crate::invariants::{INVARIANTS, Invariants};
 use nalgebra::{DMatrix, DVector, RowSVector, SMatrix, SVector};
 use std::f64::consts::LN_10;
@@ -348,7 +348,9 @@ impl<'a> Forward<'a> {
         let laws = [&network.dilatation, &network.voigt, &network.harmonic, &network.eps_stiffness];
         let of_stress = laws.map(|law| law.by_stress_ratio(at.mean_z, &state));
         let by_stress = SVector::from([0.0, 0.0, of_stress[0], of_stress[1], of_stress[2], of_stress[3]]);
-        for (by, [_, stddev]) in [(by_sizes, self.size_variance), (by_stress, self.stress_ratio)] {
+        let [ratio, stddev] = self.stress_ratio;
+        let of_stress = stddev.hypot(RESPONSE_STDDEV * ratio);
+        for (by, stddev) in [(by_sizes, self.size_variance[1]), (by_stress, of_stress)] {
             parts[0] += by * by.transpose() * (stddev * stddev);
         }
         parts

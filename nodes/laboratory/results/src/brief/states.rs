@@ -39,7 +39,7 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
         let packing = [
             state.packing.step.to_string(),
             format!("{:.1}", r.pressure() / 1e3),
-            r.stress_ratio().map_or_else(|| "-".to_owned(), |q| format!("{q:.0e}")),
+            super::stress_ratio(r),
             format!("{:.4}", r.solid_fraction),
             format!("{:.3}", r.contacts.coordination),
             format!("{:.3}", r.contacts.mechanical_coordination),

@@ -6,6 +6,7 @@ mod csv;
 mod judged;
 mod least_squares;
 mod left_out;
+mod locked;
 mod predictive;
 mod ranks;
 mod rock_physics;

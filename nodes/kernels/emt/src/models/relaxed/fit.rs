@@ -117,7 +117,7 @@ impl Fit {
         let at_zero = data.masked(isotropic.slopes());
         let covariance = |slopes: &ByInvariants, by_eps: &Moduli, of_inputs: &Square| {
             let scatter = network
-                .scatter_at(z, &state.variance_factors)
+                .scatter_in(z, &state.variance_factors, laws)
                 .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
                 .into_owned();
             let of_packings = slopes * scatter * slopes.transpose();
@@ -236,7 +236,7 @@ impl Fit {
     ) -> PointEstimate {
         let (z, eps) = (self.z, self.eps);
         let gain = self.gain();
-        let scatter = network.scatter_at(z, &state.variance_factors);
+        let scatter = network.scatter_in(z, &state.variance_factors, &state.laws);
         let (laws, of_k, of_eps) = (&state.laws, network.rattlers, network.eps_stiffness);
         // Rows: ε weighted by stiffness, k. Columns: z, ε.
         let follows = SMatrix::<f64, 2, 2>::new(
