@@ -72,8 +72,9 @@ fn until_heading(events: &Receiver<(String, Value)>, text: &str) -> Vec<(String,
     }
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+/// The digits behind a text.
+fn after<'a>(text: &'a str, mark: &str) -> Option<&'a str> {
+    text.split_once(mark)?.1.split(|c: char| !c.is_ascii_digit()).next()
 }
 
 #[test]
@@ -94,19 +95,18 @@ fn the_page_shows_values_of_the_recording_and_the_recording_is_that_of_a_run_wit
     let requests: Vec<msg::Stress> = (recording.messages(&Selection::topics(["/stress"])).unwrap())
         .map(|m| from_cdr(&m.payload).unwrap())
         .collect();
-    let samples: Vec<&Value> =
-        shown.iter().filter(|(name, _)| name == "sample").map(|(_, data)| data).collect();
-    assert!(!samples.is_empty(), "{shown:?}");
-    for sample in samples {
-        let sequence = sample["sequence"].as_u64().unwrap();
-        let r = requests.iter().find(|r| r.sequence == sequence).expect("the recording has the sample");
-        let s = &r.stress;
-        assert_eq!(numbers(&sample["stress"]), [s.xx, s.yy, s.zz, s.yz, s.xz, s.xy], "{sequence}");
-        assert_eq!(sample["solid_fraction"].as_f64(), Some(r.solid_fraction));
-        assert_eq!(sample["coordination"].as_f64(), Some(r.coordination));
-        assert_eq!(sample["unbalanced"].as_f64(), Some(r.unbalanced_force_ratio));
-        assert_eq!(sample["step"].as_u64(), Some(r.step));
-        assert_eq!(sample["time"].as_f64(), Some(simulated_seconds(&r.header.stamp)));
+    let cards = shown.iter().filter_map(|(_, data)| data["cards"].as_str());
+    let cards: Vec<(&str, u64)> =
+        cards.filter_map(|c| Some((c, after(c, ">step ")?.parse().ok()?))).collect();
+    assert!(!cards.is_empty(), "{shown:?}");
+    for (card, step) in cards {
+        let r = requests.iter().find(|r| r.step == step).expect("the recording has the exchange");
+        let time = 1e3 * simulated_seconds(&r.header.stamp);
+        for value in
+            [format!("{:.4}", r.solid_fraction), format!("{:.3}", r.coordination), format!("{time:.4} ")]
+        {
+            assert!(card.contains(&format!("class=\"value\">{value}")), "{value} at step {step}: {card}");
+        }
     }
     // The last packing is in the pictures, and its structure on the page.
     let mut packings = String::new();

@@ -3,7 +3,7 @@
 use crate::excerpt::Excerpt;
 use crate::opened::losses;
 use crate::output::{Form, Job};
-use crate::tables::{TableFormat, Tables, failed};
+use crate::tables::{TableFormat, Tables};
 use clap::ValueEnum;
 use grainlab_console::{Failure, print, worse};
 use grainlab_msgs::Exit;
@@ -102,12 +102,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     args.form.refuse_given()?;
     let (recording, selection) = args.excerpt.open(&args.messages)?;
     let new = NewPath::begin(&args.output).map_err(Failure::usage)?;
-    std::fs::create_dir(new.partial()).map_err(|e| failed(&args.output, &e))?;
+    std::fs::create_dir(new.partial()).map_err(Failure::at(&args.output))?;
     let mut tables =
         Tables::new(&args.output, new.partial(), format, args.array_columns, args.explode.as_deref());
     tables.convert(&recording, &selection)?;
     let (lines, decoders) = tables.finish()?;
-    new.finish().map_err(|e| failed(&args.output, &e))?;
+    new.finish().map_err(Failure::at(&args.output))?;
     print(&format!("{}:\n{}", args.output.display(), lines.concat()))?;
     Ok(worse(losses(from_ref(&recording)), decoders.losses()))
 }

@@ -134,5 +134,6 @@ pub(crate) fn run(command: &Copies) -> Result<Exit, Failure> {
         Copies::Compress { path, output } => ("compress", from_ref(path), &all, &always, true, output),
     };
     let schemas = if let Copies::AddSchemas { messages, .. } = command { Some(messages) } else { None };
-    Job { operation, paths, topics, interval, latched, pictures: false, schemas }.run(output)
+    let job = Job { operation, paths, topics, interval, latched, pictures: false, schemas };
+    job.write(&output.output, &output.form)
 }

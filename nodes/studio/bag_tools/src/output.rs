@@ -18,9 +18,9 @@ use std::sync::Arc;
 pub struct Output {
     /// New recording: a directory as rosbag2 has it, or one file if the name ends with .mcap
     #[arg(short, long, value_name = "OUT")]
-    output: PathBuf,
+    pub(crate) output: PathBuf,
     #[command(flatten)]
-    form: Form,
+    pub(crate) form: Form,
 }
 
 /// Options of the output.
@@ -91,11 +91,6 @@ pub(crate) struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Copies, and prints what was written.
-    pub(crate) fn run(&self, output: &Output) -> Result<Exit, Failure> {
-        self.write(&output.output, &output.form)
-    }
-
     /// Copies to `output` with the options of `form`, and prints what was written.
     pub(crate) fn write(&self, output: &Path, form: &Form) -> Result<Exit, Failure> {
         let options = CopyOptions { pictures: self.pictures, ..form.options(self.operation)? };

@@ -69,11 +69,6 @@ enum TableFile {
     Parquet(Box<ParquetTable<File>>),
 }
 
-/// A failure of the file system or of a library.
-pub(crate) fn failed(path: &Path, error: &dyn Display) -> Failure {
-    Failure::failed(format!("{}: {error}", path.display()))
-}
-
 impl Table {
     /// The rows of a message.
     fn rows(&self, message: Decoded) -> Vec<Decoded> {
@@ -126,7 +121,7 @@ impl<'a> Tables<'a> {
                 if let TableFile::Shape(shape) = &table.file {
                     let columns = Columns::of(shape, self.widest).ok_or_else(|| too_wide(&table.channel))?;
                     let file = CsvTable::create(&with_extension(&table.base, self.format), columns);
-                    table.file = TableFile::Csv(Box::new(file.map_err(|e| failed(self.name, &e))?));
+                    table.file = TableFile::Csv(Box::new(file.map_err(Failure::at(self.name))?));
                 }
             }
         }
@@ -143,7 +138,10 @@ impl<'a> Tables<'a> {
             let table = &mut self.list[place];
             for row in table.rows(decoded) {
                 let topic = &message.channel.topic;
-                table.file.write(&message, &row).map_err(|e| failed(self.name, &format!("{topic}: {e}")))?;
+                table
+                    .file
+                    .write(&message, &row)
+                    .map_err(|e| Failure::at(self.name)(format!("{topic}: {e}")))?;
                 table.rows += 1;
             }
         }
@@ -152,7 +150,7 @@ impl<'a> Tables<'a> {
 
     /// Completes the files; returns a line about each, and what could not be decoded.
     pub(crate) fn finish(self) -> Result<(Vec<String>, Decoders), Failure> {
-        let wrong = |e: &dyn Display| failed(self.name, e);
+        let wrong = |e: &dyn Display| Failure::at(self.name)(e);
         let mut lines = Vec::new();
         for table in self.list {
             let name = table.base.file_name().unwrap_or_default().to_string_lossy();
@@ -216,7 +214,7 @@ impl<'a> Tables<'a> {
         let base = self.folder.join(format!("{name}{number}"));
         let exploded = self.explode.and_then(|array| Exploded::of(schema.root(), array));
         let kind = exploded.as_ref().map_or(schema.root(), Exploded::kind);
-        let wrong = |e: &dyn Display| failed(self.name, e);
+        let wrong = |e: &dyn Display| Failure::at(self.name)(e);
         let file = match self.format {
             TableFormat::Json => {
                 let file = File::create_new(with_extension(&base, self.format)).map_err(|e| wrong(&e))?;

@@ -1,7 +1,7 @@
 //! CPU time, which is independent of other load on a shared machine.
 
-use crate::numbers::median;
 use grainlab_console::Failure;
+use grainlab_page::median;
 
 /// Result of some work, and the median CPU time of its repetitions by all threads, s. A failure ends them.
 pub(super) fn timed<T, E>(

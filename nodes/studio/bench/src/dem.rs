@@ -2,12 +2,13 @@
 
 mod stepping;
 
-use super::numbers::{median, rounded};
+use super::numbers::rounded;
 use super::packing;
 use clap::ValueEnum;
 use grainlab_console::{Failure, Format, Table, exact, say};
 use grainlab_dem::Simd;
 use grainlab_node_kit::Exit;
+use grainlab_page::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -2,17 +2,6 @@
 
 use grainlab_console::fixed;
 
-/// Median; NaN of an empty list.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match (values.len() % 2, values.get(middle)) {
-        (_, None) => f64::NAN,
-        (0, Some(upper)) => 0.5 * (values[middle - 1] + upper),
-        (_, Some(value)) => *value,
-    }
-}
-
 /// Mean of at least one number.
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
@@ -38,13 +27,6 @@ pub(super) fn between(text: &str, least: f64, most: f64) -> Result<f64, String> 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_median_of_an_even_count_lies_between_the_middle_two() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(vec![4.0, 1.0, 3.0, 2.0]), 2.5);
-        assert!(median(Vec::new()).is_nan());
-    }
 
     #[test]
     fn text_has_four_significant_digits() {

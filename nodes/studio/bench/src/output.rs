@@ -31,7 +31,7 @@ impl Output {
     /// Creates the folder: before long computations, not after.
     pub(crate) fn ready(&self) -> Result<(), Failure> {
         let Some(folder) = &self.out else { return Ok(()) };
-        std::fs::create_dir_all(folder).map_err(|e| Failure::failed(format!("{}: {e}", folder.display())))
+        std::fs::create_dir_all(folder).map_err(Failure::at(folder))
     }
 
     /// Writes and prints the rows of a bench.
@@ -53,7 +53,7 @@ impl Output {
 
 fn write(path: &Path, extension: &str, text: &str) -> Result<(), Failure> {
     let path = path.with_extension(extension);
-    write_whole(&path, text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    write_whole(&path, text).map_err(Failure::at(&path))?;
     say!("grainlab: {} written", path.display());
     Ok(())
 }

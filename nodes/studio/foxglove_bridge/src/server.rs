@@ -128,26 +128,21 @@ impl Shared {
 
     /// Does what a client asked for, or tells it why not.
     fn answer(&self, id: u64, message: &Message) {
-        let Message::Text(text) = message else {
-            if message.is_binary() {
-                let text = protocol::status(Level::Error, "nothing can be published here");
-                self.state().tell(id, text);
+        let asked = match message {
+            Message::Text(text) => {
+                serde_json::from_str(text).map_err(|e| format!("no message of the protocol: {e}"))
             }
-            return;
+            Message::Binary(_) => Err("nothing can be published here".to_owned()),
+            _ => return,
         };
         let mut state = self.state();
-        match serde_json::from_str(text) {
+        match asked {
             Ok(Asked::Subscribe { subscriptions }) => state.subscribe(id, subscriptions),
             Ok(Asked::Unsubscribe { subscription_ids }) => state.unsubscribe(id, subscription_ids),
             Ok(Asked::Other) => {
                 state.tell(id, protocol::status(Level::Warning, "only subscriptions are offered here"));
             }
-            Err(error) => {
-                state.tell(
-                    id,
-                    protocol::status(Level::Error, &format!("no message of the protocol: {error}")),
-                );
-            }
+            Err(fault) => state.tell(id, protocol::status(Level::Error, &fault)),
         }
         drop(state);
         self.wake();

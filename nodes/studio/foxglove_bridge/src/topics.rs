@@ -58,11 +58,13 @@ impl Topics {
             offered.entry(offer.topic.clone()).or_default().push(offer);
         }
         let is_published = |name: &str| offered.contains_key(name);
-        let gone = |name: &String| !is_published(name);
-        let gone: Vec<String> = self.all.keys().filter(|name| gone(name)).cloned().collect();
-        for name in gone {
-            self.remove(bus, &name);
-        }
+        self.all.retain(|name, bridged| {
+            let is_kept = is_published(name);
+            if !is_kept {
+                bridged.unsubscribe(bus);
+            }
+            is_kept
+        });
         for (name, offers) in &offered {
             if !self.all.contains_key(name)
                 && let Some(found) = self.found(server, name, offers, &is_published)
@@ -115,11 +117,6 @@ impl Topics {
         let pictures = is_packing.then(|| Pictures::advertise(server, name, is_published));
         self.refused.remove(name);
         Some(Bridged { topic, channel, pictures, source: None, latched: VecDeque::new() })
-    }
-
-    fn remove(&mut self, bus: &mut dyn Bus, name: &str) {
-        let Some(mut gone) = self.all.remove(name) else { return };
-        gone.unsubscribe(bus);
     }
 
     /// Sends the latched samples of a topic that is already received to a client that subscribed.

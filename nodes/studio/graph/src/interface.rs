@@ -94,12 +94,10 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
             let known = common.messages.definitions()?;
             let type_name = &complete(&known, type_name)?;
             let text = text(&known, type_name)?;
-            let comments = if *no_comments {
-                0
-            } else if *all_comments {
-                DEEPEST
-            } else {
-                1
+            let comments = match (no_comments, all_comments) {
+                (true, _) => 0,
+                (_, true) => DEEPEST,
+                _ => 1,
             };
             let text = nested(type_name, &text, comments);
             shown(common.format, &text, || text.clone())

@@ -18,10 +18,7 @@ pub(crate) enum RosName {
 /// A name from the network, safe to print: control characters are escaped.
 pub(crate) fn printable(name: &str) -> String {
     name.chars()
-        .flat_map(|c| {
-            let escaped = c.is_control().then(|| c.escape_default().to_string());
-            escaped.unwrap_or_else(|| c.to_string()).chars().collect::<Vec<_>>()
-        })
+        .map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() })
         .collect()
 }
 

@@ -126,16 +126,13 @@ impl Follower {
                 known.state_of_grains(&message);
             }
         }
-        let of_run = |known: &mut Option<Laboratory>, info: &SampleInfo| {
-            known.as_ref().is_some_and(|l| l.run == run_of(&info.writer.participant()))
-        };
         while let Some((message, info)) = self.packing_reports.take_valid(&mut self.bus)? {
-            let ours = of_run(laboratory, &info);
-            laboratory.iter_mut().filter(|_| ours).for_each(|l| l.packing_report(&message));
+            let run = run_of(&info.writer.participant());
+            laboratory.iter_mut().filter(|l| l.run == run).for_each(|l| l.packing_report(&message));
         }
         while let Some((message, info)) = self.microstructure.take_valid(&mut self.bus)? {
-            let ours = of_run(laboratory, &info);
-            laboratory.iter_mut().filter(|_| ours).for_each(|l| l.microstructure(&message));
+            let run = run_of(&info.writer.participant());
+            laboratory.iter_mut().filter(|l| l.run == run).for_each(|l| l.microstructure(&message));
         }
         let simulator = self.simulator;
         self.watch.update(&mut self.bus, |info, report| {

@@ -147,7 +147,6 @@ impl Show {
         if let Some(follower) = follower {
             parts.set("nodes", known.nodes(follower.peers(), follower.bus_now()));
         }
-        parts.sample = known.sample().into();
         let values = known.timeline.count();
         if values != self.drawn.values && (self.drawn.count.is_multiple_of(CURVES) || self.drawn.values == 0)
         {

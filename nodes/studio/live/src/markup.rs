@@ -10,7 +10,6 @@ use grainlab_results::brief::moduli;
 use grainlab_results::findings::{Findings, Judged, recommended};
 use grainlab_results::read_back::InvertedPacking;
 use grainlab_servo::ServoRequest;
-use serde_json::json;
 
 const KPA: f64 = 1e-3;
 
@@ -157,21 +156,6 @@ impl Laboratory {
             .zip(moduli(report))
             .map(|((name, meaning), value)| [Cell::text(name), Cell::text(meaning), Cell::fixed(value, 2)]);
         found + grid(inferred + table("Moduli", ["", "", "MPa"], rows))
-    }
-
-    /// The latest request for programs: SI units, Voigt order xx, yy, zz, yz, xz, xy; null where no stress is imposed.
-    pub(crate) fn sample(&self) -> String {
-        let Some(r) = &self.latest else { return String::new() };
-        let targets = r.input.controls.map(|c| match c {
-            ComponentControl::Stress(target) => Some(target),
-            _ => None,
-        });
-        json!({
-            "run": self.run.map(|run| run.to_string()), "sequence": r.sequence, "step": r.step, "phase": r.phase,
-            "time": r.time, "stress": r.input.stress.voigt(), "target": targets, "strain": r.strain.voigt(),
-            "solid_fraction": r.solid_fraction, "coordination": r.coordination, "unbalanced": r.unbalanced,
-        })
-        .to_string()
     }
 }
 

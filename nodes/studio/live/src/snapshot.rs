@@ -1,4 +1,4 @@
-//! Snapshots for browsers: parts of the page, the latest values, and the packings.
+//! Snapshots for browsers: parts of the page, and the packings.
 
 use grainlab_page::Html;
 use std::collections::BTreeMap;
@@ -18,8 +18,6 @@ pub struct Pictures {
 pub struct Snapshot {
     /// Markup by the id of its element.
     pub parts: BTreeMap<&'static str, Arc<str>>,
-    /// The latest request of the run as JSON; empty without one.
-    pub sample: Arc<str>,
     /// The packings, if the run has published any.
     pub pictures: Option<Pictures>,
 }
@@ -45,9 +43,6 @@ impl Snapshot {
         if !parts.is_empty() {
             events.push(("parts", serde_json::to_string(&parts).unwrap_or_default()));
         }
-        if !self.sample.is_empty() && self.sample != before.sample {
-            events.push(("sample", self.sample.to_string()));
-        }
         let version = |s: &Self| s.pictures.as_ref().map_or(0, |p| p.version);
         if version(self) != version(before) {
             events.push(("packings", version(self).to_string()));
@@ -65,10 +60,9 @@ mod tests {
         let mut first = Snapshot::default();
         first.set("cards", grainlab_page::html!("<b>1</b>"));
         first.set("nodes", "n".into());
-        first.sample = "{}".into();
         let events = first.since(&Snapshot::default());
         let parts = r#"{"cards":"<b>1</b>","nodes":"n"}"#;
-        assert_eq!(events, [("parts", parts.to_owned()), ("sample", "{}".to_owned())]);
+        assert_eq!(events, [("parts", parts.to_owned())]);
         let mut second = first.clone();
         second.set("nodes", "n".into());
         assert!(second.since(&first).is_empty());

@@ -1,4 +1,4 @@
-//! Means over seeds.
+//! Means over seeds, and medians.
 
 /// Mean of independent values, and its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +25,11 @@ impl Mean {
         Some(Self { value, error, count })
     }
 
+    /// Half width of the 95 % interval: two standard errors with many values, more with few; `None` for one value.
+    pub fn half_width(&self) -> Option<f64> {
+        Some(student(self.count - 1) * self.error?)
+    }
+
     /// True if two means differ by more than their scatter explains in one of twenty cases (Welch); also if the scatter is not known.
     pub fn differs_from(&self, other: &Self) -> bool {
         let (Some(a), Some(b)) = (self.error, other.error) else { return self.value != other.value };
@@ -35,9 +40,20 @@ impl Mean {
     }
 }
 
+/// Median of these values; NaN without one.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match (values.len() % 2, values.get(middle)) {
+        (_, None) => f64::NAN,
+        (0, Some(upper)) => 0.5 * (values[middle - 1] + upper),
+        (_, Some(value)) => *value,
+    }
+}
+
 /// 97.5 % quantile of Student's t with `freedom` degrees of freedom, 1 or more, never below 2. From five on,
 /// by the expansion of Abramowitz and Stegun, 26.7.5, accurate to 0.2 %.
-pub fn student(freedom: usize) -> f64 {
+fn student(freedom: usize) -> f64 {
     const FEW: [f64; 4] = [12.706, 4.303, 3.182, 2.776];
     let v = freedom as f64;
     let quantile = 1.95996 + 2.3723 / v + 2.8225 / (v * v) + 2.5558 / (v * v * v);
@@ -55,6 +71,13 @@ mod tests {
         assert!((mean.error.unwrap() - (5.0f64 / 3.0 / 4.0).sqrt()).abs() < 1e-15);
         assert_eq!(Mean::of([7.0]).unwrap().error, None);
         assert_eq!(Mean::of([]), None);
+    }
+
+    #[test]
+    fn the_median_of_an_even_count_lies_between_the_middle_two() {
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(vec![4.0, 1.0, 3.0, 2.0]), 2.5);
+        assert!(median(Vec::new()).is_nan());
     }
 
     #[test]

@@ -48,7 +48,7 @@ impl Figure {
     fn ranges(&self, [left, top, right, bottom]: labels::Area) -> [Range; 2] {
         let points = || self.series.iter().flat_map(|s| &s.points);
         [
-            Range::of(points().flat_map(Point::across), self.x.scale, [left, right]),
+            Range::of(points().map(|p| p.x), self.x.scale, [left, right]),
             Range::of(points().flat_map(Point::up), self.y.scale, [bottom, top]),
         ]
     }

@@ -19,8 +19,6 @@ pub struct Sample {
     pub name: &'static str,
     /// Friction coefficient of the cycles and of the compression, mu2.
     pub mu2: f64,
-    /// Coordination number at 50 kPa (Table I).
-    pub k: f64,
     /// Diagonal of the fabric tensor at 50 kPa (Table I).
     pub fabric: [f64; 3],
     /// Solid fraction at 50 kPa (Table I).
@@ -57,7 +55,6 @@ pub const PAPER: [Sample; SAMPLES] = [
     Sample {
         name: "S1",
         mu2: 0.05,
-        k: 5.58,
         fabric: [0.33, 0.329, 0.341],
         solid_fraction: 0.636,
         gamma_over_delta: [-0.0623, -0.0603, -0.0577, -0.0545],
@@ -71,7 +68,6 @@ pub const PAPER: [Sample; SAMPLES] = [
     Sample {
         name: "S2",
         mu2: 0.1,
-        k: 5.27,
         fabric: [0.328, 0.326, 0.346],
         solid_fraction: 0.636,
         gamma_over_delta: [-0.073, -0.0711, -0.0678, -0.0643],
@@ -85,7 +81,6 @@ pub const PAPER: [Sample; SAMPLES] = [
     Sample {
         name: "S3",
         mu2: 0.3,
-        k: 4.87,
         fabric: [0.321, 0.323, 0.356],
         solid_fraction: 0.636,
         gamma_over_delta: [-0.0759, -0.0745, -0.0719, -0.0691],
@@ -99,7 +94,6 @@ pub const PAPER: [Sample; SAMPLES] = [
     Sample {
         name: "S4",
         mu2: 0.15,
-        k: 4.95,
         fabric: [0.324, 0.323, 0.353],
         solid_fraction: 0.636,
         gamma_over_delta: [-0.0763, -0.075, -0.0724, -0.0695],

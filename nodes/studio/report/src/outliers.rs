@@ -1,5 +1,7 @@
 //! Values far from those of runs alike.
 
+use grainlab_page::median;
+
 /// Standard deviations of a normal distribution to its median absolute deviation.
 const TO_SIGMA: f64 = 1.4826;
 
@@ -26,9 +28,10 @@ impl Outliers {
         if finite.len() < FEWEST {
             return None;
         }
-        let median = median(finite.clone());
-        let deviation = median_of_deviations(&finite, median);
-        Some(Self { median, deviation, limit: 4.0 + 30.0 / finite.len() as f64 })
+        let middle = median(finite.clone());
+        let deviations = finite.iter().map(|v| (v - middle).abs()).collect();
+        let limit = 4.0 + 30.0 / finite.len() as f64;
+        Some(Self { median: middle, deviation: median(deviations), limit })
     }
 
     /// The robust z-score of a value: its distance from the median over 1.4826 median absolute deviations. Infinite if all
@@ -42,16 +45,6 @@ impl Outliers {
     pub(crate) fn has(&self, value: f64) -> bool {
         self.score(value).abs() > self.limit
     }
-}
-
-fn median_of_deviations(values: &[f64], median: f64) -> f64 {
-    self::median(values.iter().map(|v| (v - median).abs()).collect())
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let half = values.len() / 2;
-    if values.len() % 2 == 1 { values[half] } else { 0.5 * (values[half - 1] + values[half]) }
 }
 
 #[cfg(test)]

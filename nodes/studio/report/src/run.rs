@@ -202,10 +202,7 @@ impl Run {
 
 /// The words after `grainlab launch` in a file that it wrote.
 fn launched(path: &Path) -> Option<Vec<String>> {
-    #[derive(serde::Deserialize)]
-    struct Launched {
-        words: Vec<String>,
-    }
     let text = input::text(path, input::SETTINGS).ok()?;
-    serde_json::from_str::<Launched>(&text).ok().map(|launched| launched.words)
+    let mut launched: serde_json::Value = serde_json::from_str(&text).ok()?;
+    serde_json::from_value(launched.get_mut("words")?.take()).ok()
 }

@@ -94,9 +94,8 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
         title: named(sample, "coordination number z"),
         subtitle: "mean and 95 % of the posterior".to_owned(),
         x: Axis::log("pressure, kPa"),
-        y: Axis::default(),
         series: vec![line(|z| z.low, Line::Faint), middle, line(|z| z.high, Line::Faint)],
-        legend: Vec::new(),
+        ..Figure::default()
     };
     let rows = e
         .pressures
@@ -170,16 +169,9 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
 
 fn contact(_: usize, sample: &InferredSample<'_>) -> Html {
     let e = sample.estimate;
-    let cell = |value: f64, digits: usize| Cell::fixed(value, digits);
     let unknown = |name: &str, of: &grainlab_emt::Interval| {
-        vec![
-            Cell::text(name.to_owned()),
-            cell(of.mean, 3),
-            cell(of.stddev, 3),
-            cell(of.low, 3),
-            cell(of.high, 3),
-            cell(of.left(), 2),
-        ]
+        let numbers = [of.mean, of.stddev, of.low, of.high].map(|value| Cell::fixed(value, 3));
+        [Cell::text(name)].into_iter().chain(numbers).chain([Cell::fixed(of.left(), 2)])
     };
     let unknowns = [
         unknown("k_t/k_n", &e.stiffness_ratio),
@@ -188,14 +180,10 @@ fn contact(_: usize, sample: &InferredSample<'_>) -> Html {
     ];
     let header = ["unknown", "mean", "standard deviation", "2.5 %", "97.5 %", "share of the prior's"];
     let laws = e.laws.iter().map(|l| {
-        let at = l.ln_crossover.map_or(f64::NAN, |c| c.mean.exp() / 1e6);
-        vec![
-            Cell::text(l.law.name().to_owned()),
-            cell(l.probability, 3),
-            if at.is_nan() { Cell::number("") } else { cell(at, 3) },
-        ]
+        let at = l.ln_crossover.map(|c| Cell::fixed(c.mean.exp() / 1e6, 3));
+        [Cell::text(l.law.name()), Cell::fixed(l.probability, 3), at.unwrap_or_else(|| Cell::number(""))]
     });
-    let preparations = e.preparations.iter().map(|(name, p)| vec![Cell::text(name.clone()), cell(*p, 3)]);
+    let preparations = e.preparations.iter().map(|(name, p)| [Cell::text(name), Cell::fixed(*p, 3)]);
     [
         table(named(sample, "the sample"), header, unknowns),
         table(named(sample, "contact laws"), ["contact law", "probability", "changes at, MPa"], laws),

@@ -138,7 +138,7 @@ fn forces(report: &PackingReport) -> Option<Html> {
                 bins.iter().filter(|b| b.1 > 0.0).flat_map(left).collect(),
             ),
         ],
-        legend: Vec::new(),
+        ..Figure::default()
     };
     let data = csv(["force_over_mean", "density"], bins.iter().map(|(f, d)| [f, d].map(|v| six_digits(*v))));
     let caption = format!(

@@ -159,11 +159,7 @@ impl Timeline {
             return;
         }
         if self.fabrics.len() >= STRUCTURES {
-            let mut n = 0;
-            self.fabrics.retain(|_| {
-                n += 1;
-                n % 2 == 1
-            });
+            self.fabrics = self.fabrics.drain(..).step_by(2).collect();
         }
         self.fabrics.push(Structure {
             time,

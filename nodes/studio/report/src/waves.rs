@@ -69,11 +69,9 @@ fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffn
         };
         let plot = Figure {
             title: format!("{title}, m/s{which}"),
-            subtitle: String::new(),
             x: Axis::linear(x),
-            y: Axis::linear(""),
             series: (0..MODES.len()).map(series).collect(),
-            legend: Vec::new(),
+            ..Figure::default()
         };
         let id = if n == 0 { id.to_owned() } else { format!("{id}-{}", n + 1) };
         figure(&id, plot.element(), caption, &data)

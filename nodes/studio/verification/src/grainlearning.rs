@@ -1,9 +1,9 @@
 //! The force curve of GrainLearning's tutorial on two spheres: what it fixes, and what it does not.
 
 use crate::error::VerificationError;
+use crate::lammps_pairs::material;
 use crate::reference::table;
 use crate::row::{Measure, Point, Row};
-use grainlab_core::Material;
 use grainlab_core::contact::ContactLaw;
 
 /// The name of the suite.
@@ -22,9 +22,7 @@ const EFFECTIVE_RADIUS: f64 = 0.5;
 pub fn rows() -> Result<Vec<Row>, VerificationError> {
     let data = table("grainlearning_collision.csv", include_str!("../data/grainlearning_collision.csv"))?;
     let force = |young: f64, poisson: f64, overlap: f64| {
-        let shear_modulus = young / (2.0 * (1.0 + poisson));
-        let material = Material { shear_modulus, poisson_ratio: poisson, density: 1.0 };
-        ContactLaw::default().normal_force(&material, EFFECTIVE_RADIUS, overlap)
+        ContactLaw::default().normal_force(&material(young, poisson, 1.0), EFFECTIVE_RADIUS, overlap)
     };
     // The force is proportional to M = E/(1 - nu^2): least squares of that one number.
     let of_one = |overlap: f64| force(1.0, 0.0, overlap);

@@ -8,6 +8,7 @@ use crate::row::{Measure, Point, Row};
 use crate::two_spheres::TwoSpheres;
 use grainlab_core::contact::{HertzMindlin, SpringDashpotSlider};
 use grainlab_core::{Mat3, Material, Vec3};
+use nalgebra::{Rotation3, Unit};
 
 /// The name of the suite.
 pub const NAME: &str = "mercury";
@@ -182,7 +183,7 @@ fn frames() -> Result<Vec<Row>, VerificationError> {
     }
     // Test in a frame that is turned: the forces turn with it.
     let axis = Vec3::new(1.0, -2.0, 0.5);
-    let turn = rotation(axis, 1.1);
+    let turn = Rotation3::from_axis_angle(&Unit::new_normalize(axis), 1.1).into_inner();
     let turned = turned_pair(&turn);
     let mut frame = Vec::new();
     for n in (0..upright.len()).step_by(500) {
@@ -209,14 +210,6 @@ fn frames() -> Result<Vec<Row>, VerificationError> {
             frame,
         ),
     ])
-}
-
-/// The rotation by `angle` about `axis` (Rodrigues).
-fn rotation(axis: Vec3, angle: f64) -> Mat3 {
-    let n = axis.normalize();
-    let (s, c) = angle.sin_cos();
-    let turned = |v: Vec3| v * c + n.cross(&v) * s + n * (n.dot(&v) * (1.0 - c));
-    Mat3::from_columns(&[turned(Vec3::x()), turned(Vec3::y()), turned(Vec3::z())])
 }
 
 /// Two spheres of restitution 0.8.

@@ -6,6 +6,7 @@ use crate::reference::table;
 use crate::row::{Measure, Point, Row};
 use grainlab_core::Vec3;
 use grainlab_core::contact::{Linear, SpringDashpotSlider};
+use nalgebra::{Rotation3, Unit};
 
 /// The name of the suite.
 pub const NAME: &str = "ondem";
@@ -113,10 +114,7 @@ fn turned(what: &str, axis: Vec3) -> Row {
     const PARTS: u32 = 16;
     let mut contact = contact(f64::from(PARTS));
     let dt = STEP / f64::from(PARTS);
-    let turn = |v: Vec3, angle: f64| {
-        let (s, c) = angle.sin_cos();
-        v * c + axis.cross(&v) * s + axis * (axis.dot(&v) * (1.0 - c))
-    };
+    let turn = |v: Vec3, angle: f64| Rotation3::from_axis_angle(&Unit::new_unchecked(axis), angle) * v;
     let mut points = Vec::new();
     let limit = FRICTION * STIFFNESS * (2.0 * RADIUS - DISTANCE);
     for n in 1..=200 * PARTS {

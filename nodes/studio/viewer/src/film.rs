@@ -48,11 +48,7 @@ impl Film {
             if self.states.len().is_multiple_of(2) {
                 self.last = self.states.pop();
             }
-            let mut n = 0;
-            self.states.retain(|_| {
-                n += 1;
-                n % 2 == 1
-            });
+            self.states = self.states.drain(..).step_by(2).collect();
             self.bytes = self.states.iter().map(size).sum();
         }
     }

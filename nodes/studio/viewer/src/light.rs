@@ -111,11 +111,8 @@ impl Grid {
             .map(|b| (grid.number([0, 1, 2].map(|k| ((b.0[k] - grid.low[k]) / cell) as usize)), b))
             .collect();
         numbered.sort_by_key(|(cell, _)| *cell);
-        let mut begin = 0;
-        for cell in 0..=grid.cells.iter().product() {
-            begin += numbered[begin..].iter().take_while(|(of, _)| *of < cell).count();
-            grid.first.push(begin as u32);
-        }
+        let first = |cell: usize| numbered.partition_point(|(of, _)| *of < cell) as u32;
+        grid.first = (0..=grid.cells.iter().product()).map(first).collect();
         grid.balls = numbered.into_iter().map(|(_, b)| b).collect();
         grid
     }

@@ -2,12 +2,12 @@
 
 use super::run::{Outcome, Runs, Sample, finished, press, reason};
 use super::settings::{VariedSetting, converged};
-use super::statistics::{Estimate, Observables, combined, deviation, paired};
-use crate::numbers::median;
+use super::statistics::{Observables, combined, estimate, is_resolved, paired};
 use crate::plot::time;
 use crate::row::{Family, Row};
 use grainlab_console::{Failure, say};
 use grainlab_node_kit::Exit;
+use grainlab_page::median;
 use grainlab_scene::Scene;
 
 /// Runs with this many times the steps of the default count as failed: twice the number needed by the slowest
@@ -70,10 +70,13 @@ struct Base {
 impl Base {
     /// `None` unless two runs of the converged setting and two of the default succeeded.
     fn of(reference: &Sample, default: &Sample) -> Option<Self> {
-        let mean = |q: usize| Some(Estimate::of(&finished(reference, |o| o.observables[q]))?.mean);
+        let mean = |q: usize| Some(estimate(finished(reference, |o| o.observables[q]))?.value);
         let moduli = [mean(3)?, mean(4)?];
         let values = relative(default, moduli);
-        let of = |q: usize| deviation(&values.iter().flatten().map(|o| o[q]).collect::<Vec<_>>());
+        let of = |q: usize| {
+            let mean = estimate(values.iter().flatten().map(|o| o[q]))?;
+            Some(mean.error? * (mean.count as f64).sqrt())
+        };
         let scatter = [of(0)?, of(1)?, of(2)?, of(3)?, of(4)?];
         Some(Self { values: relative(reference, moduli), moduli, scatter })
     }
@@ -86,14 +89,14 @@ impl Base {
         let reference = (combined, "every setting at its most accurate value");
         let mut row = Row::new(Family::EnginePacking, names, (median(seconds), runs), reference);
         // The combined error contains the bound of each quantity whose error is not resolved.
-        row.upper_bound = errors.is_some_and(|errors| errors.iter().any(|e| !e.resolved()));
+        row.upper_bound = errors.is_some_and(|errors| !errors.iter().all(is_resolved));
         row.failure =
             reason(sample).map(|why| format!("{} of {} runs fail: {why}", sample.len() - runs, sample.len()));
-        let resolved = |errors: [Estimate; 5]| errors.iter().filter(|e| e.resolved()).count() as f64;
-        row.details.extend(errors.map(|errors| ("resolved", resolved(errors))));
+        let resolved = errors.map(|errors| errors.into_iter().filter(is_resolved).count() as f64);
+        row.details.extend(resolved.map(|count| ("resolved", count)));
         for (q, error) in errors.iter().flatten().enumerate() {
-            row.details.insert(ERRORS[q], error.mean);
-            row.details.insert(STANDARD_ERRORS[q], error.standard_error);
+            row.details.insert(ERRORS[q], error.value);
+            row.details.extend(error.error.map(|e| (STANDARD_ERRORS[q], e)));
         }
         row
     }

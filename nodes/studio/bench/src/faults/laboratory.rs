@@ -193,13 +193,10 @@ impl Laboratory<'_> {
                 continue;
             }
             any = true;
-            let mut process = self.processes.swap_remove(index);
-            let begun = process.begin(&self.start());
-            self.say(&format!("{:?} is started again", process.kind));
-            self.processes.push(process);
-            let last = self.processes.len() - 1;
-            self.processes.swap(index, last);
-            begun.map_err(|e| Outcome::Failed(e.to_string()))?;
+            let kind = self.processes[index].kind;
+            let started = Process::start(kind, &self.start());
+            self.say(&format!("{kind:?} is started again"));
+            self.processes[index] = started.map_err(|e| Outcome::Failed(e.to_string()))?;
         }
         Ok(any)
     }

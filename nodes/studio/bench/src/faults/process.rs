@@ -59,24 +59,9 @@ pub(super) struct Start<'a> {
 
 impl Process {
     pub(super) fn start(kind: Kind, with: &Start) -> Result<Self, NodeError> {
-        let mut process = Self {
-            kind,
-            running: None,
-            due: Duration::ZERO,
-            stopped_until: Duration::ZERO,
-            restart_at: None,
-            ended: None,
-        };
-        process.begin(with)?;
-        Ok(process)
-    }
-
-    /// Starts or restarts its node. A simulator continues from the last packing recorded.
-    pub(super) fn begin(&mut self, with: &Start) -> Result<(), NodeError> {
-        let names = Names::new(self.kind.name()).map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
-        let mut bus = with.hub.bus_as(names, Identity::member_of(with.run, self.kind.member()));
-        let failed = |e: &dyn std::fmt::Display| NodeError::new(Exit::Failure, e.to_string());
-        let node: Box<dyn Node> = match self.kind {
+        let names = Names::new(kind.name()).map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
+        let mut bus = with.hub.bus_as(names, Identity::member_of(with.run, kind.member()));
+        let node: Box<dyn Node> = match kind {
             Kind::Recorder => Box::new(MemoryRecorder::new(&mut bus, with.record)?),
             Kind::Inversion => {
                 Box::new(EmtInversion::new(&mut bus, grainlab_emt_inversion::Settings::default())?)
@@ -93,12 +78,16 @@ impl Process {
                 };
                 let resume = with.record.borrow().last_packing();
                 let simulator = DemSimulator::new(&mut bus, with.scene.clone(), resume, settings);
-                Box::new(simulator.map_err(|e| failed(&e))?)
+                Box::new(simulator.map_err(|e| NodeError::new(Exit::Failure, e.to_string()))?)
             }
         };
-        self.running = Some((node, bus));
-        self.due = with.hub.now();
-        (self.stopped_until, self.restart_at, self.ended) = (Duration::ZERO, None, None);
-        Ok(())
+        Ok(Self {
+            kind,
+            running: Some((node, bus)),
+            due: with.hub.now(),
+            stopped_until: Duration::ZERO,
+            restart_at: None,
+            ended: None,
+        })
     }
 }

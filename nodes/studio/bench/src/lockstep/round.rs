@@ -129,7 +129,7 @@ struct TemporaryDirectory(PathBuf);
 impl TemporaryDirectory {
     fn new() -> Result<Self, Failure> {
         let path = std::env::temp_dir().join(format!("grainlab-bench-{}", std::process::id()));
-        std::fs::create_dir_all(&path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+        std::fs::create_dir_all(&path).map_err(Failure::at(&path))?;
         Ok(Self(path))
     }
 }

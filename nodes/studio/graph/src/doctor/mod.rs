@@ -14,7 +14,7 @@ use crate::observer::Observer;
 use crate::reports::latest_reports;
 use crate::view::Common;
 use finding::{Finding, Severity};
-use grainlab_console::Failure;
+use grainlab_console::{Failure, count};
 use grainlab_node_kit::{Exit, Network};
 use serde::Serialize;
 use std::time::Duration;
@@ -89,14 +89,11 @@ fn of_domain(mut observer: Observer, args: &Args, view: &mut View) -> Result<Vec
 }
 
 fn text(view: &View) -> String {
-    let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let head = view.domain.map_or_else(
         || "no domain\n".to_owned(),
         |domain| {
-            let [nodes, topics, services] =
-                [(view.nodes, "node"), (view.topics, "topic"), (view.services, "service")]
-                    .map(|(n, what)| counted(n, what));
-            format!("domain {domain}: {nodes}, {topics}, {services}\n")
+            let (nodes, topics) = (count(view.nodes, "node"), count(view.topics, "topic"));
+            format!("domain {domain}: {nodes}, {topics}, {}\n", count(view.services, "service"))
         },
     );
     let found: String = view.findings.iter().map(ToString::to_string).collect();

@@ -35,18 +35,18 @@ fn view(graph: &Graph, endpoint: &Endpoint) -> EndpointView {
     }
 }
 
-pub(super) fn run(topic: &str, common: &Common) -> Result<Exit, Failure> {
+pub(super) fn run(topic: &str, are_types_enough: bool, common: &Common) -> Result<Exit, Failure> {
     let name = absolute(topic);
     let graph = common.graph_with(|graph| graph.topics().contains_key(name.as_str()))?;
     let topics = graph.topics();
     let Some(topic) = topics.get(name.as_str()) else {
         return Err(unknown("topic", &name, topics.keys().copied()));
     };
-    let shown = View {
-        name,
-        types: topic.types().into_iter().map(str::to_owned).collect(),
-        endpoints: topic.endpoints().map(|e| view(&graph, e)).collect(),
-    };
+    let types: Vec<String> = topic.types().into_iter().map(str::to_owned).collect();
+    if are_types_enough {
+        return common.show(&types, || types.iter().map(|name| format!("{name}\n")).collect());
+    }
+    let shown = View { name, types, endpoints: topic.endpoints().map(|e| view(&graph, e)).collect() };
     common.show(&shown, || {
         let mut table = Table::new(["node", "kind", "reliability", "durability", "guid"]);
         for e in &shown.endpoints {
@@ -54,13 +54,4 @@ pub(super) fn run(topic: &str, common: &Common) -> Result<Exit, Failure> {
         }
         format!("{}: {}\n{}", shown.name, shown.types.join(" and "), table.text())
     })
-}
-
-pub(super) fn print_type(topic: &str, common: &Common) -> Result<Exit, Failure> {
-    let name = absolute(topic);
-    let graph = common.graph_with(|graph| graph.topics().contains_key(name.as_str()))?;
-    let topics = graph.topics();
-    let types = topics.get(name.as_str()).map(|topic| topic.types());
-    let types = types.ok_or_else(|| unknown("topic", &name, topics.keys().copied()))?;
-    common.show(&types, || types.iter().map(|name| format!("{name}\n")).collect())
 }

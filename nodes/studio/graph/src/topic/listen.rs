@@ -52,27 +52,25 @@ impl Listener {
         let all = graph.topics();
         let entry = all.get(name.as_str());
         let types = entry.map(TopicEntry::types).unwrap_or_default();
+        let list = types.iter().copied().collect::<Vec<_>>().join(" and ");
         let type_name = match (given, types.first()) {
             (Some(given), Some(one)) if types.len() > 1 || given != *one => {
-                let list = types.into_iter().collect::<Vec<_>>().join(" and ");
                 return Err(Failure::failed(format!("{name} has the type {list}, not {given}")));
             }
             (Some(given), _) => given,
             (None, Some(one)) if types.len() == 1 => one,
             (None, Some(_)) => {
-                let list = types.into_iter().collect::<Vec<_>>().join(" and ");
                 return Err(Failure::failed(format!("{name} has more than one type: {list}")));
             }
             (None, None) => return Err(unknown("topic", &name, all.keys().copied())),
         };
         let publishers = entry.map(|entry| entry.publishers.as_slice()).unwrap_or_default();
         let qos = policies.requested(publishers, whole, DEPTH);
-        let reliable = qos.reliable;
         let Some(topic) = Topic::outside_contract(&name, type_name, qos) else {
             return Err(Failure::failed(format!("{name} has the type {type_name}, which is no ROS message")));
         };
         let mut bus = tool_bus(&format!("_grainlab_topic_{}", std::process::id()))?;
-        let demand = if reliable { Demand::reliable(qos.depth) } else { Demand::best_effort(qos.depth) };
+        let demand = Demand { reliable: qos.reliable, depth: qos.depth };
         let source = match (whole, topic.info == topics::PACKING.info) {
             (true, true) => Source::open(&mut bus, &topic, Demand { depth: PACKINGS, ..demand }),
             _ => bus.subscribe(&topic, demand).map(Source::Samples),

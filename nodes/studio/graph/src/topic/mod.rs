@@ -76,8 +76,8 @@ pub enum Command {
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::List(listing) => list::run(listing, None),
-        Command::Info { topic, common, .. } => info::run(topic, common),
-        Command::Type { topic, common } => info::print_type(topic, common),
+        Command::Info { topic, common, .. } => info::run(topic, false, common),
+        Command::Type { topic, common } => info::run(topic, true, common),
         Command::Find { type_name, listing } => list::run(listing, Some(type_name)),
         Command::Pub(args) => publish::run(args),
         Command::Echo(args) => echo::run(args),

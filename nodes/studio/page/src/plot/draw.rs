@@ -100,20 +100,18 @@ impl Drawing {
 
     /// Lines and labels of the horizontal axis; a label that has no room is left out.
     pub(super) fn marks(&mut self, x: &Range) {
-        self.group("marks", |drawing| drawing.marks_of(x));
-    }
-
-    fn marks_of(&mut self, x: &Range) {
         let [_, top, _, bottom] = self.frame;
         let mut free = f64::NEG_INFINITY;
-        for (value, text) in x.marks() {
-            let (at, half) = (x.at(value), HALF_LETTER * text.chars().count() as f64);
-            self.segment([at, top, at, bottom], "grid");
-            if at - half > free {
-                self.text([at, bottom + 16.0], "middle", "class=\"ink\"", &text);
-                free = at + half + HALF_LETTER;
+        self.group("marks", |drawing| {
+            for (value, text) in x.marks() {
+                let (at, half) = (x.at(value), HALF_LETTER * text.chars().count() as f64);
+                drawing.segment([at, top, at, bottom], "grid");
+                if at - half > free {
+                    drawing.text([at, bottom + 16.0], "middle", "class=\"ink\"", &text);
+                    free = at + half + HALF_LETTER;
+                }
             }
-        }
+        });
     }
 
     /// Both axes with their names and a grid.

@@ -101,10 +101,6 @@ impl Point {
         Self { x, y, ..Self::default() }
     }
 
-    pub(super) fn across(&self) -> [f64; 1] {
-        [self.x]
-    }
-
     pub(super) fn up(&self) -> [f64; 3] {
         let error = self.error.unwrap_or(0.0);
         [self.y, self.y - error, self.y + error]

@@ -1,6 +1,6 @@
 //! Test 5: oblique impact of a sphere of 10 µm upon a rigid plane.
 
-use super::data::{FiniteElements, Microscopic, NAME, digitised};
+use super::data::{Curve, FiniteElements, Microscopic, NAME, digitised};
 use crate::error::VerificationError;
 use crate::lammps_impacts::{After, Impacts, Law};
 use crate::row::{Measure, Point, Row};
@@ -77,31 +77,28 @@ pub(super) fn rows(
     Ok(rows)
 }
 
-/// Comparisons with finite elements, for the first material, which is theirs.
+/// Comparisons with finite elements, for the material that is theirs.
 pub(super) fn finite_elements(
-    cases: &[Microscopic],
+    case: &Microscopic,
     theirs: &FiniteElements,
     impacts: &Impacts,
 ) -> Result<Vec<Row>, VerificationError> {
-    let mut rows = Vec::new();
-    for case in cases {
-        let curves =
-            [("surface after", surface as Quantity, &theirs.surface), ("spin after", spin, &theirs.spin)];
-        for (curve, (what, quantity, data)) in curves.into_iter().enumerate() {
-            let mut points = Vec::new();
-            for [incidence, theirs] in data {
-                let ours = quantity(impact(case, *incidence)?);
-                // Curves 2 and 3 of the impacts by LAMMPS.
-                let same_law = impacts.find([5, 0, 2 + curve], *incidence, Law::Incremental)?;
-                points.push(Point::by_own_law(*incidence, *theirs, ours, quantity(same_law)));
-            }
-            let name = format!("test 5, {}, finite elements, {what}", case.solid.name);
-            let row = Row::new(NAME, name, digitised(5), "", Measure::OfSum, 0.05, points);
-            rows.push(row.with_note(
-                "Finite elements have partial slip within the area of contact, which neither ours nor LAMMPS's tangential law has. \
-                 Ours is what LAMMPS gives with the same law.",
-            ));
-        }
-    }
-    Ok(rows)
+    let row = |(curve, (what, quantity, data)): (usize, (&str, Quantity, &Curve))| {
+        let point = |[incidence, theirs]: &[f64; 2]| {
+            let ours = quantity(impact(case, *incidence)?);
+            // Curves 2 and 3 of the impacts by LAMMPS.
+            let same_law = impacts.find([5, 0, 2 + curve], *incidence, Law::Incremental)?;
+            Ok(Point::by_own_law(*incidence, *theirs, ours, quantity(same_law)))
+        };
+        let points = data.iter().map(point).collect::<Result<_, VerificationError>>()?;
+        let name = format!("test 5, {}, finite elements, {what}", case.solid.name);
+        let row = Row::new(NAME, name, digitised(5), "", Measure::OfSum, 0.05, points);
+        Ok(row.with_note(
+            "Finite elements have partial slip within the area of contact, which neither ours nor LAMMPS's tangential law has. \
+             Ours is what LAMMPS gives with the same law.",
+        ))
+    };
+    let curves =
+        [("surface after", surface as Quantity, &theirs.surface), ("spin after", spin, &theirs.spin)];
+    curves.into_iter().enumerate().map(row).collect()
 }

@@ -37,7 +37,7 @@ pub fn rows() -> Result<Vec<Row>, VerificationError> {
     for (n, case) in data.microscopic.iter().enumerate() {
         rows.extend(microscopic::rows(n, case, &impacts)?);
     }
-    rows.extend(microscopic::finite_elements(&data.microscopic[..1], &data.finite_elements, &impacts)?);
+    rows.extend(microscopic::finite_elements(&data.microscopic[0], &data.finite_elements, &impacts)?);
     let mut seen = BTreeMap::new();
     for case in &data.spinning {
         let material = seen.entry(case.test).or_insert(0);
