@@ -23,7 +23,7 @@ const OF_THE_SAMPLE: [f64; 2] = [0.45, 0.6];
 /// Relative standard deviation of the effect of q/p on the stiffness at unchanged contacts. Packings that were pressed at a low
 /// friction and then sheared at a high one, within the elastic range, have .65 to .85 of the effect in the packings taught
 /// (`tests/golden/ensembles/locked.csv`).
-pub(crate) const RESPONSE_STDDEV: f64 = 0.35;
+pub(crate) const RESPONSE_STDDEV: f64 = 0.25;
 
 /// Number of quantities whose scatter is known: five invariants of the stiffness, ε weighted by stiffness, and k.
 pub const SCATTERED: usize = 7;
