@@ -40,7 +40,7 @@ use answer::{Answer, More};
 use case::cases;
 #[cfg(feature = "studio")]
 pub(super) use columns::{BadRow, Row};
-use grainlab_console::{Failure, Format, print, say};
+use grainlab_console::{Failure, Format, json, print, say};
 use grainlab_emt::{Conditions, Measured, Modulus};
 use grainlab_node_kit::Exit;
 use print::Printer;
@@ -355,7 +355,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         predictive,
     };
     print(&match args.format {
-        Format::Json => printer.json(&answer, more)?,
+        Format::Json => json(&answer.view(&cases, more))?,
         Format::Csv if args.explain || args.evidence => {
             return Err(Failure::usage("--explain and --evidence are printed as a table or as JSON"));
         }
