@@ -109,25 +109,10 @@ impl Decoder<'_> {
     }
 
     fn one(&mut self, element: &Element) -> Result<Value, String> {
-        let c = &mut self.cursor;
-        Ok(match element {
-            Element::Primitive(primitive) => match primitive {
-                Primitive::Bool => Value::Bool(c.one()?),
-                Primitive::I8 => Value::I8(c.one()?),
-                Primitive::U8 => Value::U8(c.one()?),
-                Primitive::I16 => Value::I16(c.one()?),
-                Primitive::U16 => Value::U16(c.one()?),
-                Primitive::I32 => Value::I32(c.one()?),
-                Primitive::U32 => Value::U32(c.one()?),
-                Primitive::I64 => Value::I64(c.one()?),
-                Primitive::U64 => Value::U64(c.one()?),
-                Primitive::F32 => Value::F32(c.one()?),
-                Primitive::F64 => Value::F64(c.one()?),
-            },
-            Element::String(bound) => Value::Text(self.string(*bound)?),
-            Element::WString(bound) => Value::Text(self.wide_string(*bound)?),
-            Element::Message(kind) => Value::Message(self.message(kind)?),
-        })
+        match element {
+            Element::Message(kind) => self.message(kind).map(Value::Message),
+            other => self.array(other, 1)?.get(0).ok_or_else(|| "has no value".to_owned()),
+        }
     }
 
     fn array(&mut self, element: &Element, length: usize) -> Result<Array, String> {

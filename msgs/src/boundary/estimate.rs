@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 use std::ops::Index;
 
 /// The result of one model: checked, if it is from a message. As JSON it has the stable keys of `results[]`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ModelResult {
     /// Name of the model.
     pub model: String,
@@ -80,17 +80,9 @@ impl ModelResult {
         Self {
             model: model.to_owned(),
             calibration: calibration.to_owned(),
-            values: Quantities::default(),
-            sigma: Quantities::default(),
-            sigma_model: Quantities::default(),
-            interval: Interval::default(),
-            chi_square: None,
-            degrees_of_freedom: None,
-            condition_number: None,
             status: "unknown",
-            gamma_over_delta: None,
-            gamma_over_delta_source: None,
             warnings,
+            ..Self::default()
         }
     }
 }

@@ -40,13 +40,12 @@ use answer::{Answer, More};
 use case::cases;
 #[cfg(feature = "studio")]
 pub(super) use columns::{BadRow, Row};
-use grainlab_console::{Failure, Format, print, say};
+use grainlab_console::{Failure, Format, json, print, say};
 use grainlab_emt::{Conditions, Measured, Modulus};
 use grainlab_node_kit::Exit;
 use print::Printer;
 pub(super) use rows::Rows;
 use series::Contact;
-use series::inputs::Inputs;
 use speed_table::SpeedLine;
 pub(super) use speed_table::{COLUMNS as SPEED_COLUMNS, checked_header, not_a_number, row as speed_row};
 pub(super) use state::State;
@@ -274,18 +273,16 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     if let Some(path) = &args.plan {
         let prior = of_series.of(&series::prior(args.prior.as_deref())?);
-        let inputs = args.series_inputs()?;
+        args.check_series()?;
         let in_file = [("--error", args.error.is_some()), ("--plot", plot_file(args).is_some())];
         refuse(&in_file, "is not for --plan: the file has the errors, and the answer no figure")?;
-        // No error depends on the density.
-        let inputs = Inputs { density: Some(1500.0), ..inputs };
-        plan::run(path, &inputs, &prior, of_series.text(), args.format)?;
+        plan::run(path, args, &prior, of_series.text(), args.format)?;
         return Ok(Exit::Done);
     }
     let speeds = args.speeds.as_deref().map(speed_table::read).transpose()?;
     if let Some((name, lines)) = &speeds {
         if of_series != Contact::Hertz || lines.iter().any(|l| l.pressure_pa.is_some()) {
-            return args.series(name, lines, of_series);
+            return args.infer_series(name, lines, of_series);
         }
     } else if of_series != Contact::Hertz {
         return Err(Failure::usage("--contact other than hertz is for --speeds: give the speeds"));
@@ -355,7 +352,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         predictive,
     };
     print(&match args.format {
-        Format::Json => printer.json(&answer, more)?,
+        Format::Json => json(&answer.view(&cases, more))?,
         Format::Csv if args.explain || args.evidence => {
             return Err(Failure::usage("--explain and --evidence are printed as a table or as JSON"));
         }
@@ -434,8 +431,8 @@ impl Args {
         Ok(state)
     }
 
-    /// Inputs of samples whose contacts are not known.
-    fn series_inputs(&self) -> Result<Inputs, Failure> {
+    /// Refuses flags that samples whose contacts are not known do not use.
+    fn check_series(&self) -> Result<(), Failure> {
         self.defaults()?;
         let of_models = [
             ("--model", !self.model.is_empty()),
@@ -454,24 +451,12 @@ impl Args {
             &of_models,
             "is for smooth spheres at one pressure: give --contact hertz, and no column pressure_pa",
         )?;
-        refuse(&[("--phi", self.phi.is_some())], "is a column of --speeds")?;
-        Ok(Inputs {
-            pressure: self.pressure,
-            density: self.density,
-            pressure_sigma: self.pressure_sigma,
-            density_sigma: self.density_sigma,
-            grain_shear_modulus: self.grain_shear_modulus,
-            grain_shear_modulus_sigma: self.grain_shear_modulus_sigma,
-            poisson: self.poisson,
-            size_spread: self.size_spread,
-            grains: self.grains,
-            error: self.error,
-        })
+        refuse(&[("--phi", self.phi.is_some())], "is a column of --speeds")
     }
 
     /// Infers the samples of a file of speeds, whose contacts are not known.
-    fn series(&self, name: &str, lines: &[SpeedLine], contact: Contact) -> Result<Exit, Failure> {
-        let inputs = self.series_inputs()?;
+    fn infer_series(&self, name: &str, lines: &[SpeedLine], contact: Contact) -> Result<Exit, Failure> {
+        self.check_series()?;
         let has_pressure = lines.iter().all(|l| l.pressure_pa.is_some());
         let has_density = lines.iter().all(|l| l.density.or(l.grain_density).is_some());
         let in_columns = [
@@ -480,6 +465,6 @@ impl Args {
         ];
         refuse(&in_columns, "is in a column of every row")?;
         let prior = series::prior(self.prior.as_deref())?;
-        series::run(name, lines, &inputs, contact, &prior, (self.format, plot_file(self)))
+        series::run(name, lines, self, contact, &prior, (self.format, plot_file(self)))
     }
 }

@@ -26,7 +26,7 @@ pub enum TimeStep {
 /// Settings of the engine during a phase.
 ///
 /// The default is frictionless and without any dissipation, at 0.8 of the stable time step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EngineSettings {
     /// Friction coefficient, 0 to infinity.
     pub friction: f64,
@@ -46,18 +46,9 @@ pub struct EngineSettings {
     pub thermostat_speed: Option<f64>,
 }
 
-impl Default for EngineSettings {
+impl Default for TimeStep {
     fn default() -> Self {
-        Self {
-            friction: 0.0,
-            damping: 0.0,
-            drag: 0.0,
-            spin_drag: 0.0,
-            tangential: TangentialLaw::Rescaled,
-            time_step: TimeStep::FractionOfStable(0.8),
-            skin: 0.0,
-            thermostat_speed: None,
-        }
+        Self::FractionOfStable(0.8)
     }
 }
 

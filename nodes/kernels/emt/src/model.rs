@@ -22,7 +22,7 @@ pub trait Model: Sync + Debug {
 
     /// True if the model uses γ/Δ.
     fn uses_gamma(&self) -> bool {
-        true
+        false
     }
 
     /// True if the model uses the learned constants of a calibration, not its material alone.

@@ -10,7 +10,7 @@ use nalgebra::SMatrix;
 pub type Jacobian = SMatrix<f64, { InferredQuantity::COUNT }, INPUTS>;
 
 /// A point estimate, with the data on its error that depend on the model.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PointEstimate {
     /// Structure that was inferred.
     pub structure: Microstructure,
@@ -29,15 +29,8 @@ pub struct PointEstimate {
 
 impl PointEstimate {
     /// A structure that fits exactly, without warnings.
-    pub const fn exact(structure: Microstructure) -> Self {
-        Self {
-            structure,
-            jacobian: None,
-            discrepancy: None,
-            bounds: None,
-            misfit: None,
-            warnings: Vec::new(),
-        }
+    pub fn exact(structure: Microstructure) -> Self {
+        Self { structure, ..Self::default() }
     }
 }
 

@@ -24,7 +24,7 @@ pub use cell::Cell;
 pub use count::count;
 pub use duration::duration;
 pub use failure::{Failure, worse};
-pub use output::{CsvText, Format, Table, exact, fixed, json, print, print_more, say_line};
+pub use output::{CsvText, Format, Table, exact, fixed, json, json_element, print, print_more, say_line};
 pub use pace::Pace;
 pub use program::{called, program, set_program};
 pub use signals::Signals;

@@ -72,6 +72,14 @@ pub fn json<T: Serialize + ?Sized>(value: &T) -> Result<String, Failure> {
     Ok(text + "\n")
 }
 
+/// A value as an element of a list in indented JSON: on lines of its own, without a comma.
+///
+/// # Errors
+/// As [`json`].
+pub fn json_element<T: Serialize + ?Sized>(value: &T) -> Result<String, Failure> {
+    Ok(format!("\n{}", json(value)?.trim_end()).replace('\n', "\n  "))
+}
+
 /// Rows of cells under a header; the first column is text and aligned left, the others are aligned right.
 #[derive(Clone, Debug, Default)]
 pub struct Table {

@@ -9,7 +9,7 @@ use std::time::Duration;
 pub(crate) const REFUSALS_ALLOWED: u32 = 10;
 
 /// The current request and the latest answer.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Lockstep {
     resend_after: Duration,
     resend_at_most: Duration,
@@ -58,16 +58,7 @@ impl Lockstep {
         Self {
             resend_after: settings.resend_after,
             resend_at_most: settings.resend_at_most.max(settings.resend_after),
-            question: None,
-            body: Vec::new(),
-            previous: Vec::new(),
-            asked: Duration::ZERO,
-            busy: Duration::ZERO,
-            resend_at: Duration::ZERO,
-            pause: Duration::ZERO,
-            answer: None,
-            refused_in_row: 0,
-            counts: Counts::default(),
+            ..Self::default()
         }
     }
 

@@ -1,8 +1,7 @@
 //! Results that form one table, one JSON array or one CSV.
 
-use grainlab_console::{Failure, Format, Table};
+use grainlab_console::{Failure, Format, Table, json_element};
 use serde::Serialize;
-use std::fmt::Write as _;
 use std::marker::PhantomData;
 
 /// A result that can be printed in every format.
@@ -56,16 +55,7 @@ impl<R: Printed> Printer<R> {
                     _ => text,
                 }
             }
-            Format::Json => {
-                let element = serde_json::to_string_pretty(result)
-                    .map_err(|e| Failure::failed(format!("JSON: {e}")))?;
-                let mut text = String::from(if first { "[" } else { "," });
-                for line in element.lines() {
-                    // Writing to a String cannot fail.
-                    let _ = write!(text, "\n  {line}");
-                }
-                text
-            }
+            Format::Json => (if first { "[" } else { "," }).to_owned() + &json_element(result)?,
         })
     }
 

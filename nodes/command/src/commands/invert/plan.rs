@@ -1,6 +1,6 @@
 //! Errors that planned speeds are expected to have, before any is measured.
 
-use super::series::inputs::Inputs;
+use super::Args;
 use super::speed_table::{SpeedLine, planned};
 use grainlab_console::{CsvText, Failure, Format, Table, fixed, say};
 use grainlab_emt::{
@@ -44,6 +44,13 @@ struct Plan {
     speeds: Vec<Planned>,
     #[serde(default)]
     want: BTreeMap<String, f64>,
+}
+
+impl Plan {
+    /// Cells of every row. No error depends on the density.
+    fn extra(&self) -> [(&'static str, Option<f64>); 3] {
+        [("diameter", self.diameter), ("roughness", self.roughness), ("density", Some(1500.0))]
+    }
 }
 
 /// Speeds of one mode.
@@ -114,7 +121,7 @@ impl Answer {
 type Wave = (SpeedLine, f64);
 
 fn waves(plan: &Plan) -> Result<Vec<Wave>, String> {
-    let extra = [("diameter", plan.diameter), ("roughness", plan.roughness)];
+    let extra = plan.extra();
     for (name, is_empty) in [("pressures", plan.pressures.is_empty()), ("speeds", plan.speeds.is_empty())] {
         if is_empty {
             return Err(format!("{name} is empty"));
@@ -147,7 +154,7 @@ fn waves(plan: &Plan) -> Result<Vec<Wave>, String> {
 
 /// The waves that are not planned yet.
 fn further(plan: &Plan, planned_waves: &[Wave]) -> Result<Vec<(Further, Wave)>, String> {
-    let extra = [("diameter", plan.diameter), ("roughness", plan.roughness)];
+    let extra = plan.extra();
     let has_angle = plan.speeds.iter().any(|s| s.angles.is_some());
     let modes = FURTHER.into_iter().filter(|(_, angle)| has_angle || *angle == Some(0.0));
     let modes: Vec<_> = modes.map(|(mode, angle)| (mode, angle.filter(|_| has_angle))).collect();
@@ -172,7 +179,7 @@ type Sigmas = (Vec<SampleQuantity>, Vec<Vec<f64>>);
 /// Runs a plan.
 pub(super) fn run(
     path: &Path,
-    inputs: &Inputs,
+    args: &Args,
     prior: &SeriesPrior,
     contact: &str,
     format: Format,
@@ -188,7 +195,7 @@ pub(super) fn run(
     let all: Vec<Wave> = planned_waves.iter().cloned().chain(others.iter().map(|(_, w)| w.clone())).collect();
     let lines: Vec<SpeedLine> = all.iter().map(|(line, _)| line.clone()).collect();
     let (whole, assumed) =
-        inputs.series(&lines).map_err(|fault| usage(fault.replace("line 0: column ", "")))?;
+        args.series(&lines).map_err(|fault| usage(fault.replace("line 0: column ", "")))?;
     // The sigmas with some of the waves, with the errors times a factor; of these quantities, or of all that the waves determine.
     let wrong = |e: EmtError| usage(e.to_string());
     let sigmas = |chosen: &[usize], factor: f64, samples: usize, of: Option<&[SampleQuantity]>| {

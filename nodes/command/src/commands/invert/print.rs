@@ -3,7 +3,7 @@
 use super::answer::{Answer, More};
 use super::case::Case;
 use super::{evidence, explain, predictive};
-use grainlab_console::{CsvText, Failure, Table, json};
+use grainlab_console::{CsvText, Table};
 use grainlab_results::{Inference, inference_text};
 
 /// Converts results to text.
@@ -39,16 +39,6 @@ impl Printer<'_> {
             text.end();
         }
         text.finish()
-    }
-
-    /// An object, for one state.
-    pub(super) fn json(&self, answer: &Answer, more: More) -> Result<String, Failure> {
-        json(&answer.view(self.cases, more))
-    }
-
-    /// An element of an array, without the separator.
-    pub(super) fn json_element(&self, answer: &Answer) -> Result<String, Failure> {
-        Ok(format!("\n{}", self.json(answer, More::default())?.trim_end()).replace('\n', "\n  "))
     }
 
     /// One state, warnings below.

@@ -1,14 +1,14 @@
 //! Wave speeds of samples whose contacts are not known: structure at each pressure, and the contact.
 
-pub(super) mod inputs;
+mod inputs;
 mod print;
 mod sample;
 
+use super::Args;
 use super::speed_table::SpeedLine;
 use grainlab_console::{Failure, Format, say};
 use grainlab_emt::{Calibration, ContactKind, EmtError, Sensitivity, SeriesPrior, infer_series};
 use grainlab_node_kit::Exit;
-use inputs::Inputs;
 use sample::Sample;
 use std::path::Path;
 
@@ -64,7 +64,7 @@ pub(super) fn prior(path: Option<&Path>) -> Result<SeriesPrior, Failure> {
 pub(super) fn run(
     name: &str,
     lines: &[SpeedLine],
-    inputs: &Inputs,
+    args: &Args,
     contact: Contact,
     prior: &SeriesPrior,
     (format, plot): (Format, Option<&Path>),
@@ -82,7 +82,7 @@ pub(super) fn run(
     let mut found = Vec::new();
     for (sample, lines) in samples {
         let usage = |fault: String| Failure::usage(format!("{name}: {fault}"));
-        let (series, assumed) = inputs.series(&lines).map_err(usage)?;
+        let (series, assumed) = args.series(&lines).map_err(usage)?;
         let wrong = |e: EmtError| usage(format!("sample {sample:?}: {e}"));
         let estimate = infer_series(&series, network, &prior).map_err(wrong)?;
         let sensitivity = Sensitivity::of(&series, network, &prior).map_err(wrong)?;

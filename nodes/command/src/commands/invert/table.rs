@@ -1,10 +1,10 @@
 //! A whole table: read in pieces, inverted in parallel, written in order.
 
-use super::answer::Answer;
+use super::answer::{Answer, More};
 use super::columns::Row;
 use super::print::Printer;
 use super::rows::Rows;
-use grainlab_console::{Failure, Format, print_more, say, worse};
+use grainlab_console::{Failure, Format, json_element, print_more, say, worse};
 use grainlab_node_kit::Exit;
 use std::time::Instant;
 
@@ -83,7 +83,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
             let answer = answer(number, row);
             let text = match format {
                 Format::Csv => printer.csv(&answer),
-                Format::Json => printer.json_element(&answer)?,
+                Format::Json => json_element(&answer.view(printer.cases, More::default()))?,
                 Format::Table => String::new(),
             };
             let exit = answer.exit(printer.cases);

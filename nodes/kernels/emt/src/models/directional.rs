@@ -36,10 +36,6 @@ impl Model for Directional {
         NAME
     }
 
-    fn uses_gamma(&self) -> bool {
-        false
-    }
-
     fn domain(&self, calibration: &Calibration) -> Domain {
         let weakest = shares(MAX_EPS)[0].min(shares(-MAX_EPS)[1]);
         let lowest = -1.05 * calibration.isotropic().constants()[1] / weakest;

@@ -39,6 +39,10 @@ impl Model for EffectiveMedium {
         false
     }
 
+    fn uses_gamma(&self) -> bool {
+        true
+    }
+
     fn domain(&self, _: &Calibration) -> Domain {
         let ranges = [(InferredQuantity::K, [0.1, MAX_COORDINATION]), (InferredQuantity::Eps, [-0.5, 1.0])];
         Domain { gamma: [-0.5, 0.25], needs_solid_fraction: true, ..Domain::new(NAME, &ranges) }

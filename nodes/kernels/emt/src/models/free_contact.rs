@@ -50,10 +50,6 @@ impl Model for FreeContact {
         NAME
     }
 
-    fn uses_gamma(&self) -> bool {
-        false
-    }
-
     fn domain(&self, calibration: &Calibration) -> Domain {
         use InferredQuantity::{Eps, Z};
         let ranges = calibration.network().map(|n| [(Z, n.domain()), (Eps, n.reach.eps_with_estimates())]);

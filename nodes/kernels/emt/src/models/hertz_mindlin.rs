@@ -41,10 +41,6 @@ impl Model for HertzMindlin {
         NAME
     }
 
-    fn uses_gamma(&self) -> bool {
-        false
-    }
-
     fn uses_constants(&self) -> bool {
         false
     }

@@ -36,6 +36,10 @@ impl Model for Ratio {
         self.name
     }
 
+    fn uses_gamma(&self) -> bool {
+        true
+    }
+
     fn domain(&self, calibration: &Calibration) -> Domain {
         domain(self.name, calibration)
     }

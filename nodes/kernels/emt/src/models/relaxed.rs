@@ -46,10 +46,6 @@ impl Model for Relaxed {
         NAME
     }
 
-    fn uses_gamma(&self) -> bool {
-        false
-    }
-
     fn domain(&self, calibration: &Calibration) -> Domain {
         let Some(network) = calibration.network() else { return Domain::new(NAME, &[]) };
         let Reach { z, eps, pressure: reduced_pressure, stress_ratio, size_spread, .. } =

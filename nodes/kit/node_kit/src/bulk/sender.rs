@@ -27,7 +27,7 @@ struct Reader {
 }
 
 /// The latest body and its readers. It has no clock and no bus: the caller provides both.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Sender {
     own: Guid,
     /// Number of bodies so far, which is the number of the latest one.
@@ -49,18 +49,7 @@ pub(super) struct Sender {
 
 impl Sender {
     pub(super) fn new(own: Guid) -> Self {
-        Self {
-            own,
-            bodies: 0,
-            bytes: Vec::new(),
-            shape: None,
-            offered: Duration::ZERO,
-            sent: 0,
-            when: Vec::new(),
-            again: BTreeSet::new(),
-            readers: BTreeMap::new(),
-            hurries: false,
-        }
+        Self { own, ..Self::default() }
     }
 
     /// Waits only for a short time for readers that are silent or not ready, and does not hold back parts for them.

@@ -2,7 +2,7 @@
 
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// A launch file.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -91,7 +91,8 @@ pub(super) struct Remap {
 }
 
 /// Actions that run in a scope of their own, unless `scoped` is false.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(remote = "Self", deny_unknown_fields)]
 pub(super) struct Group {
     pub(super) children: Vec<Entry>,
     pub(super) scoped: Option<Text>,
@@ -100,18 +101,15 @@ pub(super) struct Group {
     pub(super) unless: Option<Text>,
 }
 
+impl Serialize for Group {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, to)
+    }
+}
+
 /// A list, or a mapping with `children`.
 impl<'de> Deserialize<'de> for Group {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Body {
-            children: Vec<Entry>,
-            scoped: Option<Text>,
-            #[serde(rename = "if")]
-            if_: Option<Text>,
-            unless: Option<Text>,
-        }
         struct Either;
         impl<'de> Visitor<'de> for Either {
             type Value = Group;
@@ -123,9 +121,7 @@ impl<'de> Deserialize<'de> for Group {
                 Ok(Group { children, ..Group::default() })
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Group, A::Error> {
-                let Body { children, scoped, if_, unless } =
-                    Body::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(Group { children, scoped, if_, unless })
+                Group::deserialize(MapAccessDeserializer::new(map))
             }
         }
         from.deserialize_any(Either)

@@ -1,26 +1,10 @@
 //! The speeds of one sample from the rows of a table and the flags, with units checked.
 
+use super::super::Args;
 use super::super::speed_table::SpeedLine;
 use grainlab_core::Material;
 use grainlab_emt::{ContactKind, SeriesRow, SpeedMode, SpeedSeries, UNKNOWN_SIZE_SPREAD};
 use std::f64::consts::PI;
-
-/// Inputs from flags, for all samples of a file.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Inputs {
-    /// Pressure and density of rows without them.
-    pub(crate) pressure: Option<f64>,
-    pub(crate) density: Option<f64>,
-    pub(crate) pressure_sigma: f64,
-    pub(crate) density_sigma: f64,
-    pub(crate) grain_shear_modulus: Option<f64>,
-    pub(crate) grain_shear_modulus_sigma: f64,
-    pub(crate) poisson: Option<f64>,
-    pub(crate) size_spread: Option<f64>,
-    pub(crate) grains: Option<u32>,
-    /// Relative error of speeds without one.
-    pub(crate) error: Option<f64>,
-}
 
 /// Error of a speed that has none.
 const DEFAULT_ERROR: f64 = 0.01;
@@ -35,9 +19,9 @@ const PRESSURES: [f64; 2] = [1e-8, 1e-2];
 /// Densities of samples and grains, kg/m³.
 const DENSITIES: [f64; 2] = [200.0, 10_000.0];
 
-impl Inputs {
+impl Args {
     /// The speeds of one sample, and what was assumed of it; or the first fault, with its line and column.
-    pub(crate) fn series(&self, lines: &[SpeedLine]) -> Result<(SpeedSeries, Vec<String>), String> {
+    pub(in super::super) fn series(&self, lines: &[SpeedLine]) -> Result<(SpeedSeries, Vec<String>), String> {
         const GRAINS: &str = "--grain-shear-modulus PA and --poisson NU: the material of the grains is needed (glass: 29e9 and 0.2, quartz: 44e9 and 0.08)";
         let shear_modulus = self.grain_shear_modulus.ok_or(GRAINS)?;
         let poisson_ratio = self.poisson.ok_or(GRAINS)?;

@@ -196,6 +196,14 @@ fn chance(p: f64) -> String {
     if p < 1e-4 { "p below 0.0001".to_owned() } else { format!("p {p:.4}") }
 }
 
+/// A sentence for each pressure whose speeds contradict the others.
+fn contradicting_pressures(e: &SeriesEstimate) -> impl Iterator<Item = String> {
+    e.pressures.iter().filter_map(|of| {
+        let (at, p) = (kilopascals(of.pressure), of.p.filter(|p| *p < SeriesEstimate::CONTRADICTORY)?);
+        Some(format!("the speeds at {at} kPa contradict those at the other pressures ({})", chance(p)))
+    })
+}
+
 /// Text on the rows that contradict the others.
 pub(super) fn contradiction(sample: &Sample) -> String {
     let e = &sample.estimate;
@@ -226,10 +234,7 @@ pub(super) fn contradiction(sample: &Sample) -> String {
     if sample.sensitivity.is_contradictory() {
         faults.push("the bulk modulus and the shear modulus have no z in common: check the P speeds against the S speeds".to_owned());
     }
-    for p in e.pressures.iter().filter(|p| p.p.is_some_and(|p| p < SeriesEstimate::CONTRADICTORY)) {
-        let (at, p) = (kilopascals(p.pressure), chance(p.p.unwrap_or(f64::NAN)));
-        faults.push(format!("the speeds at {at} kPa contradict those at the other pressures ({p})"));
-    }
+    faults.extend(contradicting_pressures(e));
     if !rows.is_empty() {
         faults.push(format!("furthest from the others: {}", rows.join(", ")));
     }
@@ -251,13 +256,7 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
     if sample.status == "contradictory" {
         doubts.push(format!("contradictory: {}", contradiction(sample)));
     }
-    for p in e.pressures.iter().filter(|p| p.p.is_some_and(|p| p < SeriesEstimate::CONTRADICTORY)) {
-        doubts.push(format!(
-            "the speeds at {} kPa contradict those at the other pressures ({})",
-            kilopascals(p.pressure),
-            chance(p.p.unwrap_or(f64::NAN))
-        ));
-    }
+    doubts.extend(contradicting_pressures(e));
     if e.effective_draws < FEW_DRAWS {
         doubts.push(format!(
             "{:.0} draws represent the posterior, which is too few: the errors are larger than stated",
