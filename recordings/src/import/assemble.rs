@@ -12,6 +12,9 @@ use super::setting::Setting;
 use super::settings::{ImportOptions, Properties};
 use super::text::{Line, digits};
 
+/// Densities of grains, kg/m3, that are not implausible.
+const DENSITIES: std::ops::RangeInclusive<f64> = 100.0..=30_000.0;
+
 /// Grains in the order and with the ids of a file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrainTable {
@@ -110,6 +113,9 @@ impl GrainTable {
         let masses = (heavier > 0).then(|| {
             format!("{heavier} grain(s) have another mass than density and radius give; the density is used")
         });
+        let implausible = self.density().filter(|d| !DENSITIES.contains(d)).map(|density| {
+            format!("masses and radii of the file give a density of {density:.3e} kg/m3: are its units SI?")
+        });
         let kinds = (self.kinds.len() > 1).then(|| {
             format!(
                 "the grains are of {} types in the file; they are taken to be of one material",
@@ -119,7 +125,7 @@ impl GrainTable {
         let radii = self.replaced.map(|(stated, given)| {
             format!("the radii of the file, the first of them {stated} m, are replaced by the one given, {given} m")
         });
-        [radii, masses, kinds].into_iter().flatten().collect()
+        [radii, masses, implausible, kinds].into_iter().flatten().collect()
     }
 
     /// Adds a grain read from `line`; vectors are position, velocity and spin.

@@ -33,6 +33,7 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
         } else if let Some(first) = words.first() {
             if first.starts_with(|c: char| c.is_ascii_alphabetic()) {
                 section = Section::of(&line, first, comment.trim())?;
+                file.states_motion |= matches!(section, Section::Velocities);
             } else {
                 match section {
                     Section::Header => file.header(&line, &words)?,
@@ -90,6 +91,8 @@ struct DataFile {
     grains: GrainTable,
     densities: Vec<f64>,
     motion: BTreeMap<u32, (usize, Vec3, Vec3)>,
+    /// True if there is a section of velocities.
+    states_motion: bool,
 }
 
 impl DataFile {
@@ -169,7 +172,7 @@ impl DataFile {
         for (k, id) in self.grains.ids.iter().enumerate() {
             match self.motion.remove(id) {
                 Some((_, v, w)) => (self.grains.velocities[k], self.grains.spins[k]) = (v, w),
-                None if moving > 0 => {
+                None if self.states_motion => {
                     let problem =
                         format!("{moving} velocities, but none of grain {id}: the file is incomplete");
                     return Err(ImportError::line(self.grains.lines[k], problem));

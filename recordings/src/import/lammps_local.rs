@@ -58,7 +58,10 @@ pub(super) fn packing(
     state: Moment,
     source: String,
 ) -> Result<Imported, ImportError> {
-    let of_step = |text| contacts(text, &options.contact_columns, state.step);
+    let of_step = |text| {
+        contacts(text, &options.contact_columns, state.step)
+            .map_err(|e| ImportError::Invalid(format!("in the file of the contact forces: {e}")))
+    };
     let forces = options.contact_forces.as_deref().map(of_step).transpose()?;
     forces.as_ref().map_or(Ok(()), |forces| forces.check(&grains, &settings.cell))?;
     let listed = forces.as_ref().map(|forces| forces.contacts.as_slice());

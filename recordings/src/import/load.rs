@@ -127,6 +127,9 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
     if begins("# vtk DataFile") {
         return unsupported("a VTK file", FROM_YADE);
     }
+    if text.contains("<VTKFile") {
+        return unsupported("VTK's XML", "it is for viewing: export with format vtkhdf");
+    }
     if begins("<?xml") || begins("<boost_serialization") {
         return unsupported("XML (a saved simulation of YADE?)", FROM_YADE);
     }

@@ -63,6 +63,9 @@ pub(super) struct Known {
     pub(super) friction: Option<f64>,
 }
 
+/// Relative difference of densities that is due to the digits of masses.
+const ROUNDING: f64 = 1e-5;
+
 /// All properties of a packing except its grains.
 #[derive(Clone, Debug)]
 pub(super) struct Properties {
@@ -115,11 +118,12 @@ impl Known {
             ImportError::Given(format!("the cell {:?} ({form}) has no positive volume", rows.as_slice()))
         })?;
         let material = Material { shear_modulus, poisson_ratio, density };
+        let is_other = |given: &f64| self.density.is_none_or(|known| (given / known - 1.0).abs() > ROUNDING);
         let cells = |m: Mat3| format!("{:?}", m.transpose().as_slice());
         let notes = [
             replaced("the shear modulus", "Pa", options.shear_modulus, self.shear_modulus),
             replaced("the Poisson ratio", "", options.poisson_ratio, self.poisson_ratio),
-            replaced("the density", "kg/m3", options.density, self.density),
+            replaced("the density", "kg/m3", options.density.filter(is_other), self.density),
             replaced("the friction", "", options.friction, self.friction),
             replaced("the contact law", "", options.law, self.law),
             replaced("the cell", "m", options.cell.map(cells), self.cell.map(cells)),

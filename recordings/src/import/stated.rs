@@ -21,7 +21,11 @@ pub(super) fn lammps_units(line: usize, text: &str) -> Result<(), ImportError> {
         return Ok(());
     }
     let what = format!("units {}", cut(text.trim()));
-    Err(ImportError::unsupported(line, what, "only SI units are: convert with LAMMPS (units si)"))
+    Err(ImportError::unsupported(
+        line,
+        what,
+        "only SI units are: multiply lengths, masses, times and forces by their units",
+    ))
 }
 
 /// Refuses boundaries that are not periodic on three sides, as `T T T`.

@@ -252,6 +252,7 @@ fn what_a_data_file_must_not_be_is_refused() {
         ("0.25 0 0 xy xz yz", "1 0 nan avec", "edge vector"),
         ("20 1 0.3 2500", "20 1 0.3 2600", ""),
         ("10 1 2 3 4 5 6", "11 1 2 3 4 5 6", "none of grain 10"),
+        ("10 1 2 3 4 5 6\n20 0 0 0 0 0 0\n30 0 0 0 0 0 0\n", "", "none of grain 30"),
         ("10 1 0.2", "10 1", "7 or 10 fields"),
         ("-0.5 0.5 zlo zhi", "", "--cell"),
         ("-0.5 0.5 zlo zhi", "0.5 -0.5 zlo zhi", "no positive volume"),
@@ -376,6 +377,24 @@ fn contact_forces_of_a_dump_local_are_taken() {
     assert!((c.tangential_force - Vec3::new(0.0, -0.5, 0.0)).norm() < 1e-15);
     // The second frame has a step of its own, of which there are no forces.
     assert!(lammps_dump::packings(DUMP, &options).unwrap_err().to_string().contains("are of step 10 and"));
+}
+
+#[test]
+fn units_that_give_an_implausible_density_are_noted_and_digits_of_masses_are_no_other_density() {
+    let notes = |density: f64, given: Option<f64>| {
+        let mass = density * 4.0 / 3.0 * std::f64::consts::PI * 1e-3;
+        let text = format!("p,1,0.1,0,0,0.1,{mass},0,0,0,0,0,0\n");
+        let options = ImportOptions { density: given, ..in_cube(1.0) };
+        csv::packing(&text, None, &options).unwrap().notes.concat()
+    };
+    assert!(
+        notes(2.5, None).contains("a density of 2.500e0 kg/m3: are its units SI?"),
+        "{}",
+        notes(2.5, None)
+    );
+    assert!(!notes(2500.0, None).contains("SI?"));
+    assert!(!notes(2499.999, Some(2500.0)).contains("replaced"));
+    assert!(notes(2600.0, Some(2500.0)).contains("replaced"));
 }
 
 #[test]

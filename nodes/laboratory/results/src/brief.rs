@@ -22,7 +22,7 @@ const PAPER: &str = "ratio";
 /// Sets of data, or nodes that infer, that are shown of one packing.
 const MOST_GROUPS: usize = 3;
 
-/// Notes on a packing that are shown.
+/// Notes on an estimate that are shown; those on the packing all are.
 const MOST_NOTES: usize = 1;
 
 /// The result of a run as text. `files` are those that the directory has, and `program` is the name of the binary on the command
@@ -116,7 +116,7 @@ fn one(state: &InvertedPacking) -> Vec<String> {
         Some(why) => lines.push(row("Measured", &format!("no stiffness: {why}"))),
     }
     let told = r.elasticity.as_ref().err().map(ToString::to_string);
-    let notes = state.packing.warnings.iter().filter(|w| Some(*w) != told.as_ref()).take(MOST_NOTES);
+    let notes = state.packing.warnings.iter().filter(|w| Some(*w) != told.as_ref());
     lines.extend(notes.map(|note| row("Note", note)));
     let groups = by_origin(&state.results);
     let shown = if groups.len() > MOST_GROUPS { MOST_GROUPS - 1 } else { groups.len() };

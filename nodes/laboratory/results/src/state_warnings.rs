@@ -1,8 +1,8 @@
 //! Warnings about a measured state.
 
 use grainlab_core::Packing;
-use grainlab_core::non_rattlers;
 use grainlab_core::results::{ElasticStiffness, PackingReport};
+use grainlab_core::{Vec3, non_rattlers};
 use grainlab_experiment::PathPosition;
 use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
@@ -60,16 +60,20 @@ fn restless(report: &PackingReport) -> Option<String> {
     ))
 }
 
-/// Kinetic energy of the grains that carry force, relative to the affine motion, over F_n overlap/2 summed over contacts.
+/// Kinetic energy of the grains that carry force, relative to the affine motion and to their mean velocity, over F_n overlap/2
+/// summed over contacts.
 fn moving(packing: &Packing) -> Option<String> {
     let elastic: f64 = packing.contacts.iter().map(|c| 0.5 * c.normal_force.abs() * c.overlap).sum();
     let carries = non_rattlers(packing);
+    let carrying = || (0..packing.grains()).filter(|g| carries[*g]);
+    let mass = |g: usize| packing.material.sphere_mass(packing.radii[g]);
+    let momentum: Vec3 = carrying().map(|g| packing.velocities[g] * mass(g)).sum();
+    let mean = momentum / carrying().map(mass).sum::<f64>().max(f64::MIN_POSITIVE);
     let energy = |g: usize| {
-        let (radius, v, w) = (packing.radii[g], packing.velocities[g], packing.spins[g]);
-        let squares = v.norm_squared() + 0.4 * radius * radius * w.norm_squared();
-        0.5 * packing.material.sphere_mass(radius) * squares
+        let (radius, v, w) = (packing.radii[g], packing.velocities[g] - mean, packing.spins[g]);
+        0.5 * mass(g) * (v.norm_squared() + 0.4 * radius * radius * w.norm_squared())
     };
-    let kinetic: f64 = (0..packing.grains()).filter(|g| carries[*g]).map(energy).sum();
+    let kinetic: f64 = carrying().map(energy).sum();
     (elastic > 0.0 && kinetic > MOVING * elastic).then(|| {
         format!(
             "the packing is in motion: the kinetic energy of its grains is {:.1e} of the elastic energy of its contacts (more \
@@ -218,9 +222,18 @@ mod tests {
     }
 
     #[test]
-    fn grains_that_carry_force_and_move_are_reported() {
-        for (speed, spin, is_reported) in [(100.0, 0.0, true), (0.0, 1e6, true), (1e-6, 1e-2, false)] {
-            let found = warnings(|p| (p.velocities[0].x, p.spins[0].y) = (speed, spin));
+    fn grains_that_carry_force_and_move_are_reported_and_a_drift_of_all_is_no_motion() {
+        for (drift, speed, spin, is_reported) in [
+            (0.0, 100.0, 0.0, true),
+            (0.0, 0.0, 1e6, true),
+            (100.0, 0.0, 0.0, false),
+            (0.0, 1e-6, 1e-2, false),
+        ] {
+            let found = warnings(|p| {
+                *p = p.repeated(2).unwrap();
+                p.velocities.iter_mut().for_each(|v| v.x += drift);
+                (p.velocities[0].x, p.spins[0].y) = (drift + speed, spin);
+            });
             assert_eq!(found.contains("in motion: the kinetic energy"), is_reported, "{found}");
         }
     }

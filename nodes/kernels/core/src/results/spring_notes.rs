@@ -10,8 +10,8 @@ use crate::packing::Packing;
 pub enum SpringNote {
     /// The rolling springs are left out.
     #[error(
-        "without the rolling springs of the contact law: the packing is at least as stiff as its moduli; the strain probe has \
-         the whole law"
+        "without the rolling springs of the contact law: the shear moduli may be several times too low; the strain probe \
+         (analyze --method probe) has the whole law"
     )]
     WithoutRolling,
     /// There are no tangential springs, as in the packing.
