@@ -61,6 +61,33 @@ def test_a_scene_with_faults_is_refused_with_each_of_them(scene, keys, words):
         grainlab.simulate(scene, set=keys)
 
 
+@pytest.mark.parametrize("seed", [5.5, 5.0, -1, True, "5", 2**63])
+def test_a_seed_is_a_whole_number_from_0_on(seed):
+    for call in (grainlab.Scene, grainlab.simulate, grainlab.launch):
+        with pytest.raises(ValueError, match="seed is .*; it must be a whole number, 0 or more"):
+            call("demo", seed=seed)
+
+
+def test_settings_are_a_mapping_with_whole_floats_as_whole_numbers_and_one_seed():
+    assert grainlab.Scene("demo", set={"grains.count": 200.0, "friction": 0.3}, seed=np.int64(3)).text == grainlab.Scene(
+        "demo", set={"grains": {"count": 200}, "friction": 0.3, "seed": 3}).text
+    with pytest.raises(ValueError, match="seed is a keyword, and a key of set"):
+        grainlab.Scene("demo", seed=3, set={"seed": 4})
+    with pytest.raises(TypeError, match="set is 'friction=0.2'; it must be a mapping"):
+        grainlab.simulate("demo", set="friction=0.2")
+
+
+def test_a_run_goes_on_by_whole_numbers_of_steps_or_until_a_condition():
+    run = grainlab.simulate("demo", seed=3, set={"grains.count": 40})
+    for steps in (-5, 1.5):
+        with pytest.raises(ValueError, match=f"steps is {steps}"):
+            run.run(steps)
+    with pytest.raises(ValueError, match="every is 0"):
+        run.run_until(lambda run: False, every=0)
+    assert run.run_until(lambda run: run.steps >= 700, every=100) == [] and 700 <= run.steps < 900 and run.phase == "gas"
+    assert run.run_until(lambda run: run.phase != "gas") == [] and run.phase == "rest"
+
+
 def test_threads_of_zero_are_refused():
     with pytest.raises(grainlab.SceneError, match="at least one"):
         grainlab.simulate("demo", threads=0)

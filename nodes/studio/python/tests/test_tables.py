@@ -89,6 +89,8 @@ def test_a_table_is_columns_rows_or_a_file(tmp_path):
     ],
 )
 def test_wrong_tables_are_refused_with_the_reason(given, words):
+        ({**STATE, "draws": 10, "seed": -1}, "seed is -1"),
+        ({**STATE, "draws": 2.5}, "draws is 2.5"),
     with pytest.raises((ValueError, grainlab.PhysicsError), match=words):
         grainlab.invert(**given)
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from . import _grainlab, tables
 from .program import call, flags
-from .scenes import toml
+from .scenes import toml, whole
 
 #: Columns of `grainlab invert --table` by the keywords of `invert`.
 COLUMNS = {
@@ -88,8 +88,9 @@ def invert(
             raise ValueError(f"{twice[0]} is a column of the table, and a keyword")
         text = tables.csv_text({**of_table, **of_keywords}, numbered=True).encode()
     is_table = table is not None or any(isinstance(column, list) for column in of_keywords.values())
-    if draws is not None and (is_table or draws < 1):
-        raise ValueError("draws are of one state, and 1 or more in each chain")
+    if draws is not None and is_table:
+        raise ValueError("draws are of one state")
+    drawn_by = None if draws is None else (whole("draws", draws, least=1), whole("seed", seed))
     by = (model, os.fspath(calibration), prior, error)
     answers, drawn = _grainlab.inverted(text, by, None if draws is None else (draws, seed))
     failed, warnings = answers.pop("failed"), answers.pop("warnings")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _grainlab
-from .scenes import Scene, warn
+from .scenes import Scene, warn, whole
 
 if TYPE_CHECKING:
     import numpy as np
@@ -56,8 +56,8 @@ class Simulation(Iterator["Packing"]):
 
     def run(self, steps: int | None = None) -> list[Packing]:
         """Goes on for so many solver steps or a few more, to the next control period, or to the end: the packings published on the
-        way. Raises PhysicsError."""
-        end, packings = None if steps is None else self.steps + steps, []
+        way. Raises PhysicsError, and ValueError for steps that are no whole number."""
+        end, packings = None if steps is None else self.steps + whole("steps", steps), []
         while not self.finished and (end is None or self.steps < end):
             found = self._advance(SIGNAL_PERIOD if end is None else 0.0)
             packings += [found] if found is not None else []
@@ -67,6 +67,14 @@ class Simulation(Iterator["Packing"]):
     def name(self) -> str:
         """Name of the scene."""
         return self._run.names()[0]
+    def run_until(self, met: Callable[[Simulation], Any], *, every: int = 1) -> list[Packing]:
+        """Goes on until ``met(run)`` is true, which is asked every so many solver steps or a few more, or to the end: the packings
+        published on the way. Raises PhysicsError, and ValueError for a wrong ``every``."""
+        packings, every = [], whole("every", every, least=1)
+        while not self.finished and not met(self):
+            packings += self.run(every)
+        return packings
+
 
     @property
     def phase(self) -> str | None:
@@ -133,7 +141,7 @@ def simulate(
         if isinstance(start, _grainlab.Packing):
             _grainlab.export([start], "csv", folder)
             start = os.path.join(folder, "packing_1.csv")
-        of = Scene(scene, seed=seed, set={**({} if start is None else {"start.packing": start}), **(set or {})})
-        run, notes = _grainlab.begin(of.source, of.settings, threads)
-    warn(notes)
+        of = Scene(Scene(scene, set=None if start is None else {"start.packing": start}), seed=seed, set=set)
+        run, notes = _grainlab.begin(of.source, of.settings, whole("threads", threads))
+    warn([note.replace(os.path.join(folder, "packing_1.csv"), "the packing given as start") for note in notes])
     return Simulation(run, on_phase)
