@@ -88,6 +88,14 @@ def test_a_run_goes_on_by_whole_numbers_of_steps_or_until_a_condition():
     assert run.run_until(lambda run: run.phase != "gas") == [] and run.phase == "rest"
 
 
+def test_on_phase_is_a_function_and_its_stop_iteration_is_an_error():
+    stopping = grainlab.simulate("demo", seed=3, set={"grains.count": 40}, on_phase=lambda run, name: next(iter([])))
+    with pytest.raises(RuntimeError, match="on_phase raised StopIteration"):
+        list(stopping)
+    with pytest.raises(TypeError, match="on_phase is 5"):
+        grainlab.simulate("demo", on_phase=5)
+
+
 def test_threads_of_zero_are_refused():
     with pytest.raises(grainlab.SceneError, match="at least one"):
         grainlab.simulate("demo", threads=0)

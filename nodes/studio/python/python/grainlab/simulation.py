@@ -46,8 +46,12 @@ class Simulation(Iterator["Packing"]):
     def _advance(self, limit: float) -> Packing | None:
         before = self.phase
         found = self._run.advance(limit)
-        if self._on_phase and before is not None and self.phase != before:
-            self._on_phase(self, before)
+        if self._on_phase is not None and before is not None and self.phase != before:
+            try:
+                self._on_phase(self, before)
+            except StopIteration as error:
+                # Python would take it as the end of the run (PEP 479).
+                raise RuntimeError("on_phase raised StopIteration") from error
         return found
 
     def step(self) -> Packing | None:
@@ -137,6 +141,8 @@ def simulate(
     >>> for packing in grainlab.simulate("demo", seed=2, set={"grains": {"count": 300}}):
     ...     print(packing.phase, packing.stress[2, 2])
     """
+    if on_phase is not None and not callable(on_phase):
+        raise TypeError(f"on_phase is {on_phase!r}; it must be a function of (run, name)")
     with tempfile.TemporaryDirectory() as folder:
         if isinstance(start, _grainlab.Packing):
             _grainlab.export([start], "csv", folder)
