@@ -4,6 +4,8 @@ import grainlab
 import numpy as np
 import pytest
 
+FROM_PACKING = "name='go'\nfriction=0.3\n[start]\npacking='-'\n[[phase]]\nkind='relax'\nname='rest'\nuntil={hold=0.0,pressure_below=1e9,timeout=0.001}\n"
+
 
 def test_a_run_is_a_function_of_scene_and_seed(run):
     again = list(grainlab.simulate("demo", seed=3, set={"grains.count": 150}, threads=2))
@@ -40,8 +42,7 @@ def test_a_run_is_advanced_and_looked_at_and_starts_from_a_packing(run):
     (last,) = other.run()
     assert last.positions.tobytes() == run[-1].positions.tobytes() and ended[0] == ("gas", "rest") and ended[-1] == ("settle", None)
     assert other.finished and np.allclose(other.stress, last.stress, rtol=1e-6, atol=1) and np.array_equal(other.strain, last.strain)
-    path = "name='go'\nfriction=0.3\n[start]\npacking='-'\n[[phase]]\nkind='relax'\nname='rest'\nuntil={hold=0.0,pressure_below=1e9,timeout=0.001}\n"
-    first = next(grainlab.simulate(path, start=last))
+    first = next(grainlab.simulate(FROM_PACKING, start=last))
     assert first.contact_tangential_forces.tobytes() == last.contact_tangential_forces.tobytes() and first.phase == 0
 
 
@@ -94,6 +95,12 @@ def test_on_phase_is_a_function_and_its_stop_iteration_is_an_error():
         list(stopping)
     with pytest.raises(TypeError, match="on_phase is 5"):
         grainlab.simulate("demo", on_phase=5)
+
+
+def test_a_warning_on_a_start_names_the_packing_and_no_file(packing):
+    made = grainlab.Packing(packing.cell, packing.positions, packing.radii)
+    with pytest.warns(UserWarning, match="^the packing given as start: contacts were found"):
+        grainlab.simulate(FROM_PACKING, start=made)
 
 
 def test_threads_of_zero_are_refused():

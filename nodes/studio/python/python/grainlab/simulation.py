@@ -67,10 +67,6 @@ class Simulation(Iterator["Packing"]):
             packings += [found] if found is not None else []
         return packings
 
-    @property
-    def name(self) -> str:
-        """Name of the scene."""
-        return self._run.names()[0]
     def run_until(self, met: Callable[[Simulation], Any], *, every: int = 1) -> list[Packing]:
         """Goes on until ``met(run)`` is true, which is asked every so many solver steps or a few more, or to the end: the packings
         published on the way. Raises PhysicsError, and ValueError for a wrong ``every``."""
@@ -79,6 +75,10 @@ class Simulation(Iterator["Packing"]):
             packings += self.run(every)
         return packings
 
+    @property
+    def name(self) -> str:
+        """Name of the scene."""
+        return self._run.names()[0]
 
     @property
     def phase(self) -> str | None:
@@ -133,10 +133,10 @@ def simulate(
 ) -> Simulation:
     """A run of a scene in this process: the name of a built-in one, a path, the text of a TOML file, or a :class:`Scene`.
 
-    ``set`` has keys such as ``"grains.count": 500``, in SI units, with numbers, texts, lists or mappings as values. ``start`` is a packing, or
-    a file of one, that the path starts from instead of a gas: for scenes without ``[grains]``. ``on_phase(run, name)`` is called when a
-    phase has ended. The packings are those of ``grainlab launch``, bit for bit. Raises SceneError for faults of the scene, and
-    PhysicsError for a run that cannot go on.
+    ``set`` has keys such as ``"grains.count": 500``, in SI units, with numbers, texts, lists or mappings as values. ``start`` is a packing,
+    or a file of one, that the path starts from instead of a gas: for scenes without ``[grains]``. ``on_phase(run, name)`` is called when a
+    phase has ended. The packings are those of ``grainlab launch``, bit for bit. Raises SceneError
+    for faults of the scene, and PhysicsError for a run that cannot go on.
 
     >>> for packing in grainlab.simulate("demo", seed=2, set={"grains": {"count": 300}}):
     ...     print(packing.phase, packing.stress[2, 2])
