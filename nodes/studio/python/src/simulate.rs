@@ -22,8 +22,7 @@ impl Run {
 }
 
 fn packing(run: &Simulation, state: State) -> PyPacking {
-    let source = format!("simulation of {}, step {}", run.name(), run.steps());
-    PyPacking::new(state.packing, source, state.notes, state.run_state)
+    PyPacking::new(state.packing, format!("simulation of {}", run.name()), state.notes, state.run_state)
 }
 
 /// Starts a run of a scene with settings such as `grains.count=500`; it and the notes on its start.

@@ -26,6 +26,15 @@ def test_draws_have_the_moments_of_the_estimate_and_a_seed_repeats_them():
     assert np.array_equal(again["posterior"]["z"], draws["posterior"]["z"])
 
 
+def test_draws_that_scatter_otherwise_than_the_estimate_are_a_warning():
+    found = grainlab.invert(**STATE, error=0.1, draws=500)
+    scatter, stated = found["draws"]["posterior"]["eps"].std(), found["eps_sigma"]
+    assert not 1 / 1.15 < scatter / stated < 1.15
+    (said,) = [text for text in found["warnings"] if text.startswith("the draws of eps ")]
+    assert f"scatter by {scatter:.4f}, and the estimate states {stated:.4f}: the posterior is not normal" in said
+    assert not any("draws" in text for text in grainlab.invert(**STATE, error=0.1)["warnings"])
+
+
 def test_a_narrow_prior_is_the_estimate_and_wrong_ones_raise():
     prior = '[z]\ndistribution = "normal"\nmean = 4.8\nstddev = 1e-6\n'
     assert abs(grainlab.invert(**STATE, prior=prior)["z"] - 4.8) < 1e-5

@@ -44,6 +44,11 @@ def test_series_with_different_indexes_are_refused():
     assert grainlab.invert(**{**STATE, "g12": one, "g13": one})["z"].shape == (2,)
 
 
+def test_a_packing_names_its_sample_once_with_a_whole_step(packing):
+    found = grainlab.invert(table=grainlab.analyze([packing]))
+    assert list(found["sample"]) == [f"simulation of demo step {packing.step}"]
+
+
 def test_errors_of_single_moduli_count():
     exact = grainlab.invert(**STATE)["z_sigma"]
     assert grainlab.invert(**STATE, g12_sigma=2e7, g13_sigma=2e7, theta_sigma=3e7)["z_sigma"] > 1.5 * exact
@@ -84,13 +89,13 @@ def test_a_table_is_columns_rows_or_a_file(tmp_path):
         ({"table": [1, 2]}, "row"),
         ({"table": 3}, "int"),
         ({"table": TABLE, "draws": 10}, "one state"),
+        ({**STATE, "draws": 10, "seed": -1}, "seed is -1"),
+        ({**STATE, "draws": 2.5}, "draws is 2.5"),
         ({**STATE, "error": 3}, "0 to 1"),
         ({**STATE, "calibration": "mine"}, "no calibration"),
     ],
 )
 def test_wrong_tables_are_refused_with_the_reason(given, words):
-        ({**STATE, "draws": 10, "seed": -1}, "seed is -1"),
-        ({**STATE, "draws": 2.5}, "draws is 2.5"),
     with pytest.raises((ValueError, grainlab.PhysicsError), match=words):
         grainlab.invert(**given)
 

@@ -176,7 +176,8 @@ impl Columns {
         let label = |name| self.label(cells, name);
         // One recording may contain many packings, as may a member of a campaign.
         let of_source = |source: &str| match label("step") {
-            Some(step) => format!("{source} step {step}"),
+            // A table of numbers may have it as 200.0.
+            Some(step) => format!("{source} step {}", step.strip_suffix(".0").unwrap_or(step)),
             None => source.to_owned(),
         };
         label("sample").map(str::to_owned).or_else(|| label("source").or(label("member")).map(of_source))

@@ -47,16 +47,16 @@ pub(super) fn write(state: &State, cases: &[Case], number: Number, path: &Path) 
         case.model.name(),
         100.0 * draws.acceptance
     );
-    draws
-        .quantities
-        .iter()
-        .filter_map(|q| unlike(&draws, &estimate, *q))
-        .for_each(|line| say!("grainlab: {line}"));
+    unlike(&draws, &estimate).for_each(|line| say!("grainlab: {line}"));
     Ok(())
 }
 
-/// A note where the draws of a quantity scatter otherwise than the estimate states.
-fn unlike(draws: &Draws, estimate: &Estimate, quantity: InferredQuantity) -> Option<String> {
+/// Notes where the draws of a quantity scatter otherwise than the estimate states.
+pub(super) fn unlike(draws: &Draws, estimate: &Estimate) -> impl Iterator<Item = String> {
+    draws.quantities.iter().filter_map(|quantity| unlike_of(draws, estimate, *quantity))
+}
+
+fn unlike_of(draws: &Draws, estimate: &Estimate, quantity: InferredQuantity) -> Option<String> {
     let stated = estimate.stddev(quantity)?;
     let values: Vec<f64> = draws.draws.iter().filter_map(|draw| draw.structure.get(quantity)).collect();
     let mean = values.iter().sum::<f64>() / values.len() as f64;

@@ -62,7 +62,7 @@ pub fn invert(table: Vec<u8>, by: &By<'_>) -> Result<Inverted, Failure> {
     }
     in_range("error", by.error, "0 to 1", |v| (0.0..=1.0).contains(&v))?;
     let mut rows = Rows::of_text(table, State { relative_error: by.error, ..State::default() })?;
-    let (mut found, mut draws) = (Vec::new(), None);
+    let (mut found, mut draws, mut notes) = (Vec::new(), None, Vec::new());
     let answer = |number, row| match row {
         Ok(Row { state, .. }) => Answer::of(state, Some(number), &cases),
         Err(bad) => Answer::of_bad_row(bad, number),
@@ -73,9 +73,12 @@ pub fn invert(table: Vec<u8>, by: &By<'_>) -> Result<Inverted, Failure> {
             let failed = (!matches!(answer.outcomes[..], [Ok(_)])).then_some(exit);
             if let (Some((count, seed)), None, None, Ok(state)) = (by.draws, &draws, failed, &answer.state) {
                 let of_row = drawn::drawn(state, case, count, seed);
-                draws = Some(of_row.map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?.0);
+                let (of_row, estimate) = of_row.map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
+                notes.extend(drawn::unlike(&of_row, &estimate));
+                draws = Some(of_row);
             }
-            let inference = answer.inferences(&cases).into_iter().next();
+            let mut inference = answer.inferences(&cases).into_iter().next();
+            inference.iter_mut().for_each(|inference| inference.result.warnings.append(&mut notes));
             found.extend(inference.map(|inference| InvertedRow { sample, inference, failed }));
         }
     }

@@ -47,6 +47,7 @@ def invert(
 
     Numbers give a dict: ``k``, ``z``, ``eps`` and others with ``_sigma`` and the 95 % ``_interval``, None if undetermined; ``status`` (ok,
     extrapolated or contradictory) and ``warnings``. Raises PhysicsError for moduli without a solution, and ValueError for wrong input.
+    ``z_interval`` and its like: value +- 1.96 sigma; a skewed posterior: see ``draws``.
 
     Arrays give arrays (n,) by the same keys, with ``z_low`` and ``z_high`` for the interval. A row without an answer has NaN, the status
     unknown, and its reason in ``reason``; it raises nothing. So does ``table``: a mapping of arrays, a list of rows, a data frame, which
@@ -75,8 +76,8 @@ def invert(
     if unknown:
         raise TypeError(f"invert() has no keyword {unknown[0]!r}; of a state there are: {', '.join(COLUMNS)}")
     given = {name: value for name, value in given.items() if value is not None}
-    of_keywords = {COLUMNS[name]: tables.column(name, value) for name, value in given.items()}
     tables.aligned({**({"table": table} if hasattr(table, "columns") else table if isinstance(table, Mapping) else {}), **given})
+    of_keywords = {COLUMNS[name]: tables.column(name, value) for name, value in given.items()}
     if isinstance(table, (str, PathLike)):
         if of_keywords:
             raise ValueError(f"{', '.join(given)}: the columns of a file have the states")
@@ -92,7 +93,7 @@ def invert(
         raise ValueError("draws are of one state")
     drawn_by = None if draws is None else (whole("draws", draws, least=1), whole("seed", seed))
     by = (model, os.fspath(calibration), prior, error)
-    answers, drawn = _grainlab.inverted(text, by, None if draws is None else (draws, seed))
+    answers, drawn = _grainlab.inverted(text, by, drawn_by)
     failed, warnings = answers.pop("failed"), answers.pop("warnings")
     if is_table:
         return tables.like(table, answers)
