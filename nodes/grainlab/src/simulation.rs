@@ -148,7 +148,11 @@ impl Simulation {
             if outcome.packing_due {
                 return self.state().map(Some);
             }
-            if outcome.ended.is_some() || began.elapsed() >= limit {
+            if outcome.ended.is_some() {
+                self.run.end_phase_here();
+                break;
+            }
+            if began.elapsed() >= limit {
                 break;
             }
         }

@@ -372,6 +372,11 @@ impl Simulation {
         }
     }
 
+    /// Counts the present packing as the end of the phase that has just ended, as if it had been due.
+    pub fn end_phase_here(&mut self) {
+        self.progress.within_phase = false;
+    }
+
     /// Progress of the phase.
     fn travelled(&self) -> Travelled {
         self.travelled_since(self.progress.path.began)

@@ -89,6 +89,15 @@ def test_a_run_goes_on_by_whole_numbers_of_steps_or_until_a_condition():
     assert run.run_until(lambda run: run.phase != "gas") == [] and run.phase == "rest"
 
 
+def test_on_phase_sees_the_packing_at_the_end_of_its_phase():
+    seen = []
+    run = grainlab.simulate("demo", seed=3, set={"grains.count": 40}, on_phase=lambda run, name: seen.append(run.packing))
+    run.run_until(lambda run: len(seen) == 2)
+    assert [(p.phase, p.end_of_phase) for p in (*seen, run.packing)] == [(1, True), (2, True), (2, True)]
+    run.step()
+    assert (run.packing.phase, run.packing.end_of_phase) == (3, False)
+
+
 def test_on_phase_is_a_function_and_its_stop_iteration_is_an_error():
     stopping = grainlab.simulate("demo", seed=3, set={"grains.count": 40}, on_phase=lambda run, name: next(iter([])))
     with pytest.raises(RuntimeError, match="on_phase raised StopIteration"):

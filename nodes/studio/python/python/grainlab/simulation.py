@@ -135,7 +135,7 @@ def simulate(
 
     ``set`` has keys such as ``"grains.count": 500``, in SI units, with numbers, texts, lists or mappings as values. ``start`` is a packing,
     or a file of one, that the path starts from instead of a gas: for scenes without ``[grains]``. ``on_phase(run, name)`` is called when a
-    phase has ended. The packings are those of ``grainlab launch``, bit for bit. Raises SceneError
+    phase has ended, with its last packing as ``run.packing``. The packings are those of ``grainlab launch``, bit for bit. Raises SceneError
     for faults of the scene, and PhysicsError for a run that cannot go on.
 
     >>> for packing in grainlab.simulate("demo", seed=2, set={"grains": {"count": 300}}):
