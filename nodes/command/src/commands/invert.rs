@@ -456,6 +456,11 @@ impl Args {
 
     /// Infers the samples of a file of speeds, whose contacts are not known.
     fn infer_series(&self, name: &str, lines: &[SpeedLine], contact: Contact) -> Result<Exit, Failure> {
+        if contact == Contact::Hertz && !self.model.is_empty() {
+            return Err(Failure::usage(
+                "contact hertz takes one pressure: drop the column pressure_pa and give pressure, in Pa",
+            ));
+        }
         self.check_series()?;
         let has_pressure = lines.iter().all(|l| l.pressure_pa.is_some());
         let has_density = lines.iter().all(|l| l.density.or(l.grain_density).is_some());

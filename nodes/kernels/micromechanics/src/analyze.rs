@@ -170,8 +170,11 @@ impl Settings {
         }
     }
 
-    /// The axis as a unit vector, if every setting is in range.
-    fn check(&self) -> Result<Vec3, MicroError> {
+    /// The axis as a unit vector.
+    ///
+    /// # Errors
+    /// A setting that is not in its range.
+    pub fn check(&self) -> Result<Vec3, MicroError> {
         self.tolerance_for(0)?;
         let length = self.axis.norm();
         if !(length > 0.0 && length.is_finite()) {

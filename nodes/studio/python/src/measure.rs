@@ -19,7 +19,7 @@ use std::path::PathBuf;
 
 fn settings(axis: Option<&Bound<'_, PyAny>>, springs: &str, tolerance: Option<f64>) -> PyResult<Settings> {
     let axis = axis.map(|axis| numbers("axis", axis, &[Some(3)])).transpose()?;
-    Ok(Settings {
+    let settings = Settings {
         axis: axis.map_or(Vec3::z(), |axis| Vec3::from_column_slice(&axis)),
         springs: match springs {
             "carried" => Springs::Carried,
@@ -32,7 +32,9 @@ fn settings(axis: Option<&Bound<'_, PyAny>>, springs: &str, tolerance: Option<f6
         },
         tolerance,
         ..Settings::default()
-    })
+    };
+    settings.check().map_err(|e| PyValueError::new_err(e.to_string()))?;
+    Ok(settings)
 }
 
 /// Everything that `grainlab analyze` reports of a packing, by key.

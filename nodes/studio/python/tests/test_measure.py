@@ -57,10 +57,15 @@ def test_stated_errors_of_the_state_widen_the_answer(golden):
 def test_wrong_input_raises(golden):
     with pytest.raises(ValueError, match="carried, both, normal"):
         grainlab.stiffness(golden, springs="magic")
-    with pytest.raises(grainlab.PhysicsError):
-        grainlab.analyze(golden, axis=(0, 0, 0))
-    with pytest.raises(grainlab.PhysicsError, match="tolerance"):
-        grainlab.stiffness(golden, tolerance=float("nan"))
+    for axis in ((0, 0, 0), "x", (0, 1), (0, 0, float("nan"))):
+        with pytest.raises(ValueError, match="axis"):
+            grainlab.analyze(golden, axis=axis)
+    for call in (lambda **given: grainlab.analyze([golden], **given), lambda **given: grainlab.stiffness(golden, **given)):
+        for tolerance in (1, float("nan")):
+            with pytest.raises(ValueError, match="tolerance"):
+                call(tolerance=tolerance)
+        with pytest.raises(TypeError, match="tolerance"):
+            call(tolerance="fine")
     with pytest.raises(ValueError, match="no model"):
         grainlab.invert(pressure=1e5, g12=1e8, g13=1e8, theta=1e8, model="none")
     with pytest.raises(ValueError, match="pressure"):

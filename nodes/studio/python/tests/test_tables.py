@@ -113,5 +113,7 @@ def test_speeds_over_pressure_give_samples_and_a_plan_their_errors():
     assert sample["status"] == "ok" and len(sample["lines"]) == 4
     with pytest.raises(ValueError, match="density"):
         grainlab.invert(speeds=speeds, shear_modulus=44e9, poisson_ratio=0.08)
+    with pytest.raises(ValueError, match="contact hertz takes one pressure: drop the column pressure_pa and give pressure, in Pa"):
+        grainlab.invert(speeds=speeds, contact="hertz", density=1640, shear_modulus=44e9, poisson_ratio=0.08)
     plan = {"error": 0.01, "pressures": [1e5, 4e5], "speeds": [{"mode": "p", "angles": [0, 90]}, {"mode": "s"}]}
     assert grainlab.plan(plan, shear_modulus=29e9, poisson_ratio=0.2)["quantities"][0]["sigma"] > 0
