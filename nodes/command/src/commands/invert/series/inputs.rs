@@ -117,7 +117,8 @@ impl Inputs {
                 ));
             }
             let (mode, angle) = line.wave;
-            rows.push(SeriesRow { pressure, density, mode, angle, speed: line.speed, stddev });
+            let common_stddev = 0.0;
+            rows.push(SeriesRow { pressure, density, mode, angle, speed: line.speed, stddev, common_stddev });
         }
         if without_error > 0 {
             let error = 100.0 * self.error.unwrap_or(DEFAULT_ERROR);
