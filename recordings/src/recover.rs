@@ -89,7 +89,7 @@ fn file(path: PathBuf) -> Result<RecoveredFile, Failure> {
     let recording = Recording::open(&path)?;
     let opened = recording.warnings();
     let needs_end = |w: &Warning| matches!(w.kind, WarningKind::Truncated | WarningKind::NoIndex);
-    if !opened.iter().any(needs_end) {
+    if !recording.is_without_index() && !opened.iter().any(needs_end) {
         return match recording.verify_files().into_iter().next() {
             None => {
                 let messages = recording.parts().iter().map(|p| p.messages).sum();

@@ -42,7 +42,7 @@ pub struct Warning {
 pub enum WarningKind {
     /// The recording is truncated here: the recorder was killed or is still running.
     Truncated,
-    /// All messages are readable, but the index is damaged or missing and was rebuilt.
+    /// All messages are readable, but the index is wrong and was rebuilt.
     NoIndex,
     /// A chunk is damaged and was left out.
     DamagedChunk,
@@ -65,7 +65,9 @@ impl fmt::Display for Warning {
             WarningKind::Truncated => {
                 write!(f, "{path} is truncated: {detail}; the part before byte {at} is used")
             }
-            WarningKind::NoIndex => write!(f, "{path}: the index is damaged ({detail}); it was rebuilt"),
+            WarningKind::NoIndex => {
+                write!(f, "{path}: the index is wrong ({detail}): it was rebuilt from the records")
+            },
             WarningKind::DamagedChunk => write!(f, "{path}: the chunk at byte {at} is left out: {detail}"),
             WarningKind::DamagedRecord => write!(f, "{path}: the record at byte {at} is left out: {detail}"),
             WarningKind::Orphans => write!(f, "{path}: in the chunk at byte {at}, {detail}"),

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use grainlab_console::Failure;
 use mcap::MAGIC;
@@ -15,7 +15,7 @@ use crate::input;
 
 use super::error::{Warning, WarningKind, not_mcap};
 use super::held::Content;
-use super::index::{Block, Entry, Index, loose_blocks};
+use super::index::{Block, Entry, Index};
 use super::records::Records;
 use super::stored_file::{FileCount, StoredFile};
 
@@ -23,8 +23,6 @@ pub(crate) struct OpenFile {
     pub(super) path: PathBuf,
     bytes: Arc<Mmap>,
     pub(super) index: Index,
-    /// Blocks of a file without chunks, once they were needed.
-    loose: OnceLock<Vec<Block>>,
 }
 
 impl fmt::Debug for OpenFile {
@@ -46,7 +44,7 @@ impl OpenFile {
             return Err(not_mcap(path, size));
         }
         let index = Index::build(path, &bytes, warnings);
-        Ok(Self { path: path.to_owned(), bytes, index, loose: OnceLock::new() })
+        Ok(Self { path: path.to_owned(), bytes, index })
     }
 
     pub(crate) fn bytes(&self) -> &[u8] {
@@ -58,24 +56,15 @@ impl OpenFile {
         Content::Part { file: Arc::clone(&self.bytes), range }
     }
 
-    /// The blocks of messages, in order of start, then of offset. Those of a file without chunks are looked for in the
-    /// whole file, once.
+    /// The blocks of messages, in order of start, then of offset.
     pub(super) fn blocks(&self) -> &[Block] {
-        match &self.index.loose {
-            Some(loose) => self.loose.get_or_init(|| loose_blocks(self.bytes(), loose.range.clone())),
-            None => &self.index.blocks,
-        }
+        &self.index.blocks
     }
 
     /// First and last log time; `None` without messages.
     pub(super) fn bounds(&self) -> Option<(u64, u64)> {
-        match &self.index.loose {
-            Some(loose) => Some(loose.bounds),
-            None => {
-                let blocks = self.index.blocks.iter().map(|b| (b.start, b.end));
-                blocks.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-            }
-        }
+        let blocks = self.blocks().iter().map(|b| (b.start, b.end));
+        blocks.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
     pub(crate) fn warning(&self, offset: usize, kind: WarningKind, detail: String) -> Warning {

@@ -23,6 +23,8 @@ pub struct Info {
     pub bytes: u64,
     /// True if every file is complete.
     pub complete: bool,
+    /// True if a file has no index, which the format allows.
+    pub without_index: bool,
     /// Profile in the header; `ros2`.
     pub profile: String,
     /// Library that wrote it.
@@ -111,6 +113,7 @@ impl Recording {
             files: files.iter().map(|f| f.path.display().to_string()).collect(),
             bytes: self.size(),
             complete: files.iter().all(|f| f.index.complete),
+            without_index: self.is_without_index(),
             profile: files.first().map(|f| f.index.profile.clone()).unwrap_or_default(),
             library: files.first().map(|f| f.index.library.clone()).unwrap_or_default(),
             compression: compressions.into_iter().map(str::to_owned).collect(),
@@ -144,6 +147,9 @@ impl fmt::Display for Info {
         writeln!(f, "end          {}", time(self.end_ns))?;
         writeln!(f, "duration     {:.3} s", self.duration_s)?;
         writeln!(f, "messages     {} in {} chunks", self.messages, self.chunks)?;
+        if self.without_index {
+            writeln!(f, "index        none, which MCAP allows: all of it was read")?;
+        }
         writeln!(f, "compression  {}", list(&self.compression))?;
         writeln!(f, "profile      {} ({})", self.profile, self.library)?;
         writeln!(f, "attachments  {}", list(&self.attachments))?;

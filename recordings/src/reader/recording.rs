@@ -60,6 +60,11 @@ impl Recording {
         self.files.iter().map(|f| f.bytes().len() as u64).sum()
     }
 
+    /// True if a file has no index, which the format allows: all of it was read.
+    pub fn is_without_index(&self) -> bool {
+        self.files.iter().any(|f| f.index.absent)
+    }
+
     /// The path passed to [`Recording::open`].
     pub fn path(&self) -> &Path {
         &self.path

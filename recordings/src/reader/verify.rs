@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use mcap::records::{Record, op};
+use mcap::records::{MessageHeader, MessageIndex, MessageIndexEntry, Record, op};
 use serde::Serialize;
 
 use super::definition::StoredDefinition;
@@ -117,7 +117,8 @@ impl Contents {
     fn file(&mut self, file: &OpenFile, warn: &mut dyn FnMut(Warning)) {
         let mut counts = BTreeMap::<u16, u64>::new();
         let (mut chunks, mut ended) = (BTreeSet::new(), false);
-        let end = walk(file.bytes(), &mut |item| {
+        let mut listed = Listed::default();
+        walk(file.bytes(), &mut |item| {
             match item {
                 Walked::Record(record, chunk) => {
                     self.records += 1;
@@ -125,13 +126,22 @@ impl Contents {
                         (op::MESSAGE, _) => {
                             let at = chunk.unwrap_or(record.offset);
                             self.message(file, &record, at, &mut counts, warn);
+                            listed.message(&record);
                         }
-                        (op::CHUNK, None) => _ = chunks.insert(record.offset),
+                        (op::CHUNK, None) => {
+                            chunks.insert(record.offset);
+                            listed = Listed::default();
+                        }
                         (op::DATA_END, None) => {
                             ended = true;
                             data_checksum(file, &record).into_iter().for_each(&mut *warn);
                         }
                         (opcode, None) => match record.parse() {
+                            Ok(Record::MessageIndex(index)) => {
+                                if let Some(detail) = listed.wrong(&index) {
+                                    warn(file.warning(record.offset, WarningKind::Inconsistent, detail));
+                                }
+                            }
                             Ok(_) => self.attachments += u64::from(opcode == op::ATTACHMENT),
                             Err(detail) => {
                                 warn(file.warning(record.offset, WarningKind::DamagedRecord, detail))
@@ -140,16 +150,16 @@ impl Contents {
                         _ => {}
                     }
                 }
-                Walked::ChunkEnd(_) => self.chunks += 1,
+                Walked::ChunkEnd(chunk) => {
+                    self.chunks += 1;
+                    if let Some(detail) = listed.outside(&chunk) {
+                        warn(file.warning(chunk.offset, WarningKind::Inconsistent, detail));
+                    }
+                }
                 Walked::Unreadable(at, kind, detail) => warn(file.warning(at, kind, detail)),
             }
             true
         });
-        // Opening a file without its proper end has already given a warning.
-        if !ended && end < file.bytes().len() && file.index.complete {
-            let detail = "no complete record starts here; later ones can be reached by the index only";
-            warn(file.warning(end, WarningKind::Inconsistent, detail.to_owned()));
-        }
         self.last = self.last.max(self.last_of_file.unwrap_or(0));
         if ended || !file.index.complete {
             against_index(file, counts, &chunks, warn);
@@ -177,6 +187,37 @@ impl Contents {
             warn(file.warning(at, WarningKind::Inconsistent, detail));
         }
         self.last_of_file = Some(self.last_of_file.map_or(header.log_time, |t| t.max(header.log_time)));
+    }
+}
+
+/// The messages of the last chunk: channel, log time, and place in its content.
+#[derive(Default)]
+struct Listed(BTreeSet<(u16, u64, u64)>);
+
+impl Listed {
+    fn message(&mut self, record: &RawRecord<'_>) {
+        let key = |(header, _): (MessageHeader, _)| (header.channel_id, header.log_time, record.offset as u64);
+        self.0.extend(record.message().map(key));
+    }
+
+    /// The difference between the messages and the times in the header of their chunk.
+    fn outside(&self, chunk: &RawRecord<'_>) -> Option<String> {
+        let Ok(Record::Chunk { header, .. }) = chunk.parse() else { return None };
+        let times = || self.0.iter().map(|(_, time, _)| *time);
+        let (first, last) = (times().min()?, times().max()?);
+        let stated = (header.message_start_time, header.message_end_time);
+        let text = || format!("its chunk has messages from {first} to {last} ns, its header states {stated:?}");
+        (stated != (first, last)).then(text)
+    }
+
+    /// The difference between the messages of a channel and the list of them behind the chunk.
+    fn wrong(&self, index: &MessageIndex) -> Option<String> {
+        let of = |entry: &MessageIndexEntry| (index.channel_id, entry.log_time, entry.offset);
+        let listed: BTreeSet<_> = index.records.iter().map(of).collect();
+        let there = self.0.iter().filter(|(channel, ..)| *channel == index.channel_id).copied().collect();
+        let channel = index.channel_id;
+        let text = || format!("the list of messages on channel {channel} is not that of the chunk before it");
+        (!self.0.is_empty() && listed != there).then(text)
     }
 }
 

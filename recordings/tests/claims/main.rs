@@ -5,6 +5,7 @@ mod copies;
 mod damage;
 mod definitions;
 mod imports;
+mod index;
 mod lammps_forces;
 mod malformed;
 mod playback;
