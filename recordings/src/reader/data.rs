@@ -31,13 +31,18 @@ impl Data {
     /// The records of `bytes`, which end with the data section.
     pub(super) fn of(bytes: &[u8]) -> Self {
         let (mut data, mut ended) = (Self::default(), false);
-        let mut chunk = (0, 0);
+        const ANY: (u64, u64) = (0, u64::MAX);
+        let mut chunk = ANY;
         for record in Records::new(bytes, MAGIC.len()) {
             let record = match record {
                 Ok(record) => record,
                 Err(at) => return Self { broken: Some(at), ..data },
             };
             ended = record.opcode == op::DATA_END;
+            if record.opcode != op::MESSAGE_INDEX {
+                // A damaged chunk states no times.
+                chunk = ANY;
+            }
             match record.opcode {
                 op::CHUNK => {
                     if let Ok(Record::Chunk { header, .. }) = record.parse() {
@@ -78,7 +83,8 @@ impl Data {
         let is_counted = self.listed || self.chunks.is_empty();
         let counts = [(is_counted, &self.counts), (!of_topics.is_empty(), of_topics)];
         let wrong = counts.into_iter().find(|(given, counts)| *given && differs(counts));
-        let text = |counts| format!("{stated} messages by its statistics, {} by the records or topics", sum(counts));
+        let text =
+            |counts| format!("{stated} messages by its statistics, {} by the records or topics", sum(counts));
         wrong.map(|(_, counts)| text(counts)).or_else(|| self.wrong.clone())
     }
 
@@ -90,7 +96,10 @@ impl Data {
         self.listed = true;
         *self.counts.entry(u16::from_le_bytes(*channel)).or_default() += entries.len() as u64;
         let time = |entry: &[u8; 16]| u64::from_le_bytes(std::array::from_fn(|n| entry[n]));
-        if [entries.first(), entries.last()].into_iter().flatten().any(|e| !(chunk.0..=chunk.1).contains(&time(e)))
+        if [entries.first(), entries.last()]
+            .into_iter()
+            .flatten()
+            .any(|e| !(chunk.0..=chunk.1).contains(&time(e)))
         {
             let detail = "a message is not within the times of its chunk";
             self.wrong.get_or_insert_with(|| format!("{detail}, by the list at byte {offset}"));

@@ -171,7 +171,8 @@ impl Index {
         let data = Data::of(&bytes[..start]);
         if let Some(at) = data.broken {
             // The records behind it can only be reached by the index.
-            let detail = "no complete record starts here; later ones can be reached by the index only".to_owned();
+            let detail =
+                "no complete record starts here; later ones can be reached by the index only".to_owned();
             let kind = WarningKind::Inconsistent;
             warnings.insert(Warning { path: path.to_owned(), offset: at as u64, kind, detail });
         } else if chunks.is_empty() && !data.chunks.is_empty() {

@@ -50,12 +50,16 @@ fn read(bytes: &[u8]) -> (usize, Vec<WarningKind>) {
 fn an_index_that_contradicts_the_records_is_rebuilt_and_no_message_is_lost() {
     let whole = file(WriteOptions::new());
     assert_eq!(read(&whole), (35, vec![]));
-    let [chunks, entries, statistics] = [op::CHUNK, op::CHUNK_INDEX, op::STATISTICS].map(|o| bodies(&whole, o));
+    let [chunks, entries, statistics] =
+        [op::CHUNK, op::CHUNK_INDEX, op::STATISTICS].map(|o| bodies(&whole, o));
     assert_eq!((chunks.len(), entries.len(), statistics.len()), (8, 8, 1));
     let zero = |at: usize| (at, vec![0; 16]);
     for (what, patches) in [
         ("an entry is missing", vec![(entries[3] - 9, vec![0x90])]),
-        ("an entry points at another chunk", vec![(entries[1] + 16, (chunks[0] as u64 - 9).to_le_bytes().into())]),
+        (
+            "an entry points at another chunk",
+            vec![(entries[1] + 16, (chunks[0] as u64 - 9).to_le_bytes().into())],
+        ),
         ("an entry has other times", vec![zero(entries[2])]),
         ("a chunk and its entry have other times", vec![zero(chunks[2]), zero(entries[2])]),
         ("no times", chunks.iter().chain(&entries).map(|at| zero(*at)).collect()),
@@ -67,7 +71,10 @@ fn an_index_that_contradicts_the_records_is_rebuilt_and_no_message_is_lost() {
         }
         assert_eq!(read(&bytes), (35, vec![WarningKind::NoIndex]), "{what}");
         let text = of_bytes(&bytes).warnings()[0].to_string();
-        assert!(text.contains("the index is wrong (") && text.ends_with("rebuilt from the records"), "{text}");
+        assert!(
+            text.contains("the index is wrong (") && text.ends_with("rebuilt from the records"),
+            "{text}"
+        );
     }
 }
 
@@ -90,11 +97,17 @@ fn a_check_names_lists_of_messages_and_times_of_chunks_that_are_not_those_of_the
 fn a_file_without_an_index_is_read_to_its_end_and_is_not_damaged() {
     let without = || WriteOptions::new().emit_summary_records(false).emit_summary_offsets(false);
     let no_entries = WriteOptions::new().emit_chunk_indexes(false);
-    for options in [without(), without().use_chunks(false), WriteOptions::new().emit_statistics(false), no_entries] {
+    for options in
+        [without(), without().use_chunks(false), WriteOptions::new().emit_statistics(false), no_entries]
+    {
         let bytes = file(options);
         assert_eq!(read(&bytes), (35, vec![]));
         let recording = of_bytes(&bytes);
-        assert!(recording.is_without_index() && recording.info().complete && recording.check().warnings.is_empty());
+        assert!(
+            recording.is_without_index()
+                && recording.info().complete
+                && recording.check().warnings.is_empty()
+        );
         assert!(recording.info().to_string().contains("which MCAP allows"));
         assert!(of_bytes(&bytes[..bytes.len() - 8]).warnings().len() == 1, "the end magic is not optional");
     }
