@@ -33,6 +33,7 @@ pub use channel::ChannelInfo;
 pub use definition::StoredDefinition;
 pub(crate) use error::no_such_topic;
 pub use error::{Warning, WarningKind};
+pub(crate) use files::BagInformation;
 pub use info::{Info, TopicInfo};
 pub use message::{Message, Payload};
 pub use messages::Messages;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use grainlab_console::Failure;
 use mcap::MAGIC;
-use mcap::records::Record;
+use mcap::records::{Metadata, Record};
 use memmap2::Mmap;
 
 use crate::input;
@@ -35,13 +35,13 @@ impl OpenFile {
     pub(super) fn map(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Self, Failure> {
         let (file, size) = input::open(path).map_err(Failure::at(path))?;
         if size == 0 {
-            return Err(not_mcap(path, 0));
+            return Err(not_mcap(path, &[]));
         }
         // SAFETY: the mapping is read-only; the user must ensure that no process shortens the file meanwhile
         // (see the module).
         let bytes = Arc::new(unsafe { Mmap::map(&file) }.map_err(Failure::at(path))?);
         if !bytes.starts_with(MAGIC) {
-            return Err(not_mcap(path, size));
+            return Err(not_mcap(path, &bytes));
         }
         let index = Index::build(path, &bytes, warnings);
         Ok(Self { path: path.to_owned(), bytes, index })
@@ -89,8 +89,8 @@ impl OpenFile {
     pub(super) fn stored_files(&self, warn: impl Fn(Warning)) -> Vec<StoredFile> {
         let read = |entry: &Entry| match self.record(entry) {
             Ok(Record::Attachment { header, data, .. }) => {
-                let (name, media_type, time) = (header.name, header.media_type, header.log_time);
-                Some(StoredFile { name, media_type, time, bytes: data.into_owned() })
+                let (time, created, bytes) = (header.log_time, header.create_time, data.into_owned());
+                Some(StoredFile { name: header.name, media_type: header.media_type, time, created, bytes })
             }
             outcome => {
                 warn(self.damaged(entry, outcome.err()));
@@ -101,14 +101,18 @@ impl OpenFile {
     }
 
     pub(super) fn metadata(&self, name: &str, warn: impl Fn(Warning)) -> Option<BTreeMap<String, String>> {
-        let read = |entry: &Entry| match self.record(entry) {
-            Ok(Record::Metadata(m)) => Some(m.metadata),
+        self.all_metadata(warn).filter(|m| m.name == name).last().map(|m| m.metadata)
+    }
+
+    /// The metadata records, in order.
+    pub(super) fn all_metadata(&self, warn: impl Fn(Warning)) -> impl Iterator<Item = Metadata> {
+        self.index.metadata.iter().filter_map(move |entry| match self.record(entry) {
+            Ok(Record::Metadata(m)) => Some(m),
             outcome => {
                 warn(self.damaged(entry, outcome.err()));
                 None
             }
-        };
-        self.index.metadata.iter().rev().filter(|e| e.name == name).find_map(read)
+        })
     }
 
     fn record(&self, entry: &Entry) -> Result<Record<'_>, String> {

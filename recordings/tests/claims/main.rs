@@ -4,6 +4,7 @@ mod contact_search;
 mod copies;
 mod damage;
 mod definitions;
+mod foreign;
 mod imports;
 mod index;
 mod lammps_forces;
