@@ -111,7 +111,7 @@ impl Scene {
             let [a, b] = [-normal.dot(&right), normal.dot(&up)].map(|v| v / normal.dot(&toward));
             [a, b, at * scale / normal.dot(&toward) - a * x - b * y]
         });
-        // What is cut away gives no shadow.
+        // Balls that are cut away give no shadow.
         let limit = self.cut;
         let is_left = |b: &Ball| {
             limit.is_none_or(|[p, q, r]| {
