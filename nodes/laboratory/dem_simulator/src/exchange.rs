@@ -81,6 +81,7 @@ impl DemSimulator {
             self.stage = Stage::Finished;
             self.done = Some(now);
             self.next_beat = now + BEAT;
+            self.samples.end(bus, self.lockstep.sequence(), self.lockstep.body())?;
             self.publish_run_state(RunState::FINISHED, "");
             self.samples.tell_time(bus, self.run.engine().time())?;
             log::info!("the loading path is done at step {}", self.run.engine().steps());

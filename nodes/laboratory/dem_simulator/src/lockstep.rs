@@ -143,6 +143,11 @@ impl Lockstep {
         now.saturating_sub(self.asked)
     }
 
+    /// The current request.
+    pub(crate) fn body(&self) -> &[u8] {
+        &self.body
+    }
+
     /// Sequence number of the current request.
     pub(crate) fn sequence(&self) -> u64 {
         self.question.map_or(0, |q| q.sequence)
