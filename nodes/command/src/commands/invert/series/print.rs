@@ -296,11 +296,10 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
         ));
     }
     let mut open: Vec<String> = Vec::new();
-    let of_z = |p: &PressureEstimate| p.z.is_undetermined();
+    let of_z: fn(&PressureEstimate) -> bool = |p| p.z.is_undetermined();
     let of_eps = |p: &PressureEstimate| p.eps.is_some_and(|eps| eps.is_undetermined());
-    let parts: [(&str, &dyn Fn(&PressureEstimate) -> bool); 2] = [("z", &of_z), ("eps", &of_eps)];
-    for (name, is_open) in parts {
-        let undetermined: Vec<_> = e.pressures.iter().filter(|p| is_open(*p)).collect();
+    for (name, is_open) in [("z", of_z), ("eps", of_eps)] {
+        let undetermined: Vec<_> = e.pressures.iter().filter(|p| is_open(p)).collect();
         if let (Some(first), Some(last)) = (undetermined.first(), undetermined.last()) {
             let (first, last) = (kilopascals(first.pressure), kilopascals(last.pressure));
             open.push(if first == last {
