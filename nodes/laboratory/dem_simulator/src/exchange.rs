@@ -164,7 +164,7 @@ impl DemSimulator {
         if self.lockstep.waited(now) > NOTICE_PERIOD && self.notice_due(now) {
             let waited = self.lockstep.waited(now).as_secs();
             log::warn!(
-                "no answer to request {} for {waited} s: is servo_controller running?",
+                "no answer to request {} for {waited} s: is a servo running?",
                 self.lockstep.sequence()
             );
         }
