@@ -2,8 +2,26 @@
 
 use grainlab_core::Vec3;
 use numpy::ndarray::{Array2, ArrayView, Dimension, ShapeBuilder};
-use numpy::{Element, IntoPyArray, PyArray, PyArray2, PyArrayMethods};
+use numpy::{AllowTypeChange, Element, IntoPyArray, PyArray, PyArray2, PyArrayLikeDyn, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+
+/// Numbers of this shape, of any type, in an array, a list or alone; `None` is any length, and NaN what is masked.
+pub(crate) fn numbers(name: &str, value: &Bound<'_, PyAny>, shape: &[Option<usize>]) -> PyResult<Vec<f64>> {
+    let read = || -> PyResult<PyArrayLikeDyn<'_, f64, AllowTypeChange>> {
+        let filled = value.py().import("numpy.ma")?.call_method1("filled", (value, f64::NAN))?;
+        filled.extract()
+    };
+    let array = read().map_err(|error| PyValueError::new_err(format!("{name}: {error}")))?;
+    let array = array.as_array();
+    let found = array.shape();
+    if found.len() != shape.len() || found.iter().zip(shape).any(|(n, of)| of.is_some_and(|of| of != *n)) {
+        let words: Vec<String> = shape.iter().map(|n| n.map_or("n".to_owned(), |n| n.to_string())).collect();
+        let message = format!("{name} has shape {found:?}; it must be ({})", words.join(", "));
+        return Err(PyValueError::new_err(message));
+    }
+    Ok(array.iter().copied().collect())
+}
 
 /// A read-only array over `first` and the elements after it. Strides count elements of `T`.
 ///

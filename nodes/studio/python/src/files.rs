@@ -1,11 +1,11 @@
 //! Packings from files of other programs.
 
+use crate::arrays::numbers;
 use crate::error;
 use crate::packing::PyPacking;
 use grainlab_core::Mat3;
 use grainlab_recordings::import::{self, ImportOptions};
-use numpy::PyReadonlyArray2;
-use pyo3::exceptions::{PyUserWarning, PyValueError};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use std::ffi::CString;
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ use std::path::PathBuf;
 pub(crate) fn load(
     py: Python<'_>,
     path: PathBuf,
-    cell: Option<PyReadonlyArray2<'_, f64>>,
+    cell: Option<Bound<'_, PyAny>>,
     shear_modulus: Option<f64>,
     poisson_ratio: Option<f64>,
     density: Option<f64>,
@@ -29,12 +29,9 @@ pub(crate) fn load(
     radius: Option<f64>,
     topic: Option<String>,
 ) -> PyResult<Vec<PyPacking>> {
-    let cell = cell.map(|c| match c.as_array() {
-        c if c.dim() == (3, 3) => Ok(Mat3::from_fn(|i, j| c[(i, j)])),
-        c => Err(PyValueError::new_err(format!("cell has shape {:?}; it must be (3, 3)", c.dim()))),
-    });
+    let cell = cell.map(|cell| numbers("cell", &cell, &[Some(3), Some(3)])).transpose()?;
     let options = ImportOptions {
-        cell: cell.transpose()?,
+        cell: cell.map(|cell| Mat3::from_row_slice(&cell)),
         shear_modulus,
         poisson_ratio,
         density,

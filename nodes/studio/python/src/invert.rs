@@ -1,6 +1,6 @@
 //! From moduli to microstructure.
 
-use crate::{error, posterior};
+use crate::{error, parallel, posterior};
 use grainlab_command::in_memory::{self, By, InvertedRow};
 use grainlab_core::results::InferredQuantity;
 use grainlab_msgs::Exit;
@@ -30,7 +30,7 @@ pub(crate) fn inverted<'py>(
     let draws = draws.map(|(each, seed)| (posterior::CHAINS * each, seed));
     let (model, calibration, prior, error) = &by;
     let by = By { model, calibration, prior: prior.as_deref(), error: *error, draws };
-    let found = py.detach(|| in_memory::invert(table, &by)).map_err(error::failure)?;
+    let found = parallel::detach(py, || in_memory::invert(table, &by))?.map_err(error::failure)?;
     let drawn = found.draws.map(|draws| posterior::groups(py, &draws)).transpose()?;
     Ok((answers(py, &found.rows)?, drawn))
 }

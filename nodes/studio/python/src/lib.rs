@@ -3,7 +3,7 @@
 //! - `packing`: a packing and its arrays; `arrays`: views of Rust memory as numpy arrays
 //! - `recording`: recordings, their packings and messages; `files`: packings from files of other programs
 //! - `measure`, `invert`, `simulate`: kernels and commands, with the interpreter lock released; `program`: the command line
-//! - `posterior`: draws from a posterior
+//! - `posterior`: draws from a posterior; `parallel`: threads of this process
 //! - `values`: messages and quantities as Python objects; `error`: exceptions
 //!
 //! The Python half is in `python/grainlab`. The classes and functions that users see have their texts here; `tests/test_texts.py`
@@ -17,6 +17,7 @@ mod files;
 mod invert;
 mod measure;
 mod packing;
+mod parallel;
 mod posterior;
 mod program;
 mod recording;

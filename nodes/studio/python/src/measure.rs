@@ -1,8 +1,9 @@
 //! Structure and stiffness of a packing.
 
-use crate::arrays::matrix;
+use crate::arrays::{matrix, numbers};
 use crate::error;
 use crate::packing::PyPacking;
+use crate::parallel;
 use crate::values;
 use grainlab_command::in_memory;
 use grainlab_core::Vec3;
@@ -16,9 +17,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-fn settings(axis: [f64; 3], springs: &str, tolerance: Option<f64>) -> PyResult<Settings> {
+fn settings(axis: Option<&Bound<'_, PyAny>>, springs: &str, tolerance: Option<f64>) -> PyResult<Settings> {
+    let axis = axis.map(|axis| numbers("axis", axis, &[Some(3)])).transpose()?;
     Ok(Settings {
-        axis: Vec3::from(axis),
+        axis: axis.map_or(Vec3::z(), |axis| Vec3::from_column_slice(&axis)),
         springs: match springs {
             "carried" => Springs::Carried,
             "both" => Springs::NormalAndTangential,
@@ -38,11 +40,11 @@ fn settings(axis: [f64; 3], springs: &str, tolerance: Option<f64>) -> PyResult<S
 pub(crate) fn analyze_one<'py>(
     py: Python<'py>,
     packing: &Bound<'py, PyPacking>,
-    axis: [f64; 3],
+    axis: Bound<'_, PyAny>,
     springs: &str,
     tolerance: Option<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let settings = settings(axis, springs, tolerance)?;
+    let settings = settings(Some(&axis), springs, tolerance)?;
     let (packing, position) = (packing.get().packing(), packing.get().position());
     let mut found = py.detach(|| measure(packing, &settings)).map_err(error::physics)?;
     position.inspect(|position| position.judge_strain(&mut found.report));
@@ -54,12 +56,12 @@ pub(crate) fn analyze_one<'py>(
 pub(crate) fn analyze_all(
     py: Python<'_>,
     packings: Vec<Py<PyPacking>>,
-    axis: [f64; 3],
+    axis: Bound<'_, PyAny>,
     springs: &str,
     tolerance: Option<f64>,
 ) -> PyResult<String> {
-    let settings = settings(axis, springs, tolerance)?;
-    Ok(py.detach(|| values::csv(&in_memory::analyze(&settings, &imported(&packings)))))
+    let settings = settings(Some(&axis), springs, tolerance)?;
+    parallel::detach(py, || values::csv(&in_memory::analyze(&settings, &imported(&packings))))
 }
 
 /// The text of `grainlab probe --format csv`, a row for each packing, with its status and reason; and the JSON of the first, if it has any.
@@ -69,7 +71,8 @@ pub(crate) fn probe_all(
     packings: Vec<Py<PyPacking>>,
     flags: Vec<(String, String)>,
 ) -> PyResult<(String, Option<String>)> {
-    let found = py.detach(|| in_memory::probe(&flags, &imported(&packings))).map_err(error::failure)?;
+    let found =
+        parallel::detach(py, || in_memory::probe(&flags, &imported(&packings)))?.map_err(error::failure)?;
     let first = found.first().and_then(|result| result.as_ref().ok());
     Ok((values::csv(&found), first.and_then(|(found, _)| serde_json::to_string(found).ok())))
 }
@@ -102,7 +105,7 @@ pub(crate) fn stiffness<'py>(
     springs: &str,
     tolerance: Option<f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let settings = settings([0.0, 0.0, 1.0], springs, tolerance)?;
+    let settings = settings(None, springs, tolerance)?;
     let packing = packing.get().packing();
     let solve = || {
         let network = SpringNetwork::new(&PackingView::new(packing)?, settings.springs)?;

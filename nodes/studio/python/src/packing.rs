@@ -1,6 +1,7 @@
 //! Packings as Python objects.
 
-use crate::arrays::{copied, field, matrix, one, row, scalars, vectors};
+use crate::arrays::{copied, field, matrix, numbers, one, row, scalars, vectors};
+use crate::parallel;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_experiment::PathPosition;
@@ -8,7 +9,7 @@ use grainlab_msgs::boundary::{packing_header, packing_message};
 use grainlab_msgs::{from_cdr, msg, to_cdr};
 use grainlab_recordings::import::{Imported, contacts};
 use grainlab_viewer::{Film, Ground, Picture, Quantity, Size, View};
-use numpy::{Ix1, Ix2, PyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
+use numpy::{Ix1, Ix2, PyArray, PyArray1, PyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
@@ -17,7 +18,7 @@ use pyo3::types::{PyBytes, PyTuple};
 ///
 /// Arrays of a packing share its memory, without copies, and are read-only; each keeps the packing in memory. It can be pickled, without loss.
 ///
-/// Made from arrays: cell (3, 3) with its edge vectors as columns, positions (n, 3), radii (n,), m; velocities (n, 3), m/s; shear modulus,
+/// Made from arrays or lists: cell (3, 3) with its edge vectors as columns, positions (n, 3), radii (n,) or one, m; velocities (n, 3), m/s; shear modulus,
 /// Pa; density, kg/m3. Contacts are those of overlapping spheres, with Hertz forces and without tangential forces. Raises ValueError for
 /// wrong shapes, numbers that are not finite, and spheres that coincide.
 ///
@@ -78,25 +79,25 @@ impl PyPacking {
         poisson_ratio=Material::GLASS.poisson_ratio, density=Material::GLASS.density, friction=0.0))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn from_arrays(
-        cell: PyReadonlyArray2<'_, f64>,
-        positions: PyReadonlyArray2<'_, f64>,
-        radii: PyReadonlyArray1<'_, f64>,
-        velocities: Option<PyReadonlyArray2<'_, f64>>,
+        cell: Bound<'_, PyAny>,
+        positions: Bound<'_, PyAny>,
+        radii: Bound<'_, PyAny>,
+        velocities: Option<Bound<'_, PyAny>>,
         shear_modulus: f64,
         poisson_ratio: f64,
         density: f64,
         friction: f64,
     ) -> PyResult<Self> {
-        let cell = cell.as_array();
-        if cell.dim() != (3, 3) {
-            return Err(PyValueError::new_err(format!("cell has shape {:?}; it must be (3, 3)", cell.dim())));
-        }
-        let cell = Cell::new(Mat3::from_fn(|i, j| cell[(i, j)])).ok_or_else(|| {
+        let cell = numbers("cell", &cell, &[Some(3), Some(3)])?;
+        let cell = Cell::new(Mat3::from_row_slice(&cell)).ok_or_else(|| {
             PyValueError::new_err("cell has no volume, or its edge vectors (columns) are left-handed")
         })?;
         let positions = triples("positions", &positions)?;
-        let radii: Vec<f64> = radii.as_array().iter().copied().collect();
-        let n = radii.len();
+        let n = positions.len();
+        let radii = match numbers("radii", &radii, &[]) {
+            Ok(one) => vec![one[0]; n],
+            Err(_) => numbers("radii", &radii, &[Some(n)])?,
+        };
         let velocities = velocities.map(|v| triples("velocities", &v)).transpose()?;
         let grains = Packing {
             step: 0,
@@ -136,7 +137,7 @@ impl PyPacking {
         let color = color
             .ok_or_else(|| PyValueError::new_err(format!("color must be one of: {}", known.join(", "))))?;
         let size: Size = size.parse().map_err(refused)?;
-        let drawn = py.detach(|| Picture::new(&self.view(), color, size, Ground::Light).png());
+        let drawn = parallel::detach(py, || Picture::new(&self.view(), color, size, Ground::Light).png())?;
         Ok(PyBytes::new(py, &drawn.map_err(refused)?))
     }
 
@@ -372,11 +373,7 @@ fn refused(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-fn triples(name: &str, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {
-    let array = array.as_array();
-    if array.ncols() != 3 {
-        let message = format!("{name} has shape {:?}; it must be (n, 3)", array.dim());
-        return Err(PyValueError::new_err(message));
-    }
-    Ok(array.rows().into_iter().map(|r| Vec3::new(r[0], r[1], r[2])).collect())
+fn triples(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<Vec3>> {
+    let found = numbers(name, array, &[None, Some(3)])?;
+    Ok(found.as_chunks::<3>().0.iter().map(|row| Vec3::from(*row)).collect())
 }

@@ -68,6 +68,10 @@ def test_a_packing_without_contacts_has_empty_arrays():
         (-np.eye(3), np.zeros((1, 3)), [0.1], "no volume"),
         (np.eye(3), np.zeros((1, 2)), [0.1], "positions has shape"),
         (np.eye(3), np.full((1, 3), np.nan), [0.1], "not finite"),
+        (np.eye(3), np.ma.array(np.ones((1, 3)), mask=True), [0.1], "not finite"),
+        (np.eye(3), [[0, 0, 0], [1]], [0.1], "^positions: "),
+        ("x", np.zeros((1, 3)), [0.1], "^cell: "),
+        (np.eye(3), np.zeros((1, 3)), ["wide"], "^radii: "),
         (np.eye(3), np.zeros((2, 3)), [0.1], "2"),
         (np.eye(3), np.zeros((2, 3)), [0.1, 0.1], "coincide|same"),
         (np.eye(3), np.zeros((1, 3)), [-0.1], "radius"),
@@ -96,6 +100,18 @@ def test_processes_return_packings(packing):
     assert again.positions.tobytes() == packing.positions.tobytes()
 
 
+def measured(packing):
+    state = {"g12": [104.2e6] * 100, "g13": 112.4e6, "theta": 136e6, "pressure": 50e3}
+    found = (grainlab.analyze([packing] * 2)["z"], grainlab.probe([packing] * 2)["g13_pa"], grainlab.invert(**state)["z"])
+    return [column.tolist() for column in found], len(packing._png("force", "60x60"))
+
+
+def test_a_forked_child_measures_many_packings_as_its_parent_did(packing):
+    here = measured(packing)
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        assert pool.map_async(measured, [packing, packing]).get(timeout=120) == [here, here]
+
+
 def test_the_stress_is_that_of_the_contact_forces(packing):
     forces = packing.contact_normal_forces[:, None] * packing.contact_normals - packing.contact_tangential_forces
     stress = forces.T @ packing.contact_branches / np.linalg.det(packing.cell)
@@ -114,6 +130,13 @@ def test_pictures_and_files_have_the_packing(packing, tmp_path):
         grainlab.export([packing], tmp_path / "csv", format="csv")
     with pytest.raises(ValueError, match="vtkhdf"):
         grainlab.export([packing], tmp_path, format="stl")
+
+
+def test_lists_and_numbers_of_other_types_are_read_and_one_radius_is_that_of_all():
+    of_doubles = grainlab.Packing(np.eye(3), np.array([[0.0, 0, 0], [0, 0, 0.5]]), np.array([0.25, 0.25]))
+    others = ([[1, 0, 0], [0, 1, 0], [0, 0, 1]], np.eye(3, dtype=np.float32), np.eye(3, dtype=int))
+    for cell, radii in zip(others, ([0.25, 0.25], np.float32(0.25), 0.25), strict=True):
+        assert pickle.dumps(grainlab.Packing(cell, [[0, 0, 0], [0, 0, 0.5]], radii)) == pickle.dumps(of_doubles)
 
 
 def test_fortran_order_and_strides_are_read_as_they_are(packing):

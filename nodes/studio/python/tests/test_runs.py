@@ -4,6 +4,8 @@ import grainlab
 import numpy as np
 import pytest
 
+FROM_PACKING = "name='go'\nfriction=0.3\n[start]\npacking='-'\n[[phase]]\nkind='relax'\nname='rest'\nuntil={hold=0.0,pressure_below=1e9,timeout=0.001}\n"
+
 
 def test_a_run_is_a_function_of_scene_and_seed(run):
     again = list(grainlab.simulate("demo", seed=3, set={"grains.count": 150}, threads=2))
@@ -40,8 +42,7 @@ def test_a_run_is_advanced_and_looked_at_and_starts_from_a_packing(run):
     (last,) = other.run()
     assert last.positions.tobytes() == run[-1].positions.tobytes() and ended[0] == ("gas", "rest") and ended[-1] == ("settle", None)
     assert other.finished and np.allclose(other.stress, last.stress, rtol=1e-6, atol=1) and np.array_equal(other.strain, last.strain)
-    path = "name='go'\nfriction=0.3\n[start]\npacking='-'\n[[phase]]\nkind='relax'\nname='rest'\nuntil={hold=0.0,pressure_below=1e9,timeout=0.001}\n"
-    first = next(grainlab.simulate(path, start=last))
+    first = next(grainlab.simulate(FROM_PACKING, start=last))
     assert first.contact_tangential_forces.tobytes() == last.contact_tangential_forces.tobytes() and first.phase == 0
 
 
@@ -59,6 +60,47 @@ def test_a_run_is_advanced_and_looked_at_and_starts_from_a_packing(run):
 def test_a_scene_with_faults_is_refused_with_each_of_them(scene, keys, words):
     with pytest.raises(grainlab.SceneError, match=words):
         grainlab.simulate(scene, set=keys)
+
+
+@pytest.mark.parametrize("seed", [5.5, 5.0, -1, True, "5", 2**63])
+def test_a_seed_is_a_whole_number_from_0_on(seed):
+    for call in (grainlab.Scene, grainlab.simulate, grainlab.launch):
+        with pytest.raises(ValueError, match="seed is .*; it must be a whole number, 0 or more"):
+            call("demo", seed=seed)
+
+
+def test_settings_are_a_mapping_with_whole_floats_as_whole_numbers_and_one_seed():
+    assert grainlab.Scene("demo", set={"grains.count": 200.0, "friction": 0.3}, seed=np.int64(3)).text == grainlab.Scene(
+        "demo", set={"grains": {"count": 200}, "friction": 0.3, "seed": 3}).text
+    with pytest.raises(ValueError, match="seed is a keyword, and a key of set"):
+        grainlab.Scene("demo", seed=3, set={"seed": 4})
+    with pytest.raises(TypeError, match="set is 'friction=0.2'; it must be a mapping"):
+        grainlab.simulate("demo", set="friction=0.2")
+
+
+def test_a_run_goes_on_by_whole_numbers_of_steps_or_until_a_condition():
+    run = grainlab.simulate("demo", seed=3, set={"grains.count": 40})
+    for steps in (-5, 1.5):
+        with pytest.raises(ValueError, match=f"steps is {steps}"):
+            run.run(steps)
+    with pytest.raises(ValueError, match="every is 0"):
+        run.run_until(lambda run: False, every=0)
+    assert run.run_until(lambda run: run.steps >= 700, every=100) == [] and 700 <= run.steps < 900 and run.phase == "gas"
+    assert run.run_until(lambda run: run.phase != "gas") == [] and run.phase == "rest"
+
+
+def test_on_phase_is_a_function_and_its_stop_iteration_is_an_error():
+    stopping = grainlab.simulate("demo", seed=3, set={"grains.count": 40}, on_phase=lambda run, name: next(iter([])))
+    with pytest.raises(RuntimeError, match="on_phase raised StopIteration"):
+        list(stopping)
+    with pytest.raises(TypeError, match="on_phase is 5"):
+        grainlab.simulate("demo", on_phase=5)
+
+
+def test_a_warning_on_a_start_names_the_packing_and_no_file(packing):
+    made = grainlab.Packing(packing.cell, packing.positions, packing.radii)
+    with pytest.warns(UserWarning, match="^the packing given as start: contacts were found"):
+        grainlab.simulate(FROM_PACKING, start=made)
 
 
 def test_threads_of_zero_are_refused():

@@ -24,6 +24,26 @@ def test_a_row_without_an_answer_is_nan_with_its_reason():
     assert all(found["reason"]) and "pressure_pa is empty" in found["reason"][1]
 
 
+def test_what_a_mask_hides_is_not_known():
+    hidden, unknown = np.ma.array([104.2e6, 105e6], mask=[0, 1]), [104.2e6, np.nan]
+    for given in (lambda g12: {**STATE, "g12": g12}, lambda g12: {"table": {**TABLE, "g12_pa": g12}}):
+        assert np.array_equal(grainlab.invert(**given(hidden))["z"], grainlab.invert(**given(unknown))["z"], equal_nan=True)
+    assert grainlab.invert(**STATE, phi=np.ma.masked)["z"] == grainlab.invert(**STATE)["z"]
+
+
+def test_series_with_different_indexes_are_refused():
+    pandas = pytest.importorskip("pandas")
+    one, other = pandas.Series([1e8, 1.1e8], index=[0, 1]), pandas.Series([1.1e8, 1.2e8], index=[1, 0])
+    for given, names in (
+        ({**STATE, "g12": one, "g13": other}, "g12 and g13"),
+        ({"table": {**TABLE, "g12_pa": one, "g13_pa": other}}, "g12_pa and g13_pa"),
+        ({"table": pandas.DataFrame(TABLE, index=["a", "b"]), "phi": one}, "table and phi"),
+    ):
+        with pytest.raises(ValueError, match=f"{names} have different indexes"):
+            grainlab.invert(**given)
+    assert grainlab.invert(**{**STATE, "g12": one, "g13": one})["z"].shape == (2,)
+
+
 def test_errors_of_single_moduli_count():
     exact = grainlab.invert(**STATE)["z_sigma"]
     assert grainlab.invert(**STATE, g12_sigma=2e7, g13_sigma=2e7, theta_sigma=3e7)["z_sigma"] > 1.5 * exact
@@ -69,6 +89,8 @@ def test_a_table_is_columns_rows_or_a_file(tmp_path):
     ],
 )
 def test_wrong_tables_are_refused_with_the_reason(given, words):
+        ({**STATE, "draws": 10, "seed": -1}, "seed is -1"),
+        ({**STATE, "draws": 2.5}, "draws is 2.5"),
     with pytest.raises((ValueError, grainlab.PhysicsError), match=words):
         grainlab.invert(**given)
 

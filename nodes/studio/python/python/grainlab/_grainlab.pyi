@@ -5,7 +5,7 @@ from os import PathLike
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .recordings import Packings
 
@@ -38,11 +38,11 @@ class Packing:
 
     def __new__(
         cls,
-        cell: NDArray[np.float64],
-        positions: NDArray[np.float64],
-        radii: NDArray[np.float64],
+        cell: ArrayLike,
+        positions: ArrayLike,
+        radii: ArrayLike,
         *,
-        velocities: NDArray[np.float64] | None = None,
+        velocities: ArrayLike | None = None,
         shear_modulus: float = 29e9,
         poisson_ratio: float = 0.2,
         density: float = 2500.0,
@@ -193,7 +193,7 @@ def open(path: str | PathLike[str]) -> Recording:
 def load(
     path: str | PathLike[str],
     *,
-    cell: NDArray[np.float64] | None = None,
+    cell: ArrayLike | None = None,
     shear_modulus: float | None = None,
     poisson_ratio: float | None = None,
     density: float | None = None,

@@ -12,7 +12,7 @@ from typing import Any
 
 from . import _grainlab, tables
 from .program import call, flags
-from .scenes import toml
+from .scenes import toml, whole
 
 #: Columns of `grainlab invert --table` by the keywords of `invert`.
 COLUMNS = {
@@ -42,8 +42,8 @@ def invert(
 
     Keywords of a state, each a number or an array (n,): ``pressure``; the moduli ``g12 g13 theta c11 c33 c13``; ``shear_modulus`` of the
     grains, all in Pa; ``poisson_ratio``, ``phi``, ``stress_ratio`` (q/p), ``size_spread``, ``gamma`` (deviatoric over volumetric strain),
-    all without unit; ``grains``, ``sample``. Each may have an error, a standard deviation in its unit: ``g12_sigma``. ``error`` is the
-    relative error of each modulus without its own; None: unknown.
+    all without unit; ``grains``, ``sample``. Each may have an error, a standard deviation in its unit: ``g12_sigma``. NaN, None
+    and what a mask hides are not known. ``error`` is the relative error of each modulus without its own; None: unknown.
 
     Numbers give a dict: ``k``, ``z``, ``eps`` and others with ``_sigma`` and the 95 % ``_interval``, None if undetermined; ``status`` (ok,
     extrapolated or contradictory) and ``warnings``. Raises PhysicsError for moduli without a solution, and ValueError for wrong input.
@@ -51,7 +51,8 @@ def invert(
     Arrays give arrays (n,) by the same keys, with ``z_low`` and ``z_high`` for the interval. A row without an answer has NaN, the status
     unknown, and its reason in ``reason``; it raises nothing. So does ``table``: a mapping of arrays, a list of rows, a data frame, which
     gives a data frame with the same index, or the path of a CSV file, with the columns of ``grainlab invert --table`` (``g12_pa``,
-    ``pressure_pa``, the 36 entries of a stiffness, ...), as ``analyze`` of a list of packings has them.
+    ``pressure_pa``, the 36 entries of a stiffness, ...), as ``analyze`` of a list of packings has them. Columns
+    of other names are not used; one that is almost the name of a column is an error.
 
     ``speeds`` is a table or path with the columns of ``grainlab invert --speeds`` (``pressure_pa``, ``mode``, ``speed``, m/s, ...); further
     keywords are the flags of that command (``density``, kg/m3; ``contact``), and the answer is its JSON: a list of samples, or with
@@ -75,6 +76,7 @@ def invert(
         raise TypeError(f"invert() has no keyword {unknown[0]!r}; of a state there are: {', '.join(COLUMNS)}")
     given = {name: value for name, value in given.items() if value is not None}
     of_keywords = {COLUMNS[name]: tables.column(name, value) for name, value in given.items()}
+    tables.aligned({**({"table": table} if hasattr(table, "columns") else table if isinstance(table, Mapping) else {}), **given})
     if isinstance(table, (str, PathLike)):
         if of_keywords:
             raise ValueError(f"{', '.join(given)}: the columns of a file have the states")
@@ -86,8 +88,9 @@ def invert(
             raise ValueError(f"{twice[0]} is a column of the table, and a keyword")
         text = tables.csv_text({**of_table, **of_keywords}, numbered=True).encode()
     is_table = table is not None or any(isinstance(column, list) for column in of_keywords.values())
-    if draws is not None and (is_table or draws < 1):
-        raise ValueError("draws are of one state, and 1 or more in each chain")
+    if draws is not None and is_table:
+        raise ValueError("draws are of one state")
+    drawn_by = None if draws is None else (whole("draws", draws, least=1), whole("seed", seed))
     by = (model, os.fspath(calibration), prior, error)
     answers, drawn = _grainlab.inverted(text, by, None if draws is None else (draws, seed))
     failed, warnings = answers.pop("failed"), answers.pop("warnings")

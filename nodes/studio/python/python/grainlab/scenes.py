@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import re
 import warnings
@@ -16,6 +17,9 @@ def toml(value: Any) -> str:
     """A value in TOML: numbers, flags, texts, paths, lists and mappings. Raises TypeError for others."""
     if hasattr(value, "tolist"):
         value = value.tolist()
+    if isinstance(value, float) and value.is_integer() and abs(value) < 2**53:
+        # A column of a data frame has whole numbers as 200.0.
+        value = int(value)
     if isinstance(value, (bool, int, float)):
         return str(value).lower()
     if isinstance(value, (str, os.PathLike)):
@@ -29,6 +33,17 @@ def toml(value: Any) -> str:
 
 def _key(key: str) -> str:
     return key if re.fullmatch(r"[A-Za-z0-9_.-]+", key) else json.dumps(key)
+
+
+def whole(name: str, value: Any, least: int = 0) -> int:
+    """A whole number. Raises ValueError, which names it, for others, flags, and numbers below the least."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = -1
+    if isinstance(value, bool) or not least <= number < 2**63:
+        raise ValueError(f"{name} is {value!r}; it must be a whole number, {least} or more")
+    return number
 
 
 class Scene:
@@ -48,9 +63,13 @@ class Scene:
         self.source: str = of.source if of else os.fspath(scene)
         #: Settings as on the command line: ``key=value``.
         self.settings: list[str] = of.settings.copy() if of else []
-        self.settings += [f"{key}={toml(value)}" for key, value in (set or {}).items()]
-        if seed is not None:
-            self.settings.append(f"seed={int(seed)}")
+        if set is not None and not hasattr(set, "items"):
+            raise TypeError(f"set is {set!r}; it must be a mapping, such as {{'grains.count': 200}}")
+        given = {} if set is None else dict(set.items())
+        if seed is not None and "seed" in given:
+            raise ValueError("seed is a keyword, and a key of set: give one of them")
+        given |= {} if seed is None else {"seed": whole("seed", seed)}
+        self.settings += [f"{key}={toml(value)}" for key, value in given.items()]
 
     def __repr__(self) -> str:
         return f"<grainlab.Scene {self.source.splitlines()[0]} {' '.join(self.settings)}>".replace(" >", ">")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _grainlab
-from .scenes import Scene, warn
+from .scenes import Scene, warn, whole
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,8 +46,12 @@ class Simulation(Iterator["Packing"]):
     def _advance(self, limit: float) -> Packing | None:
         before = self.phase
         found = self._run.advance(limit)
-        if self._on_phase and before is not None and self.phase != before:
-            self._on_phase(self, before)
+        if self._on_phase is not None and before is not None and self.phase != before:
+            try:
+                self._on_phase(self, before)
+            except StopIteration as error:
+                # Python would take it as the end of the run (PEP 479).
+                raise RuntimeError("on_phase raised StopIteration") from error
         return found
 
     def step(self) -> Packing | None:
@@ -56,11 +60,19 @@ class Simulation(Iterator["Packing"]):
 
     def run(self, steps: int | None = None) -> list[Packing]:
         """Goes on for so many solver steps or a few more, to the next control period, or to the end: the packings published on the
-        way. Raises PhysicsError."""
-        end, packings = None if steps is None else self.steps + steps, []
+        way. Raises PhysicsError, and ValueError for steps that are no whole number."""
+        end, packings = None if steps is None else self.steps + whole("steps", steps), []
         while not self.finished and (end is None or self.steps < end):
             found = self._advance(SIGNAL_PERIOD if end is None else 0.0)
             packings += [found] if found is not None else []
+        return packings
+
+    def run_until(self, met: Callable[[Simulation], Any], *, every: int = 1) -> list[Packing]:
+        """Goes on until ``met(run)`` is true, which is asked every so many solver steps or a few more, or to the end: the packings
+        published on the way. Raises PhysicsError, and ValueError for a wrong ``every``."""
+        packings, every = [], whole("every", every, least=1)
+        while not self.finished and not met(self):
+            packings += self.run(every)
         return packings
 
     @property
@@ -121,19 +133,21 @@ def simulate(
 ) -> Simulation:
     """A run of a scene in this process: the name of a built-in one, a path, the text of a TOML file, or a :class:`Scene`.
 
-    ``set`` has keys such as ``"grains.count": 500``, in SI units, with numbers, texts, lists or mappings as values. ``start`` is a packing, or
-    a file of one, that the path starts from instead of a gas: for scenes without ``[grains]``. ``on_phase(run, name)`` is called when a
-    phase has ended. The packings are those of ``grainlab launch``, bit for bit. Raises SceneError for faults of the scene, and
-    PhysicsError for a run that cannot go on.
+    ``set`` has keys such as ``"grains.count": 500``, in SI units, with numbers, texts, lists or mappings as values. ``start`` is a packing,
+    or a file of one, that the path starts from instead of a gas: for scenes without ``[grains]``. ``on_phase(run, name)`` is called when a
+    phase has ended. The packings are those of ``grainlab launch``, bit for bit. Raises SceneError
+    for faults of the scene, and PhysicsError for a run that cannot go on.
 
     >>> for packing in grainlab.simulate("demo", seed=2, set={"grains": {"count": 300}}):
     ...     print(packing.phase, packing.stress[2, 2])
     """
+    if on_phase is not None and not callable(on_phase):
+        raise TypeError(f"on_phase is {on_phase!r}; it must be a function of (run, name)")
     with tempfile.TemporaryDirectory() as folder:
         if isinstance(start, _grainlab.Packing):
             _grainlab.export([start], "csv", folder)
             start = os.path.join(folder, "packing_1.csv")
-        of = Scene(scene, seed=seed, set={**({} if start is None else {"start.packing": start}), **(set or {})})
-        run, notes = _grainlab.begin(of.source, of.settings, threads)
-    warn(notes)
+        of = Scene(Scene(scene, set=None if start is None else {"start.packing": start}), seed=seed, set=set)
+        run, notes = _grainlab.begin(of.source, of.settings, whole("threads", threads))
+    warn([note.replace(os.path.join(folder, "packing_1.csv"), "the packing given as start") for note in notes])
     return Simulation(run, on_phase)

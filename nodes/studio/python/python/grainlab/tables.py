@@ -18,6 +18,8 @@ def column(name: str, values: Any) -> list[str] | str:
     """A column as texts, or as one for every row. Raises ValueError for arrays of more dimensions, and for complex numbers."""
     import numpy as np
 
+    if np.ma.isMaskedArray(values):
+        values = values.astype(object).filled(np.nan)
     try:
         array = np.asarray(values)
     except ValueError as error:
@@ -35,6 +37,14 @@ def column(name: str, values: Any) -> list[str] | str:
     return texts if array.ndim else texts[0]
 
 
+def aligned(given: Any) -> None:
+    """Raises ValueError for series of pandas that have other indexes, which would be paired by position."""
+    indexes = [(name, values.index) for name, values in given.items() if hasattr(getattr(values, "index", None), "equals")]
+    for name, index in indexes[1:]:
+        if not index.equals(indexes[0][1]):
+            raise ValueError(f"{indexes[0][0]} and {name} have different indexes: give them as columns of one data frame, or as arrays")
+
+
 def columns(table: Any) -> dict[str, list[str] | str]:
     """The columns of a mapping of arrays, of a data frame, or of a list of rows, which are mappings."""
     if isinstance(table, (list, tuple)) and all(hasattr(row, "keys") for row in table):
@@ -44,6 +54,7 @@ def columns(table: Any) -> dict[str, list[str] | str]:
     names = list(table.columns if hasattr(table, "columns") else table.keys())
     if len(set(map(str, names))) < len(names):
         raise ValueError(f"a column is there twice; there are: {', '.join(map(str, names))}")
+    aligned({name: table[name] for name in names})
     return {str(name): column(str(name), table[name]) for name in names}
 
 
