@@ -12,6 +12,7 @@ a record was refused, or the answer of a state is contradictory or unknown. GRAI
 import argparse
 import csv
 import json
+import math
 import os
 import subprocess
 import sys
@@ -91,7 +92,8 @@ def message(rows, options):
                 raise ValueError(f"{name(row)}: mode and angle_deg are needed, the angle in degrees from the axis")
             speeds.append(WaveSpeed(
                 method=getattr(WaveSpeed, "METHOD_" + best["method"].upper()), direction=Vector3(*found["direction"]),
-                polarization=Vector3(*found["polarization"]), speed=best["speed"], speed_stddev=best["speed_sigma"],
+                polarization=Vector3(*found["polarization"]), speed=best["speed"],
+                speed_stddev=math.hypot(best["speed_sigma"], best["speed_shared_sigma"]),
                 frequency=found["frequency"]))
     density = number(first, "density") or number(first, "grain_density") * number(first, "phi")
     return notes, WaveSpeeds(

@@ -21,18 +21,43 @@ pub(crate) struct TopicCount {
 pub(crate) struct BagMetadata {
     pub(crate) files: Vec<FileCount>,
     pub(crate) topics: BTreeMap<String, TopicCount>,
+    /// Texts of the user by their names, as JSON; null without.
+    pub(crate) custom_data: serde_json::Value,
+    ros_distro: Option<String>,
+    /// True if each message is compressed by itself.
+    compressed: bool,
 }
 
 impl BagMetadata {
     /// The metadata from the files of a recording.
     pub(crate) fn of(recording: &Recording) -> Self {
-        let mut metadata = Self { files: recording.parts(), topics: BTreeMap::new() };
+        let compressed = recording.compressed;
+        let mut metadata = Self { files: recording.parts(), compressed, ..Self::default() };
+        metadata.carry(recording);
         for channel in recording.channels() {
             let spec = TopicSpec::of_channel(&channel);
             let messages = recording.count(&channel.topic);
             metadata.topics.insert(spec.name.clone(), TopicCount { spec, messages });
         }
         metadata
+    }
+
+    /// Takes what a user stored in the metadata of a source; returns the names that it has otherwise already.
+    pub(crate) fn carry(&mut self, source: &Recording) -> Vec<String> {
+        let Some(bag) = &source.bag else { return Vec::new() };
+        self.ros_distro = self.ros_distro.take().or_else(|| bag.ros_distro.clone());
+        let (Some(known), Some(new)) = (self.custom_data.as_object_mut(), bag.custom_data.as_object()) else {
+            if self.custom_data.is_null() {
+                self.custom_data = bag.custom_data.clone();
+            }
+            return Vec::new();
+        };
+        let differs = |(name, value): &(&String, _)| known.get(*name).is_some_and(|kept| kept != *value);
+        let others = new.iter().filter(differs).map(|(name, _)| name.clone()).collect();
+        for (name, value) in new {
+            known.entry(name).or_insert_with(|| value.clone());
+        }
+        others
     }
 
     /// First and last log time of all files.
@@ -74,7 +99,11 @@ impl BagMetadata {
                 quoted(&spec.type_hash)
             );
         }
-        t.push_str("  compression_format: \"\"\n  compression_mode: \"\"\n  relative_file_paths:\n");
+        let [format, mode] = if self.compressed { ["zstd", "message"] } else { [""; 2] };
+        let _ = write!(
+            t,
+            "  compression_format: {format:?}\n  compression_mode: {mode:?}\n  relative_file_paths:\n"
+        );
         for file in &self.files {
             let _ = writeln!(t, "    - {}", quoted(&file.name));
         }
@@ -90,7 +119,9 @@ impl BagMetadata {
                 file.messages
             );
         }
-        t.push_str("  custom_data: ~\n  ros_distro: jazzy\n");
+        // JSON is YAML.
+        let (custom, distro) = (&self.custom_data, self.ros_distro.as_deref().unwrap_or("jazzy"));
+        let _ = writeln!(t, "  custom_data: {custom}\n  ros_distro: {}", quoted(distro));
         t
     }
 }

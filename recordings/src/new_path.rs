@@ -16,7 +16,7 @@ pub struct NewPath {
 }
 
 impl NewPath {
-    /// The temporary name of `path`; nothing is created.
+    /// The temporary name of `path`; only missing parents are created.
     ///
     /// # Errors
     /// `AlreadyExists` if there is something under this name; if the path has no last name.
@@ -28,6 +28,7 @@ impl NewPath {
             let problem = format!("{} exists: choose another output", path.display());
             return Err(io::Error::new(ErrorKind::AlreadyExists, problem));
         }
+        path.parent().map_or(Ok(()), fs::create_dir_all)?;
         let mut hidden = OsString::from(".");
         hidden.push(name);
         hidden.push(format!(".part-{}", std::process::id()));

@@ -1,7 +1,7 @@
 //! Recordings: one MCAP file or a run directory, read by topic and time.
 //!
-//! A complete file is read through its index. A file that is truncated, or whose index is damaged, is read
-//! from its start as far as possible. A chunk whose checksum fails is left out. Unreadable parts are
+//! A complete file is read through its index, which is compared with the frames of the records. A file that is truncated, or whose
+//! index is wrong or absent, is read from its start as far as possible. A chunk whose checksum fails is left out. Unreadable parts are
 //! listed by [`Recording::warnings`]; no content causes a panic.
 //!
 //! Memory is bounded: a chunk may decompress to 64 times its size, or 64 MiB if that is more, and never to more than
@@ -11,6 +11,7 @@
 
 mod channel;
 mod chunk;
+mod data;
 mod definition;
 mod error;
 mod file;
@@ -32,6 +33,7 @@ pub use channel::ChannelInfo;
 pub use definition::StoredDefinition;
 pub(crate) use error::no_such_topic;
 pub use error::{Warning, WarningKind};
+pub(crate) use files::BagInformation;
 pub use info::{Info, TopicInfo};
 pub use message::{Message, Payload};
 pub use messages::Messages;

@@ -19,7 +19,7 @@ use serde::Serialize;
 use crate::bag_metadata::BagMetadata;
 use crate::failures::{cannot, reason};
 use crate::input;
-use crate::reader::{Recording, Warning, WarningKind};
+use crate::reader::{BagInformation, Recording, Warning, WarningKind};
 use crate::writer::is_locked;
 
 mod rewrite;
@@ -89,7 +89,7 @@ fn file(path: PathBuf) -> Result<RecoveredFile, Failure> {
     let recording = Recording::open(&path)?;
     let opened = recording.warnings();
     let needs_end = |w: &Warning| matches!(w.kind, WarningKind::Truncated | WarningKind::NoIndex);
-    if !opened.iter().any(needs_end) {
+    if !recording.is_without_index() && !opened.iter().any(needs_end) {
         return match recording.verify_files().into_iter().next() {
             None => {
                 let messages = recording.parts().iter().map(|p| p.messages).sum();
@@ -116,7 +116,11 @@ fn file(path: PathBuf) -> Result<RecoveredFile, Failure> {
         let faults = Recording::open(&new)?.verify_files();
         match faults.first() {
             Some(fault) => Err(wrong(fault.to_string())),
-            None => compare(&recording, &Recording::open(&new)?).map_err(wrong).map(|()| written),
+            None => {
+                let mut made = Recording::open(&new)?;
+                made.compressed = recording.compressed;
+                compare(&recording, &made).map_err(wrong).map(|()| written)
+            }
         }
     });
     let written = outcome.inspect_err(|_| _ = fs::remove_file(&new))?;
@@ -163,13 +167,17 @@ fn keep(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("no free name"))
 }
 
-/// Writes `metadata.yaml` if it is missing, files were recovered, or it does not list all of them; true if written.
+/// Writes `metadata.yaml` if it is missing or not to be read, files were recovered, or it does not list all of them; true if written.
 fn bring_up_to_date(directory: &Path, files: &[RecoveredFile]) -> Result<bool, Failure> {
     let recording = Recording::open(directory)?;
     let unlisted = recording.warnings().iter().any(|w| w.kind == WarningKind::Unlisted);
-    let missing = !directory.join("metadata.yaml").exists();
+    let missing = !matches!(BagInformation::of(directory), Ok(Some(_)));
     if !(unlisted || missing || files.iter().any(|f| f.original.is_some())) {
         return Ok(false);
+    }
+    let old = directory.join("metadata.yaml");
+    if old.exists() {
+        keep(&old).map_err(unchanged(directory, "keep metadata.yaml"))?;
     }
     let written = BagMetadata::of(&recording).write(directory);
     written.map_err(unchanged(directory, "write metadata.yaml"))?;

@@ -1,6 +1,7 @@
 //! Topics on the command line.
 
 use regex_lite::Regex;
+use std::collections::BTreeSet;
 
 /// Topics that carry the parameters of nodes, not data.
 const OF_PARAMETERS: &str = "/parameter_events";
@@ -20,6 +21,9 @@ pub struct TopicNames {
     /// Topics to leave out of those, by a regular expression that matches their whole name
     #[arg(long, value_name = "REGEX", value_parser = whole)]
     pub exclude_regex: Option<Regex>,
+    /// True if the names are complete, with their slash.
+    #[arg(skip)]
+    exact: bool,
 }
 
 /// An expression that matches whole names only: the longest match may be another alternative than the first one.
@@ -28,12 +32,27 @@ fn whole(text: &str) -> Result<Regex, regex_lite::Error> {
 }
 
 impl TopicNames {
+    /// Selection by the complete names of these topics: two of them may differ by the leading slash, then the name as typed counts.
+    pub fn among(&self, known: &BTreeSet<&str>) -> Self {
+        let bare = |name: &str| name.trim_start_matches('/').to_owned();
+        let complete = |names: &[String]| {
+            let of = |name: &String| match known.contains(name.as_str()) {
+                true => vec![name.clone()],
+                false => known.iter().filter(|k| bare(k) == bare(name)).map(ToString::to_string).collect(),
+            };
+            names.iter().flat_map(of).collect()
+        };
+        Self { topics: complete(&self.topics), exclude: complete(&self.exclude), exact: true, ..self.clone() }
+    }
+
     /// True if the topic of this full name is taken. `of_type` says whether its type is one of those asked for, if any are.
     /// Unless `hidden` is set or they are named, hidden topics (a part of their name begins with an underscore) and parameter
     /// events are left out.
     pub fn take(&self, name: &str, of_type: Option<bool>, hidden: bool) -> bool {
         let bare = name.trim_start_matches('/');
-        let is_one = |names: &[String]| names.iter().any(|n| n.trim_start_matches('/') == bare);
+        let is_one = |names: &[String]| {
+            names.iter().any(|n| n == name || !self.exact && n.trim_start_matches('/') == bare)
+        };
         let matches = |regex: &Option<Regex>| regex.as_ref().is_some_and(|r| r.is_match(name));
         let is_hidden = name == OF_PARAMETERS || name.split('/').any(|part| part.starts_with('_'));
         let all = self.topics.is_empty() && self.regex.is_none() && of_type.is_none();
@@ -53,7 +72,8 @@ mod tests {
     fn taken(names: &[&str], regex: Option<&str>, exclude: Option<&str>, left_out: &[&str]) -> [bool; 5] {
         let owned = |list: &[&str]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
         let [regex, exclude_regex] = [regex, exclude].map(|text| text.map(|text| whole(text).unwrap()));
-        let names = TopicNames { topics: owned(names), regex, exclude: owned(left_out), exclude_regex };
+        let names =
+            TopicNames { topics: owned(names), regex, exclude: owned(left_out), exclude_regex, exact: false };
         ALL.map(|name| names.take(name, None, false))
     }
 
@@ -64,6 +84,18 @@ mod tests {
         assert_eq!(taken(&[], Some("/str.*"), Some(".*rate"), &[]), [true, false, false, false, false]);
         assert_eq!(taken(&[], None, None, &["packing"]), [true, true, false, false, false]);
         assert!(whole("(").is_err());
+    }
+
+    #[test]
+    fn a_name_as_typed_is_taken_before_one_that_differs_by_its_slash() {
+        let typed = |name: &str| TopicNames { topics: vec![name.to_owned()], ..TopicNames::default() };
+        let known = BTreeSet::from(["foo", "/foo", "/bar"]);
+        for (name, expected) in [("foo", vec!["foo"]), ("/foo", vec!["/foo"]), ("bar", vec!["/bar"])] {
+            let names = typed(name).among(&known);
+            let taken: Vec<&str> =
+                ["foo", "/foo", "/bar"].into_iter().filter(|n| names.take(n, None, true)).collect();
+            assert_eq!(taken, expected);
+        }
     }
 
     #[test]

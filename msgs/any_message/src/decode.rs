@@ -1,5 +1,6 @@
 //! From bytes to values.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::cursor::Cursor;
@@ -31,6 +32,14 @@ impl Schema {
     /// # Errors
     /// See [`DecodeError`].
     pub fn decode(&self, bytes: &[u8]) -> Result<Message, DecodeError> {
+        self.decode_counted(bytes).map(|(message, _)| message)
+    }
+
+    /// The message, and the number of its texts that are not valid: U+FFFD stands in them for what is not.
+    ///
+    /// # Errors
+    /// See [`DecodeError`].
+    pub fn decode_counted(&self, bytes: &[u8]) -> Result<(Message, u64), DecodeError> {
         let fault = |problem: String| DecodeError { type_name: self.root().name.clone(), problem };
         let length = bytes.len();
         let Some((header, body)) = bytes.split_at_checked(4) else {
@@ -50,11 +59,12 @@ impl Schema {
             cursor: Cursor::new(body, big_endian),
             budget: length.saturating_mul(PER_BYTE).saturating_add(ALWAYS),
             field: String::new(),
+            invalid: 0,
         };
         let message = decoder.message(self.root());
         let message = message.map_err(|problem| fault(format!("{} {problem}", decoder.field)))?;
         match decoder.cursor.left() {
-            0..=PADDING => Ok(message),
+            0..=PADDING => Ok((message, decoder.invalid)),
             extra => Err(fault(format!(
                 "{extra} bytes follow the message (at most {PADDING} of padding may; another type?)"
             ))),
@@ -68,6 +78,8 @@ struct Decoder<'a> {
     budget: usize,
     /// The field with an error; set on the way back.
     field: String,
+    /// Texts that are not valid.
+    invalid: u64,
 }
 
 impl Decoder<'_> {
@@ -163,7 +175,9 @@ impl Decoder<'_> {
         within(bytes.len() as u32, bound)?;
         // A byte that is not UTF-8 becomes three.
         self.spend(bytes.len(), 3)?;
-        Ok(String::from_utf8_lossy(bytes).into_owned())
+        let text = String::from_utf8_lossy(bytes);
+        self.invalid += u64::from(matches!(text, Cow::Owned(_)));
+        Ok(text.into_owned())
     }
 
     /// Number of UTF-16 units, and each unit as four bytes, without a final zero: as rmw_fastrtps and rmw_cyclonedds.
@@ -174,6 +188,7 @@ impl Decoder<'_> {
         self.spend(length as usize, 3 + size_of::<u16>() + size_of::<u32>())?;
         let units: Vec<u16> =
             self.cursor.many::<u32>(length as usize)?.into_iter().map(|c| c as u16).collect();
+        self.invalid += u64::from(String::from_utf16(&units).is_err());
         Ok(String::from_utf16_lossy(&units))
     }
 }
@@ -184,5 +199,21 @@ fn within(length: u32, bound: Option<u32>) -> Result<(), String> {
             Err(format!("has {length} entries, and its type allows at most {bound}"))
         }
         _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_that_are_not_unicode_are_counted() {
+        let schema = Schema::parse("p/msg/T", "string a\nwstring b\n").unwrap();
+        let of = |a: [u8; 2], b: u32| {
+            let a = [&[0, 1, 0, 0, 3, 0, 0, 0], &a[..], &[0, 0]].concat();
+            let message = [a, 1u32.to_le_bytes().into(), b.to_le_bytes().into()].concat();
+            schema.decode_counted(&message).unwrap().1
+        };
+        assert_eq!([of(*b"hi", 104), of([0xff, 0xfe], 104), of([0xff, 0xfe], 0xd800)], [0, 1, 2]);
     }
 }

@@ -64,6 +64,10 @@ fn records_become_the_speeds_that_the_inversion_reads() {
         assert!((speed - truth).abs() < 3.0 * sigma && sigma < 0.03 * truth, "{speed} +- {sigma} of {truth}");
         assert_eq!(&row[column("pressure_pa")], "1e5");
     }
+    assert!(rows.iter().all(|row| row[column("speed_shared_sigma")].parse::<f64>().unwrap() > 0.0));
+    let note = "the delay of the electronics was taken as 0: all records";
+    assert!(String::from_utf8_lossy(&out.stderr).contains(note));
+    assert!(folder.path().join("picked/002-p-p-along.svg").exists());
     assert_eq!(std::fs::read_dir(folder.path().join("picked")).unwrap().count(), 2);
     let invert = ["invert", "--speeds", "speeds.csv", "--grain-shear-modulus", "29e9", "--poisson", "0.2"];
     let read = grainlab(folder.path(), &invert);

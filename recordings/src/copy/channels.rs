@@ -32,15 +32,25 @@ impl Channels {
         Ok(all)
     }
 
-    /// The place of a channel in the list.
+    /// The place of a channel in the list, or of one that is read like it: its own publisher's, if there are several.
     pub(super) fn place(&self, channel: &ChannelInfo) -> Option<usize> {
-        let known = self.by_topic.get(&channel.topic)?;
-        known.iter().map(|(place, _)| *place).find(|place| self.list[*place].is_read_as(channel))
+        let known = self.by_topic.get(&channel.topic)?.iter().map(|(place, _)| *place);
+        let mut alike = known.filter(|place| self.list[*place].is_read_as(channel));
+        let same = alike.clone().find(|place| self.list[*place].metadata == channel.metadata);
+        same.or_else(|| alike.next())
     }
 
     fn add(&mut self, recording: &Recording, channel: &Arc<ChannelInfo>) -> Result<(), Failure> {
         let path = recording.path();
-        if let Some(place) = self.place(channel) {
+        let place = self.place(channel);
+        // Two publishers of a recording have a channel each.
+        let is_another = |place: &usize| {
+            let of_this =
+                |(place, from): &(usize, PathBuf)| from == path && self.list[*place].is_read_as(channel);
+            self.list[*place].metadata != channel.metadata
+                && self.by_topic[&channel.topic].iter().any(of_this)
+        };
+        if let Some(place) = place.filter(|place| !is_another(place)) {
             let kept = &self.list[place];
             let from = &self.by_topic[&channel.topic][0].1;
             if kept.qos != channel.qos && from != path {
@@ -51,6 +61,17 @@ impl Channels {
         }
         let known = self.by_topic.entry(channel.topic.clone()).or_default();
         if let Some((place, first)) = known.iter().find(|(_, from)| from != path) {
+            if let Some((what, kept, other)) =
+                self.list[*place].differs_as(channel).filter(|(what, ..)| *what != "type")
+            {
+                return Err(Failure::usage(format!(
+                    "{}: its {what} is {kept} in {} and {other} in {}: leave the topic out with --exclude, or merge the \
+                     recordings that agree",
+                    channel.topic,
+                    first.display(),
+                    path.display()
+                )));
+            }
             return Err(Failure::usage(format!(
                 "{} is {} in {} and {}, with other fields, in {}: readers such as rosbags take one definition for a type and \
                  would misread the other messages. Leave the topic out with --exclude, or merge the recordings that agree",

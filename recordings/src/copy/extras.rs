@@ -21,14 +21,12 @@ impl Extras {
         let mut all = Self::default();
         for recording in recordings {
             recording.stored_files().into_iter().for_each(|file| all.file(recording, file));
-            for name in recording.metadata_names() {
-                // Rosbag2's record has the counts of its own file.
-                if name != "rosbag2"
-                    && let Some(content) = recording.metadata(&name)
-                {
-                    all.record(recording, name, content);
-                }
-            }
+            // Rosbag2's record has the counts of its own file. The recorder writes its own again in each file.
+            let own = recording.metadata(METADATA_RECORD);
+            let others =
+                recording.all_metadata().filter(|m| !["rosbag2", METADATA_RECORD].contains(&&*m.name));
+            let own = own.map(|metadata| Metadata { name: METADATA_RECORD.to_owned(), metadata });
+            others.chain(own).for_each(|m| all.record(recording, m.name, m.metadata));
         }
         all.notes.extend(several_runs(recordings));
         let sources: Vec<String> = recordings.iter().map(|r| r.path().display().to_string()).collect();

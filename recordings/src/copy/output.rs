@@ -12,7 +12,7 @@ use super::options::CopyOptions;
 use crate::bag_metadata::{BagMetadata, TopicCount};
 use crate::failures::{cannot, reason};
 use crate::new_path::NewPath;
-use crate::reader::{ChannelInfo, FileCount, StoredFile};
+use crate::reader::{ChannelInfo, FileCount, Recording, StoredFile};
 use crate::writer::TopicSpec;
 use grainlab_console::Failure;
 
@@ -87,6 +87,26 @@ impl Output {
         Ok(())
     }
 
+    /// Keeps what a user stored in the metadata of the sources; returns notes about what is lost.
+    pub(super) fn carry(&mut self, recordings: &[Recording]) -> Vec<String> {
+        let path = |r: &Recording| r.path().display().to_string();
+        let mut notes = Vec::new();
+        for recording in recordings {
+            for name in self.bag.carry(recording) {
+                notes.push(format!(
+                    "custom_data {name} of {} differs; that before it is kept",
+                    path(recording)
+                ));
+            }
+        }
+        if !self.is_directory && self.bag.custom_data.as_object().is_some_and(|texts| !texts.is_empty()) {
+            notes.push(
+                "custom_data of metadata.yaml is left out: one file has none; write a directory".to_owned(),
+            );
+        }
+        notes
+    }
+
     /// Writes a message of the channel at this place.
     pub(super) fn message(
         &mut self,
@@ -107,7 +127,7 @@ impl Output {
     pub(super) fn store(&mut self, file: &StoredFile) -> Result<(), Failure> {
         let attachment = Attachment {
             log_time: file.time,
-            create_time: file.time,
+            create_time: file.created,
             name: file.name.clone(),
             media_type: file.media_type.clone(),
             data: Cow::Borrowed(&file.bytes),

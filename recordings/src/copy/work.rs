@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use grainlab_console::Failure;
+use grainlab_console::{Failure, count};
 use serde::Serialize;
 
 use super::channels::Channels;
@@ -50,6 +50,7 @@ pub fn copy(
     let extras = Extras::of(recordings, &options.operation);
     let mut pictures = if options.pictures { Pictures::of(&channels)? } else { Pictures::default() };
     let mut output = Output::begin(to, recordings.first().map_or("ros2", Recording::profile), options)?;
+    let carried = output.carry(recordings);
     for channel in channels.list.iter().chain(&pictures.channels) {
         output.declare(channel)?;
     }
@@ -80,10 +81,13 @@ pub fn copy(
     let mut notes = channels.notes;
     if repeated > 0 {
         notes.push(format!(
-            "{repeated} messages are in more than one of the recordings; each is written once"
+            "{} {} in more than one of the recordings; each is written once",
+            count(repeated, "message"),
+            if repeated == 1 { "is" } else { "are" }
         ));
     }
     notes.extend(extras.notes);
+    notes.extend(carried);
     notes.extend(pictures.notes);
     Ok(Copied {
         path: to.to_owned(),

@@ -50,6 +50,16 @@ impl ChannelInfo {
         }
     }
 
+    /// The property in which both differ: its name, and the value of each.
+    pub fn differs_as<'a>(&'a self, other: &'a Self) -> Option<(&'static str, &'a str, &'a str)> {
+        let of = |c: &'a Self| [&c.message_encoding, &c.ros_type, &c.schema_encoding];
+        let names = ["encoding", "type", "encoding of the definition"];
+        let mut all = names.into_iter().zip(of(self).into_iter().zip(of(other)));
+        let (name, (mine, others)) = all.find(|(_, (mine, others))| mine != others)?;
+        let word = |text: &'a String| if text.is_empty() { "unknown" } else { text };
+        Some((name, word(mine), word(others)))
+    }
+
     /// True for messages in CDR whose definition is not in the recording.
     pub fn is_without_definition(&self) -> bool {
         // A type without fields has an empty definition.

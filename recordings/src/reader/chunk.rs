@@ -1,7 +1,7 @@
 //! Content of a chunk: decompressed, and checked against its size and checksum before it is used.
 
 use std::borrow::Cow;
-use std::io::Read;
+use std::io::{self, Read};
 
 use mcap::records::{ChunkHeader, Record};
 
@@ -61,24 +61,35 @@ fn decompress<'a>(
     let mut content = spare;
     content.clear();
     content.reserve_exact(size.min(ONCE) as usize);
-    // One byte more than stated is read, to detect a longer stream.
     let read = match header.compression.as_str() {
         // In one call, without a window: twice as fast.
         "zstd" if size <= ONCE => {
             zstd::bulk::Decompressor::new().and_then(|mut d| d.decompress_to_buffer(data, &mut content))
         }
-        "zstd" => {
-            let decoder = zstd::stream::read::Decoder::new(data).and_then(|mut d| {
-                d.window_log_max(WINDOW)?;
-                Ok(d)
-            });
-            decoder.and_then(|d| d.take(size + 1).read_to_end(&mut content))
-        }
+        "zstd" => unpack(data, size, &mut content),
+        // One byte more than stated is read, to detect a longer stream.
         "lz4" => lz4::Decoder::new(data).and_then(|d| d.take(size + 1).read_to_end(&mut content)),
         other => return Err(format!("its compression {other:?} is not known (zstd, lz4 and none are)")),
     };
     read.map_err(|e| format!("it does not decompress ({e})"))?;
     checked(header, Cow::Owned(content))
+}
+
+/// One byte more than `size` is read, to detect a longer stream.
+fn unpack(data: &[u8], size: u64, content: &mut Vec<u8>) -> io::Result<usize> {
+    let mut decoder = zstd::stream::read::Decoder::new(data)?;
+    decoder.window_log_max(WINDOW)?;
+    decoder.take(size + 1).read_to_end(content)
+}
+
+/// A message that is compressed by itself, by Zstandard.
+pub(super) fn message(data: &[u8]) -> Result<Vec<u8>, String> {
+    let (most, mut content) = (limit(data.len()), Vec::new());
+    match unpack(data, most, &mut content) {
+        Ok(size) if size as u64 > most => Err(format!("a message decompresses to more than {most} bytes")),
+        Ok(_) => Ok(content),
+        Err(e) => Err(format!("a message does not decompress ({e})")),
+    }
 }
 
 /// The content, if it has the size and the checksum of the header.

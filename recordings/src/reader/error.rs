@@ -6,9 +6,16 @@ use std::path::{Path, PathBuf};
 use grainlab_console::Failure;
 use serde::{Deserialize, Serialize};
 
-/// A file that does not start as MCAP, of this size in bytes.
-pub(super) fn not_mcap(path: &Path, bytes: u64) -> Failure {
-    let why = format!("it has {bytes} bytes and does not start with the MCAP magic");
+/// A file that does not start as MCAP.
+pub(super) fn not_mcap(path: &Path, bytes: &[u8]) -> Failure {
+    let advice = "write it again with `ros2 bag convert`";
+    let why = if bytes.starts_with(&[0x28, 0xb5, 0x2f, 0xfd]) {
+        format!("it is compressed as a whole by Zstandard: unpack it (`zstd -d`), or {advice}")
+    } else if bytes.starts_with(b"SQLite format 3") {
+        format!("it is an SQLite database, the older format of rosbag2: {advice}")
+    } else {
+        format!("it has {} bytes and does not start with the MCAP magic", bytes.len())
+    };
     Failure::failed(format!("{} is not an MCAP file: {why}", path.display()))
 }
 
@@ -42,7 +49,7 @@ pub struct Warning {
 pub enum WarningKind {
     /// The recording is truncated here: the recorder was killed or is still running.
     Truncated,
-    /// All messages are readable, but the index is damaged or missing and was rebuilt.
+    /// All messages are readable, but the index is wrong and was rebuilt.
     NoIndex,
     /// A chunk is damaged and was left out.
     DamagedChunk,
@@ -65,7 +72,9 @@ impl fmt::Display for Warning {
             WarningKind::Truncated => {
                 write!(f, "{path} is truncated: {detail}; the part before byte {at} is used")
             }
-            WarningKind::NoIndex => write!(f, "{path}: the index is damaged ({detail}); it was rebuilt"),
+            WarningKind::NoIndex => {
+                write!(f, "{path}: the index is wrong ({detail}): it was rebuilt from the records")
+            }
             WarningKind::DamagedChunk => write!(f, "{path}: the chunk at byte {at} is left out: {detail}"),
             WarningKind::DamagedRecord => write!(f, "{path}: the record at byte {at} is left out: {detail}"),
             WarningKind::Orphans => write!(f, "{path}: in the chunk at byte {at}, {detail}"),

@@ -4,18 +4,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use grainlab_console::Failure;
 use mcap::MAGIC;
-use mcap::records::Record;
+use mcap::records::{Metadata, Record};
 use memmap2::Mmap;
 
 use crate::input;
 
 use super::error::{Warning, WarningKind, not_mcap};
 use super::held::Content;
-use super::index::{Block, Entry, Index, loose_blocks};
+use super::index::{Block, Entry, Index};
 use super::records::Records;
 use super::stored_file::{FileCount, StoredFile};
 
@@ -23,8 +23,6 @@ pub(crate) struct OpenFile {
     pub(super) path: PathBuf,
     bytes: Arc<Mmap>,
     pub(super) index: Index,
-    /// Blocks of a file without chunks, once they were needed.
-    loose: OnceLock<Vec<Block>>,
 }
 
 impl fmt::Debug for OpenFile {
@@ -37,16 +35,16 @@ impl OpenFile {
     pub(super) fn map(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Self, Failure> {
         let (file, size) = input::open(path).map_err(Failure::at(path))?;
         if size == 0 {
-            return Err(not_mcap(path, 0));
+            return Err(not_mcap(path, &[]));
         }
         // SAFETY: the mapping is read-only; the user must ensure that no process shortens the file meanwhile
         // (see the module).
         let bytes = Arc::new(unsafe { Mmap::map(&file) }.map_err(Failure::at(path))?);
         if !bytes.starts_with(MAGIC) {
-            return Err(not_mcap(path, size));
+            return Err(not_mcap(path, &bytes));
         }
         let index = Index::build(path, &bytes, warnings);
-        Ok(Self { path: path.to_owned(), bytes, index, loose: OnceLock::new() })
+        Ok(Self { path: path.to_owned(), bytes, index })
     }
 
     pub(crate) fn bytes(&self) -> &[u8] {
@@ -58,24 +56,15 @@ impl OpenFile {
         Content::Part { file: Arc::clone(&self.bytes), range }
     }
 
-    /// The blocks of messages, in order of start, then of offset. Those of a file without chunks are looked for in the
-    /// whole file, once.
+    /// The blocks of messages, in order of start, then of offset.
     pub(super) fn blocks(&self) -> &[Block] {
-        match &self.index.loose {
-            Some(loose) => self.loose.get_or_init(|| loose_blocks(self.bytes(), loose.range.clone())),
-            None => &self.index.blocks,
-        }
+        &self.index.blocks
     }
 
     /// First and last log time; `None` without messages.
     pub(super) fn bounds(&self) -> Option<(u64, u64)> {
-        match &self.index.loose {
-            Some(loose) => Some(loose.bounds),
-            None => {
-                let blocks = self.index.blocks.iter().map(|b| (b.start, b.end));
-                blocks.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-            }
-        }
+        let blocks = self.blocks().iter().map(|b| (b.start, b.end));
+        blocks.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
     pub(crate) fn warning(&self, offset: usize, kind: WarningKind, detail: String) -> Warning {
@@ -100,8 +89,8 @@ impl OpenFile {
     pub(super) fn stored_files(&self, warn: impl Fn(Warning)) -> Vec<StoredFile> {
         let read = |entry: &Entry| match self.record(entry) {
             Ok(Record::Attachment { header, data, .. }) => {
-                let (name, media_type, time) = (header.name, header.media_type, header.log_time);
-                Some(StoredFile { name, media_type, time, bytes: data.into_owned() })
+                let (time, created, bytes) = (header.log_time, header.create_time, data.into_owned());
+                Some(StoredFile { name: header.name, media_type: header.media_type, time, created, bytes })
             }
             outcome => {
                 warn(self.damaged(entry, outcome.err()));
@@ -112,14 +101,18 @@ impl OpenFile {
     }
 
     pub(super) fn metadata(&self, name: &str, warn: impl Fn(Warning)) -> Option<BTreeMap<String, String>> {
-        let read = |entry: &Entry| match self.record(entry) {
-            Ok(Record::Metadata(m)) => Some(m.metadata),
+        self.all_metadata(warn).filter(|m| m.name == name).last().map(|m| m.metadata)
+    }
+
+    /// The metadata records, in order.
+    pub(super) fn all_metadata(&self, warn: impl Fn(Warning)) -> impl Iterator<Item = Metadata> {
+        self.index.metadata.iter().filter_map(move |entry| match self.record(entry) {
+            Ok(Record::Metadata(m)) => Some(m),
             outcome => {
                 warn(self.damaged(entry, outcome.err()));
                 None
             }
-        };
-        self.index.metadata.iter().rev().filter(|e| e.name == name).find_map(read)
+        })
     }
 
     fn record(&self, entry: &Entry) -> Result<Record<'_>, String> {

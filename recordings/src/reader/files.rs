@@ -16,12 +16,50 @@ const METADATA: u64 = 16 << 20;
 
 #[derive(Deserialize)]
 struct BagFile {
-    rosbag2_bagfile_information: Information,
+    rosbag2_bagfile_information: BagInformation,
 }
 
-#[derive(Deserialize)]
-struct Information {
+/// Parts of a `metadata.yaml`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct BagInformation {
     relative_file_paths: Vec<String>,
+    pub(super) message_count: Option<u64>,
+    pub(super) compression_format: String,
+    compression_mode: String,
+    /// Texts of the user by their names, or null.
+    pub(crate) custom_data: serde_json::Value,
+    pub(crate) ros_distro: Option<String>,
+}
+
+impl BagInformation {
+    /// The `metadata.yaml` in a directory, if there is one.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub(crate) fn of(directory: &Path) -> Result<Option<Self>, String> {
+        let path = directory.join("metadata.yaml");
+        if !path.exists() {
+            return Ok(None);
+        }
+        let text = input::text(&path, METADATA).map_err(|e| e.to_string())?;
+        let read = serde_saphyr::from_str::<BagFile>(&text).map_err(|e| e.to_string());
+        read.map(|b| Some(b.rosbag2_bagfile_information))
+    }
+
+    /// That of a recording: in the directory, or beside the file and naming it.
+    pub(super) fn beside(path: &Path) -> Option<Self> {
+        if path.is_dir() {
+            return Self::of(path).ok().flatten();
+        }
+        let names = |bag: &Self| bag.relative_file_paths.iter().any(|name| path.ends_with(name));
+        Self::of(path.parent()?).ok().flatten().filter(names)
+    }
+
+    /// True for this mode of compression: `message` or `file`.
+    pub(super) fn is_by(&self, mode: &str) -> bool {
+        self.compression_mode.eq_ignore_ascii_case(mode)
+    }
 }
 
 /// The file, or those of a directory in order.
@@ -82,9 +120,7 @@ fn gaps(directory: &Path, files: &[PathBuf]) -> Vec<Warning> {
 }
 
 fn listed(directory: &Path) -> Vec<String> {
-    let text = input::text(&directory.join("metadata.yaml"), METADATA).unwrap_or_default();
-    let names =
-        serde_saphyr::from_str::<BagFile>(&text).map(|b| b.rosbag2_bagfile_information.relative_file_paths);
+    let names = BagInformation::beside(directory).map(|bag| bag.relative_file_paths);
     // A name that points out of the directory is not one of its parts.
     let inside = |name: &String| Path::new(name).components().count() == 1 && !name.starts_with('.');
     names.unwrap_or_default().into_iter().filter(inside).collect()

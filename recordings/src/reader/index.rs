@@ -1,7 +1,6 @@
 //! Positions of the parts of a file: from its summary, or by reading all of it.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -9,6 +8,7 @@ use mcap::MAGIC;
 use mcap::records::{Channel, Footer, MessageHeader, Record, SchemaHeader, op};
 
 use super::channel::ChannelInfo;
+use super::data::{Chunks, Data};
 use super::definition::StoredDefinition;
 use super::error::{Warning, WarningKind};
 use super::records::{FRAME, RawRecord, Records};
@@ -49,38 +49,16 @@ pub(super) struct Index {
     pub(super) compressions: BTreeSet<String>,
     /// True if the file is complete.
     pub(super) complete: bool,
-    /// The messages of a complete file without chunks.
-    pub(super) loose: Option<Loose>,
+    /// True if the file is complete and has no index, which the format allows.
+    pub(super) absent: bool,
     schemas: BTreeMap<u16, (SchemaHeader, Vec<u8>)>,
-}
-
-/// The part of a file with messages outside chunks.
-#[derive(Clone, Debug)]
-pub(super) struct Loose {
-    pub(super) range: Range<usize>,
-    /// First and last log time, ns since 1970.
-    pub(super) bounds: (u64, u64),
 }
 
 /// Bytes of messages outside chunks that are one block.
 const LOOSE_BLOCK: usize = 1 << 20;
 
-/// The blocks of messages outside chunks.
-pub(super) fn loose_blocks(bytes: &[u8], range: Range<usize>) -> Vec<Block> {
-    let mut blocks = Vec::new();
-    for record in Records::new(&bytes[..range.end], range.start).map_while(Result::ok) {
-        match record.message() {
-            Some((header, _)) => add_loose(&mut blocks, &record, &header),
-            None if record.opcode == op::DATA_END => break,
-            None => {}
-        }
-    }
-    blocks.sort_by_key(|b| (b.start, b.offset));
-    blocks
-}
-
 /// Adds a message outside chunks to the last block if it follows directly.
-fn add_loose(blocks: &mut Vec<Block>, record: &RawRecord<'_>, header: &MessageHeader) {
+pub(super) fn add_loose(blocks: &mut Vec<Block>, record: &RawRecord<'_>, header: &MessageHeader) {
     let (time, channel) = (header.log_time, header.channel_id);
     match blocks.last_mut() {
         Some(last)
@@ -122,9 +100,10 @@ impl Inside {
 impl Index {
     /// The index of a file that starts with the MCAP magic.
     pub(super) fn build(path: &Path, bytes: &[u8], warnings: &mut BTreeSet<Warning>) -> Self {
-        let mut index = match Self::from_summary(bytes) {
-            Ok(index) => index,
-            Err(reason) => Self::from_scan(path, bytes, &reason, warnings),
+        let mut index = match Self::from_summary(path, bytes, warnings) {
+            Ok(Some(index)) => index,
+            Ok(None) => Self { absent: true, ..Self::from_scan(path, bytes, None, warnings) },
+            Err(reason) => Self::from_scan(path, bytes, Some(&reason), warnings),
         };
         if let Some(Ok(Record::Header(header))) = Records::at(bytes, MAGIC.len() as u64).map(|r| r.parse()) {
             (index.profile, index.library) = (header.profile, header.library);
@@ -133,18 +112,29 @@ impl Index {
         index
     }
 
-    fn from_summary(bytes: &[u8]) -> Result<Self, String> {
+    /// The index in the file, if there is one: all parts of a summary section are optional.
+    ///
+    /// # Errors
+    /// What contradicts the records.
+    fn from_summary(
+        path: &Path,
+        bytes: &[u8],
+        warnings: &mut BTreeSet<Warning>,
+    ) -> Result<Option<Self>, String> {
         let (footer, footer_at) = footer(bytes)?;
         let start = usize::try_from(footer.summary_start).unwrap_or(usize::MAX);
-        if footer.summary_start == 0 || start >= footer_at {
-            return Err("there is no summary section".into());
+        if footer.summary_start == 0 {
+            return Ok(None);
+        }
+        if start >= footer_at {
+            return Err(format!("the summary section begins at byte {start}, behind its end"));
         }
         let crc = crc32fast::hash(&bytes[start..footer_at + FRAME + 16]);
         if footer.summary_crc != 0 && crc != footer.summary_crc {
             return Err("the checksum of the summary section fails".into());
         }
         let mut index = Self { complete: true, ..Self::default() };
-        let mut counted = None;
+        let (mut counted, mut chunks) = (None, Chunks::new());
         for record in Records::new(&bytes[..footer_at], start) {
             let record = record.map_err(|at| format!("the summary section breaks off at byte {at}"))?;
             match record.parse()? {
@@ -155,6 +145,10 @@ impl Index {
                         offset.saturating_add(usize::try_from(c.chunk_length).unwrap_or(usize::MAX));
                     if end_offset > start {
                         return Err(format!("the chunk index points at byte {offset}, outside the data"));
+                    }
+                    let stated = (end_offset, c.message_start_time, c.message_end_time);
+                    if chunks.insert(offset, stated).is_some() {
+                        return Err(format!("two of its entries point at byte {offset}"));
                     }
                     index.compressions.insert(c.compression);
                     // A chunk without messages (schemas and channels) has no times, either.
@@ -173,22 +167,30 @@ impl Index {
                 other => index.declare(other)?,
             }
         }
-        let counted = counted.ok_or("the summary section has no statistics")?;
-        if counted.message_count > 0 && counted.chunk_count == 0 && index.blocks.is_empty() {
-            let (a, b) = (counted.message_start_time, counted.message_end_time);
-            let bounds = (a.min(b), a.max(b));
-            index.loose = Some(Loose { range: MAGIC.len()..start, bounds });
+        let Some(counted) = counted else { return Ok(None) };
+        let data = Data::of(&bytes[..start]);
+        if let Some(at) = data.broken {
+            // The records behind it can only be reached by the index.
+            let detail =
+                "no complete record starts here; later ones can be reached by the index only".to_owned();
+            let kind = WarningKind::Inconsistent;
+            warnings.insert(Warning { path: path.to_owned(), offset: at as u64, kind, detail });
+        } else if chunks.is_empty() && !data.chunks.is_empty() {
+            return Ok(None);
+        } else if let Some(wrong) = data.contradiction(&chunks, &counted) {
+            return Err(wrong);
         }
-        let in_blocks = counted.message_count == 0 || !index.blocks.is_empty() || index.loose.is_some();
-        let declared = counted.channel_message_counts.keys().all(|c| index.channels.contains_key(c));
-        if !in_blocks || !declared {
-            return Err("the summary section does not index all messages".into());
-        }
+        index.blocks.extend(data.loose);
         index.counts = counted.channel_message_counts;
-        Ok(index)
+        if index.counts.is_empty() {
+            index.counts = data.counts;
+        }
+        let is_complete = index.counts.keys().all(|c| index.channels.contains_key(c))
+            && index.counts.values().sum::<u64>() == counted.message_count;
+        Ok(is_complete.then_some(index))
     }
 
-    fn from_scan(path: &Path, bytes: &[u8], reason: &str, warnings: &mut BTreeSet<Warning>) -> Self {
+    fn from_scan(path: &Path, bytes: &[u8], reason: Option<&str>, warnings: &mut BTreeSet<Warning>) -> Self {
         let (mut index, mut inside) = (Self::default(), Inside::default());
         let mut warn = |(offset, kind): (usize, WarningKind), detail: String| {
             warnings.insert(Warning { path: path.to_owned(), offset: offset as u64, kind, detail });
@@ -197,7 +199,9 @@ impl Index {
             match item {
                 Walked::Record(record, _) if record.opcode == op::DATA_END => {
                     index.complete = true;
-                    warn((record.offset, WarningKind::NoIndex), reason.to_owned());
+                    if let Some(reason) = reason {
+                        warn((record.offset, WarningKind::NoIndex), reason.to_owned());
+                    }
                 }
                 Walked::Record(record, chunk) => {
                     let messages = chunk.map(|_| &mut inside);

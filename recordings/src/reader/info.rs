@@ -23,6 +23,8 @@ pub struct Info {
     pub bytes: u64,
     /// True if every file is complete.
     pub complete: bool,
+    /// True if a file has no index, which the format allows.
+    pub without_index: bool,
     /// Profile in the header; `ros2`.
     pub profile: String,
     /// Library that wrote it.
@@ -39,7 +41,7 @@ pub struct Info {
     pub duration_s: f64,
     /// Number of messages.
     pub messages: u64,
-    /// The topics, by name.
+    /// The topics, by name; one with several types has a row for each.
     pub topics: Vec<TopicInfo>,
     /// Topics whose definition is missing or not that of this program, with what differs.
     pub definitions: Vec<String>,
@@ -82,9 +84,9 @@ impl Recording {
         let tallies = self.ledger().unwrap_or_default();
         let tallies: BTreeMap<&str, &TopicTally> = tallies.iter().map(|t| (t.name.as_str(), t)).collect();
         let topics: Vec<_> = self
-            .channels()
-            .iter()
-            .map(|channel| {
+            .topics_by_type()
+            .into_iter()
+            .map(|(channel, messages)| {
                 let tally = tallies.get(channel.topic.as_str());
                 TopicInfo {
                     name: channel.topic.clone(),
@@ -93,7 +95,7 @@ impl Recording {
                         StoredDefinition::Unknown if channel.is_without_definition() => "missing",
                         stored => stored.word(),
                     },
-                    messages: self.count(&channel.topic),
+                    messages,
                     latched: channel.is_latched(),
                     published: tally.map(|t| t.published),
                     lost: tally.map(|t| t.lost),
@@ -111,6 +113,7 @@ impl Recording {
             files: files.iter().map(|f| f.path.display().to_string()).collect(),
             bytes: self.size(),
             complete: files.iter().all(|f| f.index.complete),
+            without_index: self.is_without_index(),
             profile: files.first().map(|f| f.index.profile.clone()).unwrap_or_default(),
             library: files.first().map(|f| f.index.library.clone()).unwrap_or_default(),
             compression: compressions.into_iter().map(str::to_owned).collect(),
@@ -131,19 +134,29 @@ impl Recording {
     }
 }
 
+/// A name without control characters, which a terminal would obey.
+fn printable(name: &str) -> String {
+    let shown = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    name.chars().map(shown).collect()
+}
+
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let time = |ns: Option<u64>| match ns.and_then(|ns| i64::try_from(ns).ok()) {
             Some(ns) => DateTime::from_timestamp_nanos(ns).to_rfc3339_opts(SecondsFormat::Millis, true),
             None => "-".to_owned(),
         };
-        let list = |names: &[String]| if names.is_empty() { "-".to_owned() } else { names.join(", ") };
+        let list =
+            |names: &[String]| if names.is_empty() { "-".to_owned() } else { printable(&names.join(", ")) };
         writeln!(f, "recording    {}{}", self.path, if self.complete { "" } else { " (incomplete)" })?;
         writeln!(f, "size         {:.3} MB in {} file(s)", self.bytes as f64 * 1e-6, self.files.len())?;
         writeln!(f, "start        {}", time(self.start_ns))?;
         writeln!(f, "end          {}", time(self.end_ns))?;
         writeln!(f, "duration     {:.3} s", self.duration_s)?;
         writeln!(f, "messages     {} in {} chunks", self.messages, self.chunks)?;
+        if self.without_index {
+            writeln!(f, "index        none, which MCAP allows: all of it was read")?;
+        }
         writeln!(f, "compression  {}", list(&self.compression))?;
         writeln!(f, "profile      {} ({})", self.profile, self.library)?;
         writeln!(f, "attachments  {}", list(&self.attachments))?;
@@ -175,20 +188,21 @@ impl fmt::Display for Info {
         ]));
         for t in &self.topics {
             table.row(columns([
-                t.name.clone(),
-                format!("{:width$}", t.ros_type),
+                printable(&t.name),
+                format!("{:width$}", printable(&t.ros_type)),
                 t.messages.to_string(),
                 count(t.lost),
                 count(t.repeated),
             ]));
         }
-        let latched: Vec<&str> = self.topics.iter().filter(|t| t.latched).map(|t| t.name.as_str()).collect();
+        let latched: Vec<String> =
+            self.topics.iter().filter(|t| t.latched).map(|t| printable(&t.name)).collect();
         if !latched.is_empty() {
             write!(f, "{}", wrapped("latched      ", &latched.join(" ")))?;
         }
         write!(f, "\n{}", table.text().trim_end())?;
         for line in &self.definitions {
-            write!(f, "\n{line}")?;
+            write!(f, "\n{}", printable(line))?;
         }
         Ok(())
     }

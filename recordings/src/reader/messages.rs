@@ -10,7 +10,7 @@ use super::message::{Message, Payload};
 use super::recording::Recording;
 use super::records::Records;
 use super::selection::Selection;
-use grainlab_console::Failure;
+use grainlab_console::{Failure, count};
 use mcap::records::{MessageHeader, op};
 use std::borrow::Cow;
 use std::cmp::Reverse;
@@ -219,7 +219,19 @@ fn decode<'f>(
         };
         match channel {
             Some(channel) => {
-                let (channel, payload) = (channel.clone(), Payload { chunk: content.clone(), range });
+                let (channel, mut payload) = (channel.clone(), Payload { chunk: content.clone(), range });
+                if recording.compressed {
+                    match chunk::message(&payload) {
+                        Ok(bytes) => {
+                            let range = 0..bytes.len();
+                            payload = Payload { chunk: Arc::new(held.content(bytes)), range };
+                        }
+                        Err(detail) => {
+                            damaged(format!("{}: {detail}", channel.topic));
+                            continue;
+                        }
+                    }
+                }
                 let MessageHeader { sequence, log_time, publish_time, .. } = header;
                 take(Message { channel, sequence, log_time, publish_time, payload });
             }
@@ -228,7 +240,7 @@ fn decode<'f>(
         }
     }
     if orphans > 0 {
-        let detail = format!("{orphans} messages belong to channels whose declaration was lost");
+        let detail = format!("{} of channels whose declaration was lost", count(orphans, "message"));
         recording.warn(file.warning(block.offset, WarningKind::Orphans, detail));
     }
 }

@@ -4,13 +4,14 @@ use super::channel::ChannelInfo;
 use super::definition::StoredDefinition;
 use super::error::{self, Warning, WarningKind, no_such_topic};
 use super::file::OpenFile;
-use super::files;
+use super::files::{self, BagInformation};
 use super::stored_file::{FileCount, StoredFile};
 use crate::definitions::Definitions;
 use crate::ledger::{TopicTally, merge};
 use crate::metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, RECOVERED_KEY, SESSION_KEY};
 use chrono::{DateTime, SecondsFormat};
 use grainlab_console::Failure;
+use mcap::records::Metadata;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,6 +21,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Recording {
     pub(super) path: PathBuf,
     pub(crate) files: Vec<OpenFile>,
+    /// Content of the metadata.yaml that names its files.
+    pub(crate) bag: Option<BagInformation>,
+    /// True if each message is compressed by itself, by Zstandard.
+    pub(crate) compressed: bool,
     warnings: Mutex<BTreeSet<Warning>>,
 }
 
@@ -32,6 +37,16 @@ impl Recording {
     /// [`Recording::warnings`].
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let mut warnings = BTreeSet::new();
+        let bag = BagInformation::beside(path);
+        let compressed = bag.as_ref().is_some_and(|bag| bag.is_by("message"));
+        if let Some(format) =
+            bag.as_ref().map(|bag| &bag.compression_format).filter(|f| compressed && *f != "zstd")
+        {
+            return Err(Failure::failed(format!(
+                "{}: its messages are compressed by {format:?}, which is not read: write it again with `ros2 bag convert`",
+                path.display()
+            )));
+        }
         let mut paths = files::of_recording(path, &mut warnings)?;
         // A recorder that has just begun its next file has written nothing to it.
         let is_empty = |file: &PathBuf| file.metadata().is_ok_and(|m| m.len() == 0);
@@ -52,12 +67,17 @@ impl Recording {
         if files.is_empty() {
             return Err(error::empty(path));
         }
-        Ok(Self { path: path.to_owned(), files, warnings: Mutex::new(warnings) })
+        Ok(Self { path: path.to_owned(), files, bag, compressed, warnings: Mutex::new(warnings) })
     }
 
     /// Size of all files, bytes.
     pub(super) fn size(&self) -> u64 {
         self.files.iter().map(|f| f.bytes().len() as u64).sum()
+    }
+
+    /// True if a file has no index, which the format allows: all of it was read.
+    pub fn is_without_index(&self) -> bool {
+        self.files.iter().any(|f| f.index.absent)
     }
 
     /// The path passed to [`Recording::open`].
@@ -87,6 +107,19 @@ impl Recording {
             by_topic.entry(channel.topic.clone()).or_insert_with(|| channel.clone());
         }
         by_topic.into_values().collect()
+    }
+
+    /// The topics by name and type, with a channel and the number of messages of each: a topic may have several types.
+    pub(super) fn topics_by_type(&self) -> Vec<(Arc<ChannelInfo>, u64)> {
+        let mut found = BTreeMap::new();
+        for file in &self.files {
+            for (id, channel) in &file.index.channels {
+                let key = (channel.topic.clone(), channel.ros_type.clone(), channel.message_encoding.clone());
+                let new = || (channel.clone(), 0);
+                found.entry(key).or_insert_with(new).1 += file.index.counts.get(id).copied().unwrap_or(0);
+            }
+        }
+        found.into_values().collect()
     }
 
     /// The topics whose definition is not that of this program, each with a line about it.
@@ -123,7 +156,7 @@ impl Recording {
     }
 
     /// All channels of all files; a topic may have several, of several files or publishers.
-    pub(crate) fn all_channels(&self) -> impl Iterator<Item = &Arc<ChannelInfo>> {
+    pub fn all_channels(&self) -> impl Iterator<Item = &Arc<ChannelInfo>> {
         self.files.iter().flat_map(|f| f.index.channels.values())
     }
 
@@ -167,6 +200,11 @@ impl Recording {
     /// The metadata record of this name; the last one counts if there are several.
     pub fn metadata(&self, name: &str) -> Option<BTreeMap<String, String>> {
         self.files.iter().rev().find_map(|f| f.metadata(name, |w| self.warn(w)))
+    }
+
+    /// All metadata records, in order.
+    pub(crate) fn all_metadata(&self) -> impl Iterator<Item = Metadata> {
+        self.files.iter().flat_map(|f| f.all_metadata(|w| self.warn(w)))
     }
 
     /// Names of the metadata records.

@@ -18,6 +18,8 @@ pub struct StoredFile {
     pub media_type: String,
     /// Time at which it was stored, ns since 1970.
     pub time: u64,
+    /// Time at which it was made, ns since 1970.
+    pub created: u64,
     /// Content of the file.
     pub bytes: Vec<u8>,
 }

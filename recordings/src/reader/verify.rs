@@ -2,13 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use mcap::records::{Record, op};
+use grainlab_any_message::Schema;
+use grainlab_console::count;
+use mcap::records::{MessageHeader, MessageIndex, MessageIndexEntry, Record, op};
 use serde::Serialize;
 
+use super::channel::ChannelInfo;
 use super::definition::StoredDefinition;
 use super::error::{Warning, WarningKind};
 use super::file::OpenFile;
+use super::files::BagInformation;
 use super::recording::Recording;
 use super::records::{FRAME, RawRecord};
 use super::walk::{Walked, walk};
@@ -28,6 +33,14 @@ pub struct Check {
     pub messages: u64,
     /// Number of stored files.
     pub attachments: u64,
+    /// Checksums that are there, of chunks, stored files and the data.
+    pub checksums: u64,
+    /// Channels with a definition of ROS 2 that can be parsed.
+    pub ros_definitions: usize,
+    /// True if a file has no index, which the format allows.
+    pub without_index: bool,
+    /// All channels.
+    pub all_definitions: usize,
     /// Lost messages according to the ledger of the recorders; `None` without a ledger.
     pub lost: Option<u64>,
     /// Files without a ledger whose recorder was killed, or is still running.
@@ -51,6 +64,21 @@ impl Recording {
         self.warnings()
     }
 
+    fn ros_definitions(&self) -> impl Iterator<Item = (&OpenFile, &Arc<ChannelInfo>)> {
+        let all = self.files.iter().flat_map(|f| f.index.channels.values().map(move |c| (f, c)));
+        all.filter(|(_, c)| c.schema_encoding == "ros2msg")
+    }
+
+    /// The definitions that cannot be parsed, with the file of each.
+    fn definition_faults(&self) -> Vec<(PathBuf, String)> {
+        let fault = |(file, c): (&OpenFile, &Arc<ChannelInfo>)| {
+            let why = Schema::parse(&c.ros_type, &c.definition).err()?;
+            let detail = format!("{}: its definition of {} cannot be parsed: {why}", c.topic, c.ros_type);
+            Some((file.path.clone(), detail))
+        };
+        self.ros_definitions().filter_map(fault).collect()
+    }
+
     /// Reads all data: counts, and all faults: checksums, the index against the messages, log times that decrease, and the ledger
     /// against the messages.
     pub fn check(&self) -> Check {
@@ -62,13 +90,28 @@ impl Recording {
                 let there = found.by_topic.get(&topic.name).copied().unwrap_or(0);
                 if topic.recorded != there {
                     let detail = format!(
-                        "the ledger lists {} recorded messages on {}, the files hold {there}",
-                        topic.recorded, topic.name
+                        "the ledger lists {} as recorded on {}, the files hold {there}",
+                        count(topic.recorded, "message"),
+                        topic.name
                     );
                     let path = self.path().to_owned();
                     self.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
                 }
             }
+        }
+        let definitions = self.definition_faults();
+        let stated = BagInformation::of(self.path());
+        let wrong = match &stated {
+            Err(e) => Some(format!("it cannot be read: {e}")),
+            Ok(bag) => bag
+                .as_ref()
+                .and_then(|bag| bag.message_count)
+                .filter(|n| *n != found.messages)
+                .map(|n| format!("it states {}, the files hold {}", count(n, "message"), found.messages)),
+        };
+        let wrong = wrong.map(|detail| (self.path().join("metadata.yaml"), detail));
+        for (path, detail) in definitions.iter().cloned().chain(wrong) {
+            self.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
         }
         let recovered = self.recovered();
         let unaccounted = unaccounted.into_iter().filter(|path| !recovered.contains_key(path)).collect();
@@ -79,6 +122,10 @@ impl Recording {
             chunks: found.chunks,
             messages: found.messages,
             attachments: found.attachments,
+            checksums: found.checksums,
+            ros_definitions: self.ros_definitions().count() - definitions.len(),
+            without_index: self.is_without_index(),
+            all_definitions: self.all_channels().count(),
             lost: ledger.map(|l| l.iter().map(|t| t.lost).fold(0, u64::saturating_add)),
             unaccounted,
             recovered,
@@ -97,6 +144,7 @@ struct Contents {
     chunks: u64,
     messages: u64,
     attachments: u64,
+    checksums: u64,
     by_topic: BTreeMap<String, u64>,
     /// Highest log time of the files before, and of this one.
     last: u64,
@@ -117,7 +165,8 @@ impl Contents {
     fn file(&mut self, file: &OpenFile, warn: &mut dyn FnMut(Warning)) {
         let mut counts = BTreeMap::<u16, u64>::new();
         let (mut chunks, mut ended) = (BTreeSet::new(), false);
-        let end = walk(file.bytes(), &mut |item| {
+        let mut listed = Listed::default();
+        walk(file.bytes(), &mut |item| {
             match item {
                 Walked::Record(record, chunk) => {
                     self.records += 1;
@@ -125,14 +174,28 @@ impl Contents {
                         (op::MESSAGE, _) => {
                             let at = chunk.unwrap_or(record.offset);
                             self.message(file, &record, at, &mut counts, warn);
+                            listed.message(&record);
                         }
-                        (op::CHUNK, None) => _ = chunks.insert(record.offset),
+                        (op::CHUNK, None) => {
+                            chunks.insert(record.offset);
+                            listed = Listed::default();
+                        }
                         (op::DATA_END, None) => {
                             ended = true;
+                            self.checksums += u64::from(record.body.iter().any(|byte| *byte != 0));
                             data_checksum(file, &record).into_iter().for_each(&mut *warn);
                         }
-                        (opcode, None) => match record.parse() {
-                            Ok(_) => self.attachments += u64::from(opcode == op::ATTACHMENT),
+                        (_, None) => match record.parse() {
+                            Ok(Record::MessageIndex(index)) => {
+                                if let Some(detail) = listed.wrong(&index) {
+                                    warn(file.warning(record.offset, WarningKind::Inconsistent, detail));
+                                }
+                            }
+                            Ok(Record::Attachment { crc, .. }) => {
+                                self.attachments += 1;
+                                self.checksums += u64::from(crc != 0);
+                            }
+                            Ok(_) => {}
                             Err(detail) => {
                                 warn(file.warning(record.offset, WarningKind::DamagedRecord, detail))
                             }
@@ -140,16 +203,19 @@ impl Contents {
                         _ => {}
                     }
                 }
-                Walked::ChunkEnd(_) => self.chunks += 1,
+                Walked::ChunkEnd(chunk) => {
+                    self.chunks += 1;
+                    if let Ok(Record::Chunk { header, .. }) = chunk.parse() {
+                        self.checksums += u64::from(header.uncompressed_crc != 0);
+                    }
+                    if let Some(detail) = listed.outside(&chunk) {
+                        warn(file.warning(chunk.offset, WarningKind::Inconsistent, detail));
+                    }
+                }
                 Walked::Unreadable(at, kind, detail) => warn(file.warning(at, kind, detail)),
             }
             true
         });
-        // Opening a file without its proper end has already given a warning.
-        if !ended && end < file.bytes().len() && file.index.complete {
-            let detail = "no complete record starts here; later ones can be reached by the index only";
-            warn(file.warning(end, WarningKind::Inconsistent, detail.to_owned()));
-        }
         self.last = self.last.max(self.last_of_file.unwrap_or(0));
         if ended || !file.index.complete {
             against_index(file, counts, &chunks, warn);
@@ -180,6 +246,39 @@ impl Contents {
     }
 }
 
+/// The messages of the last chunk: channel, log time, and place in its content.
+#[derive(Default)]
+struct Listed(BTreeSet<(u16, u64, u64)>);
+
+impl Listed {
+    fn message(&mut self, record: &RawRecord<'_>) {
+        let key =
+            |(header, _): (MessageHeader, _)| (header.channel_id, header.log_time, record.offset as u64);
+        self.0.extend(record.message().map(key));
+    }
+
+    /// The difference between the messages and the times in the header of their chunk.
+    fn outside(&self, chunk: &RawRecord<'_>) -> Option<String> {
+        let Ok(Record::Chunk { header, .. }) = chunk.parse() else { return None };
+        let times = || self.0.iter().map(|(_, time, _)| *time);
+        let (first, last) = (times().min()?, times().max()?);
+        let stated = (header.message_start_time, header.message_end_time);
+        let text =
+            || format!("its chunk has messages from {first} to {last} ns, its header states {stated:?}");
+        (stated != (first, last)).then(text)
+    }
+
+    /// The difference between the messages of a channel and the list of them behind the chunk.
+    fn wrong(&self, index: &MessageIndex) -> Option<String> {
+        let of = |entry: &MessageIndexEntry| (index.channel_id, entry.log_time, entry.offset);
+        let listed: BTreeSet<_> = index.records.iter().map(of).collect();
+        let there = self.0.iter().filter(|(channel, ..)| *channel == index.channel_id).copied().collect();
+        let channel = index.channel_id;
+        let text = || format!("the list of messages on channel {channel} is not that of the chunk before it");
+        (!self.0.is_empty() && listed != there).then(text)
+    }
+}
+
 fn against_index(
     file: &OpenFile,
     mut counts: BTreeMap<u16, u64>,
@@ -195,8 +294,11 @@ fn against_index(
         let claimed = file.index.counts.get(channel).copied().unwrap_or(0);
         let found = counts.get(channel).copied().unwrap_or(0);
         if claimed != found {
-            let detail =
-                format!("the index counts {claimed} messages on {}, the file holds {found}", info.topic);
+            let detail = format!(
+                "the index counts {} on {}, the file holds {found}",
+                count(claimed, "message"),
+                info.topic
+            );
             warn(file.warning(file.bytes().len(), WarningKind::Inconsistent, detail));
         }
     }

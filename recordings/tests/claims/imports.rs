@@ -382,16 +382,15 @@ fn contact_forces_of_a_dump_local_are_taken() {
 #[test]
 fn units_that_give_an_implausible_density_are_noted_and_digits_of_masses_are_no_other_density() {
     let notes = |density: f64, given: Option<f64>| {
-        let mass = density * 4.0 / 3.0 * std::f64::consts::PI * 1e-3;
-        let text = format!("p,1,0.1,0,0,0.1,{mass},0,0,0,0,0,0\n");
-        let options = ImportOptions { density: given, ..in_cube(1.0) };
-        csv::packing(&text, None, &options).unwrap().notes.concat()
+        let mass = density * 4.0 / 3.0 * std::f64::consts::PI * 0.15f64.powi(3);
+        let second = DUMP.match_indices("ITEM: TIMESTEP").nth(1).unwrap().0;
+        let text = DUMP[..second].replace("diameter vx vy vz", "diameter mass");
+        let text =
+            text.replace("0.3 0 0 7", &format!("0.3 {mass}")).replace("0.3 0 0 0", &format!("0.3 {mass}"));
+        let options = ImportOptions { density: given, ..glass() };
+        lammps_dump::packings(&text, &options).unwrap()[0].notes.concat()
     };
-    assert!(
-        notes(2.5, None).contains("a density of 2.500e0 kg/m3: are its units SI?"),
-        "{}",
-        notes(2.5, None)
-    );
+    assert!(notes(2.5, None).contains("a density of 2.500e0 kg/m3: are its units SI?"));
     assert!(!notes(2500.0, None).contains("SI?"));
     assert!(!notes(2499.999, Some(2500.0)).contains("replaced"));
     assert!(notes(2600.0, Some(2500.0)).contains("replaced"));

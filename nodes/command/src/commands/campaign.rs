@@ -17,7 +17,7 @@ Started again, the command leaves finished members as they are and continues int
 Examples:
   grainlab campaign friction.toml
   grainlab campaign friction.toml --engine slurm --partition short --time 2:00:00 --chunk 10 --sbatch-option=--mem=2G
-  grainlab campaign friction.toml --engine print --time 2:00:00 > job.sh    # for sbatch; afterwards the first line gathers
+  grainlab campaign friction.toml --engine print --time 2:00:00 > job.sh    # for sbatch; afterwards `grainlab campaign friction.toml` gathers
   grainlab campaign status recordings/campaigns/friction
   grainlab campaign gather recordings/campaigns/friction";
 
@@ -99,6 +99,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             if args.options.engine == Engine::Print || exit == Exit::Interrupted {
                 return Ok(exit);
             }
+            check(&campaign, &folder, true).map_err(|e| {
+                Failure::new(
+                    e.exit,
+                    format!("a scene was changed while the campaign ran: its members are of two: {e}"),
+                )
+            })?;
             Ok(worse(exit, gather::run(&campaign, &folder)?))
         }
         (None, None) => Err(Failure::usage("name the file of a campaign")),
@@ -115,10 +121,17 @@ pub(crate) fn begin(
     options.check()?;
     let lock = if options.engine == Engine::Print { None } else { Some(Folder::create(root)?.1) };
     let folder = Folder::at(root)?;
-    for (n, member) in campaign.members.iter().enumerate() {
-        let launch = launch::Args::of_member(campaign, member, folder.run(member));
-        launch.check(n > 0).map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
-    }
+    check(campaign, &folder, false)?;
     lock.iter().try_for_each(|_| folder.plan(campaign))?;
     Ok((folder, lock))
+}
+
+/// Reads the scene of every member, with its notes unless they were printed, and compares it with the run that is there.
+fn check(campaign: &Campaign, folder: &Folder, were_printed: bool) -> Result<(), Failure> {
+    for (n, member) in campaign.members.iter().enumerate() {
+        let launch = launch::Args::of_member(campaign, member, folder.run(member));
+        let checked = launch.check(were_printed || n > 0);
+        checked.map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
+    }
+    Ok(())
 }

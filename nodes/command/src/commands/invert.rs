@@ -73,7 +73,8 @@ Examples:
   Errors of the models on packings with counted structure:
     grainlab invert --table tests/golden/ensembles/held_out.csv --judge --calibration grainlab --gamma all --by mu2
 
-A table has a header line and one state per line; lines that begin with # are comments, empty cells are unknown. Other columns
+A table has a header line and one state per line, of cells between commas, tabs, or semicolons with decimal commas; lines that begin with # are
+comments, empty cells are unknown. Other columns
 are ignored, but one whose name is almost that of an input, or begins with it, is refused, unless it begins with _. The pressure and
 at least one modulus are required; k, z and eps are for --judge:
   sample, or source and step         kept with the result
@@ -84,8 +85,9 @@ results; the other rows are processed. The exit code is that of the worst row.
 
 A file of --speeds has a row per speed: speed (m/s; empty: predicted), speed_sigma, pressure_pa, density (kg/m3) or grain_density and
 phi, mode (p, s, sv, sh) with direction (along, across or degrees from the axis) or angle_deg, or direction_x to _z and
-polarization_x to _z; and, if known, sample, diameter (m), roughness (root mean square, m), roughness_sigma, frequency (Hz), pressure_sigma_pa and
-density_sigma. Rows of one sample share its contacts and its preparation; all samples of a file are of the grains of
+polarization_x to _z; and, if known, sample, diameter (m), roughness (root mean square, m), roughness_sigma, frequency (Hz), pressure_sigma_pa,
+density_sigma and speed_shared_sigma (m/s, an error that all rows of a mode and direction share, as of the distance; speed_sigma is then the rest).
+p_pa, p_kpa, pressure_kpa and density_g_cm3 may replace pressure_pa and density; along is the axis of the sample, vertical in most. Rows of one sample share its contacts and its preparation; all samples of a file are of the grains of
 --grain-shear-modulus and --poisson, and under isotropic stress. The sigmas of pressure and density are those of an error that all rows share.
 Unknown columns are refused. With --contact hertz, a file without pressure_pa is given to the models of smooth spheres.
 
@@ -149,7 +151,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["table", "g12", "g13", "theta", "c11", "c33", "c13"])]
     speeds: Option<PathBuf>,
     /// Expected errors of z, eps and contacts by speeds that are planned, as described below, the speed that would help most, and the
-    /// errors that are wanted
+    /// errors that are wanted; takes a minute or more
     #[arg(long, value_name = "PLAN.toml", conflicts_with_all = ["table", "speeds", "g12", "g13", "theta", "c11", "c33", "c13", "pressure"])]
     plan: Option<PathBuf>,
     /// Contact law of the grains: free for --speeds, hertz for moduli [default: these]

@@ -21,7 +21,7 @@ The table has a row for each record, as CSV with a header:
   file                                       of an oscilloscope: CSV, by its path from the table; text above the numbers is skipped
   distance                                   between the tips of source and receiver, m; distance_sigma
   diameter                                   mean diameter of the grains, m; the path has 5 diameters or more
-  delay                                      travel time of the system, source and receiver face to face, s [0]; delay_sigma
+  delay                                      travel time of the system, source and receiver face to face, s [0 without the column]; delay_sigma
   lowpass, highpass, filter_order            of the receiver's electronics: Hz of -3 dB, and number of poles (Butterworth) [none, none, 1]
   polarity                                   normal or reversed: how the receiver shows a wave when both are face to face [not known]
   time_column, source_column, receiver_column  numbers of the columns in the file [1, 2, 3]
@@ -32,7 +32,9 @@ The table has a row for each record, as CSV with a header:
 Every record is picked by its first break, its peak and its cross-correlation with the source. The same is done with computed records of a
 path of known speed, with the source, loss, noise and crosstalk of the record, and drawn dispersion and near field: their mean error is
 the bias, their scatter the error. Printed are the time of long waves, which is the one that was read less the bias (us), the standard deviations (+-),
-the speed of long waves, the path over the wavelength (waves) and the arrival over the noise (S/N). Recommended is the pick with the least error.
+the speed of long waves with all its errors, the path over the wavelength (waves) and the arrival over the noise (S/N). Recommended is the pick with the least error.
+In the output, speed_shared_sigma is the error that the rows of one mode and direction share: of distance and delay, and half of the variance of
+the time, which is ringing, dispersion and near field; speed_sigma is the rest.
 
 Examples:
   Speeds, and what was picked:
@@ -117,7 +119,10 @@ fn drawn(
 
 /// A record in JSON, in SI units.
 fn value((row, picked): &Found) -> Value {
-    let one = |p: &Pick| json!({"method": p.method.word(), "time": p.time, "time_sigma": p.time_stddev, "bias": p.bias, "speed": p.speed, "speed_sigma": p.speed_stddev});
+    let one = |p: &Pick| {
+        json!({"method": p.method.word(), "time": p.time, "time_sigma": p.time_stddev, "bias": p.bias, "speed": p.speed,
+        "speed_sigma": p.speed_own_stddev(), "speed_shared_sigma": p.speed_common_stddev})
+    };
     match picked {
         Err(reason) => {
             json!({"file": row.file, "line": row.line, "refused": reason, "picks": [], "notes": []})
@@ -167,6 +172,7 @@ fn notes(row: &Row, p: &Picks) -> Vec<String> {
             "there is no noise where both signals are quiet, so the error has none",
         ),
         (p.reversed, "the wave is reversed"),
+        (!row.has_delay, "the delay of the electronics was taken as 0"),
     ];
     notes.extend(cases.into_iter().filter(|(holds, _)| *holds).map(|(_, note)| note.to_owned()));
     notes
@@ -178,12 +184,13 @@ fn speeds(all: &[Found]) -> String {
         all.first().map(|(row, _)| row.copied.iter().map(|(n, _)| n.as_str()).collect()).unwrap_or_default();
     let mut csv = CsvText::default();
     names.iter().for_each(|name| csv.cell(name));
-    csv.row(["frequency", "speed", "speed_sigma"]);
+    csv.row(["frequency", "speed", "speed_sigma", "speed_shared_sigma"]);
     for (row, picked) in all {
         let Ok(picked) = picked else { continue };
         let best = picked.picks[picked.recommended];
         row.copied.iter().for_each(|(_, value)| csv.cell(value));
-        [picked.frequency, best.speed, best.speed_stddev].iter().for_each(|value| csv.number(Some(*value)));
+        let [own, shared] = [best.speed_own_stddev(), best.speed_common_stddev];
+        [picked.frequency, best.speed, own, shared].iter().for_each(|value| csv.number(Some(*value)));
         csv.end();
     }
     csv.finish()
@@ -192,7 +199,7 @@ fn speeds(all: &[Found]) -> String {
 fn text(all: &[Found]) -> String {
     let mut table = Table::new(["record", "pick", "time/us", "+-", "bias", "m/s", "+-", "waves", "S/N"]);
     for (row, picked) in all {
-        let file = &row.file;
+        let file = &row.name;
         let Ok(picked) = picked else {
             table.row([file, "refused", "-", "-", "-", "-", "-", "-", "-"]);
             continue;
@@ -220,17 +227,20 @@ fn text(all: &[Found]) -> String {
     table.text() + star + &remarks
 }
 
-/// Reasons and notes, each with the files that it is about.
+/// Reasons and notes, each with the records that it is about.
 fn remarks(all: &[Found]) -> Vec<String> {
-    let name = |row: &Row| row.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut found: Vec<(String, Vec<String>)> = Vec::new();
     for (row, picked) in all {
         for note in picked.as_ref().map_or_else(|reason| vec![reason.clone()], |p| notes(row, p)) {
             match found.iter_mut().find(|(text, _)| *text == note) {
-                Some((_, files)) => files.push(name(row)),
-                None => found.push((note, vec![name(row)])),
+                Some((_, rows)) => rows.push(row.name.clone()),
+                None => found.push((note, vec![row.name.clone()])),
             }
         }
     }
-    found.into_iter().map(|(note, files)| format!("{note}: {}", files.join(", "))).collect()
+    let named = |rows: Vec<String>| match rows.len() {
+        n if n > 1 && n == all.len() => "all records".to_owned(),
+        _ => rows.join(", "),
+    };
+    found.into_iter().map(|(note, rows)| format!("{note}: {}", named(rows))).collect()
 }

@@ -83,7 +83,10 @@ fn standing(path: &Path, run: &Run) -> Exit {
         return Exit::DataLoss;
     }
     if run.is_disputed() {
-        say!("grainlab: {}: two processes contradict each other: the page names them", path.display());
+        say!(
+            "grainlab: {}: messages of one run contradict each other: the page names their processes",
+            path.display()
+        );
         return Exit::DataLoss;
     }
     Exit::Done

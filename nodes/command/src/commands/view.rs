@@ -6,7 +6,7 @@ use grainlab_console::{Failure, count, print, write_whole};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::{Imported, each};
 use grainlab_report::write_page;
-use grainlab_viewer::{Film, Ground, Picture, Quantity, Size, View, page};
+use grainlab_viewer::{Film, Ground, Parts, Picture, Quantity, Size, Slice, View, page};
 use std::ffi::OsStr;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -17,6 +17,7 @@ Examples:
   grainlab view recordings/runs/demo-1-1 --open          in a browser
   grainlab view packing.data -o packing.html
   grainlab view recordings/runs/s2-1-1 --png s2.png --color force --size 1600x1200
+  grainlab view recordings/runs/s2-1-1 --png cut.png --slice x=0.4 --force-chains
   grainlab view --live --open                            the run on the bus, and the next one when it ends
   grainlab view --live --port 0 --ros-args -r __ns:=/left
 
@@ -61,6 +62,12 @@ pub(crate) struct Args {
     /// carries force [default: coordination]
     #[arg(long, value_name = "QUANTITY", value_parser = Quantity::ALL.map(Quantity::name), requires = "png")]
     color: Option<String>,
+    /// Cut of the PNG along a face of the cell, at a position from 0 to 1: what is nearer is left out [default position: 0.5]
+    #[arg(long, value_name = "x|y|z[=POSITION]", requires = "png")]
+    slice: Option<Slice>,
+    /// Contacts as force chains in the PNG, between small grains
+    #[arg(long, requires = "png")]
+    force_chains: bool,
     /// Light letters on a dark ground in the PNG
     #[arg(long, requires = "png")]
     dark: bool,
@@ -107,15 +114,12 @@ fn packings(
 
 fn view(imported: &Imported) -> View {
     let packing = &imported.packing;
-    View::new(
-        packing,
-        format!(
-            "{}, {}, phi {:.4}",
-            imported.source,
-            count(packing.grains(), "grain"),
-            packing.solid_fraction()
-        ),
-    )
+    // A recording is known by its scene.
+    let source = imported.source.strip_prefix("recording, ").unwrap_or(&imported.source);
+    let (name, state) = source.split_once(", ").unwrap_or((source, ""));
+    let state = if state.is_empty() { String::new() } else { format!(", {state}") };
+    let (grains, phi) = (count(packing.grains(), "grain"), packing.solid_fraction());
+    View::new(packing, format!("{name}, {grains}{state}, phi {phi:.4}"))
 }
 
 fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
@@ -136,7 +140,7 @@ fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
         ),
     };
     let grains = last.part.clone().unwrap_or_else(|| count(last.grains(), "grain"));
-    let about = format!("{grains}, {shown}. Positions are exact to 1/65536 of what is drawn.");
+    let about = format!("{grains}, {shown}. Positions are rounded to 1/65536 of the cell.");
     let text = page(&name, &about, &name, &states).map_err(Failure::failed)?;
     let path = args.output.clone().unwrap_or_else(|| beside(file));
     write_page(&path, &text).map_err(Failure::failed)?;
@@ -148,6 +152,12 @@ fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
 }
 
 fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
+    if !png.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        return Err(Failure::usage(format!(
+            "--png {}: the picture is a PNG: name a file that ends in .png",
+            png.display()
+        )));
+    }
     let size: Size = args.size.parse().map_err(|e| Failure::usage(format!("--size: {e}")))?;
     if args.state == 0 {
         return Err(Failure::usage("--state 0: states are counted from 1, or from -1 at the end"));
@@ -176,7 +186,8 @@ fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
     let named = |quantity: &Quantity| args.color.as_deref() == Some(quantity.name());
     let colour = Quantity::ALL.into_iter().find(named).unwrap_or_default();
     let ground = if args.dark { Ground::Dark } else { Ground::Light };
-    let bytes = Picture::new(&view, colour, size, ground).png().map_err(Failure::failed)?;
+    let parts = Parts { slice: args.slice, chains: args.force_chains };
+    let bytes = Picture::of(&view, colour, size, ground, &parts).png().map_err(Failure::failed)?;
     write_whole(png, bytes).map_err(Failure::at(png))?;
     print(&format!("{}\n", png.display()))?;
     Ok(exit)

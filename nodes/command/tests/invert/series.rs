@@ -25,7 +25,7 @@ fn an_answer_says_its_contact_what_is_not_determined_and_what_is_predicted() {
     assert_eq!(code, Some(0), "{err}");
     for part in [
         "contact: free (laboratory)",
-        "note: z at these pressures under each contact law alone:",
+        "probability of each contact law",
         "validated on simulated spheres",
         "eps is not determined",
         "predicted\n",
@@ -80,6 +80,12 @@ fn wrong_units_and_missing_inputs_are_named_with_their_line() {
     };
     assert!(without("--density").contains("column density is empty"));
     assert!(without("--poisson").contains("the material of the grains is needed"));
+    let soft = ["invert", "--speeds=-", "--grain-shear-modulus=44", "--poisson=0.08", "--density=1640"];
+    let err = text(&grainlab(&soft, sand(0.0).as_bytes()).stderr);
+    assert!(err.contains("--grain-shear-modulus 44 must be from 1e5 to 1e12"), "{err}");
+    let light = "pressure_pa,mode,speed,grain_density,phi\n1e5,p,425,2.65,0.62\n1e5,s,252,,\n";
+    let (code, _, err) = run(&[], light);
+    assert!(code == Some(2) && err.contains("column grain_density: 2.65"), "{err}");
     let level = |flags: &[&str]| -> f64 {
         let (_, json, err) = run(&[flags, &["--format=json"]].concat(), &sand(0.0));
         let all: Value = serde_json::from_str(&json).unwrap_or_else(|_| panic!("{err}"));
@@ -91,6 +97,46 @@ fn wrong_units_and_missing_inputs_are_named_with_their_line() {
     );
     let (code, _, err) = run(&["--explain"], &sand(0.0));
     assert!(code == Some(2) && err.contains("--contact hertz"), "{err}");
+}
+
+#[test]
+fn semicolons_and_decimal_commas_give_the_answer_of_commas() {
+    let german = sand(0.0).replace(',', ";").replace('.', ",");
+    let both = [sand(0.0), german].map(|table| run(&["--format=csv"], &table));
+    assert_eq!(both[0].1, both[1].1);
+    assert_eq!(both[1].0, Some(0), "{}", both[1].2);
+}
+
+#[test]
+fn speeds_that_no_posterior_represents_give_a_reason_and_no_numbers() {
+    let rows: String =
+        (0..8).map(|k| format!("{}e3,{},{}\n", 200 + 20 * k, ["p", "sv"][k % 2], 50 << (k / 2))).collect();
+    let table = format!("pressure_pa,mode,speed,direction\n{}", rows.replace('\n', ",along\n"));
+    let (code, out, err) = run(&[], &table);
+    assert_eq!((code, out.as_str()), (Some(4), ""), "{err}");
+    assert!(err.contains("the sampling failed; do not use these numbers"), "{err}");
+}
+
+#[test]
+fn eps_that_speeds_do_not_determine_is_named_with_the_waves_that_are_one_modulus() {
+    let table = "pressure_pa,mode,direction,speed\n5e4,p,along,322\n5e4,sv,along,190\n5e4,sv,across,200\n4e5,p,along,524\n4e5,sv,along,320\n4e5,sv,across,333\n";
+    let (_, out, _) = run(&[], table);
+    let out = out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        out.contains("eps is not determined")
+            && out.contains("are one modulus, and their speeds differ by 4."),
+        "{out}"
+    );
+    let (_, out, _) = run(
+        &[],
+        &table
+            .replace("sv,across", "sh,across")
+            .replace(",speed", ",speed,speed_sigma")
+            .replace("\n", ",60\n")
+            .replace("speed_sigma,60", "speed_sigma"),
+    );
+    let out = out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(out.contains("eps from 50 to 400 kPa"), "{out}");
 }
 
 #[test]

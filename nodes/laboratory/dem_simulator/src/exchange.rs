@@ -81,6 +81,7 @@ impl DemSimulator {
             self.stage = Stage::Finished;
             self.done = Some(now);
             self.next_beat = now + BEAT;
+            self.samples.end(bus, self.lockstep.sequence(), self.lockstep.body())?;
             self.publish_run_state(RunState::FINISHED, "");
             self.samples.tell_time(bus, self.run.engine().time())?;
             log::info!("the loading path is done at step {}", self.run.engine().steps());
@@ -163,7 +164,7 @@ impl DemSimulator {
         if self.lockstep.waited(now) > NOTICE_PERIOD && self.notice_due(now) {
             let waited = self.lockstep.waited(now).as_secs();
             log::warn!(
-                "no answer to request {} for {waited} s: is servo_controller running?",
+                "no answer to request {} for {waited} s: is a servo running?",
                 self.lockstep.sequence()
             );
         }

@@ -76,14 +76,21 @@ impl Lockstep {
         self.busy += time;
     }
 
-    /// Receives an answer. It is accepted if sequence number and stamp are those of the current request and the rates are
-    /// allowed by it.
+    /// Receives an answer. It is accepted if its sequence number is that of the current request, and invalid with another stamp
+    /// or rates that the request does not allow.
     pub(crate) fn receive(&mut self, answer: &StrainRate) -> Result<AnswerKind, String> {
-        let asked = |q: &&Question| (q.sequence, q.stamp) == (answer.sequence, answer.header.stamp);
+        let asked = |q: &&Question| q.sequence == answer.sequence;
         let Some(question) = self.question.as_ref().filter(asked) else {
             self.counts.stale += 1;
             return Ok(AnswerKind::Stale);
         };
+        let [own, of_answer] =
+            [question.stamp, answer.header.stamp].map(|t| format!("{}.{:09} s", t.sec, t.nanosec));
+        if own != of_answer {
+            return Err(format!(
+                "its stamp is {of_answer}, that of its request {own}: an answer has the header of its request"
+            ));
+        }
         if let Some(known) = self.answer {
             let same = known.map(f64::to_bits) == answer.rate.map(f64::to_bits);
             let (count, kind) = match same {
@@ -143,6 +150,11 @@ impl Lockstep {
         now.saturating_sub(self.asked)
     }
 
+    /// The current request.
+    pub(crate) fn body(&self) -> &[u8] {
+        &self.body
+    }
+
     /// Sequence number of the current request.
     pub(crate) fn sequence(&self) -> u64 {
         self.question.map_or(0, |q| q.sequence)
@@ -178,14 +190,15 @@ mod tests {
     #[test]
     fn only_the_answer_to_this_very_request_passes() {
         let mut lockstep = lockstep();
-        for stale in [answer(6, 6), answer(8, 8), answer(7, 6)] {
+        for stale in [answer(6, 6), answer(8, 8)] {
             assert_eq!(lockstep.receive(&stale), Ok(AnswerKind::Stale));
             assert_eq!(lockstep.pass(MS), None, "{stale:?}");
         }
+        assert!(lockstep.receive(&answer(7, 6)).unwrap_err().contains("the header of its request"));
         assert_eq!(lockstep.receive(&answer(7, 7)), Ok(AnswerKind::New));
         assert_eq!(lockstep.pass(MS), Some([7.0; 6]));
         assert_eq!(lockstep.receive(&answer(7, 7)), Ok(AnswerKind::Stale));
-        assert_eq!((lockstep.counts.stale, lockstep.counts.exchanges), (4, 1));
+        assert_eq!((lockstep.counts.stale, lockstep.counts.exchanges), (3, 1));
     }
 
     #[test]

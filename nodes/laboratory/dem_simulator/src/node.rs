@@ -216,6 +216,7 @@ impl DemSimulator {
     /// Publishes the state as the last packing, and waits until its readers have it. The error is why they may not.
     fn save(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<(), String> {
         let published = self.publish_packing().map_err(|e| e.to_string());
+        self.samples.end(bus, self.lockstep.sequence(), self.lockstep.body()).map_err(|e| e.to_string())?;
         self.publish_run_state(RunState::FAILED, reason);
         let delivered = self.deliver_all(bus);
         self.flush_last_messages(bus);

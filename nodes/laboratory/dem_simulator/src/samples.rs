@@ -56,6 +56,14 @@ impl Samples {
         self.tell_time(bus, request.time)
     }
 
+    /// Publishes the last request of a run with its sequence number, unless it was a sample: viewers end with its values.
+    pub(crate) fn end(&mut self, bus: &mut dyn Bus, sequence: u64, body: &[u8]) -> Result<(), BusError> {
+        if self.due.0.is_none_or(|(last, _)| last == sequence) {
+            return Ok(());
+        }
+        tolerate_full(bus.publish(self.publisher.id(), body))
+    }
+
     /// Publishes the state, if it is due and somebody reads it; a large one, and that of another program, is left out.
     /// It is read alone: no result of the run depends on it.
     pub(crate) fn offer_state(&mut self, bus: &mut dyn Bus, run: &Simulation) -> Result<(), BusError> {

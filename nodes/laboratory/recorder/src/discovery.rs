@@ -63,6 +63,8 @@ pub(crate) struct Finder {
     /// Topics whose types nothing more is said about: found, or said to have more than one type, or another one than that of
     /// the contract.
     settled: BTreeSet<String>,
+    /// Topics that are not recorded, as their publishers have different types.
+    mixed: BTreeSet<String>,
     /// Topics that are recorded because a publisher was found.
     found: BTreeSet<String>,
 }
@@ -100,6 +102,7 @@ impl Finder {
             if now.saturating_sub(*self.seen.entry(name.clone()).or_insert(now)) >= LOOK {
                 self.seen.remove(&name);
                 self.settled.insert(name.clone());
+                self.mixed.remove(&name);
                 let of_topic = self.found(&name, &offers);
                 self.found.extend(of_topic.iter().map(|_| name.clone()));
                 found.extend(of_topic);
@@ -108,8 +111,13 @@ impl Finder {
         found
     }
 
-    /// Says of which named topics nothing was published, and of which found ones nothing was received.
-    pub(crate) fn report_missing(&self, known: &BTreeSet<String>, tallies: &[TopicTally]) {
+    /// Says of which named topics nothing was published, and of which found ones nothing was received. True if topics are missing for
+    /// the types of their publishers.
+    pub(crate) fn report_missing(&self, known: &BTreeSet<String>, tallies: &[TopicTally]) -> bool {
+        let mixed: Vec<&String> = self.mixed.iter().filter(|name| !known.contains(*name)).collect();
+        for name in &mixed {
+            log::error!("{name} is not recorded: its publishers have different types");
+        }
         for name in self.silent(tallies) {
             log::warn!(
                 "{name}: nothing was received from its publishers: they sent nothing, or their QoS, partition or data \
@@ -119,6 +127,7 @@ impl Finder {
         for name in self.missing(known) {
             log::warn!("/{name} is not recorded: no process published it");
         }
+        !mixed.is_empty()
     }
 
     /// The topics that were found, and are not in the recording.
@@ -129,7 +138,10 @@ impl Finder {
 
     /// The named topics that were not found. Those of the contract may have another name, with namespace and remaps.
     fn missing(&self, known: &BTreeSet<String>) -> Vec<&str> {
-        let absent = |name: &&str| !known.contains(&format!("/{name}")) && Topic::by_name(name).is_none();
+        let absent = |name: &&str| {
+            let whole = format!("/{name}");
+            !known.contains(&whole) && !self.mixed.contains(&whole) && Topic::by_name(name).is_none()
+        };
         self.settings.names.topics.iter().map(|name| name.trim_start_matches('/')).filter(absent).collect()
     }
 
@@ -165,6 +177,7 @@ impl Finder {
             let list = types.into_iter().collect::<Vec<_>>().join(" and ");
             log::error!("{name} is not recorded while its writers have different types: {list}");
         }
+        self.mixed.insert(name.to_owned());
         false
     }
 

@@ -415,10 +415,9 @@ impl Node for Recorder {
             writer.set_metadata("run", &Guid::of_participant(run).to_string()[..24]);
         }
         let finished = writer.finish().map_err(|e| lost(&e))?;
-        if let Some(finder) = &self.finder {
-            finder.report_missing(&self.names, &finished.ledger.tallies());
-        }
-        let (before, after) = losses(&finished.ledger.tallies());
+        let tallies = finished.ledger.tallies();
+        let has_mixed_types = self.finder.as_ref().is_some_and(|f| f.report_missing(&self.names, &tallies));
+        let (before, after) = losses(&tallies);
         *self.result.borrow_mut() = Some(finished);
         if before > 0 && !self.whole_run {
             log::info!("{before} messages were published before the recording began");
@@ -445,10 +444,13 @@ impl Node for Recorder {
         if self.disputes.of_scene {
             return Ok(Exit::Failure);
         }
+        if has_mixed_types {
+            return Ok(Exit::DataLoss);
+        }
         if self.disputes.of_processes || self.contradictions > 0 {
             log::error!(
-                "two processes wrote results of one run: it is unknown which of them is right. Start the processes of a run \
-                 with a run of their own (GRAINLAB_RUN=any_name for each of them)"
+                "messages of one run contradict each other; the lines above name their processes. If these are two, start each run \
+                 with a name of its own (GRAINLAB_RUN); if it is one, it sent two different messages in one place"
             );
             return Ok(Exit::Failure);
         }

@@ -250,7 +250,7 @@ fn pace(s: &Summary) -> String {
     let since = if s.launched.resumed { " since it was resumed" } else { "" };
     let mut text = format!("{:.1} s{since}", s.launched.wall_seconds);
     if let Some(rate) = s.particle_steps_per_second.filter(|rate| *rate > 0.0) {
-        text += &format!(", {:.1} M particle-steps/s", rate / 1e6);
+        text += &format!(", {:.1} M particle-steps per second of computing", rate / 1e6);
     }
     if let Some(n) = s.launched.exchanges {
         let in_all = if s.launched.resumed { " in all" } else { "" };

@@ -55,12 +55,12 @@ enum Format {
 /// # Errors
 /// If the recording cannot be read, a topic does not exist, or stdout fails.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let (recording, selection) = args.excerpt.open(&args.messages)?;
+    let (recording, selection, wanted) = args.excerpt.open(&args.messages)?;
     let messages = recording.messages(&selection).map_err(Failure::failed)?;
     let mut decoders = Decoders::default();
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
     let mut printed = 0;
-    for message in messages {
+    for message in messages.filter(|m| wanted.as_ref().is_none_or(|w| w.take(&m.channel))) {
         if args.count.is_some_and(|most| printed >= most) {
             break;
         }

@@ -100,11 +100,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::usage("--pictures are added to recordings: leave --format out, or choose mcap"));
     }
     args.form.refuse_given()?;
-    let (recording, selection) = args.excerpt.open(&args.messages)?;
+    let (recording, selection, wanted) = args.excerpt.open(&args.messages)?;
     let new = NewPath::begin(&args.output).map_err(Failure::usage)?;
     std::fs::create_dir(new.partial()).map_err(Failure::at(&args.output))?;
     let mut tables =
-        Tables::new(&args.output, new.partial(), format, args.array_columns, args.explode.as_deref());
+        Tables::new(&args.output, new.partial(), format, args.array_columns, args.explode.as_deref(), wanted);
     tables.convert(&recording, &selection)?;
     let (lines, decoders) = tables.finish()?;
     new.finish().map_err(Failure::at(&args.output))?;

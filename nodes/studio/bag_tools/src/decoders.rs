@@ -1,7 +1,7 @@
 //! Messages of a recording, decoded by the schemas in it.
 
 use grainlab_any_message::{Message, Schema};
-use grainlab_console::say;
+use grainlab_console::{count, say};
 use grainlab_msgs::Exit;
 use grainlab_recordings::ChannelInfo;
 use std::collections::BTreeMap;
@@ -14,7 +14,12 @@ pub(crate) struct Decoders {
     known: BTreeMap<usize, Known>,
     /// By topic: the first error, and how many messages are left out.
     failures: BTreeMap<String, (String, u64)>,
+    /// By topic: texts that are not UTF-8.
+    invalid: BTreeMap<String, u64>,
 }
+
+/// First bytes of Zstandard.
+const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 struct Known {
     _channel: Arc<ChannelInfo>,
@@ -44,10 +49,19 @@ impl Decoders {
             .entry(Arc::as_ptr(channel).addr())
             .or_insert_with(|| Known { _channel: channel.clone(), schema: schema_of(channel) });
         let decoded = match &known.schema {
-            Ok(schema) => schema.decode(&message.payload).map_err(|e| e.to_string()),
+            Ok(_) if message.payload.starts_with(&ZSTD) => {
+                Err("its messages are compressed one by one: give the directory with the metadata.yaml that says so, or \
+                     write it without compression (`ros2 bag convert`)"
+                    .to_owned())
+            }
+            Ok(schema) => schema.decode_counted(&message.payload).map_err(|e| e.to_string()),
             Err(problem) => Err(problem.clone()),
         };
-        decoded.inspect_err(|problem| self.fail(&channel.topic, problem)).ok()
+        let (decoded, invalid) = decoded.inspect_err(|problem| self.fail(&channel.topic, problem)).ok()?;
+        if invalid > 0 {
+            *self.invalid.entry(channel.topic.clone()).or_default() += invalid;
+        }
+        Some(decoded)
     }
 
     fn fail(&mut self, topic: &str, problem: &str) {
@@ -57,9 +71,19 @@ impl Decoders {
 
     /// Prints what was left out; exit 3 if there is anything.
     pub(crate) fn losses(&self) -> Exit {
-        for (topic, (problem, count)) in &self.failures {
-            say!("grainlab: {topic}: {count} messages are left out: {problem}");
+        for (topic, (problem, number)) in &self.failures {
+            let left_out = match number {
+                1 => "1 message is left out".to_owned(),
+                _ => format!("{number} messages are left out; the first"),
+            };
+            say!("grainlab: {topic}: {left_out}: {problem}");
         }
-        if self.failures.is_empty() { Exit::Done } else { Exit::DataLoss }
+        for (topic, texts) in &self.invalid {
+            let texts = count(*texts, "text");
+            say!(
+                "grainlab: {topic}: {texts} not in UTF-8: U+FFFD stands for the bytes that are no characters"
+            );
+        }
+        if self.failures.is_empty() && self.invalid.is_empty() { Exit::Done } else { Exit::DataLoss }
     }
 }

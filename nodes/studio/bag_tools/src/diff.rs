@@ -19,7 +19,7 @@ Examples:
   grainlab bag diff recordings/runs/demo-1-1 recordings/runs/demo-1-2
   grainlab bag diff camera.mcap copy.mcap --times
 
-The messages of each topic are compared byte by byte, in their order, without padding at their end, and so are the definitions of their
+The messages of each topic are compared byte by byte, in their order, without padding at the end of messages in CDR, and so are the definitions of their
 types; of the first that differs the first field that does is shown. Of a reproducible topic of the laboratory, repeats of a message (of a
 restarted node) are left out; its topics that depend on the clock are compared with --all, or if topics are named. Exit 1 if anything differs, 3 if a part could not be read.";
 
@@ -68,9 +68,9 @@ struct Compared {
 /// If a recording cannot be read, or has no topic that is asked for.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let both = [args.messages.open(&args.first)?.0, args.messages.open(&args.second)?.0];
-    args.topics.check(&both)?;
+    let topics = args.topics.check(&both)?;
     let channels = both.each_ref().map(|recording| {
-        let wanted = recording.channels().into_iter().filter(|c| args.topics.take(c));
+        let wanted = recording.channels().into_iter().filter(|c| topics.take(c));
         wanted.map(|c| (c.topic.clone(), c)).collect::<BTreeMap<String, Arc<ChannelInfo>>>()
     });
     let mut rows = Vec::new();
@@ -79,6 +79,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         rows.push(compared(args, &both, name, channels.each_ref().map(|all| all.get(name)))?);
     }
     args.format.print(&rows, || table(&rows).csv(), || text(&rows))?;
+    // A stored file that cannot be read is not compared, and no reason to call both complete.
+    both.iter().for_each(|recording| drop(recording.stored_files()));
     let differs = |r: &Compared| {
         !["same", "not compared", "no messages"].contains(&r.payload)
             || args.times && r.payload == "same" && !r.same_times
@@ -119,7 +121,7 @@ fn compared(
             (None, None) => break,
             (Some(a), Some(b)) => {
                 row.same_times &= a.publish_time == b.publish_time;
-                if !is_same(&a.payload, &b.payload) && row.first_difference.is_none() {
+                if !is_same(&a, &b) && row.first_difference.is_none() {
                     row.first_difference =
                         Some(format!("message {}: {}", row.messages[0], difference(&a, &b)));
                 }
@@ -132,8 +134,10 @@ fn compared(
         _ if not_compared => "not compared",
         [None, _] | [_, None] if row.messages == [0, 0] => "no messages",
         [Some(a), Some(b)] if !a.is_read_as(b) => {
-            row.first_difference =
-                Some(format!("its definition as {} and as {} differs", a.ros_type, b.ros_type));
+            row.first_difference = Some(match a.differs_as(b) {
+                Some((what, a, b)) => format!("its {what} is {a} in A and {b} in B"),
+                None => format!("its definition of {:?} differs", a.ros_type),
+            });
             "differ"
         }
         [Some(_), None] => "only in A",
@@ -145,10 +149,14 @@ fn compared(
     Ok(row)
 }
 
-/// True for the same bytes; RTPS fills up the last word of what was sent over DDS.
-fn is_same(a: &[u8], b: &[u8]) -> bool {
-    let (short, long) = if a.len() < b.len() { (a, b) } else { (b, a) };
-    long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.len() < 4 && long.len() % 4 == 0)
+/// True for the same bytes; RTPS fills up the last word of what was sent over DDS, so that the shorter message must be complete.
+fn is_same(a: &Message, b: &Message) -> bool {
+    let (short, long) = if a.payload.len() < b.payload.len() { (a, b) } else { (b, a) };
+    long.payload.strip_prefix(&short.payload[..]).is_some_and(|rest| {
+        let is_padding = rest.len() < 4 && long.payload.len() % 4 == 0;
+        let decodes = || schema_of(&short.channel).is_ok_and(|schema| schema.decode(&short.payload).is_ok());
+        rest.is_empty() || is_padding && decodes()
+    })
 }
 
 /// The first field of two messages that differs, or the first byte.
@@ -194,4 +202,45 @@ fn table(rows: &[Compared]) -> Table {
 fn text(rows: &[Compared]) -> String {
     let first = rows.iter().filter_map(|r| Some(format!("{}: {}\n", r.topic, r.first_difference.as_ref()?)));
     table(rows).text() + &first.collect::<String>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mcap::records::MessageHeader;
+
+    /// The first message of a recording with this one only.
+    fn message(encoding: &str, schema: &[u8], payload: &[u8]) -> Message {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let mut writer = mcap::Writer::new(file.reopen().unwrap()).unwrap();
+        let schema =
+            if schema.is_empty() { 0 } else { writer.add_schema("my/msg/X", "ros2msg", schema).unwrap() };
+        let channel_id = writer.add_channel(schema, "/t", encoding, &BTreeMap::new()).unwrap();
+        let header = MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
+        writer.write_to_known_channel(&header, payload).unwrap();
+        writer.finish().unwrap();
+        let recording = Recording::open(file.path()).unwrap();
+        recording.messages(&Selection::default()).unwrap().next().unwrap()
+    }
+
+    #[test]
+    fn padding_is_ignored_only_behind_a_complete_message_in_cdr_of_known_type() {
+        let same = |encoding, schema: &[u8], a, b| {
+            let (a, b) = (message(encoding, schema, a), message(encoding, schema, b));
+            assert!(is_same(&a, &a) && is_same(&a, &b) == is_same(&b, &a));
+            is_same(&a, &b)
+        };
+        assert!(same("cdr", b"uint8 x\n", b"\0\x01\0\0\x01", b"\0\x01\0\0\x01\0\0\0"));
+        assert!(!same("cdr", b"uint8[3] x\n", b"\0\x01\0\0\x01", b"\0\x01\0\0\x01\x02\0\0"));
+        assert!(!same("cdr", b"", b"\0\x01\0\0\x01", b"\0\x01\0\0\x01\x02\x03\x04"));
+        assert!(!same("json", b"", b"123", b"1234"));
+        assert!(!same("protobuf", b"", b"\x08\x01", b"\x08\x01\x10\x02"));
+    }
+
+    #[test]
+    fn channels_of_other_encodings_are_named_by_them() {
+        let [json, cbor] = ["json", "cbor"].map(|encoding| message(encoding, b"", b"123").channel);
+        assert_eq!(json.differs_as(&cbor), Some(("encoding", "json", "cbor")));
+        assert_eq!(json.differs_as(&json), None);
+    }
 }

@@ -20,13 +20,16 @@ pub struct Excerpt {
 }
 
 impl Excerpt {
-    /// Opens the recording, and selects its messages.
-    pub(crate) fn open(&self, messages: &MessagePath) -> Result<(Recording, Selection), Failure> {
+    /// Opens the recording, and selects its messages; the last is the channels wanted, where not all of a topic are.
+    pub(crate) fn open(
+        &self,
+        messages: &MessagePath,
+    ) -> Result<(Recording, Selection, Option<Topics>), Failure> {
         let (recording, _) = messages.open(&self.path)?;
-        self.topics.check(from_ref(&recording))?;
+        let found = self.topics.check(from_ref(&recording))?;
         let (start, end) = self.interval.of(from_ref(&recording))?;
-        let wanted = recording.channels().into_iter().filter(|c| self.topics.take(c));
+        let wanted = recording.all_channels().filter(|c| found.take(c));
         let topics = Some(wanted.map(|c| c.topic.clone()).collect());
-        Ok((recording, Selection { topics, start, end }))
+        Ok((recording, Selection { topics, start, end }, found.has_types().then_some(found)))
     }
 }

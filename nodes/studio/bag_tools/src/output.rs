@@ -99,13 +99,13 @@ impl Job<'_> {
             None => Recording::open(path).map_err(Failure::failed),
         };
         let recordings = self.paths.iter().map(|path| opened(path)).collect::<Result<Vec<_>, _>>()?;
-        self.topics.check(&recordings)?;
+        let topics = self.topics.check(&recordings)?;
         let (start, end) = self.interval.of(&recordings)?;
         let ranges = recordings.iter().filter_map(Recording::time_range);
         let range = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         let progress =
             Progress::new(range.map(|(a, b)| (start.unwrap_or(a).max(a), end.unwrap_or(b).min(b))));
-        let take = |c: &ChannelInfo| self.topics.take(c);
+        let take = |c: &ChannelInfo| topics.take(c);
         let select =
             Select { topic: &take, start, end, latched: self.latched, progress: &|time| progress.at(time) };
         let copied = copy::copy(&recordings, &select, output, &options)?;

@@ -31,9 +31,19 @@ impl Topics {
         self.names.take(&channel.topic, of_type, true)
     }
 
-    /// An error if a name or type is in none of the recordings, or nothing is taken.
-    pub(crate) fn check(&self, recordings: &[Recording]) -> Result<(), Failure> {
-        let channels: Vec<_> = recordings.iter().flat_map(Recording::channels).collect();
+    /// True if a topic of several types may be wanted in part.
+    pub(crate) fn has_types(&self) -> bool {
+        !self.types.is_empty()
+    }
+
+    /// The topics of these recordings that are wanted.
+    ///
+    /// # Errors
+    /// If a name or type is in none of the recordings, or nothing is taken.
+    pub(crate) fn check(&self, recordings: &[Recording]) -> Result<Self, Failure> {
+        let channels: Vec<_> = recordings.iter().flat_map(Recording::all_channels).collect();
+        let names = self.names.among(&channels.iter().map(|c| c.topic.as_str()).collect());
+        let found = Self { names, types: self.types.clone() };
         let known = || {
             let mut names: Vec<&str> = channels.iter().map(|c| c.topic.as_str()).collect();
             names.sort_unstable();
@@ -45,8 +55,8 @@ impl Topics {
                 return Err(Failure::usage(format!("no topic {name} in the recording; it has: {}", known())));
             }
         }
-        if channels.is_empty() || channels.iter().any(|c| self.take(c)) {
-            return Ok(());
+        if channels.is_empty() || channels.iter().any(|c| found.take(c)) {
+            return Ok(found);
         }
         Err(Failure::usage(format!("no topic is left; the recording has: {}", known())))
     }

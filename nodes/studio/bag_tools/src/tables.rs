@@ -3,6 +3,7 @@
 use crate::cat;
 use crate::decoders::{Decoders, schema_of};
 use crate::progress::Progress;
+use crate::selection::Topics;
 use crate::table::{Columns, CsvTable, MOST_COLUMNS, Shape, time_columns};
 use grainlab_any_message::{Exploded, Length, Message as Decoded, MessageType, Schema, Shown, Value};
 use grainlab_console::{Failure, count};
@@ -46,6 +47,8 @@ pub(crate) struct Tables<'a> {
     widest: usize,
     /// Array with a row for each of its values.
     explode: Option<&'a str>,
+    /// Channels wanted, where not all of a topic are.
+    wanted: Option<Topics>,
     list: Vec<Table>,
     /// Place in the list by the address of the channel, which stays its own while it is in here.
     places: BTreeMap<usize, (Arc<ChannelInfo>, Option<usize>)>,
@@ -105,9 +108,10 @@ impl<'a> Tables<'a> {
         format: TableFormat,
         widest: usize,
         explode: Option<&'a str>,
+        wanted: Option<Topics>,
     ) -> Self {
         let (list, places, decoders) = (Vec::new(), BTreeMap::new(), Decoders::default());
-        Self { name, folder, format, widest, explode, list, places, decoders }
+        Self { name, folder, format, widest, explode, wanted, list, places, decoders }
     }
 
     /// Writes all selected messages. For CSV the recording is read twice: first for the lengths of
@@ -133,6 +137,9 @@ impl<'a> Tables<'a> {
         self.list.iter_mut().for_each(|table| table.rows = 0);
         for message in recording.messages(selection).map_err(Failure::failed)? {
             progress.at(message.log_time);
+            if self.wanted.as_ref().is_some_and(|w| !w.take(&message.channel)) {
+                continue;
+            }
             let decoded = self.decoders.decode(&message);
             let (Some(place), Some(decoded)) = (self.place(&message)?, decoded) else { continue };
             let table = &mut self.list[place];

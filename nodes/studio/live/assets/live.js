@@ -48,6 +48,9 @@
     source.addEventListener("packings", (e) => { wanted = Number(e.data); fetchPackings(); });
     source.addEventListener("error", () => {
       lost.hidden = false;
+      // Everything is sent anew when the server is back.
+      document.querySelectorAll("#heading .verdict.run").forEach((e) => { e.className = "verdict"; e.textContent = "It was running"; });
+      document.querySelectorAll("#nodes .here").forEach((e) => { e.className = "gone"; e.textContent = "not known"; });
       // A browser gives up after some failures.
       if (source.readyState === EventSource.CLOSED) setTimeout(connect, 2000);
     });

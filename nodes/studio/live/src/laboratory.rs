@@ -219,4 +219,4 @@ impl Laboratory {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

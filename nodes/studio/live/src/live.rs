@@ -8,6 +8,7 @@ use crate::snapshot::{Pictures, Snapshot};
 use crate::status::waiting;
 use grainlab_console::{Failure, Signals, print};
 use grainlab_node_kit::{Exit, Logger, Names, OffTheBus, RosArgs};
+use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 /// Time between two snapshots.
@@ -93,8 +94,10 @@ struct Drawn {
     began: Option<Duration>,
     /// Snapshots so far.
     count: u64,
-    /// Number of values in the curves.
-    values: usize,
+    /// Number of values in the curves, and step of the last measured packing.
+    values: (usize, Option<u64>),
+    /// Plots of small shear components that were shown, and stay.
+    plots: BTreeSet<&'static str>,
     /// Number of packings in the pictures.
     pictured: u64,
     /// Version of the pictures, of all runs.
@@ -138,7 +141,7 @@ impl Show {
             self.snapshot.set("phases", "".into());
         }
         let parts = &mut self.snapshot;
-        parts.set("stage", "run".into());
+        parts.set("stage", if known.end.is_some() { "run over" } else { "run" }.into());
         parts.set("heading", known.heading(self.domain, others, now));
         parts.set("cards", known.cards());
         parts.set("targets", known.targets());
@@ -147,12 +150,13 @@ impl Show {
         if let Some(follower) = follower {
             parts.set("nodes", known.nodes(follower.peers(), follower.bus_now()));
         }
-        let values = known.timeline.count();
-        if values != self.drawn.values && (self.drawn.count.is_multiple_of(CURVES) || self.drawn.values == 0)
+        let values = (known.timeline.count(), known.report.as_ref().map(|r| r.step));
+        if values != self.drawn.values
+            && (self.drawn.count.is_multiple_of(CURVES) || self.drawn.values.0 == 0)
         {
             self.drawn.values = values;
             parts.set("phases", known.timeline.phase_list());
-            parts.set("curves", known.timeline.drawings());
+            parts.set("curves", known.timeline.drawings(&mut self.drawn.plots));
         }
         if self.drawn.pictured != known.pictured {
             self.drawn.pictured = known.pictured;
@@ -163,5 +167,37 @@ impl Show {
                 json: grainlab_viewer::states(&known.scene, &views).into(),
             });
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::tests::{pair, request};
+    use grainlab_msgs::{boundary::packing_report_message, msg};
+
+    #[test]
+    fn a_packing_that_is_measured_after_the_end_is_in_the_plots_and_the_stage_says_that_the_run_is_over() {
+        let mut show = Show {
+            server: Server::listen(Some(0)).unwrap(),
+            choice: Choice::from_env().unwrap(),
+            clock: Instant::now(),
+            domain: 0,
+            snapshot: Snapshot::default(),
+            drawn: Drawn::default(),
+        };
+        let mut lab = Laboratory::new(None, Duration::ZERO);
+        lab.request(&request(1), Duration::ZERO);
+        lab.run_state(
+            &msg::RunState { state: msg::RunState::FINISHED, ..Default::default() },
+            Duration::ZERO,
+        );
+        show.publish(Some(&lab), None);
+        let curves = |show: &Show| show.snapshot.parts["curves"].to_string();
+        assert!(&*show.snapshot.parts["stage"] == "run over" && !curves(&show).contains("data-name=\"z\""));
+        let measured = grainlab_micromechanics::analyze(&pair(), &Default::default()).unwrap();
+        lab.packing_report(&packing_report_message(Default::default(), &measured.report).unwrap());
+        (0..CURVES).for_each(|_| show.publish(Some(&lab), None));
+        assert!(curves(&show).contains("data-name=\"z\""), "{}", lab.refused);
     }
 }

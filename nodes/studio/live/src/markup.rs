@@ -11,23 +11,23 @@ use grainlab_results::findings::{Findings, Judged, recommended};
 use grainlab_results::read_back::InvertedPacking;
 use grainlab_servo::ServoRequest;
 
-const KPA: f64 = 1e-3;
+pub(crate) const KPA: f64 = 1e-3;
 
 /// A number with three digits; a power of ten only below 1/10,000.
-fn three_digits(value: f64) -> String {
+pub(crate) fn three_digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
     let size = value.abs().log10().floor() as i32;
     if size >= -4 {
-        return format!("{value:.*}", usize::try_from(2 - size).unwrap_or(0));
+        return format!("{value:.*}", usize::try_from(2 - size).unwrap_or(0)).replace('-', "−");
     }
     let raised = |c: char| match c {
         '-' => '⁻',
         digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
     };
     let power: String = size.to_string().chars().map(raised).collect();
-    format!("{:.1}·10{power}", value / 10f64.powi(size))
+    format!("{:.1}·10{power}", value / 10f64.powi(size)).replace('-', "−")
 }
 
 /// A large number in thousands or millions.
@@ -58,7 +58,7 @@ impl Laboratory {
             .filter(|(p, _)| *p > 0.0);
         let ratio = ratio.map_or_else(String::new, |(p, q)| format!("q/p {}", three_digits(q / p)));
         let target = request.and_then(target_pressure);
-        let target = target.map_or_else(String::new, |t| format!("target {:.2} kPa · ", t * KPA));
+        let target = target.map_or_else(String::new, |t| format!("target {} kPa · ", three_digits(t * KPA)));
         let unbalanced = request.map_or_else(|| "–".to_owned(), |r| three_digits(r.unbalanced));
         let pressure = request.map_or_else(|| "–".to_owned(), |r| three_digits(r.input.stress.mean() * KPA));
         let steps = self.steps.per_second().filter(|_| self.end.is_none());
@@ -166,6 +166,6 @@ mod tests {
     #[test]
     fn numbers_are_written_as_people_write_them() {
         let values = [0.0, 0.96, -4.0, 2345.6, 1.5e-4, -9.62e-5, 2e-12].map(three_digits);
-        assert_eq!(values, ["0", "0.960", "-4.00", "2346", "0.000150", "-9.6·10⁻⁵", "2.0·10⁻¹²"]);
+        assert_eq!(values, ["0", "0.960", "−4.00", "2346", "0.000150", "−9.6·10⁻⁵", "2.0·10⁻¹²"]);
     }
 }

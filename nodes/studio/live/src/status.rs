@@ -1,6 +1,7 @@
 //! Heading, progress and processes of a run as parts of the page.
 
 use crate::laboratory::{End, Laboratory};
+use crate::markup::{KPA, three_digits};
 use grainlab_console::{count, duration};
 use grainlab_node_kit::{Level, Liveliness, Peer, run_of};
 use grainlab_page::{Cell, Html, heading, html, paragraph, table, verdict};
@@ -63,7 +64,9 @@ impl Laboratory {
         }
         match report.share {
             Some(share) => {
-                let left = self.pace.time_until(1.0).map(|s| format!(", about {} left", duration(s)));
+                let left = self.pace.time_until(1.0).map(|s| {
+                    if s < 1.0 { ", almost done".to_owned() } else { format!(", about {} left", duration(s)) }
+                });
                 format!(": {:.0} %{}", (100.0 * share).floor(), left.unwrap_or_default())
             }
             None if report.unmet.is_empty() => String::new(),
@@ -76,11 +79,11 @@ impl Laboratory {
         let percent = 100.0 * state.progress;
         let note = self.latest.as_ref().map(|r| {
             let (p, grains) = (
-                r.input.stress.mean() / 1e3,
+                three_digits(r.input.stress.mean() * KPA),
                 self.grains.map_or_else(String::new, |n| format!("{}: ", count(n, "grain"))),
             );
             let now = format!(
-                "{grains}pressure {p:.2} kPa, solid fraction {:.4}, {:.2} contacts per grain.",
+                "{grains}pressure {p} kPa, solid fraction {:.4}, {:.2} contacts per grain.",
                 r.solid_fraction, r.coordination
             );
             paragraph(now)

@@ -16,10 +16,8 @@
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   };
   window.grainlabPage = { isDark, save };
-  // A saved plot is that on paper: the light colours are resolved, because the style of the page does not go with it.
+  // A saved plot has the colours that the page shows: they are resolved, because the style of the page does not go with it.
   const standalone = (svg) => {
-    const before = root.dataset.theme;
-    root.dataset.theme = "light";
     const copy = svg.cloneNode(true), from = [svg, ...svg.querySelectorAll("*")], to = [copy, ...copy.querySelectorAll("*")];
     from.forEach((element, n) => {
       const style = getComputedStyle(element);
@@ -28,7 +26,6 @@
       }
       to[n].removeAttribute("class");
     });
-    if (before) root.dataset.theme = before; else delete root.dataset.theme;
     copy.querySelectorAll("clipPath rect").forEach((rect) => rect.removeAttribute("fill"));
     return copy;
   };
@@ -38,6 +35,8 @@
     const boxes = svgs.map((svg) => svg.viewBox.baseVal), across = Math.min(svgs.length, svgs.length === 3 ? 3 : 2);
     const unit = Math.max(...boxes.map((b) => b.width)), row = Math.max(...boxes.map((b) => b.height)) + gap;
     const whole = document.createElementNS("http://www.w3.org/2000/svg", "svg"), width = across * (unit + gap) - gap;
+    const { color, backgroundColor } = getComputedStyle(document.body);
+    const paper = whole.appendChild(document.createElementNS("http://www.w3.org/2000/svg", "rect"));
     svgs.forEach((svg, n) => {
       const copy = standalone(svg), at = { x: (n % across) * (unit + gap), y: Math.floor(n / across) * row, width: boxes[n].width, height: boxes[n].height };
       for (const [key, value] of Object.entries(at)) copy.setAttribute(key, value);
@@ -52,11 +51,12 @@
     let y = Math.ceil(svgs.length / across) * row + 4;
     for (const line of lines) {
       const text = document.createElementNS("http://www.w3.org/2000/svg", "text");
-      for (const [key, value] of Object.entries({ x: 8, y, "font-size": 11, "font-family": "sans-serif" })) text.setAttribute(key, value);
+      for (const [key, value] of Object.entries({ x: 8, y, fill: color, "font-size": 11, "font-family": "sans-serif" })) text.setAttribute(key, value);
       text.textContent = line.trim();
       whole.append(text);
       y += 15;
     }
+    for (const [key, value] of Object.entries({ width, height: y, fill: backgroundColor })) paper.setAttribute(key, value);
     whole.setAttribute("viewBox", `0 0 ${width} ${y}`);
     whole.setAttribute("width", across === 1 ? "85mm" : "178mm");
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + new XMLSerializer().serializeToString(whole);
@@ -83,7 +83,7 @@
     table.querySelectorAll("thead th").forEach((th) => th.removeAttribute("aria-sort"));
     header.setAttribute("aria-sort", down ? "descending" : "ascending");
     const key = (row) => {
-      const cell = row.cells[column], text = cell.dataset.value !== undefined ? cell.dataset.value : cell.textContent;
+      const cell = row.cells[column], text = cell.dataset.value !== undefined ? cell.dataset.value : cell.textContent.replace("−", "-");
       return text.trim() === "" ? null : Number.isFinite(Number(text)) ? Number(text) : text;
     };
     const order = (a, b) => {

@@ -14,8 +14,8 @@
   };
   // As many digits as a tenth of the unit of the plot gives.
   const written = (value, { log, low, high }) => {
-    if (log) return value.toPrecision(3);
-    return value.toFixed(Math.min(12, Math.max(0, 3 - Math.ceil(Math.log10(high - low))))).replace(/^-(?=[0.]+$)/, "");
+    const text = log ? value.toPrecision(3) : value.toFixed(Math.min(12, Math.max(0, 3 - Math.ceil(Math.log10(high - low))))).replace(/^-(?=[0.]+$)/, "");
+    return text.replace("-", "−");
   };
   const frame = (svg) => svg.dataset.frame.split(" ").map(Number);
 
@@ -40,7 +40,9 @@
       found.push([marks.length ? across.at((near[0] - left) / (right - left)) : at, `${series.dataset.name} ${written(up.at((bottom - near[1]) / (bottom - top)), up)}`.trim()]);
     }
     if (!found.length) return [];
-    const [place] = found[0], head = of === "phase" ? `phase ${Math.floor(place) + 1}` : `${svg.dataset.along || "x"} ${written(place, across)}`;
+    // The last point is that of the last phase, also beyond its end.
+    const [place] = found[0], begun = [...svg.querySelectorAll(".bands rect")].filter((band, n) => n === 0 || Number(band.getAttribute("x")) + 0.06 < left + (right - left) * across.share(place)).at(-1);
+    const head = of === "phase" && begun ? `phase ${begun.textContent}` : `${svg.dataset.along || "x"} ${written(place, across)}`;
     return [head, ...found.map((row) => row[1])];
   };
   let pointer = null, drag = null;
@@ -52,8 +54,9 @@
   const showValues = () => {
     const svg = under(), x = svg && place(svg, pointer[0]);
     const [left, , right] = svg ? frame(svg) : [0, 0, -1], rows = svg && x >= left && x <= right ? rowsAt(svg, x) : [];
-    readout.hidden = rows.length < 2;
-    readout.textContent = rows.join("\n");
+    const said = pointer && document.elementFromPoint(...pointer)?.closest("[data-said]")?.dataset.said;
+    readout.hidden = !said && rows.length < 2;
+    readout.textContent = said || rows.join("\n");
     readout.style.top = `${(pointer?.[1] ?? 0) + 14}px`;
     readout.style.left = `${Math.min((pointer?.[0] ?? 0) + 14, innerWidth - readout.offsetWidth - 4)}px`;
   };
@@ -106,7 +109,7 @@
       group.replaceChildren();
       for (const [v, words] of marks(of)) {
         make("line", { ...line(of.share(v)), class: "grid" }, group);
-        make("text", { ...text(of.share(v)), class: "ink" }, group).textContent = words;
+        make("text", { ...text(of.share(v)), class: "ink" }, group).textContent = words.replace("-", "−");
       }
     };
     redraw(".marks", part, (s) => ({ x1: left + width * s, x2: left + width * s, y1: top, y2: bottom }), (s) => ({ x: left + width * s, y: bottom + 16, "text-anchor": "middle" }));

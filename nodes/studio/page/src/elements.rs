@@ -60,8 +60,14 @@ pub fn table(
     header: impl IntoIterator<Item: Into<Html>>,
     rows: impl IntoIterator<Item: IntoIterator<Item = Cell>>,
 ) -> Html {
-    let (caption, header) = (caption.into(), header.into_iter().map(Into::into).collect::<Vec<Html>>());
+    let caption = caption.into();
     let rows: Vec<Vec<Cell>> = rows.into_iter().map(|row| row.into_iter().collect()).collect();
+    // A head is aligned as the cells below it.
+    let is_number =
+        |n: usize| rows[0].get(n).is_some_and(|c: &Cell| c.class.split(' ').any(|name| name == "n"));
+    let header = header.into_iter().map(Into::into).enumerate();
+    let header: Vec<(Html, bool)> =
+        header.map(|(n, name)| (name, !rows.is_empty() && is_number(n))).collect();
     html!(include_str!("../assets/table.html"), caption, header, rows)
 }
 
@@ -159,7 +165,7 @@ pub fn verdict(class: &str, words: &str) -> Html {
     html!("<p class=\"verdict {{ class }}\">{{ words }}</p>\n", class, words)
 }
 
-/// A number with `digits` decimal places; without one `–`.
+/// A number with `digits` decimal places and a true minus sign; without one `–`.
 pub fn fixed(value: impl Into<Option<f64>>, digits: usize) -> String {
     finite(value, |v| format!("{v:.digits$}"))
 }
@@ -173,7 +179,7 @@ pub fn signed(value: impl Into<Option<f64>>, digits: usize) -> String {
 }
 
 fn finite(value: impl Into<Option<f64>>, text: impl FnOnce(f64) -> String) -> String {
-    value.into().filter(|v| v.is_finite()).map_or_else(|| "–".to_owned(), text)
+    value.into().filter(|v| v.is_finite()).map_or_else(|| "–".to_owned(), |v| text(v).replace('-', "−"))
 }
 
 /// The standard deviation behind a number; nothing without one.
@@ -210,18 +216,17 @@ mod tests {
             (1.25e-7, "1.25000e-7"),
         ];
         all.iter().for_each(|(value, text)| assert_eq!(six_digits(*value), *text));
-        let all = [(-1e-9, "0.000"), (1e-9, "0.000"), (-0.5, "-0.500"), (0.5, "+0.500"), (f64::NAN, "–")];
+        let all = [(-1e-9, "0.000"), (1e-9, "0.000"), (-0.5, "−0.500"), (0.5, "+0.500"), (f64::NAN, "–")];
         all.iter().for_each(|(value, text)| assert_eq!(signed(*value, 3), *text));
     }
 
     #[test]
-    fn a_table_names_its_columns_and_rows_and_escapes_its_cells() {
+    fn a_table_names_its_columns_and_rows_aligns_heads_as_their_cells_and_escapes_its_cells() {
         let far = Cell::fixed(1.0, 2).sorted_by(1.0).noted("n bad", "far");
         let text = table("a & b", ["x", "y", "z"], [[Cell::text("<a>"), Cell::fixed(None, 2), far]]);
         let row = "<th scope=\"row\">&lt;a&gt;</th><td class=\"n\">–</td><td class=\"n bad\" data-value=\"1\" title=\"far\">1.00";
-        for part in
-            ["<caption>a &amp; b</caption>", "<th scope=\"col\">x</th>", row, "hidden\"> (far)</span></td>"]
-        {
+        let heads = "<th scope=\"col\">x</th><th scope=\"col\" class=\"n\">y</th>";
+        for part in ["<caption>a &amp; b</caption>", heads, row, "hidden\"> (far)</span></td>"] {
             assert!(text.contains(part), "{part}: {text:?}");
         }
         assert!(table("", ["x"], [[]; 0]).is_empty());

@@ -30,13 +30,19 @@ impl Mean {
         Some(student(self.count - 1) * self.error?)
     }
 
-    /// True if two means differ by more than their scatter explains in one of twenty cases (Welch); also if the scatter is not known.
-    pub fn differs_from(&self, other: &Self) -> bool {
-        let (Some(a), Some(b)) = (self.error, other.error) else { return self.value != other.value };
+    /// Difference of two means in standard errors; `None` if the scatter of one is not known.
+    pub fn standard_errors_from(&self, other: &Self) -> Option<f64> {
+        let error = self.error?.hypot(other.error?);
+        Some(if self.value == other.value { 0.0 } else { (self.value - other.value).abs() / error })
+    }
+
+    /// True if two means differ by more than their scatter explains in one of twenty cases (Welch); `None` if that is not known.
+    pub fn differs_from(&self, other: &Self) -> Option<bool> {
+        let apart = self.standard_errors_from(other)?;
+        let [a, b] = [self.error?, other.error?];
         let parts = [(a, self.count), (b, other.count)].map(|(e, n)| e.powi(4) / (n as f64 - 1.0));
-        let square = a * a + b * b;
-        let freedom = square * square / (parts[0] + parts[1]);
-        (self.value - other.value).abs() > student((freedom as usize).max(1)) * square.sqrt()
+        let freedom = (a * a + b * b).powi(2) / (parts[0] + parts[1]);
+        Some(apart > student((freedom as usize).max(1)))
     }
 }
 
@@ -91,9 +97,10 @@ mod tests {
     #[test]
     fn means_differ_if_their_scatter_does_not_explain_it() {
         let mean = |value: f64, error: f64| Mean { value, error: Some(error), count: 4 };
-        assert!(!mean(0.0148, 0.0391).differs_from(&mean(0.0999, 0.0093)));
-        assert!(
-            mean(5.0, 0.05).differs_from(&mean(5.5, 0.1)) && !mean(5.0, 0.1).differs_from(&mean(5.0, 0.0))
-        );
+        let differ = |a: Mean, b: Mean| a.differs_from(&b);
+        assert_eq!(differ(mean(0.0148, 0.0391), mean(0.0999, 0.0093)), Some(false));
+        assert_eq!(differ(mean(5.0, 0.05), mean(5.5, 0.1)), Some(true));
+        assert_eq!(differ(mean(5.0, 0.1), mean(5.0, 0.0)), Some(false));
+        assert_eq!(differ(Mean { error: None, count: 1, ..mean(4.0, 0.0) }, mean(5.0, 0.1)), None);
     }
 }

@@ -4,9 +4,12 @@ use crate::sample::{Observed, States};
 use crate::tables::PAPER;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, Conditions, Measured, Model, Observation, StrainRatio, StrainRatioSource, models,
+    Calibration, Estimate, Model, Modulus, Observation, StrainRatio, StrainRatioSource, models,
 };
 use grainlab_page::Mean;
+
+/// Relative error of each modulus.
+pub const ERROR: f64 = 0.01;
 
 /// A model with its constants and its γ/Δ.
 #[derive(Clone, Copy, Debug)]
@@ -36,24 +39,15 @@ impl Case {
         all
     }
 
-    /// Quantities inferred from the exact moduli of a packing; `None` where it has no answer.
-    fn infer(&self, observed: &Observed) -> Option<[Option<f64>; InferredQuantity::COUNT]> {
+    /// The estimate from the moduli of a packing, as `grainlab invert` makes it with this error; `None` where it has no answer.
+    fn infer(&self, observed: &Observed) -> Option<Estimate> {
         let r = &observed.report;
-        let conditions = Conditions {
-            gamma: self.gamma.map_or(StrainRatio::ZERO, |source| StrainRatio::of(&r.strain_ratios, source)),
-            solid_fraction: Some(Measured::exact(r.solid_fraction)),
-            stress_ratio: r.axial_stress_ratio().map(Measured::exact),
-            size_spread: Some(r.size_spread),
-            material: Some(r.material),
-            contact_law: Some(r.law),
-            ..Conditions::at(r.pressure())
-        };
-        let observation = Observation {
-            grains: Some(r.contacts.grains),
-            ..Observation::of_stiffness(&r.stiffness()?.tensor, conditions)
-        };
-        let estimate = self.model.infer(&observation.with_relative_error(0.01), self.calibration).ok()?;
-        Some(estimate.structure.values())
+        let mut observation = Observation::of(r)?;
+        let gamma = self.gamma.map(|source| StrainRatio::of(&r.strain_ratios, source));
+        observation.conditions.gamma = gamma.unwrap_or(StrainRatio::ZERO);
+        // Θ follows from the other moduli: with an error of its own it would be one more measurement.
+        observation.moduli = observation.moduli.without(Modulus::Theta);
+        self.model.infer(&observation.with_relative_error(ERROR), self.calibration).ok()
     }
 }
 
@@ -116,7 +110,7 @@ impl Judged {
     }
 }
 
-/// Means over the seeds of one state.
+/// Means over the seeds of one state; the errors are the standard deviations of one estimate, mean over seeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// Index of the sample.
@@ -136,16 +130,18 @@ pub fn judge(states: &States) -> Vec<Judged> {
 
 fn judge_one(case: Case, states: &States) -> Judged {
     let found: Vec<_> = states.all().iter().map(|o| (o, case.infer(o))).collect();
-    let value = |found: &Option<[Option<f64>; InferredQuantity::COUNT]>, q: InferredQuantity| {
-        found.as_ref().and_then(|values| values[q as usize])
-    };
+    let value = |found: &Option<Estimate>, q: InferredQuantity| found.as_ref()?.structure.get(q);
     let errors = |q: InferredQuantity, truth: fn(&Observed) -> f64| {
         let errors: Vec<f64> = found.iter().filter_map(|(o, f)| Some(value(f, q)? - truth(o))).collect();
         Errors::of(&errors)
     };
     let rows = States::places().map(|(sample, pressure)| {
         let here = || found.iter().filter(move |(o, _)| o.sample == sample && o.pressure == pressure);
-        let mean = |q| Mean::of(here().filter_map(|(_, f)| value(f, q)));
+        let mean = |q| {
+            let sigma = Mean::of(here().filter_map(|(_, f)| f.as_ref()?.stddev(q)));
+            let mean = Mean::of(here().filter_map(|(_, f)| value(f, q)))?;
+            Some(Mean { error: sigma.map(|s| s.value), ..mean })
+        };
         Row { sample, pressure, k: mean(InferredQuantity::K), eps: mean(InferredQuantity::Eps) }
     });
     Judged {

@@ -6,6 +6,7 @@ use grainlab_console::count;
 use grainlab_core::SymTensor;
 use grainlab_page::plot::{Axis, Band, Figure, Line, Marker, Point, Scale, Series, Strip};
 use grainlab_page::{Html, csv, figure, html, paragraph, six_digits};
+use std::collections::BTreeSet;
 
 /// Seconds to milliseconds.
 const MS: f64 = 1e3;
@@ -52,7 +53,7 @@ impl Timeline {
         if self.pressure.count() == 0 {
             return paragraph("The recording has no stress against time.");
         }
-        let plots = self.drawable().iter().map(|p| self.drawn(p, true)).collect();
+        let plots = self.drawable(&BTreeSet::new()).iter().map(|p| self.drawn(p, true)).collect();
         let about = format!(
             "The bands are the phases of the scene, drawn with equal widths, or in simulated time. Of {}, each line has the \
              extremes in bins about a pixel wide.",
@@ -61,9 +62,12 @@ impl Timeline {
         curves(&about, self.phase_list(), plots)
     }
 
-    /// The plots without their data, for a page that draws them again and again.
-    pub fn drawings(&self) -> Html {
-        self.drawable().iter().map(|p| self.drawn(p, false)).collect()
+    /// The plots without their data, for a page that draws them again and again. Those of `shown`, by name, stay although their
+    /// values have become small; what is drawn is added.
+    pub fn drawings(&self, shown: &mut BTreeSet<&'static str>) -> Html {
+        let plots = self.drawable(shown);
+        shown.extend(plots.iter().map(|p| p.id));
+        plots.iter().map(|p| self.drawn(p, false)).collect()
     }
 
     /// The phases as items of a list.
@@ -76,12 +80,12 @@ impl Timeline {
     }
 
     /// The plots that have points.
-    fn drawable(&self) -> Vec<Plot> {
+    fn drawable(&self, shown: &BTreeSet<&'static str>) -> Vec<Plot> {
         let has_points = |p: &Plot| p.curves.iter().any(|c| !c.points.is_empty());
-        self.plots().into_iter().filter(has_points).collect()
+        self.plots(shown).into_iter().filter(has_points).collect()
     }
 
-    fn plots(&self) -> Vec<Plot> {
+    fn plots(&self, shown: &BTreeSet<&'static str>) -> Vec<Plot> {
         let t = self;
         let components = |series: &[Phased; 6], unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
             let curve = |n: usize| Curve::line(SymTensor::COMPONENTS[n], n % 3, &series[n], unit);
@@ -89,13 +93,13 @@ impl Timeline {
         };
         let largest =
             |curves: &[Curve]| curves.iter().flat_map(|c| &c.points).map(|p| p.1.abs()).fold(0.0, f64::max);
-        let with_shear = |series: &[Phased; 6], unit: f64| {
+        let with_shear = |series: &[Phased; 6], unit: f64, id: &str| {
             let (normal, shear) = (components(series, unit, 0..3), components(series, unit, 3..6));
-            let is_small = largest(&shear) < SMALL * largest(&normal);
+            let is_small = !shown.contains(id) && largest(&shear) < SMALL * largest(&normal);
             (normal, if is_small { Vec::new() } else { shear })
         };
-        let (stress, shear_stress) = with_shear(&t.stress, 1e-3);
-        let (strain, shear_strain) = with_shear(&t.strain, 100.0);
+        let (stress, shear_stress) = with_shear(&t.stress, 1e-3, "shear-stress");
+        let (strain, shear_strain) = with_shear(&t.strain, 100.0, "shear-strain");
         let mut coordination = vec![Curve::line("k", 0, &t.coordination, 1.0)];
         if !t.fabrics.is_empty() {
             coordination.push(Curve::points("z", 1, &t.fabrics, |s| s.z));

@@ -10,7 +10,7 @@ use grainlab_core::results::InferredQuantity;
 use grainlab_page::{
     Cell, Html, Page, Section, data, finding, fixed, grid, heading, html, paragraph, six_digits, table,
 };
-use grainlab_results::brief::moduli;
+use grainlab_results::brief::{ended, moduli};
 use grainlab_results::findings::{Findings, and, recommended};
 use grainlab_results::read_back::InvertedPacking;
 use std::collections::{BTreeMap, BTreeSet};
@@ -82,7 +82,13 @@ pub fn overview(runs: &[(Run, String)]) -> String {
             Some(0) if run.is_incomplete() => "damaged".to_owned(),
             Some(0) if run.summary.warnings.is_empty() => "complete".to_owned(),
             Some(0) => "complete, with warnings".to_owned(),
-            Some(code) => format!("exit code {code}"),
+            Some(code) => {
+                let reason = run.summary.warnings.first().map(String::as_str);
+                ended(code, reason, run.summary.saved_step).map_or_else(
+                    || format!("exit code {code}"),
+                    |why| why.trim_start_matches("with ").to_owned(),
+                )
+            }
         };
         let seed = run.seed().map(|s| s.to_string()).unwrap_or_default();
         let class = if run.summary.exit == Some(0) && !run.is_incomplete() { "" } else { "bad" };
@@ -171,6 +177,9 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     let symbols = [InferredQuantity::Z, InferredQuantity::Eps].map(InferredQuantity::symbol);
     let mut found: Vec<String> =
         over.iter().flat_map(|o| symbols.iter().flat_map(|s| o.sentences(s))).collect();
+    if over.is_none() && varied.len() > 2 {
+        found.push("They differ in more than two settings: for figures over settings, report those that differ in one or two.".to_owned());
+    }
     found.extend(Findings::inferred(&lasts));
     let warned = runs.iter().filter(|(run, _)| !run.summary.warnings.is_empty()).count();
     let doubts = [

@@ -16,6 +16,9 @@ const CURVES: usize = 20;
 /// Relative difference up to which values count as equal.
 const ALIKE: f64 = 1e-3;
 
+/// Standard errors between means above which it is said that they are far apart, though a test cannot tell.
+const MUCH: f64 = 3.0;
+
 /// Most curves that are described in sentences.
 const DESCRIBED: usize = 3;
 
@@ -82,23 +85,12 @@ impl<'a> OverSettings<'a> {
         };
         let sentence = |curve: &String| {
             let means = self.means(quantity, curve);
-            let [(from, a), .., (to, b)] = means.as_slice() else { return None };
-            let value = |m: &Mean| {
-                let digits = digits(m.error.unwrap_or(0.1 * m.value));
-                format!("{:.digits$}", m.value) + &plus_minus(m.error, digits)
-            };
+            let [from, .., to] = means.as_slice() else { return None };
             let of = match &self.by {
                 Some(by) => format!("For {} {curve}, the counted {symbol}", by.name),
                 None => format!("The counted {symbol}"),
             };
-            let change = match a.differs_from(b) {
-                false => "does not change beyond its scatter: it is",
-                true if b.value > a.value => "rises from",
-                true => "falls from",
-            };
-            let along = &self.along.name;
-            let to_word = if change.ends_with("is") { "and" } else { "to" };
-            Some(format!("{of} {change} {} at {along} {from} {to_word} {} at {to}.", value(a), value(b)))
+            Some(change(&of, &self.along.name, [*from, *to]))
         };
         self.curves.iter().take(DESCRIBED).filter_map(sentence).collect()
     }
@@ -146,6 +138,32 @@ impl<'a> OverSettings<'a> {
     }
 }
 
+/// The change of a mean between two values of a setting.
+fn change(of: &str, along: &str, [(from, a), (to, b)]: [(f64, Mean); 2]) -> String {
+    let value = |m: &Mean| {
+        let digits = digits(m.error.unwrap_or(0.1 * m.value));
+        format!("{:.digits$}", m.value) + &plus_minus(m.error, digits)
+    };
+    let [first, second] = [format!("{} at {along} {from}", value(&a)), format!("{} at {to}", value(&b))];
+    let apart = a.standard_errors_from(&b).filter(|apart| *apart > MUCH);
+    match (a.differs_from(&b), apart) {
+        (None, _) => {
+            format!(
+                "{of} is {first} and {second}, with a single run at one of them: the scatter is not known."
+            )
+        }
+        (Some(true), _) if b.value > a.value => format!("{of} rises from {first} to {second}."),
+        (Some(true), _) => format!("{of} falls from {first} to {second}."),
+        (Some(false), Some(apart)) => format!(
+            "{of} is {first} and {second}: {apart:.0} standard errors apart, but {} and {} runs are too few to exclude chance.",
+            a.count, b.count
+        ),
+        (Some(false), None) => {
+            format!("{of} does not change beyond its scatter: it is {first} and {second}.")
+        }
+    }
+}
+
 /// A figure for each quantity: a point for each run, in the order of the table.
 pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
     let draw = |(q, (name, _)): (usize, &(String, Option<f64>))| {
@@ -182,4 +200,24 @@ fn titled(name: &str) -> String {
 /// Decimal places that give a standard error two digits.
 fn digits(error: f64) -> usize {
     if error == 0.0 { 3 } else { (1.0 - error.abs().log10().floor()).clamp(0.0, 6.0) as usize }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_is_said_if_runs_show_it_and_too_few_runs_are_said_to_be_too_few() {
+        let mean = |values: &[f64]| Mean::of(values.iter().copied()).unwrap();
+        let said = |a: &[f64], b: &[f64]| change("z", "friction", [(0.1, mean(a)), (0.4, mean(b))]);
+        let many = said(&[5.3, 5.4, 5.35, 5.32], &[4.5, 4.55, 4.48, 4.5]);
+        assert!(many.starts_with("z falls from 5.34") && many.contains(" at friction 0.1 to 4.5"), "{many}");
+        let two = said(&[5.269, 5.413], &[4.488, 4.528]);
+        assert!(
+            two.ends_with("11 standard errors apart, but 2 and 2 runs are too few to exclude chance."),
+            "{two}"
+        );
+        assert!(said(&[5.0, 5.2, 5.1], &[5.1, 5.0, 5.2]).contains("does not change beyond its scatter"));
+        assert!(said(&[5.0], &[4.0]).ends_with("the scatter is not known."));
+    }
 }

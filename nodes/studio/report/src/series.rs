@@ -1,7 +1,7 @@
 //! The page of a series: speeds and z over pressure, the contact, and what is not determined.
 
 use crate::page::STYLE;
-use grainlab_emt::{SeriesEstimate, SpeedMode, SpeedSeries};
+use grainlab_emt::{Interval, PressureEstimate, SeriesEstimate, SpeedMode, SpeedSeries};
 use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 use grainlab_page::{
     Cell, Html, Page, Section, csv, details, figure, finding, grid, heading, html, list, paragraph, table,
@@ -53,7 +53,7 @@ fn found(sample: &InferredSample<'_>) -> Html {
     let InferredSample { series, estimate: e, doubts, .. } = sample;
     let kpa = |p: f64| format!("{} kPa", p / 1e3);
     // Beyond the packings that were simulated there is only a lower end.
-    let at = |p: &grainlab_emt::PressureEstimate| match p.z_beyond > OPEN {
+    let at = |p: &PressureEstimate| match p.z_beyond > OPEN {
         true => format!("{:.2} or more at {}", p.z.low, kpa(p.pressure)),
         false => format!("{:.2} ± {:.2} at {}", p.z.mean, p.z.stddev, kpa(p.pressure)),
     };
@@ -73,7 +73,18 @@ fn found(sample: &InferredSample<'_>) -> Html {
     let law = e.laws.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
     let law =
         law.map(|l| format!("The most probable contact law is {} ({:.2}).", l.law.name(), l.probability));
-    let found: Vec<String> = [format!("The speeds give z {z}.")].into_iter().chain(law).collect();
+    let of_eps = |p: &PressureEstimate| {
+        let eps = p.eps?;
+        let open = if eps.is_undetermined() { ", which is the prior's" } else { "" };
+        Some(format!("{:.3} ± {:.3}{open} at {}", eps.mean, eps.stddev, kpa(p.pressure)))
+    };
+    let ends = [e.pressures.first(), e.pressures.last().filter(|_| e.pressures.len() > 1)];
+    let eps: Vec<String> = ends.into_iter().flatten().filter_map(of_eps).collect();
+    let eps = match eps.is_empty() {
+        true => "The anisotropy of the contacts, eps, is not determined by them.".to_owned(),
+        false => format!("The anisotropy of the contacts, eps, is {}.", eps.join(" and ")),
+    };
+    let found: Vec<String> = [format!("The speeds give z {z}."), eps].into_iter().chain(law).collect();
     finding(&done, &found, doubts)
 }
 
@@ -81,35 +92,76 @@ fn named(sample: &InferredSample<'_>, what: &str) -> String {
     if sample.name.is_empty() { what.to_owned() } else { format!("{}: {what}", sample.name) }
 }
 
-fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
-    let e = sample.estimate;
-    let line = |of: fn(&grainlab_emt::Interval) -> f64, line: Line| Series {
+/// Mean and 95 % of a quantity over pressure; nothing where it is not determined.
+fn over_pressure(
+    n: usize,
+    sample: &InferredSample<'_>,
+    (name, title): (&str, &str),
+    of: impl Fn(&PressureEstimate) -> Option<Interval>,
+) -> Html {
+    let all = || sample.estimate.pressures.iter().filter_map(|p| Some((p.pressure, of(p)?)));
+    if all().next().is_none() {
+        return Html::default();
+    }
+    let line = |of: fn(&Interval) -> f64, line: Line| Series {
         colour: Some(0),
         line: Some(line),
-        points: e.pressures.iter().map(|p| Point::at(p.pressure / 1e3, of(&p.z))).collect(),
+        points: all().map(|(pressure, i)| Point::at(pressure / 1e3, of(&i))).collect(),
         ..Series::default()
     };
-    let middle = Series { marker: Some(Marker::Circle), ..line(|z| z.mean, Line::Straight) };
+    let middle = Series { marker: Some(Marker::Circle), ..line(|i| i.mean, Line::Straight) };
     let drawn = Figure {
-        title: named(sample, "coordination number z"),
+        title: named(sample, title),
         subtitle: "mean and 95 % of the posterior".to_owned(),
         x: Axis::log("pressure, kPa"),
-        series: vec![line(|z| z.low, Line::Faint), middle, line(|z| z.high, Line::Faint)],
+        series: vec![line(|i| i.low, Line::Faint), middle, line(|i| i.high, Line::Faint)],
         ..Figure::default()
     };
-    let rows = e
-        .pressures
-        .iter()
-        .map(|p| [p.pressure, p.z.mean, p.z.stddev, p.z.low, p.z.high].map(|v| v.to_string()));
-    let data = csv(["pressure_pa", "z", "z_sigma", "z_low", "z_high"], rows);
+    let rows = all().map(|(pressure, i)| {
+        [pressure, i.mean, i.stddev, i.low, i.high, i.prior_stddev].map(|v| v.to_string())
+    });
+    let data = csv(["pressure_pa", name, "sigma", "low", "high", "prior_sigma"], rows);
+    figure(&format!("{name}-{n}"), drawn.element(), "Mean and 95 % of the posterior.", &data)
+}
+
+fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
+    let e = sample.estimate;
     let fit = match sample.is_contradictory {
         true => "These speeds contradict each other or the model.".to_owned(),
         false => format!("Fit of the model: p = {:.2}; below 0.01 it would be bad.", e.p),
     };
+    let drawn: Html = [
+        over_pressure(n, sample, ("z", "coordination number z"), |p| Some(p.z)),
+        over_pressure(n, sample, ("eps", "anisotropy of the contacts, eps"), |p| p.eps),
+    ]
+    .into_iter()
+    .collect();
+    let rows = e.pressures.iter().map(|p| {
+        let eps = |of: fn(&Interval) -> f64| p.eps.as_ref().map(of);
+        [
+            Cell::fixed(p.pressure / 1e3, 1),
+            Cell::fixed(p.z.mean, 2),
+            Cell::fixed(p.z.stddev, 2),
+            Cell::fixed(p.z.left(), 2),
+            Cell::fixed(eps(|i| i.mean), 4),
+            Cell::fixed(eps(|i| i.stddev), 4),
+            Cell::fixed(eps(Interval::left), 2),
+        ]
+    });
+    let header = [
+        "pressure, kPa",
+        "z",
+        "sigma of z",
+        "share of the prior's",
+        "eps",
+        "sigma of eps",
+        "share of the prior's",
+    ];
     html!(
-        "{{ fit }}{{ drawn }}{{ notes }}",
+        "{{ fit }}{{ drawn }}{{ numbers }}{{ notes }}",
         fit => paragraph(fit),
-        drawn => grid(figure(&format!("z-{n}"), drawn.element(), "Mean and 95 % of the posterior.", &data)),
+        drawn => grid(drawn),
+        numbers => table(named(sample, "structure"), header, rows),
         notes => details("Notes", list(sample.notes.iter().map(String::as_str)))
     )
 }
@@ -169,14 +221,14 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
 
 fn contact(_: usize, sample: &InferredSample<'_>) -> Html {
     let e = sample.estimate;
-    let unknown = |name: &str, of: &grainlab_emt::Interval| {
+    let unknown = |name: &str, of: &Interval| {
         let numbers = [of.mean, of.stddev, of.low, of.high].map(|value| Cell::fixed(value, 3));
         [Cell::text(name)].into_iter().chain(numbers).chain([Cell::fixed(of.left(), 2)])
     };
     let unknowns = [
         unknown("k_t/k_n", &e.stiffness_ratio),
         unknown("ln of the stiffness over that of the law", &e.level),
-        unknown("noise over the stated errors", &e.noise),
+        unknown("scatter over the stated errors", &e.noise),
     ];
     let header = ["unknown", "mean", "standard deviation", "2.5 %", "97.5 %", "share of the prior's"];
     let laws = e.laws.iter().map(|l| {

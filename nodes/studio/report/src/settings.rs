@@ -46,6 +46,19 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
         let new = Setting { name: name.clone(), values };
         let known = found.entry(firsts(&new.values)).or_insert_with(|| new.clone());
         if known.name != new.name {
+            // Of keys that not every scene has, as the laws of sizes, each value has its key.
+            let word = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
+            for (value, other) in known
+                .values
+                .iter_mut()
+                .zip(&new.values)
+                .filter(|(value, other)| value.is_empty() != other.is_empty() || value.contains(' '))
+            {
+                if !other.is_empty() {
+                    let more = format!("{} {other}", word(name));
+                    *value = if value.is_empty() { more } else { format!("{value}, {more}") };
+                }
+            }
             let last = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
             let parts: BTreeSet<String> = known.name.split(", ").chain([name.as_str()]).map(last).collect();
             known.name = parts.into_iter().collect::<Vec<_>>().join(", ");
@@ -77,10 +90,12 @@ fn flatten(value: &Value, path: String, found: &mut BTreeMap<String, String>) {
                 flatten(value, below(&name.map_or_else(|| (n + 1).to_string(), str::to_owned)), found);
             }
         }
-        // Phases of one name are told apart together.
+        // Phases of one name are told apart together. Numbers that differ by rounding alone are equal.
         value => {
-            *found.entry(path).or_default() +=
-                &value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+            let rounded = value.as_float().and_then(|v| format!("{v:.12e}").parse::<f64>().ok());
+            let text = rounded.map(|v| Value::Float(v).to_string());
+            let text = text.or_else(|| value.as_str().map(str::to_owned));
+            *found.entry(path).or_default() += &text.unwrap_or_else(|| value.to_string())
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::run::Run;
 use grainlab_core::results::{FORCE_BIN_WIDTH, ORIENTATION_BINS, PackingReport};
 use grainlab_core::{Packing, Vec3};
 use grainlab_page::plot::{Axis, Figure, Line, Point, Rose, Series};
-use grainlab_page::{Html, csv, figure, grid, html, paragraph, six_digits};
+use grainlab_page::{Html, csv, figure, grid, html, paragraph, signed, six_digits};
 
 /// Values in the bins of orientation over their mean, and a of 1 + a (3 x² − 1).
 struct Oriented {
@@ -52,7 +52,8 @@ fn contacts(report: &PackingReport) -> Option<Oriented> {
 fn rose(id: &str, title: &str, caption: &str, colour: usize, found: &Oriented, axis: &Vec3) -> Html {
     let [x, y, z] = [axis.x, axis.y, axis.z];
     let name = if *axis == Vec3::z() { "z".to_owned() } else { format!("({x:.2}, {y:.2}, {z:.2})") };
-    let fitted = found.a.map_or_else(String::new, |a| format!(" Curve: 1 + a (3 cos² θ − 1), a = {a:+.4}."));
+    let fitted =
+        found.a.map_or_else(String::new, |a| format!(" Curve: 1 + a (3 cos² θ − 1), a = {}.", signed(a, 4)));
     let end = |n: usize| (n as f64 / ORIENTATION_BINS as f64).to_string();
     let rows = found.bins.iter().enumerate().map(|(n, value)| [end(n), end(n + 1), six_digits(*value)]);
     let plot = Rose { title: title.to_owned(), bins: found.bins.clone(), curve: found.a, colour, axis: name };
@@ -68,19 +69,23 @@ impl Run {
         // Forces are only in the packing itself.
         let packing = self.timeline.last.as_ref().filter(|p| p.step == state.packing.step);
         let by_direction = |force| packing.and_then(|p| oriented(p, &axis, force));
+        let of_contacts = format!(
+            "Contacts per solid angle, 1 if isotropic; a by maximum likelihood. ε = {} follows from the fabric tensor instead.",
+            signed(report.fabric.contact_anisotropy, 4)
+        );
         let found = [
-            ("contacts", "Contacts", "Contacts per solid angle, 1 if isotropic.", 0, contacts(report)),
+            ("contacts", "Contacts", &*of_contacts, 0, contacts(report)),
             (
                 "normal-force",
                 "Normal force",
-                "Mean over contacts of a direction, over that of all.",
+                "Mean over contacts of a direction, over that of all; a by least squares over the contacts.",
                 2,
                 by_direction(|c| c.normal_force),
             ),
             (
                 "tangential-force",
                 "Tangential force",
-                "Mean magnitude, over that of all contacts.",
+                "Mean magnitude, over that of all contacts; a by least squares over the contacts.",
                 3,
                 by_direction(|c| c.tangential_force.norm()),
             ),
@@ -142,10 +147,11 @@ fn forces(report: &PackingReport) -> Option<Html> {
     };
     let data = csv(["force_over_mean", "density"], bins.iter().map(|(f, d)| [f, d].map(|v| six_digits(*v))));
     let caption = format!(
-        "Probability density of F over its mean, {:.3e} N; grey: exponential. Participation ratio {:.3}, largest {:.2}. The last bin has no upper end.",
+        "Probability density of F over its mean, {:.3e} N; grey: exponential. Participation ratio {:.3}, largest {:.2}. The last bin holds everything above {}.",
         forces.mean_normal,
         forces.participation_ratio(),
-        forces.largest
+        forces.largest,
+        end - FORCE_BIN_WIDTH
     );
     Some(grid(figure("force-distribution", plot.element(), caption, &data)))
 }

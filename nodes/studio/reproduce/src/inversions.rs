@@ -3,7 +3,7 @@
 use crate::Reproduction;
 use crate::tables::{head, mean, of_paper};
 use grainlab_page::{Cell, Html, code, html, signed, table};
-use grainlab_paper::inversion::{Errors, Judged, Row, of_the_paper};
+use grainlab_paper::inversion::{ERROR, Errors, Judged, Row, of_the_paper};
 use grainlab_paper::{Mean, PAPER, Quantity, States};
 
 fn errors(found: Option<&Errors>, digits: usize) -> [Cell; 2] {
@@ -11,6 +11,12 @@ fn errors(found: Option<&Errors>, digits: usize) -> [Cell; 2] {
 }
 
 impl Reproduction {
+    /// The command that prints the errors of the models.
+    pub(crate) fn judge_command(&self) -> String {
+        let folder = &self.provenance.folder;
+        format!("grainlab invert --table {folder}/states.csv --judge --gamma all --error {ERROR}")
+    }
+
     /// Mean error of each model with each γ/Δ, after that of the paper on its own packings.
     pub(crate) fn judged_table(&self) -> Html {
         let [ratio, emt, eps] = of_the_paper();
@@ -22,19 +28,21 @@ impl Reproduction {
         let of_paper = |name, k, eps| row([name, "paper", "total"], Some(k), eps, None, 0);
         let theirs = [
             of_paper("ratio, the paper on its packings", &ratio, Some(&eps)),
-            of_paper("emt, the paper on its packings", &emt, None),
+            of_paper("emt, the paper on its packings, Δ since φ = 0.607", &emt, None),
         ];
         let ours = self.judged.iter().map(|j| {
-            let names =
-                [j.case.model.name(), j.case.calibration.name(), j.case.gamma.map_or("–", |g| g.name())];
+            // The strain of the theory is another one in the paper than in the model of this name.
+            let model =
+                if j.case.model.name() == "emt" { "emt, Δ of the pressure" } else { j.case.model.name() };
+            let names = [model, j.case.calibration.name(), j.case.gamma.map_or("–", |g| g.name())];
             row(names, j.k.as_ref(), j.eps.as_ref(), j.z.as_ref(), j.unanswered)
         });
         let rows = theirs.into_iter().chain(ours);
-        let command =
-            format!("grainlab invert --table {}/states.csv --judge --gamma all", self.provenance.folder);
         let caption = html!(
-            "Errors of the models on these packings: mean magnitude, and mean with sign. Also by {{ command }}",
-            command => code(&command)
+            "Errors of the models on these packings: mean magnitude, and mean with sign. Also by {{ command }}, and for the \
+             constants grainlab with {{ constants }}",
+            command => code(&self.judge_command()),
+            constants => code("--calibration grainlab")
         );
         let header = "model | constants | γ/Δ | |error of k| | bias of k | |error of ε| | bias of ε | |error of z| | \
                       bias of z | unanswered";
@@ -63,7 +71,10 @@ impl Reproduction {
                 .chain(inferred(|r| r.eps, Quantity::Eps, 3))
                 .collect::<Vec<_>>()
         });
-        let command = format!("grainlab invert --table {}/states.csv --gamma total", self.provenance.folder);
+        let command = format!(
+            "grainlab invert --table {}/states.csv --gamma total --error {ERROR}",
+            self.provenance.folder
+        );
         let caption = html!(
             "Table III, inversion: errors of the paper on its packings, of its model ratio with γ/Δ of the total strain on \
              ours, and of our model relaxed. Each packing by {{ command }}",

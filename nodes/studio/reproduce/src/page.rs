@@ -26,11 +26,12 @@ impl Reproduction {
         let seeds: Vec<String> = p.seeds.iter().map(u64::to_string).collect();
         let about = format!(
             "La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012), compared with packings of {} grains prepared, measured and \
-             inverted by grainlab {}: four samples at four pressures, {} each ({}). Every number is computed from the \
+             inverted by grainlab {}: four samples at four pressures, {} each ({} {}). Every number is computed from the \
              recordings of the runs.",
             p.grains,
             p.version,
             if p.seeds.len() == 1 { "one seed".to_owned() } else { format!("{} seeds", p.seeds.len()) },
+            if p.seeds.len() == 1 { "seed" } else { "seeds" },
             seeds.join(", "),
         );
         let missing = self.states.missing();
@@ -94,7 +95,7 @@ impl Reproduction {
             (!texts.is_empty()).then(|| format!("{why}: {}.", texts.join("; ")))
         };
         let within =
-            format!("Missed by less than {seeds} of {} grains scatter, and therefore undecided", p.grains);
+            format!("Missed by less than the scatter between seeds of {} grains; undecided", p.grains);
         let doubts = [
             named(Verdict::Missed, "Not reproduced"),
             named(Verdict::Undecided, &within),
@@ -144,7 +145,7 @@ impl Reproduction {
 
     fn inversion(&self) -> Html {
         let about = paragraph(
-            "Every model infers from the moduli of the counted packings, taken as exact. The paper's model needs γ/Δ: total is that \
+            "Every model infers from the moduli of the counted packings, with an error of 1 % each. The paper's model needs γ/Δ: total is that \
              of the strain since the reference state, as in the paper; elastic that of an isotropic stress increment; contact that \
              of the overlaps.",
         );
@@ -171,7 +172,7 @@ impl Reproduction {
             format!("{}    # this page", p.command),
             format!("grainlab campaign gather {runs}    # every number of the packings: states.csv"),
             format!("grainlab analyze {runs}/members/s1-{}    # one sample", p.seeds.first().unwrap_or(&1)),
-            format!("grainlab invert --table {runs}/states.csv --judge --gamma all    # every model"),
+            self.judge_command() + "    # every model",
         ];
         let data = html!(
             "<p>The data of this page: {{ json }} and {{ csv }} beside it.</p>\n",

@@ -19,9 +19,8 @@ pub(crate) fn of_paper(text: String) -> Cell {
 /// Ours, the paper's, the difference, and the difference in units of its error.
 fn cells(c: Option<&Comparison>, scale: f64, digits: usize, relative: bool) -> [Cell; 4] {
     let paper = c.and_then(|c| c.paper).map(|p| p.value / scale);
-    let percent = || {
-        c.and_then(Comparison::relative).map_or_else(|| "–".to_owned(), |d| format!("{:+.1} %", 100.0 * d))
-    };
+    let percent =
+        || c.and_then(Comparison::relative).map_or_else(|| "–".to_owned(), |d| signed(100.0 * d, 1) + " %");
     let difference = || signed(c.and_then(Comparison::difference).map(|d| d / scale), digits);
     [
         mean(c.map(|c| Mean { error: c.error(), ..c.ours }).as_ref(), scale, digits),

@@ -59,6 +59,7 @@ pub fn samples() -> Result<Vec<LaboratorySample>, VerificationError> {
                 angle: None,
                 speed: Some(value),
                 stddev: number(sigma)? / value,
+                common_stddev: 0.0,
             };
             match all.iter_mut().find(|(name, ..)| name == sample) {
                 Some((_, _, series)) => series.rows.push(row),

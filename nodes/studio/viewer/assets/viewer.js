@@ -173,7 +173,7 @@
         const from = Math.min(...state.coordination.filter((_, g) => !state.rattler[g]));
         const range = [];
         for (let k = Math.min(from, end); k <= Math.min(most, end); k++) range.push(k);
-        rows.push(`Contacts of a grain, without rattlers<div class="swatches">${range.map(entry).join("")}${swatch(about.rattler, "rattler")}</div>`);
+        rows.push(`Contacts per grain (those with rattlers not counted)<div class="swatches">${range.map(entry).join("")}${swatch(about.rattler, "rattler")}</div>`);
       } else if (now.size > 0 && now.colour === "rattlers") {
         rows.push(`<div class="swatches">${swatch(about.carrier, "carries force")}${swatch(about.rattler, "rattler")}</div>`);
       } else if (now.size > 0) {
@@ -252,7 +252,47 @@
     const save = () => {
       resize(still());
       render();
-      canvas.toBlob((blob) => grainlabPage.save(`${about.name}.png`, "image/png", blob));
+      // The title above, the frame with its marks, and the legend below, drawn at the size that they have in the page.
+      const by = canvas.width / stage.clientWidth, [wide, high] = [stage.clientWidth, stage.clientHeight], line = 18, across = Math.max(wide, 600);
+      const style = getComputedStyle(root), ink = style.getPropertyValue("--ink");
+      const rows = [...legend.children], whole = document.createElement("canvas"), pen = whole.getContext("2d");
+      [whole.width, whole.height] = [across * by, (high + 40 + rows.length * 2.4 * line) * by];
+      pen.scale(by, by);
+      pen.fillStyle = style.getPropertyValue("--stage");
+      pen.fillRect(0, 0, across, whole.height / by);
+      pen.drawImage(canvas, 0, 30, wide, high);
+      pen.fillStyle = pen.strokeStyle = ink;
+      const write = (text, x, y, size = 13) => { pen.font = `${size}px system-ui, sans-serif`; pen.fillText(text, x, y); return pen.measureText(text).width; };
+      write(about.states[now.state].label, 14, 21, 14);
+      for (const mark of stage.querySelectorAll(".marks > *")) {
+        pen.textAlign = "center";
+        pen.lineWidth = parseFloat(getComputedStyle(mark).strokeWidth);
+        if (mark.tagName === "text") write(mark.textContent, Number(mark.getAttribute("x")), 30 + Number(mark.getAttribute("y")));
+        else pen.stroke(new Path2D(mark.getAttribute("d").replace(/^M (\S+) (\S+)/, (_, x, y) => `M ${x} ${30 + Number(y)}`)));
+      }
+      pen.textAlign = "left";
+      rows.forEach((row, n) => {
+        const y = high + 30 + line + n * 2.4 * line, bar = row.querySelector(".bar");
+        if (row.firstChild.nodeType === Node.TEXT_NODE) write(row.firstChild.textContent, 14, y);
+        let x = 14;
+        if (bar) {
+          const ramp = pen.createLinearGradient(120, 0, 340, 0);
+          about.ramp.forEach((c, k) => ramp.addColorStop(k / (about.ramp.length - 1), css(c)));
+          const [low, most] = [...row.querySelectorAll(".ends span")].map((e) => e.textContent);
+          write(low, 104, y + line + 4);
+          write(most, 348, y + line + 4);
+          pen.fillStyle = ramp;
+          pen.fillRect(120, y + line - 6, 220, 10);
+          pen.fillStyle = ink;
+        }
+        row.querySelectorAll(".swatches > span").forEach((entry) => {
+          pen.fillStyle = entry.querySelector("i").style.backgroundColor;
+          pen.fillRect(x, y + line - 6, 11, 11);
+          pen.fillStyle = ink;
+          x += 16 + write(entry.textContent, x + 16, y + line + 4) + 14;
+        });
+      });
+      whole.toBlob((blob) => grainlabPage.save(`${about.name}.png`, "image/png", blob));
     };
 
     controls.addEventListener("change", draw);

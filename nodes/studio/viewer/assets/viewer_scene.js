@@ -38,14 +38,15 @@ void main() {
   if (under < 0.0) discard;
   float root = sqrt(under), near = (b - root) / a;
   vec3 p = near * vAt, n = (p - vSphere.xyz) / vSphere.w;
-  vec3 tint = vColour;
+  bool face = false;
   if (dot(uClip.xyz, p) > uClip.w) {
     float cut = uClip.w / dot(uClip.xyz, vAt);
     if (cut < near || cut > (b + root) / a) discard;
-    p = cut * vAt; n = uClip.xyz; tint = mix(vColour, vec3(0.5), 0.25);
+    p = cut * vAt; face = true;
   }
   gl_FragDepth = depthOf(p);
-  pixel = vec4(shade(tint, n, p), 1.0);
+  // The face of a cut has the colour of the legend.
+  pixel = vec4(face ? vColour : shade(vColour, n, p), 1.0);
 }`;
   // A ribbon towards the viewer, lit as a cylinder.
   const CHAIN_VERTEX = `${COMMON}

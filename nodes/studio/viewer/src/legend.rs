@@ -28,7 +28,7 @@ impl Legend {
                 let (table, last) = (by_coordination(), most.min(MOST_CONTACTS));
                 let name = |n: usize| if n < most && n == last { format!(">={n}") } else { n.to_string() };
                 let entries = (2..=last).map(|n| (table[n], name(n))).chain([rattler]);
-                Self("contacts of a grain, without rattlers", entries.collect())
+                Self("contacts per grain (those with rattlers not counted)", entries.collect())
             }
         }
     }
@@ -47,7 +47,7 @@ impl Legend {
 }
 
 /// A force with its unit.
-fn newtons(force: f64) -> String {
+pub(crate) fn newtons(force: f64) -> String {
     if force == 0.0 {
         return "0".to_owned();
     }

@@ -4,7 +4,7 @@
 //! - [`Film`]: the states of a run, few enough for a page
 //! - [`figure`], [`page`], [`STYLE`], [`SCRIPTS`]: the parts of a page; [`empty_figure`], [`states`]: those of a page that
 //!   receives packings later; `encode`: the states as bytes
-//! - [`Picture`]: one view as pixels and as PNG, on a [`Ground`]; `raster`: samples and edges; `light`: shades; `legend`,
+//! - [`Picture`]: one view as pixels and as PNG, on a [`Ground`]; `section`: cuts and force chains; `raster`: samples and edges; `light`: shades; `legend`,
 //!   `marks`: colours, scale bar and axes; `canvas`, `lettering`: pixels and letters
 
 mod canvas;
@@ -18,11 +18,13 @@ mod page;
 mod palette;
 mod picture;
 mod raster;
+mod section;
 mod view;
 
 pub use canvas::Ground;
 pub use film::Film;
 pub use page::{SCRIPTS, STYLE, empty_figure, figure, page, states};
 pub use palette::Quantity;
-pub use picture::{Picture, PictureError, Size};
+pub use picture::{Parts, Picture, PictureError, Size};
+pub use section::{Slice, SliceError};
 pub use view::View;

@@ -90,6 +90,12 @@ impl Light {
     }
 }
 
+/// Factor of the colour of a piece of a force chain, at this part of its radius across it: right and down.
+pub(crate) fn of_stick([x, y]: [f64; 2]) -> f64 {
+    let normal = [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()];
+    0.62 + 0.42 * dot(normal, LAMP).max(0.0)
+}
+
 impl Grid {
     fn new(balls: Vec<([f64; 3], f64, u32)>, reach: f64) -> Self {
         let ends = |k: usize| {

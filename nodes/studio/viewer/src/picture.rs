@@ -1,11 +1,12 @@
 //! One view of a packing as pixels, without a display.
 
 use crate::canvas::{Canvas, Ground};
-use crate::legend::{Legend, ROWS};
+use crate::legend::{Legend, ROWS, newtons};
 use crate::lettering::Lettering;
 use crate::marks::{scale_bar, triad};
 use crate::palette::{Quantity, colours};
-use crate::raster::{Scene, Sphere};
+use crate::raster::{Scene, Sphere, frame};
+use crate::section::{SMALL, Slice, chains};
 use crate::view::View;
 use grainlab_core::Vec3;
 
@@ -46,6 +47,15 @@ pub enum PictureError {
     Png(#[from] png::EncodingError),
 }
 
+/// Parts of the packing in a picture, by default whole grains.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Parts {
+    /// A cut along a face of the cell.
+    pub slice: Option<Slice>,
+    /// True for the contacts as force chains, with the grains small.
+    pub chains: bool,
+}
+
 /// Pixels of a picture.
 #[derive(Clone, Debug)]
 pub struct Picture(Canvas);
@@ -53,11 +63,23 @@ pub struct Picture(Canvas);
 impl Picture {
     /// The packing in parallel projection, with a legend, a scale bar and the directions of the axes.
     pub fn new(view: &View, quantity: Quantity, size: Size, ground: Ground) -> Self {
+        Self::of(view, quantity, size, ground, &Parts::default())
+    }
+
+    /// As [`new`](Self::new), with these parts.
+    pub fn of(view: &View, quantity: Quantity, size: Size, ground: Ground, parts: &Parts) -> Self {
         let letters = Lettering::of(size.height.min(size.width));
         let (line, legend) = (letters.line(), Legend::new(view, quantity));
         let mut above = Vec::new();
         if ground != Ground::Clear {
-            above.extend([view.label.as_str(), view.part.as_deref().unwrap_or(CAPTION)]);
+            above.extend([view.label.clone(), view.part.clone().unwrap_or_else(|| CAPTION.to_owned())]);
+            above.extend(parts.slice.map(|slice| format!("{slice}")));
+            let full = newtons(view.force_of_full_colour());
+            above.extend(
+                parts
+                    .chains
+                    .then(|| format!("force chains: thickness and hue by normal force, up to {full}")),
+            );
         }
         let margin = 3 * line / 4;
         let below = size.height.saturating_sub(margin + ROWS * line);
@@ -67,11 +89,11 @@ impl Picture {
             size.width - margin,
             below - line.min(below) / 4,
         ];
-        let scene = scene(view, quantity, size.width, room.map(|v| v as f64));
+        let scene = scene(view, quantity, parts, size.width, room.map(|v| v as f64));
         let sides = [size.width, size.height];
         let mut canvas = Canvas::new(sides, ground, letters, scene.draw(size.height));
         for (n, text) in above.into_iter().enumerate() {
-            canvas.write(text, [margin, margin + n * line]);
+            canvas.write(&text, [margin, margin + n * line]);
         }
         legend.draw(&mut canvas, [margin, below]);
         let corner = [size.width - margin, size.height - margin].map(|v| v as f64);
@@ -103,12 +125,15 @@ impl Picture {
 }
 
 /// Spheres at their places and the cell.
-fn scene(view: &View, quantity: Quantity, width: usize, room: [f64; 4]) -> Scene {
+fn scene(view: &View, quantity: Quantity, parts: &Parts, width: usize, room: [f64; 4]) -> Scene {
     let cell = view.matrix();
     let colours = colours(view, quantity);
+    let size = if parts.chains { SMALL } else { 1.0 };
     let sphere =
-        |n: usize| Sphere { centre: cell * view.places[n], radius: view.radii[n], colour: colours[n] };
+        |n: usize| Sphere { centre: cell * view.places[n], radius: size * view.radii[n], colour: colours[n] };
     let spheres: Vec<Sphere> = (0..view.grains()).map(sphere).collect();
     let corner = |n: usize| cell * Vec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2 & 1) as f64);
-    Scene::placed(&spheres, std::array::from_fn(corner), width, room)
+    let sticks = if parts.chains { chains(view) } else { Vec::new() };
+    let plane = parts.slice.map(|slice| slice.plane(view, &frame()[2]));
+    Scene::placed(&spheres, std::array::from_fn(corner), width, room).with(&sticks, plane)
 }

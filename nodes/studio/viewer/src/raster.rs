@@ -2,8 +2,9 @@
 //! machine: only additions, multiplications, divisions and square roots.
 
 use crate::canvas::{beside, over, stroke};
-use crate::light::{Ball, Light};
+use crate::light::{Ball, Light, of_stick};
 use crate::palette::Colour;
+use crate::section::Stick;
 use grainlab_core::Vec3;
 use rayon::prelude::*;
 
@@ -41,8 +42,20 @@ pub(crate) fn frame() -> [Vec3; 3] {
     [right, toward.cross(&right), toward]
 }
 
+/// A piece of a force chain in the frame of the picture, pixels.
+struct Rod {
+    ends: [[f64; 3]; 2],
+    radius: f64,
+    colour: Colour,
+}
+
 /// A scene in the frame of the picture.
 pub(crate) struct Scene {
+    rods: Vec<Rod>,
+    /// Factors of right and down, and the constant, of the depth of a cut: nothing is nearer.
+    cut: Option<[f64; 3]>,
+    /// Pixels of the origin in the frame of the picture.
+    origin: [f64; 2],
     /// From the nearest to the farthest.
     balls: Vec<Ball>,
     /// Ends of each edge, and whether nothing but a sphere on it can hide it.
@@ -81,7 +94,38 @@ impl Scene {
         let last = (0..8).min_by(|a, b| corners[*a][2].total_cmp(&corners[*b][2])).unwrap_or(0);
         let from = |n: usize| [1, 2, 4].into_iter().filter(move |k| n & k == 0).map(move |k| [n, n | k]);
         let edges = (0..8).flat_map(from).map(|ends| (ends.map(|n| corners[n]), !ends.contains(&last)));
-        Self { balls, edges: edges.collect(), width, scale }
+        let (rods, cut, edges) = (Vec::new(), None, edges.collect());
+        let origin = [place(&Vec3::zeros())[0], place(&Vec3::zeros())[1]];
+        Self { rods, cut, origin, balls, edges, width, scale }
+    }
+
+    /// The scene with pieces of force chains, and cut by a plane: its normal, and the product with its places, m.
+    pub(crate) fn with(mut self, sticks: &[Stick], plane: Option<(Vec3, f64)>) -> Self {
+        let [right, up, toward] = frame();
+        let ([x, y], scale) = (self.origin, self.scale);
+        let place = |p: &Vec3| [x + p.dot(&right) * scale, y - p.dot(&up) * scale, p.dot(&toward) * scale];
+        let rod =
+            |s: &Stick| Rod { ends: s.ends.map(|p| place(&p)), radius: s.radius * scale, colour: s.colour };
+        self.rods = sticks.iter().map(rod).collect();
+        self.cut = plane.map(|(normal, at)| {
+            let [a, b] = [-normal.dot(&right), normal.dot(&up)].map(|v| v / normal.dot(&toward));
+            [a, b, at * scale / normal.dot(&toward) - a * x - b * y]
+        });
+        // Balls that are cut away give no shadow.
+        let limit = self.cut;
+        let is_left = |b: &Ball| {
+            limit.is_none_or(|[p, q, r]| {
+                let over = b.centre[2] - p * b.centre[0] - q * b.centre[1] - r;
+                over < b.radius * (1.0 + p * p + q * q).sqrt()
+            })
+        };
+        self.balls.retain(is_left);
+        self
+    }
+
+    /// Largest depth at a place.
+    fn limit(&self, [x, y]: [f64; 2]) -> f64 {
+        self.cut.map_or(f64::INFINITY, |[a, b, c]| a * x + b * y + c)
     }
 
     /// The pixels: red, green, blue and opacity.
@@ -116,8 +160,10 @@ impl Scene {
                         let sample = &mut of_sample[row * self.width + column];
                         if sample.0 < nearest {
                             let dx = column as f64 - x;
-                            let depth = (z + (square - dx * dx).max(0.0).sqrt()) as f32;
-                            if depth > sample.0 {
+                            let half = (square - dx * dx).max(0.0).sqrt();
+                            let limit = self.limit([column as f64 + right, (top + row) as f64 + down]);
+                            let depth = (z + half).min(limit) as f32;
+                            if depth > sample.0 && limit > z - half {
                                 *sample = (depth, number as u32);
                             }
                         }
@@ -125,7 +171,49 @@ impl Scene {
                 }
             }
         }
+        for (rod, number) in self.rods.iter().zip(self.balls.len()..) {
+            let ends = |k: usize| [0, 1].map(|n| rod.ends[n][k]);
+            let range = |[a, b]: [f64; 2], from: f64, end| {
+                within(a.min(b) - rod.radius - from - 1.0, a.max(b) + rod.radius - from, end)
+            };
+            for (row, column) in range(ends(1), top as f64, rows)
+                .flat_map(|row| range(ends(0), 0.0, self.width).map(move |column| (row, column)))
+            {
+                for (of_sample, (right, down)) in samples.iter_mut().zip(offsets()) {
+                    let at = [column as f64 + right, (top + row) as f64 + down];
+                    let (distance, t) = beside(at, rod.ends.map(|p| [p[0], p[1]]));
+                    if distance < rod.radius {
+                        let middle = rod.ends[0][2] + t * (rod.ends[1][2] - rod.ends[0][2]);
+                        let depth = middle + (rod.radius * rod.radius - distance * distance).sqrt();
+                        let sample = &mut of_sample[row * self.width + column];
+                        if depth as f32 > sample.0 && depth <= self.limit(at) {
+                            *sample = (depth as f32, number as u32);
+                        }
+                    }
+                }
+            }
+        }
         samples
+    }
+
+    /// The colour of a ball or rod at a place.
+    fn colour(&self, light: &Light, owner: u32, at: [f64; 2]) -> [f64; 3] {
+        let (colour, [factor, glint]) = match self.balls.get(owner as usize) {
+            Some(ball) => {
+                let [x, y] = [at[0] - ball.centre[0], at[1] - ball.centre[1]];
+                let near = ball.centre[2] + (ball.radius * ball.radius - x * x - y * y).max(0.0).sqrt();
+                // The face of a cut has the colour of the legend.
+                let is_cut = near > self.limit(at);
+                (ball.colour, if is_cut { [1.0, 0.0] } else { light.shade(ball, owner, at) })
+            }
+            None => {
+                let rod = &self.rods[owner as usize - self.balls.len()];
+                let (_, t) = beside(at, rod.ends.map(|p| [p[0], p[1]]));
+                let from = |k: usize| at[k] - rod.ends[0][k] - t * (rod.ends[1][k] - rod.ends[0][k]);
+                (rod.colour, [of_stick([0, 1].map(from).map(|v| v / rod.radius)), 0.0])
+            }
+        };
+        colour.map(|c| f64::from(c) * factor + glint)
     }
 
     /// A pixel whose corner is at this place: each sphere is shaded in the middle of its samples.
@@ -144,9 +232,8 @@ impl Scene {
         }
         let (mut sum, mut all) = ([0.0; 3], 0.0);
         for (owner, [right, down, hits]) in &found[..count] {
-            let ball = &self.balls[*owner as usize];
-            let shade = light.shade(ball, *owner, [x + right / hits, y + down / hits]);
-            sum = std::array::from_fn(|c| sum[c] + hits * (f64::from(ball.colour[c]) * shade[0] + shade[1]));
+            let colour = self.colour(light, *owner, [x + right / hits, y + down / hits]);
+            sum = std::array::from_fn(|c| sum[c] + hits * colour[c]);
             all += hits;
         }
         let mut colour = sum.map(|v| (v / f64::max(all, 1.0)).min(255.0));

@@ -1,7 +1,7 @@
 //! Pictures of packings: what is in them, and that they are the same every time.
 
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
-use grainlab_viewer::{Film, Ground, Picture, Quantity, Size, View, page};
+use grainlab_viewer::{Film, Ground, Parts, Picture, Quantity, Size, View, page};
 
 /// Four grains on a line along x, each touching the next, the last one the image of the first; and one alone.
 fn chain() -> Packing {
@@ -94,6 +94,38 @@ fn the_colour_follows_what_is_asked_for() {
     let of = |quantity| Picture::new(&view, quantity, SIZE, Ground::Clear).png().unwrap();
     let all = Quantity::ALL.map(of);
     assert!(all[0] != all[1] && all[1] != all[2] && all[0] != all[2]);
+}
+
+#[test]
+fn the_face_of_a_cut_has_exactly_the_colour_of_the_legend_and_a_cut_through_nothing_leaves_none() {
+    let view = View::new(&chain(), "");
+    let of = |slice: &str| {
+        let parts = Parts { slice: Some(slice.parse().unwrap()), ..Parts::default() };
+        Picture::of(&view, Quantity::Rattlers, SIZE, Ground::Clear, &parts)
+    };
+    let carrier = |picture: &Picture| colours(picture).get(&[46, 104, 150, 255]).copied().unwrap_or(0);
+    let [whole, cut] =
+        [Picture::new(&view, Quantity::Rattlers, SIZE, Ground::Clear), of("z")].map(|p| carrier(&p));
+    assert!(cut > whole + 500, "{cut} pixels, {whole} without the cut");
+    // The grains lie at the middle of z, and the viewer looks from above.
+    let grains = |p: &Picture| {
+        colours(p).iter().filter(|(c, _)| c[3] == 255 && c[2] > c[0] + 30).map(|(_, n)| n).sum::<usize>()
+    };
+    assert!(grains(&of("z=0.3")) < grains(&of("z=0.5")) / 4);
+}
+
+#[test]
+fn a_force_chain_has_the_colours_of_the_forces_between_small_grains() {
+    let view = View::new(&chain(), "");
+    let parts = Parts { chains: true, ..Parts::default() };
+    let of = |parts: &Parts| Picture::of(&view, Quantity::Rattlers, SIZE, Ground::Clear, parts);
+    let blue = |c: &[u8; 4]| c[3] == 255 && c[2] > c[0] + 60;
+    let share = |parts: &Parts, is: &dyn Fn(&[u8; 4]) -> bool| -> usize {
+        colours(&of(parts)).iter().filter(|(c, _)| is(c)).map(|(_, n)| n).sum()
+    };
+    assert!(2 * share(&parts, &blue) < share(&Parts::default(), &blue), "the grains are small");
+    let warm = |c: &[u8; 4]| c[3] == 255 && c[0] > c[2] + 40;
+    assert!(share(&parts, &warm) > 50 + share(&Parts::default(), &warm), "{}", share(&parts, &warm));
 }
 
 #[test]

@@ -11,7 +11,7 @@ Examples:
   grainlab bag check recordings/runs/demo-1-1
   grainlab bag check run.mcap --format json
 
-Reads every record: framing, checksums of chunks, attachments, summary and data, the index against the messages, the order
+Reads every record: framing, checksums of chunks, attachments, summary and data, the index and metadata.yaml against the messages, the order
 of files, the recorder's ledger against the messages, what its recorder noted as disputed between processes, and the definitions
 of types against those of this program. Exit 0 without faults, else 3; a definition that is read by the names of its fields is no fault, nor are several runs in one recording, nor a
 ledger that is absent because another program, a copy, or `bag recover` wrote the file: then losses cannot be judged. What `bag recover` left out but for
@@ -84,11 +84,24 @@ fn text(view: &View) -> String {
     lines.extend(check.definitions.iter().chain(&view.disputes).cloned());
     if lines.len() == 1 {
         let ledgers = if check.unjudged.is_empty() { ", ledgers" } else { "" };
-        lines.push(format!("all records, checksums, indexes{ledgers} and definitions are valid"));
+        let (parsed, all) = (check.ros_definitions, check.all_definitions);
+        let checksums = match check.checksums {
+            0 => "none in the recording".to_owned(),
+            n => format!("{n} valid"),
+        };
+        let definitions =
+            if parsed == all { String::new() } else { format!(" of {all}, the others are not of ROS 2") };
+        lines.push(format!(
+            "all records{}{ledgers} are valid; checksums: {checksums}; definitions: {parsed} parsed{definitions}",
+            if check.without_index { "" } else { ", indexes" }
+        ));
     }
     for path in &check.unjudged {
-        let what = "it has no ledger, as a copy or a file of another program: whether messages were lost cannot be judged";
+        let what = "losses cannot be judged: only grainlab's recorder counts them";
         lines.push(format!("{}: {what}", path.display()));
+    }
+    if check.without_index {
+        lines.push("it has no index, which MCAP allows: all of it was read".to_owned());
     }
     lines.extend(view.several_runs.clone());
     lines.join("\n") + "\n"

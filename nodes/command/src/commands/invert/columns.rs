@@ -3,6 +3,7 @@
 use super::inputs::{INPUTS, Input, Role};
 use super::slips;
 use super::state::State;
+use crate::commands::separated;
 use csv::{ReaderBuilder, StringRecord, Terminator};
 use grainlab_core::results::QUANTITIES;
 use grainlab_core::{Stiffness, Vec3};
@@ -348,7 +349,7 @@ impl Columns {
 /// The cells of a line, without space around them. A cell in quotes may contain commas and doubled quotes, but no line break,
 /// so that an invalid cell affects only its line.
 fn cells(line: &[u8]) -> Result<StringRecord, &'static str> {
-    let text = std::str::from_utf8(line).map_err(|_| "it is not UTF-8 text")?;
+    let text = std::str::from_utf8(line).map_err(|_| separated::NOT_UTF8)?;
     let mut record = StringRecord::with_capacity(line.len(), line.len() / 4);
     if !text.contains('"') {
         text.split(',').for_each(|cell| record.push_field(cell.trim()));

@@ -217,8 +217,14 @@ pub(super) fn run(
     let own: Vec<usize> = (0..planned_waves.len()).collect();
     say!("grainlab: contact: {contact}");
     let count = SAMPLES + (FACTORS.len() - 1 + others.len()) * COMPARED;
-    say!("grainlab: {count} inversions of simulated samples follow");
+    say!("grainlab: {count} inversions of simulated samples follow, a minute or more");
+    let mut done = 0;
+    let mut progress = |samples: usize| {
+        done += samples;
+        say!("grainlab: {done} of {count} inversions are done");
+    };
     let (before, base) = sigmas(&own, 1.0, SAMPLES, None)?;
+    progress(SAMPLES);
     // One set of samples, so that ratios have little noise.
     let few = rms(&base[..COMPARED]);
     let scaled = |found: &[Vec<f64>]| -> Vec<f64> {
@@ -229,7 +235,9 @@ pub(super) fn run(
         by_error.push(if factor == 1.0 {
             rms(&base)
         } else {
-            scaled(&sigmas(&own, factor, COMPARED, None)?.1)
+            let found = sigmas(&own, factor, COMPARED, None)?.1;
+            progress(COMPARED);
+            scaled(&found)
         });
     }
     let quantity = |(k, of): (usize, &SampleQuantity)| {
@@ -249,6 +257,7 @@ pub(super) fn run(
     for (n, (further, _)) in others.iter_mut().enumerate() {
         let with: Vec<usize> = own.iter().copied().chain([own.len() + n]).collect();
         further.sigma = scaled(&sigmas(&with, 1.0, COMPARED, Some(&before))?.1);
+        progress(COMPARED);
     }
     let mut answer = Answer {
         speeds: own.len(),

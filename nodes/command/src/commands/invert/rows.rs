@@ -2,6 +2,7 @@
 
 use super::columns::{BadRow, Columns, Row};
 use super::state::State;
+use crate::commands::separated;
 use grainlab_console::Failure;
 use grainlab_recordings::input;
 use rayon::prelude::*;
@@ -28,6 +29,8 @@ struct Lines {
     name: String,
     /// Number of the last line read, from 1.
     number: u64,
+    /// Separator of the cells.
+    separator: char,
 }
 
 impl Lines {
@@ -44,7 +47,7 @@ impl Lines {
     }
 
     fn new(source: Box<dyn Read>, name: String) -> Self {
-        Self { source: BufReader::with_capacity(PIECE, source), name, number: 0 }
+        Self { source: BufReader::with_capacity(PIECE, source), name, number: 0, separator: ',' }
     }
 
     /// The next line without its end; `None` at the end.
@@ -64,11 +67,21 @@ impl Lines {
         Ok((read > 0).then_some(line))
     }
 
+    /// A line with commas between its cells; one that is not UTF-8 as it is.
+    fn with_commas(&self, line: Vec<u8>) -> Vec<u8> {
+        match std::str::from_utf8(&line) {
+            Ok(text) if ![',', ' '].contains(&self.separator) => {
+                separated::with_commas(text, self.separator).into_owned().into_bytes()
+            }
+            _ => line,
+        }
+    }
+
     /// The available complete lines with their numbers, at least one; waits for it. `None` at the end.
     fn piece(&mut self) -> Result<Option<Vec<Line>>, Failure> {
         let mut lines = Vec::new();
         while let Some(line) = self.line()? {
-            lines.push((self.number, line));
+            lines.push((self.number, self.with_commas(line)));
             if !self.source.buffer().contains(&b'\n') {
                 break;
             }
@@ -103,7 +116,9 @@ impl Rows {
             if line.starts_with(b"#") || line.iter().all(u8::is_ascii_whitespace) {
                 continue;
             }
-            let columns = Columns::of_header(line, by, defaults)
+            lines.separator = std::str::from_utf8(line).map_or(',', separated::separator);
+            let line = lines.with_commas(line.to_vec());
+            let columns = Columns::of_header(&line, by, defaults)
                 .map_err(|e| Failure::usage(format!("{}: {e}", lines.name)))?;
             return Ok(Self { lines, columns, comments: 0 });
         }

@@ -79,12 +79,18 @@ pub(super) fn run(
             None => samples.push((line.sample.clone(), vec![line.clone()])),
         }
     }
-    let mut found = Vec::new();
+    let (mut found, mut failed) = (Vec::new(), Vec::new());
     for (sample, lines) in samples {
         let usage = |fault: String| Failure::usage(format!("{name}: {fault}"));
         let (series, assumed) = args.series(&lines).map_err(usage)?;
         let wrong = |e: EmtError| usage(format!("sample {sample:?}: {e}"));
-        let estimate = infer_series(&series, network, &prior).map_err(wrong)?;
+        let estimate = match infer_series(&series, network, &prior) {
+            Err(e @ EmtError::NotSampled { .. }) => {
+                failed.push(format!("{name}: sample {sample:?}: {e}"));
+                continue;
+            }
+            estimate => estimate.map_err(wrong)?,
+        };
         let sensitivity = Sensitivity::of(&series, network, &prior).map_err(wrong)?;
         let contact = contact.text();
         let is_contradictory = estimate.is_contradictory() || sensitivity.is_contradictory();
@@ -105,14 +111,15 @@ pub(super) fn run(
         found.push(all);
     }
     format.print(&found, || print::csv(&found), || found.iter().map(print::text).collect())?;
-    if let Some(path) = plot {
+    if let Some(path) = plot.filter(|_| !found.is_empty()) {
         plotted(&found, path)?;
     }
     let contradictory: Vec<&Sample> = found.iter().filter(|s| s.status == "contradictory").collect();
     for sample in &contradictory {
         say!("grainlab: {name}: sample {:?}: contradictory: {}", sample.sample, print::contradiction(sample));
     }
-    Ok(if contradictory.is_empty() { Exit::Done } else { Exit::PhysicsInvalid })
+    failed.iter().for_each(|fault| say!("grainlab: {fault}"));
+    Ok(if contradictory.is_empty() && failed.is_empty() { Exit::Done } else { Exit::PhysicsInvalid })
 }
 
 #[cfg(feature = "studio")]

@@ -1,16 +1,16 @@
 //! The rows of a table of wave speeds.
 
 use super::slips;
+use crate::commands::separated;
 use csv::StringRecord;
 use grainlab_console::Failure;
 use grainlab_core::Vec3;
 use grainlab_emt::SpeedMode;
-use std::io::Read;
 use std::path::Path;
 
 /// The columns: what is of the sample and the state; the wave, by an angle to the axis with a mode or by a direction with a
 /// polarization; and the speed.
-pub(crate) const COLUMNS: [&str; 22] = [
+pub(crate) const COLUMNS: [&str; 27] = [
     "sample",
     "pressure_pa",
     "pressure_sigma_pa",
@@ -33,6 +33,19 @@ pub(crate) const COLUMNS: [&str; 22] = [
     "polarization_z",
     "speed",
     "speed_sigma",
+    "speed_shared_sigma",
+    "p_pa",
+    "p_kpa",
+    "pressure_kpa",
+    "density_g_cm3",
+];
+
+/// Columns in other units or words: the column that is read, and the factor to it.
+const ALIASES: [(&str, &str, f64); 4] = [
+    ("p_pa", "pressure_pa", 1.0),
+    ("p_kpa", "pressure_pa", 1e3),
+    ("pressure_kpa", "pressure_pa", 1e3),
+    ("density_g_cm3", "density", 1e3),
 ];
 
 /// One row; lengths in m, speeds in m/s, other units as in the names of the columns.
@@ -64,6 +77,8 @@ pub(crate) struct SpeedLine {
     /// `None` is predicted.
     pub(super) speed: Option<f64>,
     pub(super) speed_sigma: Option<f64>,
+    /// Error that all rows of this mode and direction share.
+    pub(super) speed_shared_sigma: Option<f64>,
     /// Direction and polarization; `None` if the direction is not known.
     #[serde(skip)]
     pub(crate) way: Option<(Vec3, Vec3)>,
@@ -84,14 +99,7 @@ const CLEAR: f64 = 0.9;
 
 /// The name of a file in messages, and its rows; `-` is the standard input.
 pub(super) fn read(path: &Path) -> Result<(String, Vec<SpeedLine>), Failure> {
-    let name = if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() };
-    let unreadable = |e: std::io::Error| Failure::failed(format!("{name}: {e}"));
-    let mut text = String::new();
-    if path.as_os_str() == "-" {
-        std::io::stdin().read_to_string(&mut text).map_err(unreadable)?;
-    } else {
-        text = std::fs::read_to_string(path).map_err(unreadable)?;
-    }
+    let (name, text) = separated::read(path)?;
     let lines = parsed(&text).map_err(|fault| Failure::usage(format!("{name}: {fault}")))?;
     Ok((name, lines))
 }
@@ -102,7 +110,7 @@ fn parsed(text: &str) -> Result<Vec<SpeedLine>, String> {
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .flexible(true)
-        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+        .from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| e.to_string())?.clone();
     checked_header(&header, &COLUMNS, &["speed"])?;
     let mut lines = Vec::new();
@@ -125,14 +133,16 @@ fn parsed(text: &str) -> Result<Vec<SpeedLine>, String> {
 pub(crate) fn checked_header(header: &StringRecord, columns: &[&str], needed: &[&str]) -> Result<(), String> {
     let known = || columns.join(", ");
     for (at, column) in header.iter().enumerate() {
-        if header.iter().take(at).any(|other| other == column) {
-            return Err(format!("column {column} is there twice"));
+        if let Some(other) = header.iter().take(at).find(|other| read_as(other).0 == read_as(column).0) {
+            return Err(match other == column {
+                true => format!("column {column} is there twice"),
+                false => format!("columns {other} and {column} are one quantity: keep one of them"),
+            });
         }
         if columns.contains(&column) {
             continue;
         }
         let hint = match slips::meant(column, columns) {
-            _ if column.contains([';', '\t']) => "; the separator must be a comma".to_owned(),
             Some(meant) => format!(" (did you mean {meant}?)"),
             None => String::new(),
         };
@@ -142,6 +152,20 @@ pub(crate) fn checked_header(header: &StringRecord, columns: &[&str], needed: &[
         Some(missing) => Err(format!("there is no column {missing}; columns are {}", known())),
         None => Ok(()),
     }
+}
+
+/// The column that a column is read as, and the factor to it.
+fn read_as(column: &str) -> (&str, f64) {
+    ALIASES
+        .into_iter()
+        .find(|(name, ..)| *name == column)
+        .map_or((column, 1.0), |(_, name, factor)| (name, factor))
+}
+
+/// A cell in the unit of the column that is read.
+fn in_unit(cell: &str, factor: f64) -> String {
+    let scaled = cell.parse::<f64>().ok().filter(|_| factor != 1.0).map(|value| (factor * value).to_string());
+    scaled.unwrap_or_else(|| cell.to_owned())
 }
 
 /// A row without a speed, as a table would have it; `extra` are further columns.
@@ -162,8 +186,10 @@ pub(crate) fn row(header: &StringRecord, record: &StringRecord) -> Result<SpeedL
     if record.len() != header.len() {
         return Err(format!("{} cells under {} columns", record.len(), header.len()));
     }
-    let mut row: SpeedLine =
-        record.deserialize(Some(header)).map_err(|e| not_a_number(&e, header, record))?;
+    let read: StringRecord = header.iter().map(|column| read_as(column).0).collect();
+    let cells: StringRecord =
+        header.iter().zip(record).map(|(column, cell)| in_unit(cell, read_as(column).1)).collect();
+    let mut row: SpeedLine = cells.deserialize(Some(&read)).map_err(|e| not_a_number(&e, header, record))?;
     for (column, value) in [
         ("pressure_pa", row.pressure_pa),
         ("density", row.density),
@@ -181,6 +207,7 @@ pub(crate) fn row(header: &StringRecord, record: &StringRecord) -> Result<SpeedL
         ("density_sigma", row.density_sigma),
         ("roughness", row.roughness),
         ("roughness_sigma", row.roughness_sigma),
+        ("speed_shared_sigma", row.speed_shared_sigma),
     ] {
         if let Some(value) = value.filter(|v| !(*v >= 0.0 && v.is_finite())) {
             return Err(format!("{column} = {value} must be 0 or more and finite"));
@@ -215,7 +242,10 @@ fn way(row: &SpeedLine) -> Result<Option<(Vec3, Vec3)>, String> {
         (None, Some("along")) => Some(0.0),
         (None, Some("across")) => Some(90.0),
         (None, Some(text)) => Some(text.parse::<f64>().map_err(|_| {
-            format!("direction {text:?} must be along, across, or the angle to the axis in degrees")
+            format!(
+                "direction {text:?} must be along (the axis of the sample, vertical in most), across (horizontal in most), or the angle to \
+                 the axis in degrees"
+            )
         })?),
     };
     match (angle, row.mode.as_deref(), direction, polarization) {
@@ -305,6 +335,15 @@ mod tests {
     }
 
     #[test]
+    fn pressures_in_kpa_and_densities_in_g_per_cm3_are_read_in_si() {
+        let read =
+            parsed("pressure_kpa,density_g_cm3,mode,speed,speed_shared_sigma\n50,1.6,p,500,2\n,,s,300,\n")
+                .unwrap();
+        assert_eq!((read[0].pressure_pa, read[0].density), (Some(5e4), Some(1600.0)));
+        assert_eq!((read[0].speed_shared_sigma, read[1].pressure_pa), (Some(2.0), None));
+    }
+
+    #[test]
     fn each_fault_is_named_with_its_line() {
         for (text, fault) in [
             ("angle_deg,mode,speed\n", "no measured speed below the header"),
@@ -322,7 +361,11 @@ mod tests {
                 "column sigma is unknown (did you mean speed_sigma?); columns are",
             ),
             ("Angle_deg,mode,speed\n0,p,500\n", "column Angle_deg is unknown (did you mean angle_deg?)"),
-            ("angle_deg;mode;speed\n0;p;500\n", "the separator must be a comma; columns are sample"),
+            (
+                "direction,mode,speed\nvertical,p,500\n",
+                "must be along (the axis of the sample, vertical in most)",
+            ),
+            ("p_kpa,pressure_pa,mode,speed\n", "columns p_kpa and pressure_pa are one quantity"),
             ("angle_deg,mode,speed,speed\n0,p,500,1\n", "column speed is there twice"),
             ("angle_deg,mode\n0,p\n", "there is no column speed; columns are"),
             ("angle_deg,mode,speed\n0,p,fast\n", "line 2: column speed: \"fast\" is not a number"),

@@ -24,7 +24,13 @@ pub(super) fn add(
             usage(line, "give angle_deg and mode, or direction_x to _z and polarization_x to _z")
         })?;
         let speed = line.speed.ok_or_else(|| usage(line, "column speed is empty"))?;
-        Ok(WaveSpeed { direction, polarization, speed, stddev: line.speed_sigma })
+        let shared = line.speed_shared_sigma.unwrap_or(0.0);
+        Ok(WaveSpeed {
+            direction,
+            polarization,
+            speed,
+            stddev: line.speed_sigma.map(|own| own.hypot(shared)),
+        })
     };
     let speeds = lines.iter().map(speed).collect::<Result<Vec<_>, Failure>>()?;
     let conditions = Conditions { pressure: state.conditions.pressure, ..Conditions::default() };

@@ -6,11 +6,16 @@ use grainlab_console::{Failure, write_whole};
 use grainlab_page::plot::{Axis, Entry, Figure, Line, Point, Series, Theme};
 use std::path::Path;
 
+/// Periods before and after the arrival that are shown.
+const BEFORE: f64 = 8.0;
+const AFTER: f64 = 4.0;
+
 /// Draws a record into a folder, which is made.
 pub(super) fn drawn(folder: &Path, row: &Row, record: &Record, picked: &Picks) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(Failure::at(folder))?;
     let stem = Path::new(&row.file).with_extension("").to_string_lossy().replace(['/', '\\'], "-");
-    let path = folder.join(format!("{:03}-{stem}.svg", row.line));
+    let wave: String = row.wave.iter().map(|word| format!("-{word}")).collect();
+    let path = folder.join(format!("{:03}-{stem}{wave}.svg", row.line));
     write_whole(&path, figure(row, record, picked).svg(Theme::Light)).map_err(Failure::at(&path))
 }
 
@@ -18,6 +23,10 @@ fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {
     let offset = record.source[record.quiet.clone()].iter().sum::<f64>() / record.quiet.len() as f64;
     let largest = record.source.iter().fold(0.0, |most: f64, s| most.max((s - offset).abs()));
     let start = record.source.iter().position(|s| (s - offset).abs() > 0.02 * largest).unwrap_or(0) as f64;
+    // The arrival, and the source where the path is not many wavelengths long.
+    let best = picked.picks[picked.recommended];
+    let (period, arrival) = (1e6 / picked.frequency, 1e6 * (best.time + row.passage.delay));
+    let window = (arrival - BEFORE * period).max(-period)..arrival + AFTER * period;
     let line = |colour: Option<usize>, rate: f64, values: &mut dyn Iterator<Item = f64>, up: f64| Series {
         colour,
         line: Some(Line::Straight),
@@ -26,6 +35,7 @@ fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {
             .map(|(k, v)| {
                 Point::at(1e6 * (k as f64 / rate - start / record.sample_rate), v.clamp(-2.0, 2.0) + up)
             })
+            .filter(|point| window.contains(&point.x))
             .collect(),
         ..Series::default()
     };
@@ -43,14 +53,13 @@ fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {
         },
         ..Series::default()
     };
-    let best = picked.picks[picked.recommended];
     let entries = |(k, p): (usize, &grainlab_acoustics::record::Pick)| {
         let star = if k == picked.recommended { " *" } else { "" };
         let speed = Entry::Note(format!("{:.1} +- {:.1} m/s{star}", p.speed, p.speed_stddev));
         [Entry::Colour(k + 1, p.method.word().into()), speed]
     };
     Figure {
-        title: format!("{}: {:.1} +- {:.1} m/s", row.file, best.speed, best.speed_stddev),
+        title: format!("{}: {:.1} +- {:.1} m/s", row.name, best.speed, best.speed_stddev),
         subtitle: "source above, receiver below (no offset, no crosstalk, sign of the source); lines: long waves by each pick, 95 %".into(),
         x: Axis::linear("time after the start of the source, µs"),
         y: Axis::linear("signal over the largest of the source, of the arrival"),

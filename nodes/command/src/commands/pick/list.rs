@@ -1,6 +1,7 @@
 //! The table of the records.
 
 use crate::commands::invert::{SPEED_COLUMNS, checked_header, not_a_number, speed_row};
+use crate::commands::separated;
 use grainlab_acoustics::record::Passage;
 use grainlab_console::Failure;
 use grainlab_core::Vec3;
@@ -25,7 +26,7 @@ const OWN: [&str; 13] = [
 ];
 
 /// Columns of `grainlab invert --speeds` that the picks fill in; the others are copied.
-const PICKED: [&str; 3] = ["frequency", "speed", "speed_sigma"];
+const PICKED: [&str; 4] = ["frequency", "speed", "speed_sigma", "speed_shared_sigma"];
 
 /// The cells of a row that are not only copied.
 #[derive(Deserialize)]
@@ -53,6 +54,12 @@ pub(super) struct Row {
     pub(super) line: u64,
     /// Path of its file as the table has it.
     pub(super) file: String,
+    /// Name in messages: that of its file, with line, mode and direction if other rows have the same file.
+    pub(super) name: String,
+    /// Mode and direction as the table has them, if it has.
+    pub(super) wave: Vec<String>,
+    /// False if the table has no delay.
+    pub(super) has_delay: bool,
     pub(super) path: PathBuf,
     pub(super) passage: Passage,
     /// Direction and polarization, where they are given.
@@ -67,20 +74,19 @@ pub(super) struct Row {
 
 /// The rows of a table.
 pub(super) fn read(path: &Path) -> Result<Vec<Row>, Failure> {
-    let text = std::fs::read_to_string(path).map_err(Failure::at(path))?;
+    let (name, text) = separated::read(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    parsed(&text, folder).map_err(|fault| Failure::usage(format!("{}: {fault}", path.display())))
+    parsed(&text, folder).map_err(|fault| Failure::usage(format!("{name}: {fault}")))
 }
 
 fn parsed(text: &str, folder: &Path) -> Result<Vec<Row>, String> {
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| e.to_string())?.clone();
     let copied: Vec<&str> = SPEED_COLUMNS.into_iter().filter(|name| !PICKED.contains(name)).collect();
     checked_header(&header, &[&OWN[..], &copied].concat(), &["file", "distance", "diameter"])?;
-    let mut rows = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
+    let has_delay = header.iter().any(|name| name == "delay");
     for record in reader.records() {
         let record = record.map_err(|e| e.to_string())?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -90,12 +96,28 @@ fn parsed(text: &str, folder: &Path) -> Result<Vec<Row>, String> {
         if row.passage.longitudinal.is_some() {
             row.way = speed_row(&header, &record).map_err(at)?.way;
         }
+        let given = |name: &str| header.iter().zip(&record).find(|(n, _)| *n == name).map(|(_, cell)| cell);
+        if given("delay").is_some_and(str::is_empty) {
+            return Err(at(
+                "column delay is empty: give the travel time with source and receiver face to face, s, or 0 if there is none".to_owned(),
+            ));
+        }
+        row.has_delay = has_delay;
+        let of_wave = [given("mode"), given("direction").or(given("angle_deg"))];
+        row.wave = of_wave.into_iter().flatten().filter(|cell| !cell.is_empty()).map(str::to_owned).collect();
         let all = header.iter().zip(&record).filter(|(name, _)| copied.contains(name));
         row.copied = all.map(|(name, cell)| (name.to_owned(), cell.to_owned())).collect();
         rows.push(row);
     }
     if rows.is_empty() {
         return Err("there is no record below the header".to_owned());
+    }
+    let files: Vec<String> = rows.iter().map(|row| row.file.clone()).collect();
+    for row in &mut rows {
+        if files.iter().filter(|file| **file == row.file).count() > 1 {
+            let wave = row.wave.iter().map(|word| format!(" {word}")).collect::<String>();
+            row.name = format!("{} (line {}{wave})", row.name, row.line);
+        }
     }
     Ok(rows)
 }
@@ -123,6 +145,9 @@ fn row(line: u64, cells: Cells, folder: &Path) -> Result<Row, String> {
     }
     Ok(Row {
         line,
+        name: Path::new(&cells.file).file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        wave: Vec::new(),
+        has_delay: false,
         path: folder.join(&cells.file),
         passage: Passage {
             distance: cells.distance,
@@ -143,4 +168,26 @@ fn row(line: u64, cells: Cells, folder: &Path) -> Result<Row, String> {
         file: cells.file,
         copied: Vec::new(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_delay_that_is_empty_is_refused_and_one_without_column_is_known_to_be_missing() {
+        let rows = |text: &str| parsed(text, Path::new(""));
+        let fault = rows("file,distance,diameter,delay\na.csv,0.1,1e-4,0\nb.csv,0.1,1e-4,\n").unwrap_err();
+        assert!(fault.contains("line 3: column delay is empty"), "{fault}");
+        assert!(!rows("file,distance,diameter\na.csv,0.1,1e-4\n").unwrap()[0].has_delay);
+        assert!(rows("file,distance,diameter,delay\na.csv,0.1,1e-4,0\n").unwrap()[0].has_delay);
+    }
+
+    #[test]
+    fn records_of_one_file_are_named_by_line_mode_and_direction() {
+        let text = "file,distance,diameter,mode,direction\nx/a.csv,0.1,1e-4,p,along\nx/a.csv,0.1,1e-4,sh,across\nb.csv,0.1,1e-4,p,along\n";
+        let names: Vec<String> =
+            parsed(text, Path::new("")).unwrap().into_iter().map(|row| row.name).collect();
+        assert_eq!(names, ["a.csv (line 2 p along)", "a.csv (line 3 sh across)", "b.csv"]);
+    }
 }

@@ -1,6 +1,7 @@
 //! The file of a record: lines of text, then lines of numbers.
 
 use super::list::Row;
+use crate::commands::separated;
 use grainlab_acoustics::record::Record;
 use std::ops::Range;
 
@@ -51,20 +52,9 @@ fn parsed(text: &str, row: &Row) -> Result<Record, String> {
 
 /// The numbers of a line, which commas, semicolons, tabs or spaces separate; with semicolons, commas are decimal points.
 fn numbers(line: &str, columns: &[usize; 3]) -> Option<[f64; 3]> {
-    let cell = |cells: &[&str], c: usize| {
-        cells.get(c)?.trim().trim_matches('"').parse::<f64>().ok().filter(|v| v.is_finite())
-    };
-    let all =
-        |cells: &[&str]| Some([cell(cells, columns[0])?, cell(cells, columns[1])?, cell(cells, columns[2])?]);
-    if line.contains(';') {
-        let with_points = line.replace(',', ".");
-        return all(&with_points.split(';').collect::<Vec<_>>());
-    }
-    let separator = [',', '\t'].into_iter().find(|s| line.contains(*s));
-    match separator {
-        Some(separator) => all(&line.split(separator).collect::<Vec<_>>()),
-        None => all(&line.split_whitespace().collect::<Vec<_>>()),
-    }
+    let cells = separated::cells(line, separated::separator(line));
+    let cell = |c: usize| cells.get(c)?.trim_matches('"').parse::<f64>().ok().filter(|v| v.is_finite());
+    Some([cell(columns[0])?, cell(columns[1])?, cell(columns[2])?])
 }
 
 /// The samples before the source starts, less one in eight for what precedes its threshold; if the record starts with the source, the

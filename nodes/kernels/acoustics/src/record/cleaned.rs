@@ -47,6 +47,13 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Separated, 
     setting("samples", samples as f64, samples >= LEAST_SAMPLES, "32 or more")?;
     let same = record.receiver.len() == samples;
     setting("samples of the receiver", record.receiver.len() as f64, same, "as many as of the source")?;
+    let duration = samples as f64 / record.sample_rate;
+    if passage.delay.abs() >= duration {
+        return Err(AcousticsError::NoArrival(format!(
+            "the delay, {} s, is longer than the record, {duration:.3e} s; s is expected",
+            passage.delay
+        )));
+    }
     for value in record.source.iter().chain(&record.receiver) {
         setting("samples", *value, value.is_finite(), "finite")?;
     }
@@ -65,7 +72,11 @@ pub(super) fn cleaned(record: &Record, passage: &Passage) -> Result<(Separated, 
     }
     let band = Band::of(&source, passage.delay * record.sample_rate);
     let per_period = 1.0 / band.frequency;
-    setting("samples per period of the source", per_period, per_period >= LEAST_PER_PERIOD, "4 or more")?;
+    if per_period < LEAST_PER_PERIOD {
+        return Err(AcousticsError::NoArrival(format!(
+            "a period of the source has {per_period:.3} samples, and {LEAST_PER_PERIOD} or more are needed: sample faster"
+        )));
+    }
     let receiver = centred(&record.receiver, &quiet)?;
     let height = largest(&receiver);
     let receiver: Vec<f64> = receiver.iter().map(|s| s / height).collect();

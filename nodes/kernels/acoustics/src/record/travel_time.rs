@@ -40,6 +40,10 @@ const CHANCE: f64 = 0.05;
 /// Error where the opposite sign fits as well, periods.
 const HALF: f64 = 0.5;
 
+/// Share of the variance of a time that records of one path and mode have in common: dispersion, near field and ringing are much the
+/// same in all of them, noise is not.
+const ALIKE: f64 = 0.5;
+
 /// Least length of a path, wavelengths, and speeds of waves in packings of grains, m/s.
 const SHORTEST: f64 = 0.5;
 const SPEEDS: std::ops::Range<f64> = 1.0..1e4;
@@ -62,6 +66,8 @@ pub struct Pick {
     pub speed: f64,
     /// Standard deviation of the speed, m/s, with those of the distance and of the delay.
     pub speed_stddev: f64,
+    /// Part of it that the records of one path and mode share, m/s: distance, delay, and half of the variance of the time.
+    pub speed_common_stddev: f64,
 }
 
 /// The picks of a record, and what was found of it.
@@ -238,14 +244,24 @@ fn pick(method: WaveMethod, late: f64, errors: &[f64], rate: f64, passage: &Pass
     let bias = errors.iter().sum::<f64>() / n;
     let variance = errors.iter().map(|e| (e - bias).powi(2)).sum::<f64>() / (n - 1.0);
     let (time, time_stddev) = ((late - bias) / rate, (variance * (1.0 + 1.0 / n)).sqrt() / rate);
-    Pick { method, time, time_stddev, bias: bias / rate, speed: 0.0, speed_stddev: 0.0 }.with_speed(passage)
+    let bias = bias / rate;
+    Pick { method, time, time_stddev, bias, speed: 0.0, speed_stddev: 0.0, speed_common_stddev: 0.0 }
+        .with_speed(passage)
 }
 
 impl Pick {
     fn with_speed(self, passage: &Passage) -> Self {
         let speed = passage.distance / self.time;
-        let relative = (self.time_stddev.hypot(passage.delay_stddev) / self.time)
-            .hypot(passage.distance_stddev / passage.distance);
-        Self { speed, speed_stddev: relative * speed, ..self }
+        let of = |time_stddev: f64| {
+            let relative = time_stddev.hypot(passage.delay_stddev) / self.time;
+            speed * relative.hypot(passage.distance_stddev / passage.distance)
+        };
+        let speed_common_stddev = of(ALIKE.sqrt() * self.time_stddev);
+        Self { speed, speed_stddev: of(self.time_stddev), speed_common_stddev, ..self }
+    }
+
+    /// Part of the standard deviation of the speed that is of this record alone, m/s.
+    pub fn speed_own_stddev(&self) -> f64 {
+        (1.0 - ALIKE).sqrt() * self.time_stddev / self.time * self.speed
     }
 }

@@ -113,6 +113,35 @@ fn a_longer_distance_error_or_delay_error_is_in_the_error_of_the_speed() {
 }
 
 #[test]
+fn errors_of_distance_and_delay_are_common_to_the_records_of_a_path() {
+    let record = recorded(0.05, 3, |r, _| r);
+    let passage = Passage { distance_stddev: 0.02 * DISTANCE, delay_stddev: 5e-6, ..passage() };
+    let found = picks(&record, &passage, 1).unwrap();
+    let pick = found.picks[found.recommended];
+    let (own, common) = (pick.speed_own_stddev(), pick.speed_common_stddev);
+    assert!(common > 0.02f64.hypot(5e-6 / pick.time) * pick.speed, "{pick:?}");
+    assert!(own < pick.time_stddev / pick.time * pick.speed && own > 0.0, "{pick:?}");
+    assert!((own.hypot(common) / pick.speed_stddev - 1.0).abs() < 1e-9, "{pick:?}");
+}
+
+#[test]
+fn a_delay_beyond_the_record_and_too_few_samples_are_named_in_plain_words() {
+    let fault = |record: &Record, passage: &Passage| picks(record, passage, 1).unwrap_err().to_string();
+    let record = recorded(0.01, 3, |r, _| r);
+    let late = fault(&record, &Passage { delay: 4.3, ..passage() });
+    assert!(late.contains("the delay, 4.3 s, is longer than the record, 1.200e-3 s"), "{late}");
+    let each = |of: &[f64]| of.iter().copied().step_by(30).collect();
+    let few = Record {
+        sample_rate: RATE / 30.0,
+        quiet: 0..QUIET / 30 + 2,
+        source: each(&[&[0.0; 300][..], &record.source].concat()),
+        receiver: each(&[&[0.0; 300][..], &record.receiver].concat()),
+    };
+    let few = fault(&few, &passage());
+    assert!(few.contains("a period of the source has") && few.contains("sample faster"), "{few}");
+}
+
+#[test]
 fn filters_of_the_receiver_that_are_given_do_not_delay_the_wave() {
     let mut record = recorded(0.003, 5, |r, _| r);
     // One pole each at 8 kHz, by the differential equations.

@@ -119,6 +119,7 @@ fn series(observation: &Observation, calibration: &Calibration) -> Result<SpeedS
         angle: Some(*angle),
         speed: Some(value.sqrt()),
         stddev: EXACT,
+        common_stddev: 0.0,
     };
     let rows = WAVES.iter().filter_map(|wave| Some(row(wave, observation.moduli.get(wave.0)?))).collect();
     // ln v is half of ln of the modulus. Moduli that follow from others have no error of their own.

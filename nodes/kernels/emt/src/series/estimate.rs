@@ -14,6 +14,9 @@ use serde::Serialize;
 /// No z above is stated: packings of the calibration have none.
 pub(super) const HIGHEST_Z: f64 = 6.6;
 
+/// Effective number of draws below which nothing is stated.
+pub(super) const FEWEST: f64 = 30.0;
+
 /// Seed of draws and simulations.
 pub(super) const SEED: u64 = 31;
 
@@ -153,7 +156,7 @@ pub struct SeriesEstimate {
     /// ln of the moduli over those of the contact law with the given material and density: one scale of grain modulus, density and
     /// contact stiffness.
     pub level: Interval,
-    /// Errors of the speeds over the stated ones.
+    /// Scatter of the speeds over the stated errors; below 1, what it leaves of these is common to the rows of a mode and direction.
     pub noise: Interval,
     /// Families of contact laws.
     pub laws: Vec<LawEstimate>,
@@ -201,7 +204,7 @@ pub struct Sensitivity {
 /// Infers the structure of a sample at each pressure, and its contacts. Takes about a second.
 ///
 /// # Errors
-/// An invalid number, or data far beyond the model.
+/// An invalid number, or data so far beyond the model that its posterior cannot be sampled.
 pub fn infer_series(
     series: &SpeedSeries,
     network: &RelaxationCalibration,
@@ -213,6 +216,13 @@ pub fn infer_series(
         return Err(EmtError::NotFinite { quantity: "likelihood of the speeds", value: f64::NAN });
     }
     let (draws, effective_draws) = mixture.draws(SEED);
+    if !effective_draws.is_finite() || effective_draws < FEWEST {
+        return Err(EmtError::NotSampled {
+            model: "of a series",
+            reason: "the sampling failed; do not use these numbers: the speeds are far from those of any contacts between these grains; check the \
+                     columns, pressure, material, density and units",
+        });
+    }
     let before = mixture.of_prior(SEED);
     let forward = &mixture.forward;
     let marginal = |of: &dyn Fn(&SeriesDraw) -> f64| {

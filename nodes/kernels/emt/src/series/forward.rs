@@ -65,8 +65,10 @@ pub(super) struct Forward<'a> {
     ln_young: f64,
     size_variance: [f64; 2],
     stress_ratio: [f64; 2],
-    /// Covariance of ln of the speeds of all rows by the stated errors.
-    errors: DMatrix<f64>,
+    /// Covariance of ln of the speeds of all rows by the stated errors of their own, and this if those were common to similar rows.
+    errors: [DMatrix<f64>; 2],
+    /// Covariance by the stated common errors.
+    common: DMatrix<f64>,
     variance_factors: [f64; crate::calibration::SCATTERED],
 }
 
@@ -112,8 +114,11 @@ impl<'a> Forward<'a> {
             0.5 * series.pressure_stddev,
         ];
         let mut errors = DMatrix::from_diagonal(&DVector::from_fn(rows.len(), |j, _| rows[j].stddev.powi(2)));
+        let mut shared = Self::common(&rows, |row| row.stddev);
+        let common = Self::common(&rows, |row| row.common_stddev);
         if let Some(stated) = &series.covariance {
             errors.view_mut((0, 0), stated.shape()).copy_from(stated);
+            shared.copy_from(&errors);
         }
         Self {
             network,
@@ -127,13 +132,27 @@ impl<'a> Forward<'a> {
             ln_young: young.ln(),
             size_variance: series.size_variance,
             stress_ratio: series.stress_ratio,
-            errors,
+            errors: [errors, shared],
+            common,
             variance_factors: std::array::from_fn(|k| by_state[k] * of_size[k]),
             pressures,
             rows,
             given,
             ln_pressure,
         }
+    }
+
+    /// Covariance of errors that are common to the rows of one mode and direction: paths and transducers. Other modes of the direction
+    /// share the path, which is half of it.
+    fn common(rows: &[SeriesRow], stddev: impl Fn(&SeriesRow) -> f64) -> DMatrix<f64> {
+        let share = |a: &SeriesRow, b: &SeriesRow| match () {
+            () if a.angle != b.angle => 0.0,
+            () if a.mode != b.mode => 0.5,
+            () => 1.0,
+        };
+        DMatrix::from_fn(rows.len(), rows.len(), |j, k| {
+            share(&rows[j], &rows[k]) * stddev(&rows[j]) * stddev(&rows[k])
+        })
     }
 
     /// Number of pressures.
@@ -356,7 +375,8 @@ impl<'a> Forward<'a> {
         parts
     }
 
-    /// Covariance of the first rows that θ does not explain, with this factor of the stated errors.
+    /// Covariance of the first rows that θ does not explain, with this factor of the stated errors. Below 1 it is the scatter of the
+    /// speeds, and what it leaves of the errors is common to similar rows: the speeds do not show that.
     pub(super) fn unexplained(&self, at: &Linearised, rows: usize, noise: f64) -> DMatrix<f64> {
         let parts = self.scatter(at).map(|p| p.fixed_view::<INVARIANTS, INVARIANTS>(0, 0).into_owned());
         let sides: Vec<[Slopes; 2]> =
@@ -370,7 +390,11 @@ impl<'a> Forward<'a> {
                 (found[(j, k)], found[(k, j)]) = (value, value);
             }
         }
-        found + self.errors.view((0, 0), (rows, rows)) * (noise * noise)
+        let [own, shared] = self.errors.each_ref().map(|of| of.view((0, 0), (rows, rows)));
+        found
+            + own * noise.powi(2)
+            + shared * (1.0 - noise.powi(2)).max(0.0)
+            + self.common.view((0, 0), (rows, rows))
     }
 
     /// Covariance of what the law leaves of ε weighted by stiffness at a pressure with the rows.

@@ -17,6 +17,26 @@ pub enum SpeedMode {
     Bulk,
 }
 
+impl SpeedMode {
+    fn is_shear(self) -> bool {
+        matches!(self, Self::Sv | Self::Sh)
+    }
+
+    /// True for waves whose ρ v² is G13: SV along and across the axis, and SH along it.
+    fn is_axial_shear(self, angle: f64) -> bool {
+        match self {
+            Self::Sv => same(2.0 * angle, 0.0),
+            Self::Sh => same(angle, 0.0),
+            Self::P | Self::Bulk => false,
+        }
+    }
+}
+
+/// True for angles to the axis of one wave.
+fn same(a: f64, b: f64) -> bool {
+    (a.sin().abs() - b.sin().abs()).abs() < 1e-3
+}
+
 /// One speed, or one that is to be predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeriesRow {
@@ -30,8 +50,10 @@ pub struct SeriesRow {
     pub angle: Option<f64>,
     /// Speed, m/s; `None` is predicted.
     pub speed: Option<f64>,
-    /// Standard deviation of the speed over it.
+    /// Standard deviation of the speed over it, by errors of its own.
     pub stddev: f64,
+    /// Standard deviation of the speed over it, by errors that all rows of this mode and direction share.
+    pub common_stddev: f64,
 }
 
 /// The speeds of one sample under isotropic stress, and what is known of its grains.
@@ -104,15 +126,45 @@ impl SpeedSeries {
 
     /// True if one of these waves measures the anisotropy: a mode in two directions, or both S modes across the axis.
     fn differ(waves: &[(SpeedMode, f64)]) -> bool {
-        let is_along = |angle: f64| angle.sin().abs() < 1e-3;
-        waves.iter().enumerate().any(|(n, (mode, angle))| {
-            waves[..n].iter().any(|(other, other_angle)| match (mode == other, *mode, *other) {
-                (true, ..) => (angle.sin().abs() - other_angle.sin().abs()).abs() > 1e-3,
-                (_, SpeedMode::P | SpeedMode::Bulk, _) | (_, _, SpeedMode::P | SpeedMode::Bulk) => false,
-                // Along the axis the two S modes are one, and that across the plane is one with it across the axis.
-                _ => !(is_along(*angle) && is_along(*other_angle)),
+        let differs = |(mode, angle): &(SpeedMode, f64), (other, of): &(SpeedMode, f64)| match (mode, other) {
+            _ if mode.is_axial_shear(*angle) && other.is_axial_shear(*of) => false,
+            (SpeedMode::Sv, SpeedMode::Sv) => !same(2.0 * angle, 2.0 * of),
+            _ if mode == other => !same(*angle, *of),
+            _ => mode.is_shear() && other.is_shear(),
+        };
+        waves.iter().enumerate().any(|(n, wave)| waves[..n].iter().any(|other| differs(wave, other)))
+    }
+
+    /// Waves of different modes or directions that are one modulus, G13, but whose speeds differ beyond their errors in every state: ln
+    /// of the second over the first, its mean over two states or more.
+    pub fn unequal_twins(&self) -> Option<f64> {
+        let pressures = self.pressures();
+        let is_of = |row: &SeriesRow| row.angle.is_some_and(|angle| row.mode.is_axial_shear(angle));
+        let all: Vec<&SeriesRow> = self.rows.iter().filter(|row| row.speed.is_some() && is_of(row)).collect();
+        let first = all.first().map(|row| (row.mode, row.angle))?;
+        // Mean of ln of the speeds of a kind at a pressure, and its variance.
+        let mean = |k: usize, is_first: bool| {
+            let of = all.iter().filter(|row| {
+                Self::place(&pressures, row) == k && ((row.mode, row.angle) == first) == is_first
+            });
+            let speeds: Vec<(f64, f64)> =
+                of.filter_map(|r| Some((r.speed?.ln(), r.stddev.powi(2)))).collect();
+            let n = speeds.len() as f64;
+            let sum = speeds.iter().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+            (n > 0.0).then(|| (sum.0 / n, sum.1 / (n * n)))
+        };
+        let common = all.iter().map(|row| 2.0 * row.common_stddev.powi(2)).fold(0.0, f64::max);
+        let differences: Vec<(f64, f64)> = (0..pressures.len())
+            .filter_map(|k| {
+                let ((a, va), (b, vb)) = (mean(k, true)?, mean(k, false)?);
+                Some((b - a, va + vb))
             })
-        })
+            .collect();
+        let n = differences.len() as f64;
+        let mean = differences.iter().map(|(d, _)| d).sum::<f64>() / n;
+        let own = differences.iter().map(|(_, v)| v).sum::<f64>() / (n * n);
+        let is_each = differences.iter().all(|(d, v)| d * mean > 0.0 && d * d > v + common);
+        (differences.len() > 1 && is_each && mean.abs() > 3.0 * (own + common).sqrt()).then_some(mean)
     }
 
     /// The first fault, if any.
@@ -130,6 +182,10 @@ impl SpeedSeries {
             positive("density", row.density)?;
             positive("standard deviation of a speed over it", row.stddev)?;
             row.speed.map_or(Ok(()), |speed| positive("speed", speed))?;
+            if !(row.common_stddev >= 0.0 && row.common_stddev.is_finite()) {
+                let quantity = "common standard deviation of a speed over it";
+                return Err(EmtError::NegativeStddev { quantity, value: row.common_stddev });
+            }
             if row.angle.is_some_and(|angle| !angle.is_finite()) {
                 return Err(EmtError::NotFinite { quantity: "angle", value: f64::NAN });
             }

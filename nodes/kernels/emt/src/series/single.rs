@@ -2,7 +2,7 @@
 
 use super::component::Mixture;
 use super::draws::SeriesDraw;
-use super::estimate::{HIGHEST_Z, Interval, SEED};
+use super::estimate::{FEWEST, HIGHEST_Z, Interval, SEED};
 use super::forward::Forward;
 use super::prior::SeriesPrior;
 use super::sample::SpeedSeries;
@@ -12,9 +12,6 @@ use nalgebra::{SMatrix, SVector};
 
 /// Quantities: z, ε, and ε weighted by contact stiffness.
 pub(crate) const QUANTITIES: usize = 3;
-
-/// Effective number of draws below which nothing is stated.
-const FEWEST: f64 = 30.0;
 
 /// The structure at the only pressure of a series.
 pub(crate) struct SingleEstimate {

@@ -35,6 +35,7 @@ fn template(has_directions: bool) -> SpeedSeries {
         angle,
         speed: Some(1.0),
         stddev: 0.01,
+        common_stddev: 0.0,
     };
     let pressures = [50e3, 150e3, 500e3, 1.5e6, 5e6, 15e6].into_iter();
     let rows = pressures.flat_map(|p| waves.iter().map(move |wave| row(p, *wave))).collect();
@@ -100,6 +101,64 @@ fn true_values_rank_uniformly_among_draws() {
             assert!(p > 0.01 && inside > 0.8, "directions {directions}, quantity {q}: {inside} {p}");
         }
     }
+}
+
+/// An isotropic sand whose speeds scatter by 0.2 %: P and SV along the axis, then P, SH and SV across it, which are `off` too fast.
+fn isotropic_sand(off: f64, [stddev, common_stddev]: [f64; 2]) -> SpeedSeries {
+    let mut random = Random::new(5);
+    let across = std::f64::consts::FRAC_PI_2;
+    let (p, sv, sh) = (SpeedMode::P, SpeedMode::Sv, SpeedMode::Sh);
+    let waves =
+        [(p, 0.0, 372.0), (p, across, 372.0), (sv, 0.0, 230.0), (sh, across, 230.0), (sv, across, 230.0)];
+    let mut row = |pressure: f64, (mode, angle, speed): (SpeedMode, f64, f64)| {
+        let scale = (pressure / 1e5).powf(0.25) * (1.0 + 0.002 * random.normal::<1>()[0]);
+        let speed = speed * scale * if angle > 0.0 { 1.0 + off } else { 1.0 };
+        SeriesRow {
+            pressure,
+            density: 1600.0,
+            mode,
+            angle: Some(angle),
+            speed: Some(speed),
+            stddev,
+            common_stddev,
+        }
+    };
+    let pressures = [50e3, 100e3, 200e3, 400e3].into_iter();
+    let rows = pressures.flat_map(|pressure| waves.map(|wave| row(pressure, wave))).collect();
+    SpeedSeries {
+        size_variance: [0.01, 0.0],
+        ..SpeedSeries::of(rows, Material { shear_modulus: 44e9, poisson_ratio: 0.08, density: 2650.0 })
+    }
+}
+
+/// The distance across the axis is wrong by its error: in all rows, which agree better than their errors, or by a stated common error.
+#[test]
+fn an_error_that_rows_of_a_direction_share_is_in_that_of_eps() {
+    let network = Calibration::builtin("grainlab").unwrap().network.as_ref().unwrap();
+    for errors in [[0.025, 0.0], [0.003, 0.025], [0.01, 0.025]] {
+        let series = isotropic_sand(0.025, errors);
+        let found = super::estimate::infer_series(&series, network, SeriesPrior::builtin()).unwrap();
+        for at in &found.pressures {
+            let eps = at.eps.unwrap();
+            assert!(eps.mean.abs() < 1.5 * eps.stddev && eps.stddev > 0.025, "{errors:?}: {eps:?}");
+        }
+    }
+}
+
+#[test]
+fn waves_of_one_modulus_do_not_determine_eps_and_are_named_where_they_differ() {
+    let unequal = isotropic_sand(0.033, [0.01, 0.0]);
+    let of = |wanted: &[SpeedMode]| {
+        let mut series = unequal.clone();
+        series.rows.retain(|row| wanted.contains(&row.mode));
+        series
+    };
+    let sv = of(&[SpeedMode::Sv]);
+    assert!(!sv.has_directions() && of(&[SpeedMode::P]).has_directions());
+    assert!(of(&[SpeedMode::Sv, SpeedMode::Sh]).has_directions());
+    assert!((sv.unequal_twins().unwrap() - 0.033).abs() < 0.003, "{:?}", sv.unequal_twins());
+    assert_eq!(isotropic_sand(0.0, [0.01, 0.0]).unequal_twins(), None);
+    assert_eq!(isotropic_sand(0.033, [0.01, 0.033]).unequal_twins(), None);
 }
 
 /// The posterior of rough contacts and one preparation, by the model itself: the components give the prior alone.

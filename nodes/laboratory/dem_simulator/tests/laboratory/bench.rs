@@ -74,7 +74,7 @@ pub(crate) struct Recorder {
 
 impl Recorder {
     pub(crate) fn new(bus: &mut dyn Bus, record: &Rc<RefCell<Record>>) -> Self {
-        let all = REPRODUCIBLE.into_iter().chain([topics::RUN_STATE]);
+        let all = REPRODUCIBLE.into_iter().chain([topics::RUN_STATE, topics::STRESS_SAMPLED]);
         let subscriptions =
             all.map(|t| (t.name, bus.subscribe(&t, Demand::reliable(100_000)).expect("a topic"))).collect();
         Self { subscriptions, record: Rc::clone(record) }

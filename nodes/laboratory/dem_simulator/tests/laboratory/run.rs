@@ -75,6 +75,14 @@ fn run_state_names_every_phase_and_the_step_of_the_last_packing() {
 }
 
 #[test]
+fn the_samples_for_viewers_end_with_the_last_request_of_the_run() {
+    let record = clean_run();
+    let [all, sampled] = [topics::STRESS, topics::STRESS_SAMPLED].map(|t| record.bodies(&t).to_vec());
+    assert!(!sampled.is_empty() && sampled.len() < all.len());
+    assert_eq!(sampled.last(), all.last());
+}
+
+#[test]
 fn two_runs_are_the_same_bytes() {
     let [first, second] = [clean_run(), clean_run()].map(|r| r.without_repeats());
     assert_eq!(first.difference(&second), None);

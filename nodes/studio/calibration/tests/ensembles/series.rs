@@ -71,6 +71,7 @@ fn measured(sample: &Sample, errors: Errors, random: &mut Random) -> SpeedSeries
                 angle: Some(angle),
                 speed: Some(speed * (1.0 + SPEED * random.normal())),
                 stddev: SPEED,
+                common_stddev: 0.0,
             });
         }
     }

@@ -86,7 +86,8 @@ pub(super) fn run(
                 let member = &campaign.members[*n];
                 match folder.state(member) {
                     MemberState::Finished if done.insert(*n) => {
-                        progress.finished(&member.name, began.elapsed())
+                        let took = folder.standing(member).seconds.map(Duration::from_secs_f64);
+                        progress.finished(&member.name, took.unwrap_or_else(|| began.elapsed()))
                     }
                     MemberState::Failed(_) if done.insert(*n) => progress.failed(&member.name),
                     _ => {}

@@ -2,7 +2,7 @@ use super::*;
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_servo::ServoInput;
 
-fn request(sequence: u64) -> msg::Stress {
+pub(crate) fn request(sequence: u64) -> msg::Stress {
     let value = 1.0 + (sequence as f64).sin();
     let request = ServoRequest {
         sequence,
@@ -30,7 +30,7 @@ fn request(sequence: u64) -> msg::Stress {
 #[test]
 fn the_history_of_a_long_run_is_bounded_and_ends_with_its_last_value() {
     let mut lab = Laboratory::new(None, Duration::ZERO);
-    let size = |lab: &Laboratory| lab.timeline.drawings().len();
+    let size = |lab: &Laboratory| lab.timeline.drawings(&mut Default::default()).len();
     let take = |lab: &mut Laboratory, range: std::ops::Range<u64>| {
         range.for_each(|n| lab.request(&request(n), Duration::from_millis(n)));
         size(lab)
@@ -48,6 +48,23 @@ fn the_history_of_a_long_run_is_bounded_and_ends_with_its_last_value() {
     let early = size(&one);
     (50_000..500_000).for_each(|n| one.request(&at(n), Duration::ZERO));
     assert!(size(&one) < 2 * early, "{early} bytes, then {}", size(&one));
+}
+
+#[test]
+fn a_plot_of_shear_that_was_shown_stays_when_the_shear_becomes_small() {
+    let with_shear = |n: u64, normal: f64| {
+        let mut message = request(n);
+        (message.stress.xx, message.stress.xy) = (normal, 1.0);
+        message
+    };
+    let shown = |all: &[f64], plots: &mut std::collections::BTreeSet<&'static str>| {
+        let mut lab = Laboratory::new(None, Duration::ZERO);
+        (0..).zip(all).for_each(|(n, normal)| lab.request(&with_shear(n, *normal), Duration::ZERO));
+        lab.timeline.drawings(plots).contains("Shear stress")
+    };
+    let mut plots = Default::default();
+    assert!(shown(&[10.0], &mut plots) && shown(&[10.0, 1e4], &mut plots));
+    assert!(!shown(&[10.0, 1e4], &mut Default::default()));
 }
 
 #[test]
@@ -79,7 +96,7 @@ fn the_grains_of_now_are_shown_until_a_later_packing_comes_and_never_after_the_e
 }
 
 /// Two grains that do not touch.
-fn pair() -> Packing {
+pub(crate) fn pair() -> Packing {
     use grainlab_core::{Cell, Mat3, Material, Vec3};
     Packing {
         step: 0,

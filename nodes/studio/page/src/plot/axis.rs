@@ -80,12 +80,13 @@ impl Range {
         self.from + (self.to - self.from) * share
     }
 
-    /// Marked values with their labels.
+    /// Marked values with their labels, which have a true minus sign.
     pub(super) fn marks(&self) -> Vec<(f64, String)> {
-        match self.scale {
+        let marks = match self.scale {
             Scale::Linear => self.linear_marks(),
             Scale::Log => self.log_marks(),
-        }
+        };
+        marks.into_iter().map(|(value, text)| (value, text.replace('-', "−"))).collect()
     }
 
     /// Multiples of 1, 2 or 5 times a power of ten.
@@ -156,7 +157,7 @@ mod tests {
     #[test]
     fn many_decades_are_marked_by_every_second_one_and_written_as_people_write_them() {
         let marks: Vec<String> = log(&[2e-15, 0.5]).marks().into_iter().map(|(_, text)| text).collect();
-        assert_eq!(marks, ["1e-14", "1e-12", "1e-10", "1e-8", "1e-6", "1e-4", "0.01", "1"]);
+        assert_eq!(marks, ["1e−14", "1e−12", "1e−10", "1e−8", "1e−6", "1e−4", "0.01", "1"]);
         assert_eq!([0.002, 0.1, 5.0, 2e4, 1e5].map(power), ["0.002", "0.1", "5", "20000", "1e5"]);
     }
 

@@ -74,13 +74,13 @@ impl Bars {
                 drawing.text([left - 10.0, y + 9.0], "end", "class=\"ink\"", &bar.name);
             }
             let (at, zero, colour) = (range.at(bar.value), range.at(0.0), class(Some(bar.colour)));
-            drawing.add(format_args!(
+            drawing.saying(&format!("{} {}", bar.name, bar.text), |drawing| drawing.add(format_args!(
                 "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" rx=\"1.5\" class=\"{colour}\" fill=\"currentColor\"/>",
                 zero.min(at),
                 y,
                 (at - zero).abs(),
                 LINE - 5.0
-            ));
+            )));
             drawing.text([at.max(zero) + 6.0, y + 10.0], "start", "class=\"ink\"", &bar.text);
         }
         drawing.element()
@@ -92,10 +92,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bars_begin_at_zero_and_a_name_is_written_once() {
+    fn bars_begin_at_zero_and_say_their_values_and_a_name_is_written_once() {
         let bar = |value: f64| Bar { name: "G12".into(), value, text: format!("{value}"), ..Bar::default() };
         let svg = Bars { bars: vec![bar(2.0), bar(4.0)], ..Bars::default() }.svg();
-        assert_eq!(svg.matches(">G12<").count(), 1);
+        assert_eq!((svg.matches(">G12<").count(), svg.matches("data-said=\"G12 ").count()), (1, 2));
         let bars = svg.split("<rect").skip(2).filter_map(|r| r.split("width=\"").nth(1));
         let widths: Vec<f64> = bars.filter_map(|t| t.split('"').next()?.parse().ok()).collect();
         let [first, second] = [widths[0], widths[1]];

@@ -93,6 +93,13 @@ impl Drawing {
         self.add(format_args!("</g>"));
     }
 
+    /// Adds elements over which scripts show these words.
+    pub(super) fn saying(&mut self, words: &str, draw: impl FnOnce(&mut Self)) {
+        self.add(format_args!("<g data-said=\"{}\">", escaped(words)));
+        draw(self);
+        self.add(format_args!("</g>"));
+    }
+
     /// Adds an element.
     pub(super) fn add(&mut self, element: std::fmt::Arguments<'_>) {
         let _ = writeln!(self.text, "{element}");

@@ -65,7 +65,7 @@ impl Intervals {
             drawing.text([middle, TOP - 8.0], "middle", "class=\"ink\"", name);
         }
         let mut y = TOP;
-        for (row, height) in self.rows.iter().zip(heights) {
+        for ((row, height), words) in self.rows.iter().zip(heights).zip(&said) {
             let is_first = !row.below.is_empty();
             let (size, colour) = if is_first { ("14", Some(0)) } else { ("12", None) };
             let style = format!("class=\"ink\" font-size=\"{size}\"");
@@ -87,6 +87,11 @@ impl Intervals {
                 let key = Key { marker: Marker::Circle, colour, hollow: row.hollow };
                 drawing.marker([range.at(value), at], key, "");
             }
+            drawing.saying(words.trim(), |drawing| {
+                drawing.add(format_args!(
+                    "<rect y=\"{y:.1}\" width=\"{WIDTH}\" height=\"{height}\" fill=\"none\" pointer-events=\"all\"/>"
+                ));
+            });
             y += height;
         }
         drawing.element()
@@ -98,12 +103,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_row_without_a_value_has_no_point_and_the_reference_stays_within_the_plot() {
+    fn a_row_says_its_values_and_without_one_has_no_point_and_the_reference_stays_within_the_plot() {
         let row = |value| Estimated { name: "a".into(), value, text: "text".into(), ..Estimated::default() };
         let rows = vec![row(Some(1.0)), row(None)];
         let svg =
             Intervals { rows, reference: Some((2.0, "counted 2.000".into())), ..Intervals::default() }.svg();
         assert_eq!((svg.matches("<circle").count(), svg.matches(">text<").count()), (1, 2));
+        assert_eq!(svg.matches("data-said=\"a text\"").count(), 2);
         assert!(svg.contains("x=\"242.6\"") && !svg.contains("NaN"), "{svg:?}");
     }
 }

@@ -62,14 +62,16 @@ impl Rose {
             // Angles from the axis: the bin of the largest x is at the poles.
             let [from, to] = [(n as f64 + 1.0) / count, n as f64 / count].map(|x| x.min(1.0).acos());
             let radius = value.max(0.0) * scale;
-            for [from, to] in [[from, to], [-to, -from], [PI - to, PI - from], [PI + from, PI + to]] {
+            let words =
+                format!("|cos θ| {:.2} to {:.2}: {value:.3}", n as f64 / count, (n as f64 + 1.0) / count);
+            drawing.saying(&words, |drawing| for [from, to] in [[from, to], [-to, -from], [PI - to, PI - from], [PI + from, PI + to]] {
                 let at = |angle: f64| [x + radius * angle.sin(), y - radius * angle.cos()];
                 let ([x1, y1], [x2, y2]) = (at(from), at(to));
                 drawing.add(format_args!(
                     "<path d=\"M {x} {y} L {x1:.1} {y1:.1} A {radius:.1} {radius:.1} 0 0 1 {x2:.1} {y2:.1} Z\" \
                      class=\"{class_of_bins}\" fill=\"currentColor\" fill-opacity=\"0.3\"/>"
                 ));
-            }
+            });
         }
         if self.curve.is_some() {
             let mut path = String::new();
@@ -94,10 +96,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_bin_has_a_wedge_in_each_quarter_and_a_missing_one_has_none() {
+    fn each_bin_says_its_value_and_has_a_wedge_in_each_quarter_and_a_missing_one_has_none() {
         let rose = Rose { bins: vec![1.2, f64::NAN, 0.7], curve: Some(0.1), ..Rose::default() };
         let svg = rose.svg();
-        assert_eq!(svg.matches("fill-opacity").count(), 8);
+        assert_eq!((svg.matches("fill-opacity").count(), svg.matches("data-said").count()), (8, 2));
         assert!(svg.contains("a = 0.1000") && !svg.contains("=\"NaN"), "{svg:?}");
         assert!(!Rose { curve: None, ..rose }.svg().contains("stroke-width=\"2\""));
     }

@@ -19,12 +19,20 @@ const PRESSURES: [f64; 2] = [1e-8, 1e-2];
 /// Densities of samples and grains, kg/m³.
 const DENSITIES: [f64; 2] = [200.0, 10_000.0];
 
+/// Shear moduli of grains, Pa.
+const SHEAR_MODULI: [f64; 2] = [1e5, 1e12];
+
 impl Args {
     /// The speeds of one sample, and what was assumed of it; or the first fault, with its line and column.
     pub(in super::super) fn series(&self, lines: &[SpeedLine]) -> Result<(SpeedSeries, Vec<String>), String> {
         const GRAINS: &str = "--grain-shear-modulus PA and --poisson NU: the material of the grains is needed (glass: 29e9 and 0.2, quartz: 44e9 and 0.08)";
         let shear_modulus = self.grain_shear_modulus.ok_or(GRAINS)?;
         let poisson_ratio = self.poisson.ok_or(GRAINS)?;
+        if !(SHEAR_MODULI[0]..SHEAR_MODULI[1]).contains(&shear_modulus) {
+            return Err(format!(
+                "--grain-shear-modulus {shear_modulus} must be from 1e5 to 1e12: Pa is expected (glass: 29e9, quartz: 44e9)"
+            ));
+        }
         let mut assumed = Vec::new();
         if let Some(spread) = self.size_spread.filter(|s| !(0.0..=0.5).contains(s)) {
             return Err(format!("--size-spread {spread} must be from 0 to 0.5"));
@@ -48,20 +56,21 @@ impl Args {
             let density = line.density.or(packed).or(self.density).ok_or_else(|| {
                 fault("column density is empty: give it, or grain_density and phi, or --density".to_owned())
             })?;
-            for (column, value) in [("density", Some(density)), ("grain_density", line.grain_density)] {
+            for (column, value) in [("grain_density", line.grain_density), ("density", Some(density))] {
                 if let Some(value) = value.filter(|v| !(DENSITIES[0]..DENSITIES[1]).contains(v)) {
                     return Err(fault(format!(
                         "column {column}: {value} must be from 200 to 10000; kg/m3 is expected"
                     )));
                 }
             }
-            let mut stddev = match (line.speed, line.speed_sigma) {
+            let stddev = match (line.speed, line.speed_sigma) {
                 (Some(speed), Some(sigma)) => sigma / speed,
                 (speed, _) => {
                     without_error += usize::from(speed.is_some());
                     self.error.unwrap_or(DEFAULT_ERROR)
                 }
             };
+            let mut common_stddev = line.speed.map_or(0.0, |v| line.speed_shared_sigma.unwrap_or(0.0) / v);
             if let Some(speed) = line.speed {
                 // Waves in a packing are slower than in its grains, with P modulus K + 4/3 G, at the sample's density over φ.
                 let nu = poisson_ratio.min(0.45);
@@ -82,7 +91,7 @@ impl Args {
                     }
                     if per_wave > 1.0 / 15.0 {
                         // Dispersion of a chain of grains, (π D/λ)²/6.
-                        stddev = stddev.hypot((PI * per_wave).powi(2) / 6.0);
+                        common_stddev = common_stddev.hypot((PI * per_wave).powi(2) / 6.0);
                         dispersed += 1;
                     }
                 }
@@ -101,7 +110,7 @@ impl Args {
                 ));
             }
             let (mode, angle) = line.wave;
-            rows.push(SeriesRow { pressure, density, mode, angle, speed: line.speed, stddev });
+            rows.push(SeriesRow { pressure, density, mode, angle, speed: line.speed, stddev, common_stddev });
         }
         if without_error > 0 {
             let error = 100.0 * self.error.unwrap_or(DEFAULT_ERROR);

@@ -14,6 +14,9 @@ const NOISY: f64 = 1.5;
 /// ln of a stiffness over that of the law from which the material is doubtful.
 const FAR_LEVEL: f64 = 1.0;
 
+/// Scatter of speeds over their stated errors below which these hide something.
+const QUIET: f64 = 0.7;
+
 /// Effective number of draws below which the stated errors are too small.
 const FEW_DRAWS: f64 = 100.0;
 
@@ -48,7 +51,7 @@ pub(super) fn text(sample: &Sample) -> String {
         out += &format!("sample: {}\n", sample.sample);
     }
     let has_eps = e.pressures.iter().any(|p| p.eps.is_some());
-    let header = ["pressure, kPa", "z", "95 %", "of prior", "eps", "eps_stiffness", "p"];
+    let header = ["pressure, kPa", "z", "95 %", "of prior", "eps", "of prior", "eps_stiffness", "p"];
     let mut table = Table::new(header);
     for p in &e.pressures {
         let optional = |of: Option<&Interval>| of.map_or_else(|| "-".to_owned(), |i| interval(i, 4));
@@ -58,6 +61,7 @@ pub(super) fn text(sample: &Sample) -> String {
             z_ends(p),
             number(p.z.left(), 2),
             optional(p.eps.as_ref()),
+            fixed(p.eps.map(|eps| eps.left()), 2),
             optional(p.eps_stiffness.as_ref()),
             fixed(p.p, 3),
         ]);
@@ -68,7 +72,10 @@ pub(super) fn text(sample: &Sample) -> String {
         "of prior: share of the prior's standard deviation that is left; p: chance of speeds that agree less well with the other pressures, suspicious below 0.01",
     );
     if !has_eps {
-        out += "eps is not determined: speeds of one mode in two directions determine it\n";
+        out += &wrapped(
+            "",
+            "eps is not determined: speeds of one mode in two directions determine it (SV along and across are one modulus)",
+        );
     }
     let mut table = Table::new([
         "pressure, kPa",
@@ -105,7 +112,7 @@ pub(super) fn text(sample: &Sample) -> String {
     let [middle, low, high] = [e.level.mean, e.level.low, e.level.high].map(|l| number(l.exp(), 2));
     out += &format!("stiffness      {middle} times that of the law with these grains  ({low} to {high})\n");
     out += &format!(
-        "noise          {} times the stated errors  ({})\n",
+        "scatter        {} times the stated errors  ({})\n",
         interval(&e.noise, 2),
         ends(&e.noise, 2)
     );
@@ -122,10 +129,25 @@ pub(super) fn text(sample: &Sample) -> String {
         out += &format!("{name:<14} {}\n", number(probability.max(0.0), 3));
     }
     out.push('\n');
+    out += &z_by_law(e);
     for note in sample.assumed.iter().chain(&sample.doubts).chain(&sample.notes) {
         out += &wrapped("note: ", note);
     }
     out
+}
+
+/// z at each pressure under each contact law alone.
+fn z_by_law(e: &SeriesEstimate) -> String {
+    let likely: Vec<_> = e.laws.iter().filter(|l| l.probability > LIKELY).collect();
+    if likely.len() < 2 {
+        return String::new();
+    }
+    let mut table = Table::new(["z, if the law is:"].into_iter().chain(likely.iter().map(|l| l.law.name())));
+    for (k, p) in e.pressures.iter().enumerate() {
+        let pressure = format!("{} kPa", kilopascals(p.pressure));
+        table.row([pressure].into_iter().chain(likely.iter().map(|l| number(l.z[k], 2))));
+    }
+    table.text() + "\n"
 }
 
 fn mode(row: &SeriesRow) -> &'static str {
@@ -164,6 +186,7 @@ pub(super) fn csv(samples: &[Sample]) -> String {
         "z_prior_sigma",
         "eps",
         "eps_sigma",
+        "eps_prior_sigma",
         "eps_stiffness",
         "eps_stiffness_sigma",
         "p",
@@ -181,7 +204,8 @@ pub(super) fn csv(samples: &[Sample]) -> String {
             let pair = |of: Option<Interval>| [of.map(|i| i.mean), of.map(|i| i.stddev)];
             let z = [p.z.mean, p.z.stddev, p.z.low, p.z.high, p.z.prior_stddev].map(Some);
             let rest = [p.p, Some(e.stiffness_ratio.mean), Some(e.stiffness_ratio.stddev), Some(e.p)];
-            let all = z.into_iter().chain(pair(p.eps)).chain(pair(p.eps_stiffness)).chain(rest);
+            let eps = pair(p.eps).into_iter().chain([p.eps.map(|i| i.prior_stddev)]);
+            let all = z.into_iter().chain(eps).chain(pair(p.eps_stiffness)).chain(rest);
             [Some(p.pressure)].into_iter().chain(all).for_each(|v| text.number(v));
             text.number(Some(p.z_beyond));
             text.cell(sample.status);
@@ -256,7 +280,15 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
     if sample.status == "contradictory" {
         doubts.push(format!("contradictory: {}", contradiction(sample)));
     }
-    doubts.extend(contradicting_pressures(e));
+    if sample.status != "contradictory" {
+        doubts.extend(contradicting_pressures(e));
+    }
+    if let Some(difference) = sample.series.unequal_twins() {
+        doubts.push(format!(
+            "SV along, SV across and SH along the axis are one modulus, and their speeds differ by {:.1} % in every state: check mode and direction",
+            100.0 * difference.abs().exp_m1()
+        ));
+    }
     if e.effective_draws < FEW_DRAWS {
         doubts.push(format!(
             "{:.0} draws represent the posterior, which is too few: the errors are larger than stated",
@@ -264,14 +296,18 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
         ));
     }
     let mut open: Vec<String> = Vec::new();
-    let undetermined: Vec<_> = e.pressures.iter().filter(|p| p.z.is_undetermined()).collect();
-    if let (Some(first), Some(last)) = (undetermined.first(), undetermined.last()) {
-        let (first, last) = (kilopascals(first.pressure), kilopascals(last.pressure));
-        open.push(if first == last {
-            format!("z at {first} kPa")
-        } else {
-            format!("z from {first} to {last} kPa")
-        });
+    let of_z: fn(&PressureEstimate) -> bool = |p| p.z.is_undetermined();
+    let of_eps = |p: &PressureEstimate| p.eps.is_some_and(|eps| eps.is_undetermined());
+    for (name, is_open) in [("z", of_z), ("eps", of_eps)] {
+        let undetermined: Vec<_> = e.pressures.iter().filter(|p| is_open(p)).collect();
+        if let (Some(first), Some(last)) = (undetermined.first(), undetermined.last()) {
+            let (first, last) = (kilopascals(first.pressure), kilopascals(last.pressure));
+            open.push(if first == last {
+                format!("{name} at {first} kPa")
+            } else {
+                format!("{name} from {first} to {last} kPa")
+            });
+        }
     }
     for (name, of) in [
         ("k_t/k_n", &e.stiffness_ratio),
@@ -296,12 +332,12 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
     }
     let below = prior.lowest_stiffness_ratio;
     let ends = [
-        format!("the lowest k_t/k_n that is assumed, {below}"),
-        "Mindlin's k_t/k_n, that of smooth contacts and the highest".to_owned(),
+        format!("lower limit (the lowest that is assumed, {below})"),
+        "upper limit (Mindlin, smooth contacts)".to_owned(),
     ];
     for (at, text) in e.at_ends.iter().zip(ends) {
         if *at > AT_END && prior.mindlin < 1.0 {
-            notes.push(format!("{:.0} % of the posterior is at {text}", 100.0 * at));
+            notes.push(format!("k_t/k_n is at its {text} in {:.0} % of the posterior", 100.0 * at));
         }
     }
     if e.noise.mean > 0.8 * prior.noise[1] {
@@ -309,6 +345,12 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
             "the model fits these speeds badly: their errors would be {:.1} times the stated ones, and {} is the most that is assumed",
             e.noise.mean, prior.noise[1]
         ));
+    } else if e.noise.mean < QUIET {
+        notes.push(
+            "speeds agree better than their errors: errors common to all rows cannot be seen here; what the scatter leaves of the stated errors \
+             counts as common to the rows of a mode and direction"
+                .to_owned(),
+        );
     } else if e.noise.mean > NOISY {
         doubts.push(format!("the errors of these speeds are {:.1} times the stated ones", e.noise.mean));
     }
@@ -341,14 +383,6 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
             range(&s.drifted[0]),
             range(&s.drifted[1]),
             range(&s.without_slope)
-        ));
-    }
-    if e.laws.len() > 1 {
-        let under =
-            e.laws.iter().filter(|l| l.probability > LIKELY).map(|l| format!("{} {}", l.law, range(&l.z)));
-        notes.push(format!(
-            "z at these pressures under each contact law alone: {}",
-            under.collect::<Vec<_>>().join(", ")
         ));
     }
     let has = |p: bool| sample.series.rows.iter().any(|r| r.speed.is_some() && (r.mode == SpeedMode::P) == p);

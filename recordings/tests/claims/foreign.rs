@@ -1,0 +1,168 @@
+//! What other programs store beside messages is kept by copies, and what they wrote wrongly is said.
+
+use grainlab_recordings::copy::{CopyOptions, Select, copy};
+use grainlab_recordings::{Recording, Selection, recover};
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Attachment, Writer};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::BufWriter;
+use std::path::Path;
+
+const HI: &[u8] = b"\0\x01\0\0\x03\0\0\0hi\0";
+
+/// Writes a file with what `fill` adds.
+fn write(path: &Path, fill: impl FnOnce(&mut Writer<BufWriter<File>>)) {
+    let mut writer = mcap::WriteOptions::new().create(BufWriter::new(File::create(path).unwrap())).unwrap();
+    fill(&mut writer);
+    writer.finish().unwrap();
+}
+
+/// Adds a channel with this definition of its type and metadata, and a message.
+fn say(writer: &mut Writer<BufWriter<File>>, ros_type: &str, text: &str, publisher: &str, payload: &[u8]) {
+    let schema = writer.add_schema(ros_type, "ros2msg", text.as_bytes()).unwrap();
+    let metadata = BTreeMap::from([("publisher".to_owned(), publisher.to_owned())]);
+    let channel_id = writer.add_channel(schema, "/t", "cdr", &metadata).unwrap();
+    let header = MessageHeader { channel_id, sequence: 1, log_time: 5, publish_time: 4 };
+    writer.write_to_known_channel(&header, payload).unwrap();
+}
+
+fn string(writer: &mut Writer<BufWriter<File>>, publisher: &str, payload: &[u8]) {
+    say(writer, "std_msgs/msg/String", "string data\n", publisher, payload);
+}
+
+fn open(path: &Path) -> Recording {
+    Recording::open(path).unwrap()
+}
+
+/// The copy of a recording, and what was said of it.
+fn copied(from: &Path, to: &Path) -> (Recording, String) {
+    let done = copy(&[open(from)], &Select::default(), to, &CopyOptions::default()).unwrap();
+    (open(to), done.notes.join("\n"))
+}
+
+fn metadata(directory: &Path, more: &str) {
+    let text = format!("rosbag2_bagfile_information:\n  relative_file_paths: [r_0.mcap]\n{more}\n");
+    fs::write(directory.join("metadata.yaml"), text).unwrap();
+}
+
+#[test]
+fn copies_keep_all_metadata_of_a_name_times_of_stored_files_and_the_channel_of_each_publisher() {
+    let root = tempfile::tempdir().unwrap();
+    let source = root.path().join("a.mcap");
+    write(&source, |w| {
+        string(w, "first", HI);
+        string(w, "second", HI);
+        for vin in ["123", "456"] {
+            let metadata = BTreeMap::from([("vin".to_owned(), vin.to_owned())]);
+            w.write_metadata(&Metadata { name: "vehicle".to_owned(), metadata }).unwrap();
+        }
+        let name = "calibration".to_owned();
+        let file =
+            Attachment { log_time: 2, create_time: 1, name, media_type: String::new(), data: b"x".into() };
+        w.attach(&file).unwrap();
+    });
+    let (made, notes) = copied(&source, &root.path().join("b.mcap"));
+    let of = |name: &str| made.metadata(name).unwrap()["vin"].clone();
+    assert_eq!((of("vehicle").as_str(), of("vehicle.2").as_str()), ("123", "456"));
+    assert!(notes.contains("vehicle.2"), "{notes}");
+    assert_eq!((made.stored_files()[0].time, made.stored_files()[0].created), (2, 1));
+    let messages = made.messages(&Selection::default()).unwrap();
+    let publishers: Vec<_> = messages.map(|m| m.channel.metadata["publisher"].clone()).collect();
+    assert_eq!(publishers, ["first", "second"]);
+}
+
+#[test]
+fn a_topic_with_two_types_has_a_row_for_each() {
+    let root = tempfile::tempdir().unwrap();
+    let source = root.path().join("a.mcap");
+    write(&source, |w| {
+        string(w, "", HI);
+        say(w, "my/msg/Flag", "uint8 x\n", "", b"\0\x01\0\0\x01");
+    });
+    let rows = open(&source).info().topics;
+    let rows: Vec<_> = rows.iter().map(|t| (t.name.as_str(), t.ros_type.as_str(), t.messages)).collect();
+    assert_eq!(rows, [("/t", "my/msg/Flag", 1), ("/t", "std_msgs/msg/String", 1)]);
+}
+
+#[test]
+fn messages_that_are_compressed_one_by_one_are_read_and_copied_as_what_they_are() {
+    let root = tempfile::tempdir().unwrap();
+    let source = root.path().join("r");
+    fs::create_dir(&source).unwrap();
+    let compression = |format: &str| format!("  compression_format: {format}\n  compression_mode: MESSAGE");
+    metadata(&source, &compression("zstd"));
+    write(&source.join("r_0.mcap"), |w| string(w, "", &zstd::bulk::compress(HI, 1).unwrap()));
+    let payload = |recording: &Recording| {
+        let mut messages = recording.messages(&Selection::default()).unwrap();
+        messages.next().map(|m| m.payload.to_vec())
+    };
+    assert_eq!(payload(&open(&source)).unwrap(), HI);
+    assert_eq!(payload(&open(&source.join("r_0.mcap"))).unwrap(), HI);
+    let (made, _) = copied(&source, &root.path().join("made"));
+    assert_eq!(payload(&made).unwrap(), HI);
+    fs::write(source.join("r_0.mcap"), &fs::read(source.join("r_0.mcap")).unwrap()[..400]).unwrap();
+    recover(&source).unwrap();
+    assert_eq!(payload(&open(&source)).unwrap(), HI, "the new metadata.yaml has the compression");
+    write(&source.join("r_0.mcap"), |w| string(w, "", HI));
+    let broken = open(&source);
+    assert!(payload(&broken).is_none() && broken.warnings()[0].detail.contains("does not decompress"));
+    metadata(&source, &compression("lz4"));
+    assert!(Recording::open(&source).unwrap_err().to_string().contains("ros2 bag convert"));
+}
+
+#[test]
+fn copies_and_recoveries_keep_the_custom_data_and_the_distribution_of_ros() {
+    let root = tempfile::tempdir().unwrap();
+    let source = root.path().join("r");
+    fs::create_dir(&source).unwrap();
+    metadata(&source, "  custom_data: {vin: '123'}\n  ros_distro: rolling");
+    let file = source.join("r_0.mcap");
+    write(&file, |w| string(w, "", HI));
+    let kept = |directory: &Path| {
+        let text = fs::read_to_string(directory.join("metadata.yaml")).unwrap();
+        text.contains("custom_data: {\"vin\":\"123\"}") && text.contains("ros_distro: \"rolling\"")
+    };
+    assert!(copied(&source, &root.path().join("made")).1.is_empty() && kept(&root.path().join("made")));
+    assert!(copied(&source, &root.path().join("made.mcap")).1.contains("custom_data"));
+    let old = fs::read(source.join("metadata.yaml")).unwrap();
+    fs::write(&file, &fs::read(&file).unwrap()[..fs::metadata(&file).unwrap().len() as usize - 8]).unwrap();
+    assert!(recover(&source).unwrap().metadata_written && kept(&source));
+    assert_eq!(fs::read(source.join("metadata.yaml.orig")).unwrap(), old);
+}
+
+#[test]
+fn a_check_names_definitions_and_metadata_that_are_wrong_and_counts_checksums() {
+    let root = tempfile::tempdir().unwrap();
+    let source = root.path().join("r");
+    fs::create_dir(&source).unwrap();
+    write(&source.join("r_0.mcap"), |w| {
+        string(w, "", HI);
+        say(w, "my/msg/Bad", "this is no definition !!\n", "", HI);
+    });
+    for (text, expected) in
+        [("  message_count: 999", "it states 999 messages"), ("  : [", "it cannot be read")]
+    {
+        metadata(&source, text);
+        let check = open(&source).check();
+        let faults = check.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+        assert!(
+            faults.contains(expected) && faults.contains("definition of my/msg/Bad cannot be parsed"),
+            "{faults}"
+        );
+        assert_eq!((check.ros_definitions, check.all_definitions), (1, 2));
+        assert!(check.checksums > 0);
+    }
+    assert_eq!(open(&root.path().join("r/r_0.mcap")).check().warnings.len(), 1);
+}
+
+#[test]
+fn files_of_other_formats_are_refused_with_their_name_and_a_remedy() {
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path().join("a.mcap");
+    for (bytes, name) in [(&b"\x28\xb5\x2f\xfd1234"[..], "Zstandard"), (b"SQLite format 3\0", "SQLite")] {
+        fs::write(&path, bytes).unwrap();
+        let error = Recording::open(&path).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains("ros2 bag convert"), "{error}");
+    }
+}
