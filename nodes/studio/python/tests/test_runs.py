@@ -107,9 +107,8 @@ def test_on_phase_is_a_function_and_its_stop_iteration_is_an_error():
 
 
 def test_a_warning_on_a_start_names_the_packing_and_no_file(packing):
-    made = grainlab.Packing(packing.cell, packing.positions, packing.radii)
-    with pytest.warns(UserWarning, match="^the packing given as start: contacts were found"):
-        grainlab.simulate(FROM_PACKING, start=made)
+    with pytest.warns(UserWarning, match="^the packing given as start: .* contacts carry more tangential force"):
+        grainlab.simulate(FROM_PACKING.replace("friction=0.3", "friction=0.001"), start=packing)
 
 
 def test_threads_of_zero_are_refused():

@@ -28,7 +28,7 @@ class Packing:
 
     Arrays of a packing share its memory, without copies, and are read-only; each keeps the packing in memory. It can be pickled, without loss.
 
-    Made from arrays: cell (3, 3) with its edge vectors as columns, positions (n, 3), radii (n,), m; velocities (n, 3), m/s; shear modulus,
+    Made from arrays or lists: cell (3, 3) with its edge vectors as columns, positions (n, 3), radii (n,) or one, m; velocities (n, 3), m/s; shear modulus,
     Pa; density, kg/m3. Contacts are those of overlapping spheres, with Hertz forces and without tangential forces. Raises ValueError for
     wrong shapes, numbers that are not finite, and spheres that coincide.
 
