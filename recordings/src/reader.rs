@@ -9,6 +9,7 @@
 //!
 //! The file is mapped into memory: no other process may shorten it meanwhile (it may grow).
 
+mod block;
 mod channel;
 mod chunk;
 mod data;

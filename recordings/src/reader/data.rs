@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use mcap::MAGIC;
 use mcap::records::{Record, Statistics, op};
 
-use super::index::{Block, add_loose};
+use super::block::{Block, add_loose};
 use super::records::Records;
 
 /// Chunks by their offset: the first byte after each, and the first and last log time that is stated, ns since 1970.

@@ -13,9 +13,10 @@ use memmap2::Mmap;
 
 use crate::input;
 
+use super::block::Block;
 use super::error::{Warning, WarningKind, not_mcap};
 use super::held::Content;
-use super::index::{Block, Entry, Index};
+use super::index::{Entry, Index};
 use super::records::Records;
 use super::stored_file::{FileCount, StoredFile};
 

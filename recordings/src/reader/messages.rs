@@ -1,11 +1,11 @@
 //! Messages in order of log time.
 
+use super::block::Block;
 use super::channel::ChannelInfo;
 use super::chunk;
 use super::error::WarningKind;
 use super::file::OpenFile;
 use super::held::Held;
-use super::index::Block;
 use super::message::{Message, Payload};
 use super::recording::Recording;
 use super::records::Records;

@@ -39,7 +39,7 @@ pub struct Check {
     pub ros_definitions: usize,
     /// True if a file has no index, which the format allows.
     pub without_index: bool,
-    /// All channels.
+    /// Number of all channels.
     pub all_definitions: usize,
     /// Lost messages according to the ledger of the recorders; `None` without a ledger.
     pub lost: Option<u64>,

@@ -1,4 +1,4 @@
-//! What other programs store beside messages is kept by copies, and what they wrote wrongly is said.
+//! Copies keep all that other programs store beside messages, and name the faults in it.
 
 use grainlab_recordings::copy::{CopyOptions, Select, copy};
 use grainlab_recordings::{Recording, Selection, recover};

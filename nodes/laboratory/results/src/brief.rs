@@ -6,7 +6,7 @@ pub use crate::packing_text::moduli;
 
 use crate::acoustic_text;
 use crate::inference::{Inference, Origin, by_origin};
-use crate::packing_text::eps;
+use crate::packing_text::{eps, stress_ratio};
 use crate::read_back::InvertedPacking;
 use crate::summary::Summary;
 use grainlab_console::{count, fixed};
@@ -171,15 +171,6 @@ fn prepared(r: &PackingReport) -> String {
         r.solid_fraction,
         stress_ratio(r),
     )
-}
-
-/// q/p, by its order of magnitude if it is small.
-fn stress_ratio(r: &PackingReport) -> String {
-    match r.stress_ratio() {
-        None => "-".to_owned(),
-        Some(q) if q.abs() < 0.01 => format!("{q:.0e}"),
-        Some(q) => format!("{q:.3}"),
-    }
 }
 
 fn counted(r: &PackingReport) -> String {

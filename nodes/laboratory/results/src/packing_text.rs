@@ -90,6 +90,15 @@ pub fn moduli(r: &PackingReport) -> [Option<f64>; 3] {
     [t.g12, t.g13, stiffness.tensor.bulk_voigt()].map(|m| Some(m / 1e6))
 }
 
+/// q/p, by its order of magnitude if it is small.
+pub(crate) fn stress_ratio(r: &PackingReport) -> String {
+    match r.stress_ratio() {
+        None => "-".to_owned(),
+        Some(q) if q.abs() < 0.01 => format!("{q:.0e}"),
+        Some(q) => format!("{q:.3}"),
+    }
+}
+
 /// Indents every line by two columns.
 pub(crate) fn indented(text: &str) -> String {
     text.lines().map(|l| format!("  {l}\n")).collect()

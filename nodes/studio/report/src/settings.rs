@@ -46,7 +46,7 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
         let new = Setting { name: name.clone(), values };
         let known = found.entry(firsts(&new.values)).or_insert_with(|| new.clone());
         if known.name != new.name {
-            // Of keys that not every scene has, as the laws of sizes, each value has its key.
+            // Values have their keys where not every scene has these, as for laws of sizes.
             let word = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
             for (value, other) in known
                 .values

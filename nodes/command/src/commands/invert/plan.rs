@@ -1,6 +1,6 @@
 //! Errors that planned speeds are expected to have, before any is measured.
 
-use super::Args;
+use super::args::Args;
 use super::speed_table::{SpeedLine, planned};
 use grainlab_console::{CsvText, Failure, Format, Table, fixed, say};
 use grainlab_emt::{

@@ -1,7 +1,7 @@
 //! Several packings of a run, one line each, in at most 100 columns.
 
 use crate::inference::{Inference, Origin, by_origin};
-use crate::packing_text::{eps, moduli};
+use crate::packing_text::{eps, moduli, stress_ratio};
 use crate::read_back::InvertedPacking;
 use grainlab_console::{Table, count, fixed};
 use grainlab_core::results::InferredQuantity;
@@ -39,7 +39,7 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
         let packing = [
             state.packing.step.to_string(),
             format!("{:.1}", r.pressure() / 1e3),
-            super::stress_ratio(r),
+            stress_ratio(r),
             format!("{:.4}", r.solid_fraction),
             format!("{:.3}", r.contacts.coordination),
             format!("{:.3}", r.contacts.mechanical_coordination),

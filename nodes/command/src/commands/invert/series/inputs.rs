@@ -1,6 +1,6 @@
 //! The speeds of one sample from the rows of a table and the flags, with units checked.
 
-use super::super::Args;
+use super::super::args::Args;
 use super::super::speed_table::SpeedLine;
 use grainlab_core::Material;
 use grainlab_emt::{ContactKind, SeriesRow, SpeedMode, SpeedSeries, UNKNOWN_SIZE_SPREAD};
