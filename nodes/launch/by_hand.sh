@@ -1,5 +1,5 @@
 #!/bin/sh
-# The same nodes as `grainlab launch` starts, as plain processes, for scripts.
+# Nodes of `grainlab launch` as plain processes, for scripts.
 #
 #   nodes/launch/by_hand.sh [SCENE] [SEED] [DIRECTORY]
 #

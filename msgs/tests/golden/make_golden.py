@@ -61,7 +61,7 @@ def value(store, desc, filled):
 
 
 def build(store, typename, plain):
-    """The same as rosbags' own objects."""
+    """Objects of rosbags with equal content."""
     import numpy
 
     def one(desc, v):

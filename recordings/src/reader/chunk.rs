@@ -33,7 +33,7 @@ pub(super) fn content<'a>(record: &RawRecord<'a>) -> Result<Cow<'a, [u8]>, Strin
     content_in(record, Vec::new())
 }
 
-/// The same; the memory of `spare` is used if the content is compressed.
+/// Content as [`content`] gives it; the memory of `spare` is used if it is compressed.
 pub(super) fn content_in<'a>(record: &RawRecord<'a>, spare: Vec<u8>) -> Result<Cow<'a, [u8]>, String> {
     match record.parse()? {
         Record::Chunk { header, data } => decompress(&header, data, spare),

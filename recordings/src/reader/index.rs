@@ -75,7 +75,7 @@ impl Index {
     /// The index in the file, if there is one: all parts of a summary section are optional.
     ///
     /// # Errors
-    /// What contradicts the records.
+    /// Contradictions of the index to the records.
     fn from_summary(
         path: &Path,
         bytes: &[u8],

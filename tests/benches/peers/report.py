@@ -77,7 +77,7 @@ class Group:
         return "\n".join(lines)
 
     def rows(self) -> list[dict]:
-        """The same as data, with every run."""
+        """Results as data, with every run."""
         rows = []
         for case in self.cases:
             spreads = {f"{clock}_particle_steps_per_second": self.rates(case.name, clock) for clock in ("wall", "cpu")}

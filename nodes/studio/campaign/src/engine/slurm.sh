@@ -29,7 +29,7 @@ submit)
     # Ctrl-C in a terminal does not come between a submission and its number, which sbatch itself writes.
     trap '' INT
     shift 2
-    # Of the jobs before, none is queued, or another one is wanted. Options of the command line precede SBATCH_*.
+    # None of the jobs before is queued, or another one is wanted. Options of the command line precede SBATCH_*.
     sbatch --parsable "$@" >> "$jobs" || exit 1
     ;;
 esac
