@@ -84,9 +84,9 @@ impl Lockstep {
             self.counts.stale += 1;
             return Ok(AnswerKind::Stale);
         };
-        let [own, of_answer] =
-            [question.stamp, answer.header.stamp].map(|t| format!("{}.{:09} s", t.sec, t.nanosec));
-        if own != of_answer {
+        if question.stamp != answer.header.stamp {
+            let [own, of_answer] =
+                [question.stamp, answer.header.stamp].map(|t| format!("{}.{:09} s", t.sec, t.nanosec));
             return Err(format!(
                 "its stamp is {of_answer}, that of its request {own}: an answer has the header of its request"
             ));
