@@ -50,6 +50,7 @@ use print::Printer;
 pub(super) use rows::Rows;
 use speed_table::SpeedLine;
 pub(super) use speed_table::{COLUMNS as SPEED_COLUMNS, checked_header, not_a_number, row as speed_row};
+#[cfg(feature = "studio")]
 pub(super) use state::State;
 use std::path::Path;
 
