@@ -8,7 +8,6 @@
 
 mod assemble;
 mod columns;
-pub mod contacts;
 pub mod csv;
 mod error;
 pub mod extended_xyz;

@@ -10,6 +10,7 @@
 //! let packing = simulate("demo", &["grains.count=200", "seed=2"])?.last().expect("the last packing is published")?;
 //! let report = measure(&packing)?;
 //! println!("{} contacts at {:.0} Pa", packing.contacts.len(), report.pressure());
+//! report.warnings.iter().for_each(|doubt| eprintln!("{doubt}"));
 //!
 //! let observation = Observation::of(&report).expect("a jammed packing").with_relative_error(0.01);
 //! let estimate = invert(&observation)?;
@@ -36,6 +37,7 @@
 //! priors, is in the crates of the kernels: `grainlab_micromechanics`, `grainlab_emt`, `grainlab_dem`.
 
 mod error;
+mod measure;
 mod recording;
 mod simulation;
 mod state;
@@ -46,27 +48,10 @@ pub use grainlab_core::results::{InferredQuantity, Microstructure, PackingReport
 pub use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Stiffness, Vec3};
 pub use grainlab_emt::{Conditions, Estimate, Measured, Moduli, Observation, Status};
 pub use grainlab_recordings::import::ImportOptions;
+pub use measure::{Measurement, measure};
 pub use recording::{Loaded, Recording, load, open};
 pub use simulation::{Simulation, resume, simulate};
 pub use state::State;
-
-/// Structure, stress and stiffness of a packing, about e3, as `grainlab analyze` prints them.
-///
-/// # Errors
-/// If there are no grains, if the packing contradicts itself, or if the stiffness cannot be solved for. A packing that is not
-/// jammed is no error: its report has no stiffness, and the reason.
-pub fn measure(state: &State) -> Result<PackingReport, Error> {
-    let failed = |e: &dyn std::fmt::Display| Error::Measurement(e.to_string());
-    if state.grains() == 0 {
-        return Err(failed(&"the packing has no grains"));
-    }
-    state.packing.check().and_then(|()| state.packing.check_consistency()).map_err(|e| failed(&e))?;
-    let found =
-        grainlab_micromechanics::analyze(&state.packing, &grainlab_micromechanics::Settings::default());
-    let mut report = found.map_err(|e| failed(&e))?.report;
-    state.position().inspect(|position| position.judge_strain(&mut report));
-    Ok(report)
-}
 
 /// The microstructure of a packing by the recommended model, `relaxed`, with its calibration.
 ///

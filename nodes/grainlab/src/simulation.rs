@@ -112,7 +112,7 @@ impl Simulation {
         self.run.engine().steps()
     }
 
-    /// True once the loading path is done.
+    /// True once nothing follows: the loading path is done, or the run has failed.
     pub fn finished(&self) -> bool {
         self.failed || self.start.is_none() && self.run.finished()
     }

@@ -12,16 +12,29 @@ fn a_state_resumes_its_run_to_the_same_packings() {
     let resumed: Vec<State> = resume("s1", &SMALL, &states[1]).unwrap().collect::<Result<_, _>>().unwrap();
     assert_eq!(resumed, states[2..]);
     let mixed = State { run_state: states[1].run_state.clone(), ..states[2].clone() };
-    for (scene, state) in [("s1", mixed), ("s2", states[1].clone()), ("s1", states[1].packing.clone().into())]
-    {
-        assert!(matches!(resume(scene, &SMALL, &state), Err(Error::Simulation(_))), "{scene}");
+    let changed = |change: fn(&mut grainlab::Packing)| {
+        let mut state = states[1].clone();
+        change(&mut state.packing);
+        ("s1", state)
+    };
+    let refused = [
+        ("s1", mixed),
+        ("s2", states[1].clone()),
+        ("s1", states[1].packing.clone().into()),
+        changed(|p| p.friction *= 2.0),
+        changed(|p| p.material.density *= 1.1),
+        changed(|p| *p = p.repeated(2).unwrap()),
+    ];
+    for (n, (scene, state)) in refused.into_iter().enumerate() {
+        assert!(matches!(resume(scene, &SMALL, &state), Err(Error::Simulation(_))), "state {n}");
     }
 }
 
 #[test]
 fn a_packing_that_contradicts_itself_is_not_measured() {
     let state = simulate("demo", &SMALL).unwrap().last().unwrap().unwrap();
-    assert!(measure(&state).unwrap().pressure() > 4e4);
+    let measured = measure(&state).unwrap();
+    assert!(measured.pressure() > 4e4 && measured.warnings.is_empty(), "{:?}", measured.warnings);
     let faults: [fn(&mut State); 6] = [
         |s| s.packing.radii.iter_mut().for_each(|r| *r *= 2.0),
         |s| s.packing.contacts.iter_mut().for_each(|c| c.overlap *= 10.0),
@@ -34,6 +47,26 @@ fn a_packing_that_contradicts_itself_is_not_measured() {
         let mut broken = state.clone();
         fault(&mut broken);
         assert!(matches!(measure(&broken), Err(Error::Measurement(_))), "fault {n}");
+    }
+}
+
+#[test]
+fn a_packing_that_no_law_made_is_measured_with_a_warning() {
+    let state = simulate("demo", &SMALL).unwrap().last().unwrap().unwrap();
+    let doubts: [(fn(&mut State), &str); 4] = [
+        (|s| s.packing.contacts[0].normal_force *= -1.0, "1 contact pulls"),
+        (
+            |s| s.packing.contacts.iter_mut().for_each(|c| c.normal_force *= 1.5),
+            "differ from the contact law",
+        ),
+        (|s| s.packing.velocities[0].x = 10.0, "in motion"),
+        (|s| _ = s.packing.contacts.pop(), "not listed"),
+    ];
+    for (change, text) in doubts {
+        let mut doubtful = state.clone();
+        change(&mut doubtful);
+        let found = measure(&doubtful).unwrap().warnings;
+        assert!(found.iter().any(|w| w.contains(text)), "{text}: {found:?}");
     }
 }
 

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use grainlab_core::contact_search::{self, SearchError};
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::packing_header;
 
-use super::contacts::{self, SearchError};
 use super::error::ImportError;
 use super::imported::Imported;
 use super::setting::Setting;
@@ -234,26 +234,19 @@ pub(super) fn packing(
         time_step: state.time_step,
     }
     .validated()?;
-    let normal_force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
-    let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, normal_force);
-    let found = found.map_err(|e| e.with_ids(&packing.ids))?;
     packing.contacts = match listed {
         None => {
             notes.push(
                 "contacts were found from positions: normal forces by the contact law, no tangential forces"
                     .into(),
             );
-            found
+            contact_search::of_packing(&packing)?
         }
         Some(listed) => {
-            let contacts =
-                listed.iter().map(|c| listed_contact(&packing, &index, c)).collect::<Result<Vec<_>, _>>()?;
-            compare(&packing, &contacts, &found, &mut notes);
-            contacts
+            listed.iter().map(|c| listed_contact(&packing, &index, c)).collect::<Result<_, _>>()?
         }
     };
-    notes.extend(other_law(&packing));
-    notes.extend(beyond_friction(&packing));
+    notes.extend(contact_search::doubts(&packing)?);
     notes.extend(too_few_digits(printed, &packing));
     packing.contacts.sort_by_key(|c| (c.i, c.j, c.image));
     let packing = packing.validated()?.consistent()?;
@@ -344,54 +337,4 @@ fn listed_contact(
     }
     let (i, j) = (i as u32, j as u32);
     Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force, rolling_force: c.rolling })
-}
-
-/// Warns of listed forces beyond the Coulomb limit, by more than rounding.
-fn beyond_friction(packing: &Packing) -> Option<String> {
-    let is_beyond =
-        |c: &&Contact| c.tangential_force.norm() > (1.0 + 1e-3) * packing.friction * c.normal_force.max(0.0);
-    let count = packing.contacts.iter().filter(is_beyond).count();
-    (count > 0).then(|| {
-        format!("{count} contacts carry more tangential force than a friction of {} allows: of another friction, or in motion", packing.friction)
-    })
-}
-
-/// Warns if listed forces are not those of the contact law: the stiffness would be that of different
-/// contacts.
-fn other_law(packing: &Packing) -> Option<String> {
-    let difference = packing.law_difference();
-    (difference > 0.01).then(|| {
-        format!(
-            "normal forces differ from the contact law by {:.1} % on average: of another contact law, another material, or \
-             in motion; the stiffness is that of {} contacts of this material",
-            100.0 * difference,
-            packing.law.name()
-        )
-    })
-}
-
-/// Warns of contacts that are only in the list or only in the positions.
-fn compare(p: &Packing, listed: &[Contact], found: &[Contact], notes: &mut Vec<String>) {
-    let key = |c: &Contact| (c.i, c.j, c.image);
-    let (a, b): (BTreeSet<_>, BTreeSet<_>) =
-        (listed.iter().map(key).collect(), found.iter().map(key).collect());
-    let name =
-        |k: &(u32, u32, [i8; 3])| format!("grains {} and {}", p.ids[k.0 as usize], p.ids[k.1 as usize]);
-    let mut note = |mut missing: std::collections::btree_set::Difference<'_, _>, [one, many]: [&str; 2]| {
-        if let Some(first) = missing.next() {
-            let what = match missing.count() + 1 {
-                1 => format!("1 contact {one}"),
-                n => format!("{n} contacts {many}"),
-            };
-            notes.push(format!("{what}, the first of {}", name(first)));
-        }
-    };
-    note(
-        b.difference(&a),
-        ["overlaps by position but is not listed", "overlap by position but are not listed"],
-    );
-    note(
-        a.difference(&b),
-        ["is listed but does not overlap by position", "are listed but do not overlap by position"],
-    );
 }

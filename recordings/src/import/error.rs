@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use grainlab_console::Failure;
 use grainlab_core::PackingError;
 
-use super::contacts::SearchError;
 use super::setting::Setting;
+use grainlab_core::contact_search::SearchError;
 
 /// Errors of an import.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,5 @@
 //! Tests of recordings and imports on whole files.
 
-mod contact_search;
 mod copies;
 mod damage;
 mod definitions;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use grainlab_recordings::import::contacts::SearchError;
+use grainlab_core::contact_search::SearchError;
 use grainlab_recordings::import::{ImportError, ImportOptions, load};
 use std::io::Write;
 

@@ -90,7 +90,7 @@ fn forces_balance_on_every_grain() {
 fn contacts_found_from_positions_are_those_listed() {
     let p = reference().packing;
     let found =
-        contacts::find(&p.cell, &p.positions, &p.radii, |r, d| p.material.normal_force(r, d)).unwrap();
+        contact_search::find(&p.cell, &p.positions, &p.radii, |r, d| p.material.normal_force(r, d)).unwrap();
     assert_eq!(found.len(), p.contacts.len());
     for (a, b) in found.iter().zip(&p.contacts) {
         assert_eq!((a.i, a.j, a.image), (b.i, b.j, b.image));

@@ -9,7 +9,7 @@
 //! - `material`: the grain's material
 //! - [`contact`]: the contact laws; [`lanes`]: the arithmetic they are written in
 //! - [`instruction_sets`]: work compiled for those of the processor
-//! - `packing`: grains, cell and contact network at one instant
+//! - `packing`: grains, cell and contact network at one instant; [`contact_search`]: contacts by position
 //!   ([`Packing::consistent`] holds its contacts against its positions)
 //! - [`non_rattlers`], [`min_contacts`]: grains that carry force
 //! - [`stress`]: the one definition of stress
@@ -24,6 +24,7 @@ mod bins;
 mod cell;
 mod consistency;
 pub mod contact;
+pub mod contact_search;
 mod control;
 pub mod instruction_sets;
 pub mod lanes;

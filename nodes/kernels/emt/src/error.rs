@@ -108,7 +108,7 @@ pub enum EmtError {
         value: f64,
     },
     /// An input that the model needs is not known.
-    #[error("needs {missing}, which is not known")]
+    #[error("needs {missing}, which is not given")]
     Missing {
         /// Name of the model.
         model: &'static str,

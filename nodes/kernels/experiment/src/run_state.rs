@@ -5,7 +5,9 @@ use crate::engine::EngineProgram;
 use crate::error::ExperimentError;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
+use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
+use grainlab_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 const VERSION: u32 = 4;
@@ -98,6 +100,30 @@ impl RunState {
     }
 }
 
+/// Holds a packing against the scene that made it. A scene that starts from a packing takes grains and law from that.
+///
+/// # Errors
+/// Another number of grains, another material, law or friction.
+pub(crate) fn belongs(packing: &Packing, scene: &Scene, saved: &RunState) -> Result<(), ExperimentError> {
+    if scene.start.is_some() {
+        return Ok(());
+    }
+    let phase = scene.phases.get(if saved.within_phase { saved.phase } else { saved.phase.wrapping_sub(1) });
+    let friction = phase.map_or(packing.friction, |p| p.friction);
+    let same = [
+        ("number of grains", packing.grains() == scene.grains as usize),
+        ("material", packing.material == scene.material),
+        ("contact law", packing.law == scene.law),
+        ("friction", packing.friction == friction),
+    ];
+    match same.iter().find(|(_, same)| !same) {
+        None => Ok(()),
+        Some((what, _)) => Err(ExperimentError::Resume(format!(
+            "the {what} of the packing is not that of the scene; begin a scene with a changed packing by its key start"
+        ))),
+    }
+}
+
 /// State that the strain of a packing counts from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -132,6 +158,14 @@ impl PathPosition {
     /// `next` is the index of the phase that the run is in.
     fn new(next: usize, within_phase: bool, strain_origin: StrainOrigin) -> Self {
         Self { phase: next + usize::from(within_phase), end_of_phase: !within_phase, strain_origin }
+    }
+
+    /// A warning about a packing that was recorded within a phase.
+    pub fn warning(&self) -> Option<String> {
+        let phase = self.phase;
+        (!self.end_of_phase).then(|| {
+            format!("recorded within phase {phase}, which had not met its end conditions: the packing need not be at rest")
+        })
     }
 
     /// Removes from the report of the packing what its strain does not tell: gamma/Delta of the strain from a state that no

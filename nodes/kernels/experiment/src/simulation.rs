@@ -6,7 +6,7 @@ use crate::error::ExperimentError;
 use crate::gas::{EventDriven, at_random, is_event_driven};
 use crate::phase_settings::phase_settings;
 use crate::progress::{Progress, solid_fraction};
-use crate::run_state::{RunState, SavedEngine, StrainOrigin};
+use crate::run_state::{RunState, SavedEngine, StrainOrigin, belongs};
 use grainlab_core::{Mat3, Packing, ServoLaw, SymTensor};
 use grainlab_dem::{Compute, EnergyBalance};
 use grainlab_scene::{PathState, PhaseEnded, PhaseKind, Scene, Travelled};
@@ -156,6 +156,7 @@ impl Simulation {
             let why = "the packing has no strain since the first step; begin the run anew";
             return Err(ExperimentError::Resume(why.into()));
         }
+        belongs(packing, &scene, &saved)?;
         let start = Packing { time: saved.time, ..packing.clone() };
         let same = saved.engine.as_ref().filter(|e| Some(e.program.name.as_str()) == factory.name());
         let own_state = same.map(SavedEngine::own_state).transpose()?;

@@ -9,7 +9,7 @@ use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publisher, RosArgs, Subscription};
 use lattice::{DIAMETER, OVERLAP, lattice};
 
-#[path = "../../acoustic_probe/tests/probe/lattice.rs"]
+#[path = "../../../kernels/micromechanics/tests/claims/touching_itself.rs"]
 mod lattice;
 
 fn message(overlap: f64) -> Packing {

@@ -3,7 +3,7 @@
 //! - [`quantities`]: values, columns and help from the tables of quantities; [`ORIGIN`], [`ACOUSTIC`]: two of the tables
 //! - [`MeasuredPacking`], [`AcousticReport`], [`Probed`], [`Inference`]: one packing, its waves, and what a model infers
 //! - [`Measurement`]: which of several measurements of a packing
-//! - [`state_warnings()`]: warnings about a packing; [`ProbeView`]: details of a strain probe
+//! - [`ProbeView`]: details of a strain probe
 //! - [`Printed`], [`Printer`]: results one after the other; [`inference_text`]: results of models as text
 //! - [`read_back`]: the results in a recording; [`continuity`]: the messages that it lacks
 //! - [`posterior_draws`]: draws from a posterior as files
@@ -26,7 +26,6 @@ mod probe;
 mod probed;
 pub mod quantities;
 pub mod read_back;
-mod state_warnings;
 mod summary;
 pub mod summary_text;
 
@@ -37,5 +36,4 @@ pub use measurements::Measurement;
 pub use printer::{Printed, Printer};
 pub use probe::ProbeView;
 pub use probed::Probed;
-pub use state_warnings::{state_warnings, yields};
 pub use summary::{Launched, NodeEnd, Summary, TopicCount};

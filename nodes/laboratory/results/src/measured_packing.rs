@@ -2,9 +2,10 @@
 
 use crate::probe::ProbeView;
 use crate::quantities::entries;
+use grainlab_core::Packing;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::Scalar};
-use grainlab_core::results::{PackingReport, QUANTITIES};
+use grainlab_core::results::{PackingReport, QUANTITIES, warnings};
 use grainlab_experiment::PathPosition;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -52,6 +53,16 @@ impl MeasuredPacking {
         position.inspect(|p| p.judge_strain(&mut self.report));
         self
     }
+
+    /// Adds the notes of the packing's reader, and the warnings about the packing and its measurement, each once.
+    #[must_use]
+    pub fn doubted(mut self, packing: &Packing, notes: &[String]) -> Self {
+        let found =
+            self.position.and_then(|p| p.warning()).into_iter().chain(warnings(packing, &self.report));
+        let new: Vec<_> = found.filter(|w| !notes.contains(w)).collect();
+        self.warnings.extend(notes.iter().cloned().chain(new));
+        self
+    }
 }
 
 impl Serialize for MeasuredPacking {
@@ -69,7 +80,7 @@ impl Serialize for MeasuredPacking {
 pub(crate) mod tests {
     use super::*;
     use crate::printer::Printed;
-    use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+    use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
     use grainlab_experiment::StrainOrigin;
     use grainlab_micromechanics::{Settings, analyze};
 

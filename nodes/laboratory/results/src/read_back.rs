@@ -10,7 +10,7 @@ use crate::acoustic::AcousticReport;
 use crate::inference::Inference;
 use crate::measured_packing::MeasuredPacking;
 use crate::measurements::Measurement;
-use crate::state_warnings::of_report;
+use grainlab_core::results::report_warnings;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Report, Topic, TypeInfo, msg, topics};
 use grainlab_recordings::strangers::{self, Authors, StrangerView};
@@ -229,7 +229,7 @@ pub fn read(recording: &Recording) -> ReadBack {
                 let report = &measured.report;
                 measured.warnings =
                     report.elasticity.as_ref().err().map(ToString::to_string).into_iter().collect();
-                measured.warnings.extend(of_report(report));
+                measured.warnings.extend(report_warnings(report));
                 measured.warnings.extend(notes);
                 let (grains, density) = (report.contacts.grains, report.bulk_density());
                 let mut acoustic = speeds.into_iter().map(|(measurement, reading)| AcousticReport {

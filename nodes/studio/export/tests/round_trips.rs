@@ -44,7 +44,7 @@ fn a_dump_brings_back_grains_and_network_in_straight_and_tilted_cells() {
     let shear = Mat3::new(1.0, 0.02, -0.01, 0.0, 1.0, 0.03, 0.0, 0.0, 1.0);
     tilted.cell = Cell::new(shear * straight.cell.matrix()).unwrap();
     tilted.positions.iter_mut().for_each(|x| *x = shear * *x);
-    tilted.contacts = grainlab_recordings::import::contacts::find(
+    tilted.contacts = grainlab_core::contact_search::find(
         &tilted.cell,
         &tilted.positions,
         &tilted.radii,

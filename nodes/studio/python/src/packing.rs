@@ -3,11 +3,11 @@
 use crate::arrays::{copied, field, matrix, numbers, one, row, scalars, vectors};
 use crate::parallel;
 use grainlab_core::contact::ContactLaw;
-use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3, contact_search};
 use grainlab_experiment::PathPosition;
 use grainlab_msgs::boundary::{packing_header, packing_message};
 use grainlab_msgs::{from_cdr, msg, to_cdr};
-use grainlab_recordings::import::{Imported, contacts};
+use grainlab_recordings::import::Imported;
 use grainlab_viewer::{Film, Ground, Picture, Quantity, Size, View};
 use numpy::{Ix1, Ix2, PyArray, PyArray1, PyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
@@ -116,9 +116,7 @@ impl PyPacking {
             time_step: 0.0,
         };
         let grains = grains.validated().map_err(refused)?;
-        let force = |radius: f64, overlap: f64| grains.law.normal_force(&grains.material, radius, overlap);
-        let found = contacts::find(&grains.cell, &grains.positions, &grains.radii, force);
-        let contacts = found.map_err(refused)?;
+        let contacts = contact_search::of_packing(&grains).map_err(refused)?;
         let packing = Packing { contacts, ..grains }.validated().map_err(refused)?;
         Ok(Self::new(packing, "arrays".to_owned(), Vec::new(), Vec::new()))
     }

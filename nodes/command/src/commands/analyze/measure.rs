@@ -2,6 +2,7 @@
 
 use crate::commands::packings::Found;
 use crate::offline_recording::Recorded;
+use grainlab_core::results::yields;
 use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::{StrainProbe, StrainProbeResult};
@@ -9,7 +10,7 @@ use grainlab_micromechanics::{Settings, analyze};
 use grainlab_msgs::boundary::packing_report_message;
 use grainlab_msgs::topics;
 use grainlab_recordings::import::Imported;
-use grainlab_results::{MeasuredPacking, ProbeView, state_warnings, yields};
+use grainlab_results::{MeasuredPacking, ProbeView};
 use std::time::Instant;
 
 /// Relative difference of the forward and the backward stiffness of a probe without a warning: half of it is
@@ -27,20 +28,19 @@ pub(crate) fn measure(
     let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
     let found = analyze(packing, settings).map_err(|e| named(&e))?;
     let position = PathPosition::of(&imported.run_state);
-    let mut shown = MeasuredPacking::new(source.to_owned(), found.report).at(position);
+    let mut shown =
+        MeasuredPacking::new(source.to_owned(), found.report).at(position).doubted(packing, &imported.notes);
     shown.step = imported.step;
     shown.seconds = Some(began.elapsed().as_secs_f64());
     let (report, probe) = (&shown.report, found.probe.as_ref());
     shown.probe = probe.zip(settings.probe).map(|(p, set)| probe_view(set.amplitude, p));
-    let mut warnings = imported.notes.clone();
-    warnings.extend(state_warnings(packing, report, position, &imported.notes));
+    let warnings = &mut shown.warnings;
     warnings.extend(report.elasticity.as_ref().err().map(ToString::to_string));
     warnings.extend(probe.and_then(one_sided));
     // No wave passes a packing that some strain does not load.
     let is_without = report.stiffness().is_none() || yields(report);
     let message = packing_report_message(imported.header.clone(), report).map_err(|e| named(&e));
     let messages = message.map(|m| vec![Recorded::new(topics::PACKING_REPORT, &m.header, &m)]);
-    shown.warnings = warnings;
     Ok(Found { shown, is_without, messages })
 }
 

@@ -9,7 +9,7 @@ use grainlab_micromechanics::analyze;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_msgs::topics;
 use grainlab_recordings::import::Imported;
-use grainlab_results::{AcousticReport, MeasuredPacking, Probed, state_warnings};
+use grainlab_results::{AcousticReport, MeasuredPacking, Probed};
 
 /// Measures one packing of `source`; the error names both.
 pub(crate) fn measure(
@@ -22,10 +22,8 @@ pub(crate) fn measure(
     let measured = |axis: Vec3| {
         let settings = grainlab_micromechanics::Settings { axis, ..Default::default() };
         let report = analyze(packing, &settings).map_err(|e| named(&e))?.report;
-        let mut measured = MeasuredPacking::new(source.to_owned(), report);
+        let mut measured = MeasuredPacking::new(source.to_owned(), report).doubted(packing, &imported.notes);
         measured.step = imported.step;
-        measured.warnings.clone_from(&imported.notes);
-        measured.warnings.extend(state_warnings(packing, &measured.report, None, &imported.notes));
         Ok::<_, String>(measured)
     };
     let found = match grainlab_acoustics::measure(packing, &settings.0) {

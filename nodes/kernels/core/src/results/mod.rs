@@ -6,6 +6,7 @@
 //! - [`StrainRatios`]: deviatoric over volumetric strain
 //! - [`ElasticStiffness`]: the stiffness, its bounds, and how it was found
 //! - [`PackingReport`]: all of it for one packing
+//! - [`warnings()`]: doubts about a packing and its report
 //! - [`Microstructure`]: what an inversion infers
 //!
 //! Tensors are in the frame of the cell. h is the reference axis ([`Fabric::reference_axis`]), n a contact normal and
@@ -21,6 +22,7 @@ mod quantities;
 mod spring_notes;
 mod strain_ratios;
 mod stress_decomposition;
+mod warnings;
 
 pub use contact_statistics::{
     ContactStatistics, FORCE_BIN_WIDTH, FORCE_BINS, ForceStatistics, MOBILISATION_BINS, MobilisedFriction,
@@ -36,3 +38,4 @@ pub use quantities::QUANTITIES;
 pub use spring_notes::SpringNote;
 pub use strain_ratios::StrainRatios;
 pub use stress_decomposition::{StressDecomposition, StressForceFabric, SubNetwork};
+pub use warnings::{report_warnings, warnings, yields};

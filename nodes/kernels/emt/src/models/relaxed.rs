@@ -95,7 +95,7 @@ impl Model for Relaxed {
         state.within_reach(calibration.name())?;
         let data = Data::of(observation, &state);
         if data.used == 0 {
-            return Err(EmtError::Missing { model: NAME, missing: "any modulus" });
+            return Err(EmtError::Missing { model: NAME, missing: "at least one modulus" });
         }
         let both = (data.used > 1).then(|| scan::best(&data, network, &state, calibration.name(), false));
         let fit = match both {

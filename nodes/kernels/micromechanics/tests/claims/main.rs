@@ -18,3 +18,5 @@ mod sizes;
 mod springs;
 mod stated_errors;
 mod structure;
+mod touching_itself;
+mod warnings;

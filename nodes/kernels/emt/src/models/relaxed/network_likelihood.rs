@@ -33,7 +33,7 @@ impl<'a> NetworkLikelihood<'a> {
         state.within_reach(calibration.name())?;
         let data = Data::of(observation, &state);
         if data.used == 0 {
-            return Err(EmtError::Missing { model, missing: "any modulus" });
+            return Err(EmtError::Missing { model, missing: "at least one modulus" });
         }
         let moduli: Vec<_> = Modulus::ALL.into_iter().filter(|m| data.is_used[*m as usize]).collect();
         let observed = moduli.iter().map(|m| data.value[*m as usize] * state.unit).collect();

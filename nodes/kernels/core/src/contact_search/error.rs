@@ -37,7 +37,7 @@ pub enum SearchError {
 
 impl SearchError {
     /// Error with these ids of the grains in place of their indices.
-    pub(crate) fn with_ids(self, ids: &[u32]) -> Self {
+    pub(super) fn with_ids(self, ids: &[u32]) -> Self {
         let id = |k: usize| ids[k] as usize;
         match self {
             Self::Coincident(i, j) => Self::Coincident(id(i), id(j)),

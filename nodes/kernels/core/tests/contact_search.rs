@@ -1,7 +1,7 @@
 //! The search finds every contact, in every cell.
 
+use grainlab_core::contact_search::{SearchError, find};
 use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
-use grainlab_recordings::import::contacts::{SearchError, find};
 use proptest::prelude::*;
 
 /// Every pair, every image within four cells: slow and simple.

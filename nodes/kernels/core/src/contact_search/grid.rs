@@ -1,9 +1,8 @@
 //! Grains sorted into boxes, so that only those nearby are compared. The size of a box follows the median
 //! grain, as boxes of the largest one would contain all others.
 
-use grainlab_core::{Cell, Vec3, sorted_into_bins};
-
 use super::error::SearchError;
+use crate::{Cell, Vec3, sorted_into_bins};
 
 /// Maximum ratio of the volume of the spheres to that of the cell; more indicates wrong units.
 const MOST_FULL: f64 = 20.0;

@@ -1,12 +1,13 @@
 //! Finds contacts from positions, in time and memory proportional to the number of grains, for any shape of
 //! the cell.
 
-use grainlab_core::effective_radius;
-use grainlab_core::{Cell, Contact, Vec3};
+use crate::{Cell, Contact, Packing, Vec3, effective_radius};
 
+mod doubts;
 mod error;
 mod grid;
 
+pub use doubts::doubts;
 pub use error::SearchError;
 use grid::Grid;
 
@@ -20,9 +21,9 @@ use grid::Grid;
 /// in a tiny part of it.
 ///
 /// ```
-/// use grainlab_core::{Cell, Material, Vec3};
+/// use grainlab_core::{Cell, Material, Vec3, contact_search};
 /// let (cell, r) = (Cell::cube(1.0).unwrap(), [0.11, 0.11]);
-/// let found = grainlab_recordings::import::contacts::find(&cell, &[Vec3::zeros(), Vec3::new(0.0, 0.0, 0.8)], &r, |r, d| Material::GLASS.normal_force(r, d));
+/// let found = contact_search::find(&cell, &[Vec3::zeros(), Vec3::new(0.0, 0.0, 0.8)], &r, |r, d| Material::GLASS.normal_force(r, d));
 /// let found = found.unwrap();
 /// assert_eq!((found.len(), found[0].image), (1, [0, 0, -1]));
 /// assert!((found[0].overlap - 0.02).abs() < 1e-15);
@@ -74,4 +75,13 @@ pub fn find(
     }
     contacts.sort_by_key(|c| (c.i, c.j, c.image));
     Ok(contacts)
+}
+
+/// Contacts of `packing` by its positions, as [`find`] returns them, with the normal forces of its contact law.
+///
+/// # Errors
+/// As [`find`], with the ids of grains.
+pub fn of_packing(packing: &Packing) -> Result<Vec<Contact>, SearchError> {
+    let force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
+    find(&packing.cell, &packing.positions, &packing.radii, force).map_err(|e| e.with_ids(&packing.ids))
 }

@@ -1,0 +1,42 @@
+//! A packing measured.
+
+use crate::{Error, State};
+use grainlab_core::results::{PackingReport, warnings};
+use grainlab_micromechanics::{Settings, analyze};
+use std::ops::Deref;
+
+/// Structure, stress and stiffness of a packing, and reasons to doubt them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// Measured quantities, about e3.
+    pub report: PackingReport,
+    /// Notes on the import of the packing, and warnings as `grainlab analyze` prints them: motion, forces that do not balance or
+    /// are not those of the contact law, contacts that are missing. Empty for a packing at rest.
+    pub warnings: Vec<String>,
+}
+
+impl Deref for Measurement {
+    type Target = PackingReport;
+
+    fn deref(&self) -> &PackingReport {
+        &self.report
+    }
+}
+
+/// Measures a packing as `grainlab analyze` does.
+///
+/// # Errors
+/// If there are no grains, if the packing contradicts itself, or if the stiffness cannot be solved for. A packing that is not
+/// jammed is no error: its report has no stiffness, and the reason.
+pub fn measure(state: &State) -> Result<Measurement, Error> {
+    let failed = |e: &dyn std::fmt::Display| Error::Measurement(e.to_string());
+    if state.grains() == 0 {
+        return Err(failed(&"the packing has no grains"));
+    }
+    state.packing.check().and_then(|()| state.packing.check_consistency()).map_err(|e| failed(&e))?;
+    let mut report = analyze(&state.packing, &Settings::default()).map_err(|e| failed(&e))?.report;
+    let position = state.position().inspect(|position| position.judge_strain(&mut report));
+    let found = position.and_then(|p| p.warning()).into_iter().chain(warnings(&state.packing, &report));
+    let new: Vec<_> = found.filter(|w| !state.notes.contains(w)).collect();
+    Ok(Measurement { report, warnings: state.notes.iter().cloned().chain(new).collect() })
+}

@@ -1,0 +1,74 @@
+//! Warnings about packings and their measurement.
+
+use crate::touching_itself::{OVERLAP, lattice};
+use grainlab_core::Packing;
+use grainlab_core::contact::RollingResistance;
+use grainlab_core::results::{PackingReport, warnings, yields};
+use grainlab_micromechanics::{Settings, analyze};
+
+fn report(packing: &Packing) -> PackingReport {
+    analyze(packing, &Settings::default()).unwrap().report
+}
+
+fn changed(change: impl FnOnce(&mut Packing)) -> String {
+    let mut packing = lattice(OVERLAP);
+    change(&mut packing);
+    warnings(&packing, &report(&packing)).join("; ")
+}
+
+#[test]
+fn a_packing_at_rest_has_no_warnings() {
+    assert_eq!(changed(|_| ()), "");
+}
+
+/// Without friction a simple cubic lattice shears freely; without a bond it is open along one axis.
+#[test]
+fn a_packing_that_some_strain_does_not_load_is_reported() {
+    let (smooth, open) = (changed(|p| p.friction = 0.0), changed(|p| _ = p.contacts.pop()));
+    for text in [smooth, open] {
+        assert!(text.contains("some strain of the cell meets no resistance"), "{text}");
+    }
+    assert!(!yields(&report(&lattice(OVERLAP))));
+}
+
+#[test]
+fn missing_and_tensile_contacts_are_reported() {
+    assert!(changed(|p| _ = p.contacts.pop()).contains("1 contact overlaps by position but is not listed"));
+    let pulls = changed(|p| p.contacts[1].normal_force *= -1.0);
+    assert!(pulls.contains("1 contact pulls") && pulls.contains("grains 0 and 0"), "{pulls}");
+}
+
+#[test]
+fn grains_that_carry_force_and_move_are_reported_and_a_drift_of_all_is_no_motion() {
+    for (drift, speed, spin, is_reported) in
+        [(0.0, 100.0, 0.0, true), (0.0, 0.0, 1e6, true), (100.0, 0.0, 0.0, false), (0.0, 1e-6, 1e-2, false)]
+    {
+        let found = changed(|p| {
+            *p = p.repeated(2).unwrap();
+            p.velocities.iter_mut().for_each(|v| v.x += drift);
+            (p.velocities[0].x, p.spins[0].y) = (drift + speed, spin);
+        });
+        assert_eq!(found.contains("in motion: the kinetic energy"), is_reported, "{found}");
+    }
+}
+
+#[test]
+fn rolling_springs_that_the_network_lacks_are_reported() {
+    let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+    assert!(changed(|p| p.law = p.law.with_rolling(rolling)).contains("rolling springs"));
+}
+
+#[test]
+fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_reported() {
+    let packing = lattice(OVERLAP);
+    let mut report = report(&packing);
+    assert_eq!(report.unbalanced_force_ratio, Some(0.0));
+    let Ok(stiffness) = &mut report.elasticity else { panic!("a lattice is stiff") };
+    stiffness.bounds.bulk_reuss = Some(1.1 * stiffness.tensor.bulk_voigt());
+    report.unbalanced_force_ratio = Some(0.2);
+    let found = warnings(&packing, &report).join("; ");
+    assert!(
+        found.contains("below its lower bound") && found.contains("2.00e-1 of the mean contact force"),
+        "{found}"
+    );
+}
