@@ -3,6 +3,8 @@
 use grainlab::{Error, State, measure, resume, simulate};
 use std::time::Duration;
 
+type Change = fn(&mut State);
+
 const SMALL: [&str; 2] = ["grains.count=200", "seed=2"];
 
 #[test]
@@ -35,7 +37,7 @@ fn a_packing_that_contradicts_itself_is_not_measured() {
     let state = simulate("demo", &SMALL).unwrap().last().unwrap().unwrap();
     let measured = measure(&state).unwrap();
     assert!(measured.pressure() > 4e4 && measured.warnings.is_empty(), "{:?}", measured.warnings);
-    let faults: [fn(&mut State); 6] = [
+    let faults: [Change; 6] = [
         |s| s.packing.radii.iter_mut().for_each(|r| *r *= 2.0),
         |s| s.packing.contacts.iter_mut().for_each(|c| c.overlap *= 10.0),
         |s| s.packing.contacts.iter_mut().for_each(|c| c.normal_force *= 1e6),
@@ -53,7 +55,7 @@ fn a_packing_that_contradicts_itself_is_not_measured() {
 #[test]
 fn a_packing_that_no_law_made_is_measured_with_a_warning() {
     let state = simulate("demo", &SMALL).unwrap().last().unwrap().unwrap();
-    let doubts: [(fn(&mut State), &str); 4] = [
+    let doubts: [(Change, &str); 4] = [
         (|s| s.packing.contacts[0].normal_force *= -1.0, "1 contact pulls"),
         (
             |s| s.packing.contacts.iter_mut().for_each(|c| c.normal_force *= 1.5),

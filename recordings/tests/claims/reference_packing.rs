@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use grainlab_core::contact_search;
 use grainlab_core::stress::stress;
-use grainlab_recordings::import::{Imported, contacts, load};
+use grainlab_recordings::import::{Imported, load};
 
 pub(crate) fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/golden/reference").join(name)
@@ -89,8 +90,7 @@ fn forces_balance_on_every_grain() {
 #[test]
 fn contacts_found_from_positions_are_those_listed() {
     let p = reference().packing;
-    let found =
-        contact_search::find(&p.cell, &p.positions, &p.radii, |r, d| p.material.normal_force(r, d)).unwrap();
+    let found = contact_search::of_packing(&p).unwrap();
     assert_eq!(found.len(), p.contacts.len());
     for (a, b) in found.iter().zip(&p.contacts) {
         assert_eq!((a.i, a.j, a.image), (b.i, b.j, b.image));
