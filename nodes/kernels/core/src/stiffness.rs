@@ -45,6 +45,18 @@ impl Stiffness {
         self.0.fixed_view::<3, 3>(0, 0).sum() / 9.0
     }
 
+    /// Shear modulus of the nearest isotropic stiffness (Voigt average), Pa.
+    pub fn shear_isotropic(&self) -> f64 {
+        let (c, normal) = (&self.0, self.0.fixed_view::<3, 3>(0, 0));
+        (1.5 * normal.trace() - 0.5 * normal.sum() + 3.0 * (c[(3, 3)] + c[(4, 4)] + c[(5, 5)])) / 15.0
+    }
+
+    /// Poisson ratio of the nearest isotropic stiffness.
+    pub fn poisson_isotropic(&self) -> f64 {
+        let (bulk, shear) = (self.bulk_voigt(), self.shear_isotropic());
+        (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)
+    }
+
     /// Reuss bulk modulus 1/S_iijj (isotropic stress), Pa; `None` if C is singular.
     pub fn bulk_reuss(&self) -> Option<f64> {
         let strain = self.isotropic_compression()?;
@@ -167,6 +179,16 @@ mod tests {
             residual: 0.0,
         };
         t.stiffness()
+    }
+
+    #[test]
+    fn an_isotropic_stiffness_has_its_own_shear_modulus_and_poisson_ratio() {
+        let (lame, shear) = (3.0, 2.0);
+        let diagonal =
+            Matrix6::from_diagonal(&[2.0 * shear, 2.0 * shear, 2.0 * shear, shear, shear, shear].into());
+        let of = Stiffness(diagonal + Matrix6::from_fn(|i, j| if i < 3 && j < 3 { lame } else { 0.0 }));
+        assert!((of.shear_isotropic() - shear).abs() < 1e-14);
+        assert!((of.poisson_isotropic() - lame / (2.0 * (lame + shear))).abs() < 1e-15);
     }
 
     #[test]

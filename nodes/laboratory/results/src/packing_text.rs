@@ -30,7 +30,7 @@ const SHOWN: &str = "k z eps eps_stiffness fabric reference_axis g_total g_elast
     axis_angle_stddev_rad axis_eps axis_eps_stddev a_contacts a_normal_forces a_tangential_forces \
     predicted_q_over_p strong_share_of_contacts strong_share_of_pressure strong_eps weak_eps \
     participation mobilised_mean mobilised_share_at_limit method g12_pa g13_pa theta_pa theta_reuss_pa \
-    theta_bound_pa symmetry symmetry_tolerance symmetry_axis residual_isotropic \
+    theta_bound_pa g_isotropic_pa poisson_isotropic symmetry symmetry_tolerance symmetry_axis residual_isotropic \
     residual_transversely_isotropic";
 
 /// Components in a row.

@@ -153,7 +153,7 @@ pub fn heading(kind: &str, title: &str, about: &str) -> Html {
 pub fn finding(done: &str, found: &[String], doubts: &[String]) -> Html {
     html!(
         "<div class=\"finding\"><p>{{ done }}</p>\n{% if found %}<p class=\"found\">{{ found }}</p>\n{% endif %}\
-         {% if doubts %}<p>Reasons to doubt:</p>{{ doubts }}{% else %}<p>No warning was given.</p>\n{% endif %}</div>\n",
+         {% if doubts %}<p>Reasons to doubt:</p>{{ doubts }}{% else %}<p>No reason to doubt it was found.</p>\n{% endif %}</div>\n",
         done,
         found => found.join(" "),
         doubts => list(doubts)

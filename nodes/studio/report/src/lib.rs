@@ -23,6 +23,7 @@ mod phased;
 mod run;
 mod series;
 mod settings;
+mod stress_path;
 mod structure;
 mod summary_file;
 mod timeline;

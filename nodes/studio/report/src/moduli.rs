@@ -2,11 +2,16 @@
 
 use crate::run::Run;
 use grainlab_core::Stiffness;
-use grainlab_page::plot::{Bar, Bars};
+use grainlab_page::plot::{Axis, Bar, Bars, Figure, Line, Marker, Point, Series};
 use grainlab_page::{Cell, Html, csv, figure, grid, paragraph, six_digits, table};
+use grainlab_results::brief::moduli;
+use grainlab_results::read_back::InvertedPacking;
 
 /// Pa to MPa.
 const MPA: f64 = 1e-6;
+
+/// Ratio of the largest pressure to the least from which moduli are drawn over it.
+const WIDE: f64 = 1.2;
 
 /// A stiffness as a reader knows it: name, colour, and its moduli in the order of [`NAMES`], MPa.
 type Kind = (&'static str, usize, [f64; 6]);
@@ -63,6 +68,43 @@ impl Run {
         );
         let header = ["modulus", "relaxed", "mean rotation", "affine", "relaxed / affine"];
         let about = "G12 is the shear modulus across the axis, G13 along it, Θ the bulk modulus under isotropic strain.";
-        grid(figure("moduli", plot.svg(), about, &data) + table(caption, header, rows))
+        grid(figure("moduli", plot.svg(), about, &data) + table(caption, header, rows) + self.over_pressure())
+    }
+
+    /// G12, G13 and Θ of the states over their pressure, if there are several; Hertzian packings are near a power of 1/3 of it.
+    fn over_pressure(&self) -> Html {
+        let of = |s: &InvertedPacking| {
+            let report = &s.packing.report;
+            let [g12, g13, theta] = moduli(report);
+            Some((report.pressure() * 1e-3, [g12?, g13?, theta?]))
+        };
+        let states: Vec<_> = self.states.iter().filter_map(of).collect();
+        let pressures = || states.iter().map(|s| s.0);
+        if pressures().fold(0.0, f64::max) < WIDE * pressures().fold(f64::INFINITY, f64::min) {
+            return Html::default();
+        }
+        let series = |n: usize| Series {
+            name: NAMES[n].to_owned(),
+            colour: Some(n),
+            marker: Some(Marker::Circle),
+            line: Some(Line::Faint),
+            points: states.iter().map(|(p, of)| Point::at(*p, of[n])).collect(),
+            ..Series::default()
+        };
+        let drawn = Figure {
+            title: "Moduli over pressure, MPa".to_owned(),
+            x: Axis::log("pressure, kPa"),
+            y: Axis::log(""),
+            series: (0..3).map(series).collect(),
+            ..Figure::default()
+        };
+        let rows = states.iter().map(|(p, [a, b, c])| [*p, *a, *b, *c].map(six_digits));
+        let data = csv(["pressure_kpa", "g12_mpa", "g13_mpa", "theta_mpa"], rows);
+        figure(
+            "moduli-over-pressure",
+            drawn.element(),
+            "One point for each measured packing, in their order.",
+            &data,
+        )
     }
 }

@@ -9,6 +9,7 @@ use grainlab_page::{
 use grainlab_results::brief::{ended, lost_words, moduli};
 use grainlab_results::findings::{Findings, Judged, recommended};
 use grainlab_results::read_back::InvertedPacking;
+use grainlab_scene::Scene;
 use grainlab_viewer::PictureError;
 
 /// Style of plots against time and of tables of runs, in addition to that of all pages.
@@ -38,7 +39,7 @@ impl Run {
             ("inference", "Inferred and counted", Some(self.inferred())),
             ("packing", "The packing", (!views.is_empty()).then_some(packing)),
             ("numbers", "Numbers", self.last().map(|state| cards(state) + self.states_table())),
-            ("time", "Against time", Some(self.timeline.against_time())),
+            ("time", "Against time", Some(self.timeline.against_time() + self.timeline.path.figures())),
             ("structure", "Contacts and forces", Some(self.structure())),
             ("moduli", "Moduli", Some(self.moduli())),
             ("waves", "Waves", self.waves()),
@@ -88,6 +89,7 @@ impl Run {
         heading(&format!("grainlab · {}", self.name()), &self.headline(), "")
             + finding(&done, &found, &doubts)
             + about
+            + list(self.scene.as_ref().map(Scene::notes).unwrap_or_default())
             + self.verdict()
             + missing
     }

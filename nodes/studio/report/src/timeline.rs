@@ -2,6 +2,7 @@
 
 use crate::energy::residual;
 use crate::phased::{MOST_PHASES, PhaseAxis, Phased, bins_of};
+use crate::stress_path::StressPath;
 use grainlab_console::Failure;
 use grainlab_core::results::PackingReport;
 use grainlab_core::{ComponentControl, Packing};
@@ -29,6 +30,7 @@ pub struct Timeline {
     pub(crate) deviator: Phased,
     /// Logarithmic, positive in extension, in the order of Voigt.
     pub(crate) strain: [Phased; 6],
+    pub(crate) path: StressPath,
     pub(crate) solid_fraction: Phased,
     pub(crate) coordination: Phased,
     pub(crate) unbalanced: Phased,
@@ -145,8 +147,10 @@ impl Timeline {
                 series.push(phase, time, *target);
             }
         }
-        self.pressure.push(phase, time, request.input.stress.mean());
-        self.deviator.push(phase, time, request.input.stress.deviatoric_invariant());
+        let (p, q) = (request.input.stress.mean(), request.input.stress.deviatoric_invariant());
+        self.pressure.push(phase, time, p);
+        self.deviator.push(phase, time, q);
+        self.path.push(p, q, request.strain.voigt()[2]);
         self.solid_fraction.push(phase, time, request.solid_fraction);
         self.coordination.push(phase, time, request.coordination);
         self.unbalanced.push(phase, time, request.unbalanced);

@@ -168,6 +168,10 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
         Scalar, |r| r.stiffness().and_then(|s| s.tensor.bulk_reuss());
     "theta_bound_pa" "" "Pa" "lower bound of theta_reuss_pa by the forces present"
         Scalar, |r| r.stiffness().and_then(|s| s.bounds.bulk_reuss);
+    "g_isotropic_pa" "G" "Pa" "shear modulus of the nearest isotropic stiffness, whose bulk modulus is theta_pa"
+        Scalar, |r| r.stiffness().map(|s| s.tensor.shear_isotropic());
+    "poisson_isotropic" "ν" "1" "Poisson ratio of the nearest isotropic stiffness"
+        Scalar, |r| r.stiffness().map(|s| s.tensor.poisson_isotropic());
     "residual" "" "1" "relative residual of the solve, the worst of the six columns"
         Scalar, |r| r.stiffness().map(|s| s.residual);
     "stiffness_pa" "C" "Pa" "stiffness in the frame of the cell, engineering shear"

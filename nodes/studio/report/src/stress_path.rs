@@ -1,0 +1,70 @@
+//! The path of a run through stresses and strains.
+
+use grainlab_page::plot::{Axis, Figure, Line, Point, Series};
+use grainlab_page::{Html, csv, figure, grid, six_digits};
+
+/// Most points of the path; beyond, every second one is left out.
+const MOST: usize = 4096;
+
+/// Pressure, Pa, deviator, Pa, and logarithmic strain zz, at exchanges that are equally many apart.
+#[derive(Debug, Default)]
+pub(crate) struct StressPath {
+    points: Vec<[f64; 3]>,
+    /// Exchanges seen.
+    seen: usize,
+    /// Exponent of 2: of how many exchanges one is kept.
+    thinned: u32,
+}
+
+impl StressPath {
+    /// Takes an exchange.
+    pub(crate) fn push(&mut self, pressure: f64, deviator: f64, axial_strain: f64) {
+        if self.seen.is_multiple_of(1 << self.thinned) {
+            self.points.push([pressure, deviator, axial_strain]);
+        }
+        self.seen += 1;
+        if self.points.len() > MOST {
+            self.points = self.points.drain(..).step_by(2).collect();
+            self.thinned += 1;
+        }
+    }
+
+    /// Deviator over pressure, and over strain.
+    pub(crate) fn figures(&self) -> Html {
+        let titles = ["deviator q, kPa", "pressure p, kPa", "axial strain, % (positive in extension)"];
+        let kept: Vec<_> = self.points.iter().map(|[p, q, zz]| [q * 1e-3, p * 1e-3, zz * 100.0]).collect();
+        let over = |n: usize| Figure {
+            title: titles[0].to_owned(),
+            x: Axis::linear(titles[n]),
+            series: vec![Series {
+                colour: Some(0),
+                line: Some(Line::Straight),
+                points: kept.iter().map(|v| Point::at(v[n], v[0])).collect(),
+                ..Series::default()
+            }],
+            ..Figure::default()
+        };
+        let rows = self.points.iter().map(|v| v.map(six_digits));
+        let data = csv(["pressure_pa", "deviator_pa", "strain_zz"], rows);
+        let about =
+            "Of the whole run, in the order of its exchanges. The strain counts from the reference state.";
+        grid(
+            figure("stress-path", over(1).element(), about, &data)
+                + figure("stress-strain", over(2).element(), about, &data),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_of_any_length_is_kept_in_equal_steps_from_its_start() {
+        let mut path = StressPath::default();
+        (0..100_000).for_each(|n| path.push(f64::from(n), 0.0, 0.0));
+        let steps = path.points.windows(2).map(|w| w[1][0] - w[0][0]);
+        assert!(path.points.len() > MOST / 2 && path.points.len() <= MOST);
+        assert!(path.points[0][0] == 0.0 && steps.into_iter().all(|s| s == 32.0));
+    }
+}
