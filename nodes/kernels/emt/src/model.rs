@@ -84,11 +84,6 @@ pub trait Model: Sync + Debug {
         self.domain(calibration)
     }
 
-    /// True if [`Model::likelihood`] is that of the packings of the calibration, and not made from the error of an estimate.
-    fn states_likelihood(&self) -> bool {
-        false
-    }
-
     /// The probability of the observed moduli. By default that of the error of the inferred unknowns, where there are as many
     /// moduli as unknowns.
     fn likelihood<'a>(

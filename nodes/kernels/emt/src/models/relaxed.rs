@@ -123,10 +123,6 @@ impl Model for Relaxed {
         domain
     }
 
-    fn states_likelihood(&self) -> bool {
-        true
-    }
-
     fn likelihood<'a>(
         &'a self,
         observation: &Observation,
