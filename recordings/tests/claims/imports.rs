@@ -56,7 +56,7 @@ fn forces_beyond_the_limit_of_friction_are_noted() {
     let notes =
         |tangential: f64| pair(&format!("c,1,2,1,0,0,0.05,3,0,{tangential},0")).unwrap().notes.concat();
     assert!(!notes(0.3).contains("friction"));
-    assert!(notes(0.5).contains("1 contacts carry more tangential force than a friction of 0.1 allows"));
+    assert!(notes(0.5).contains("1 contact carries more tangential force than a friction of 0.1 allows"));
 }
 
 #[test]

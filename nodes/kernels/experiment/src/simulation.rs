@@ -156,7 +156,7 @@ impl Simulation {
             let why = "the packing has no strain since the first step; begin the run anew";
             return Err(ExperimentError::Resume(why.into()));
         }
-        belongs(packing, &scene, &saved)?;
+        belongs(packing, &scene)?;
         let start = Packing { time: saved.time, ..packing.clone() };
         let same = saved.engine.as_ref().filter(|e| Some(e.program.name.as_str()) == factory.name());
         let own_state = same.map(SavedEngine::own_state).transpose()?;

@@ -10,7 +10,7 @@ const MOST: usize = 4096;
 #[derive(Debug, Default)]
 pub(crate) struct StressPath {
     points: Vec<[f64; 3]>,
-    /// Exchanges seen.
+    /// Number of exchanges so far.
     seen: usize,
     /// Exponent of 2: of how many exchanges one is kept.
     thinned: u32,

@@ -1,6 +1,7 @@
 //! Differences between the contacts of a packing and those that its positions, its law and its friction give.
 
-use super::{SearchError, of_packing};
+use super::error::SearchError;
+use super::find::of_packing;
 use crate::{Contact, Packing};
 use std::collections::BTreeSet;
 
