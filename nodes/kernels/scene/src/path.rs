@@ -80,7 +80,7 @@ impl PathState {
             let (number, timeout) = (self.phase + 1, phase.until.timeout);
             return Err(PathError(format!(
                 "phase {number} ({}) did not meet its end conditions within {timeout} s of simulated time: {}; raise its \
-                 timeout, loosen the condition, or change the loading",
+                 timeout, loosen the condition, take more grains, or change the loading",
                 phase.name,
                 self.unmet(scene, seen)
             )));
