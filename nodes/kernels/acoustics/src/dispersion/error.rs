@@ -8,7 +8,7 @@ pub(crate) enum SolveError {
     Floppy,
     /// The maximum number of iterations was reached.
     #[error(
-        "relative residual {residual:e} after {iterations} iterations; raise max_iterations or tolerance, or use longer waves"
+        "relative residual {residual:.1e} after {iterations} iterations; raise max_iterations or tolerance"
     )]
     NotConverged {
         /// Residual over the load.

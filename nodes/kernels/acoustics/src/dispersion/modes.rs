@@ -34,7 +34,7 @@ pub(crate) struct Modes {
 
 /// The modes nearest to plane waves with one to three perpendicular `polarizations`, to the relative error `tolerance`
 /// of ω².
-/// `near`: modes found at a neighbouring wave vector.
+/// `near`: modes found at a neighbouring wave vector, where floppy modes have other phases.
 pub(crate) fn modes(
     bloch: &Bloch<'_>,
     polarizations: &[Vec3],
@@ -48,7 +48,10 @@ pub(crate) fn modes(
     bloch.apply_mass(&plane, &mut mass_times);
     let mut subspace = Subspace::new(count);
     subspace.add(bloch, plane.clone());
-    near.iter().for_each(|block| subspace.add(bloch, block.clone()));
+    for mut block in near.iter().cloned() {
+        bloch.project_out_floppy_modes(&mut block);
+        subspace.add(bloch, block);
+    }
     let mut ritz = subspace.best(&mass_times).ok_or(SolveError::Floppy)?;
     let mut budget = max_iterations;
     let mut change = f64::INFINITY;
@@ -122,4 +125,51 @@ fn acoustic_tensor(squares: &[f64; WAVES], overlaps: &Matrix3<C>, polarizations:
         }
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backbone::Backbone;
+
+    const ALL: [Vec3; 3] = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+
+    /// A lattice with two neighbours that have two contacts each, and floppy modes in common.
+    fn loose() -> Backbone {
+        let mut packing = crate::dispersion::lattice_sample::lattice();
+        packing.contacts.retain(|c| c.i > 1 || [[0, 1], [0, 9], [1, 4]].contains(&[c.i, c.j]));
+        let backbone = Backbone::new(&packing).unwrap();
+        assert!(backbone.clusters.iter().any(|c| c.grains.len() == 2 && c.motions.iter().any(|m| m.is_free)));
+        backbone
+    }
+
+    fn at(backbone: &Backbone, wavenumber: f64) -> Bloch<'_> {
+        Bloch::new(backbone, &(Vec3::new(1.0, 2.0, 3.0).normalize() * wavenumber))
+    }
+
+    #[test]
+    fn modes_near_those_of_another_wave_vector_are_found_where_neighbours_share_floppy_modes() {
+        let backbone = loose();
+        let of = |wavenumber: f64, near: &[Block]| {
+            modes(&at(&backbone, wavenumber), &ALL, near, 1e-8, 10_000).unwrap()
+        };
+        let [alone, near] = [&[][..], &of(300.0, &[]).found].map(|near| of(600.0, near).acoustic_tensor);
+        assert!((near - alone).amax() < 1e-6 * alone.amax(), "{near} {alone}");
+    }
+
+    #[test]
+    fn a_load_on_a_motion_without_stiffness_is_named_and_no_lack_of_iterations() {
+        let backbone = loose();
+        let bloch = at(&backbone, 600.0);
+        let mut x = plane_waves(&bloch, &ALL);
+        x[0].re[3] = Row::of([1.0; WAVES]);
+        let solve = InverseIteration {
+            bloch: &bloch,
+            x: &x,
+            squares: &[1e10; WAVES],
+            tolerance: 1e-3,
+            budget: &mut 10_000,
+        };
+        assert_eq!(solve.run().err(), Some(SolveError::Floppy));
+    }
 }

@@ -6,6 +6,9 @@ use crate::dispersion::error::SolveError;
 use crate::dispersion::waves::{Amplitude, Block, Row, WAVES, products};
 use grainlab_core::instruction_sets::Work;
 
+/// Growth of a residual that only a motion without stiffness causes.
+const DIVERGED: f64 = 1e6;
+
 /// K y = M x, for each wave with its ω², starting at y = x/ω²: conjugate gradients with a block Jacobi preconditioner.
 pub(crate) struct InverseIteration<'a> {
     pub(crate) bloch: &'a Bloch<'a>,
@@ -40,6 +43,7 @@ impl Work for InverseIteration<'_> {
         search.copy_from_slice(&better);
         let mut rho = products(&rest, &better);
         let start = *budget;
+        let mut first = None;
         loop {
             let left = products(&rest, &rest);
             let ratio = |k: usize| if loads[k] > 0.0 { (left[k] / loads[k]).sqrt() } else { 0.0 };
@@ -48,6 +52,9 @@ impl Work for InverseIteration<'_> {
                 .fold(0.0, |worst: f64, r| if r.is_nan() || r > worst { r } else { worst });
             if residual <= tolerance {
                 break;
+            }
+            if residual > DIVERGED * *first.get_or_insert(residual) {
+                return Err(SolveError::Floppy);
             }
             if *budget == 0 || residual.is_nan() {
                 return Err(SolveError::NotConverged { residual, iterations: start - *budget });

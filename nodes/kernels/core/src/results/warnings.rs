@@ -65,7 +65,7 @@ fn moving(packing: &Packing) -> Option<String> {
 
 fn below_its_bound(report: &PackingReport) -> Option<String> {
     let stiffness = report.stiffness()?;
-    // The stiffness of a network leaves out springs that resist rolling, and the bound then does not hold.
+    // Recordings of earlier versions have a bound for laws that resist rolling, too, where it does not hold.
     if report.law.rolling.is_some() {
         return None;
     }

@@ -31,9 +31,13 @@ pub fn uniform_rotation_stiffness(network: &SpringNetwork, affine: &Stiffness) -
 /// Increasing all forces of the packing by the same fraction keeps every grain in balance and increases the
 /// pressure by this fraction. The complementary energy of any such forces is at least that of the true ones.
 /// The bound is as accurate as the packing is at rest under isotropic stress. Without tangential springs,
-/// tangential forces cannot change and are left out. `None` without forces.
+/// tangential forces cannot change and are left out. `None` without forces, and for laws that resist rolling: the network
+/// lacks their springs, and without these the forces do not balance.
 pub fn bulk_reuss_bound(view: &PackingView<'_>, springs: Springs) -> Option<f64> {
     let (packing, pressure) = (view.packing, view.stress.tensor.mean());
+    if packing.law.rolling.is_some() {
+        return None;
+    }
     let mut compliance = 0.0;
     for (c, (k_n, k_t)) in packing.contacts.iter().zip(&view.contact_stiffnesses) {
         compliance += c.normal_force * c.normal_force / k_n;

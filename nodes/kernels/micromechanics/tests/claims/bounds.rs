@@ -4,6 +4,7 @@
 use crate::golden::reference;
 use crate::samples::{packing, random};
 use grainlab_core::Contact;
+use grainlab_core::contact::RollingResistance;
 use grainlab_core::results::{ElasticStiffness, StiffnessMethod};
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_micromechanics::network::{
@@ -81,6 +82,10 @@ fn the_reuss_bound_is_the_bulk_modulus_of_a_lattice_and_below_it_in_a_packing() 
     let share = m.bounds.bulk_reuss.unwrap() / m.tensor.bulk_reuss().unwrap();
     // .879 from Z̃(5/3) of such packings and their ratio of relaxed to affine modulus.
     assert!((0.8..1.0).contains(&share), "{share}");
+
+    let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+    let resists = Packing { law: p.law.with_rolling(rolling), ..p };
+    assert_eq!(moduli(&resists, &Settings::default()).bounds.bulk_reuss, None, "its springs are left out");
 }
 
 /// Simple cubic: the normal forces rotate with the branches, C44 = (k_t − F/D)/(2 D), and C11 is unchanged.

@@ -35,6 +35,8 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
         let [g12, _, theta] = moduli(r).map(|m| fixed(m, 1));
         if g12 != "-" {
             note("G12 and Theta in MPa; est.: estimated".to_owned());
+        } else {
+            note("G12 and Theta -: no contacts that resist a strain; `analyze` has the reason".to_owned());
         }
         let packing = [
             state.packing.step.to_string(),

@@ -253,6 +253,9 @@ fn a_report_is_read_back_as_it_was_recorded() {
     // The reason is that of the analyzer.
     assert!(states[1].packing.warnings[0].starts_with("no contact network: none of the 1 grains"));
     assert!(states[1].results.is_empty());
+    let summary = crate::Summary { states, ..crate::Summary::of_nothing(Exit::Done) };
+    let table = crate::brief::text(&summary, Path::new("r"), &["recording"], "grainlab");
+    assert!(table.contains("no contacts that resist a strain"), "{table}");
 }
 
 #[test]
