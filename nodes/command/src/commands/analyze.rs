@@ -89,7 +89,8 @@ enum Method {
     /// Linear response of the frozen contact network
     #[default]
     Network,
-    /// Linear response of smooth grains, with the prestress term: normal forces rotate with their branches
+    /// Linear response of smooth grains, with the prestress term: normal forces rotate with their branches. The stiffness is that of
+    /// the Cauchy stress, as --method probe measures it
     Prestressed,
     /// Explicit: strain the packing slightly, relax it, evaluate the stress
     Probe,

@@ -40,6 +40,26 @@ impl Stiffness {
         std::array::from_fn(|k| self.0[(k / 6, k % 6)])
     }
 
+    /// Stiffness that gives the change of the Cauchy stress, from the second derivative of the energy per volume by a symmetric strain
+    /// under `stress`, Pa, positive in compression (Wallace, Thermodynamics of Crystals, 1972). Under a pressure p it is p higher in
+    /// C12, and p/2 lower in C44. Of a deviator the symmetric part is taken.
+    #[must_use]
+    pub fn of_cauchy_stress(&self, stress: &SymTensor) -> Self {
+        let (s, one) = (stress.matrix(), Mat3::identity());
+        let mut changed = self.0;
+        for (i, j) in (0..3).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+            for (k, l) in (0..3).flat_map(|k| (0..=k).map(move |l| (k, l))) {
+                let turned = s[(i, k)] * one[(j, l)]
+                    + s[(i, l)] * one[(j, k)]
+                    + s[(j, k)] * one[(i, l)]
+                    + s[(j, l)] * one[(i, k)];
+                let dilated = s[(i, j)] * one[(k, l)] + one[(i, j)] * s[(k, l)];
+                changed[(VOIGT[i][j], VOIGT[k][l])] += 0.5 * dilated - 0.25 * turned;
+            }
+        }
+        Self(changed)
+    }
+
     /// Voigt bulk modulus Θ = C_iijj/9 (isotropic strain), Pa.
     pub fn bulk_voigt(&self) -> f64 {
         self.0.fixed_view::<3, 3>(0, 0).sum() / 9.0

@@ -10,7 +10,7 @@ use crate::view::PackingView;
 use grainlab_core::results::{
     ElasticStiffness, Elasticity, NotJammed, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
 };
-use grainlab_core::{Packing, Vec3, min_contacts, symmetry};
+use grainlab_core::{Packing, Stiffness, Vec3, min_contacts, symmetry};
 use std::ops::RangeInclusive;
 
 /// Grains from which the default tolerance is larger.
@@ -121,9 +121,12 @@ fn elasticity(
     let Some(found) = found else {
         return not_jammed(NotJammed::Floppy { contacts: network.contacts() });
     };
+    // The energy of springs that carry forces changes with the strain by more than the stress does.
+    let cauchy =
+        |c: Stiffness| if network.prestressed() { c.of_cauchy_stress(&view.stress.tensor) } else { c };
     let bounds = StiffnessBounds {
-        affine: found.affine,
-        uniform_rotation: found.uniform_rotation,
+        affine: cauchy(found.affine),
+        uniform_rotation: cauchy(found.uniform_rotation),
         bulk_reuss: bulk_reuss_bound(view, settings.springs),
     };
     let probe = settings.probe.as_ref().map(|probe| strain_probe(packing, probe)).transpose()?;
@@ -144,7 +147,7 @@ fn elasticity(
                 StiffnessMethod::FrozenNetwork
             },
             smooth: network.smooth(),
-            tensor: found.relaxed,
+            tensor: cauchy(found.relaxed),
             stddev: found.stddev,
             residual: found.residual,
             iterations: found.iterations,

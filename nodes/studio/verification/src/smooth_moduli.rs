@@ -3,7 +3,7 @@
 use crate::error::VerificationError;
 use crate::reference::table;
 use crate::row::{Measure, Point, Row};
-use grainlab_core::Packing;
+use grainlab_core::{Packing, Stiffness};
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::{Settings, analyze};
 
@@ -25,8 +25,16 @@ pub fn rows(packing: &Packing, matscipy: &str) -> Result<Vec<Row>, VerificationE
             analyze(packing, &settings).map_err(|e| VerificationError::Measurement(e.to_string()))?.report;
         let found = report.elasticity;
         let found = found.map_err(|why| VerificationError::Measurement(format!("smooth spheres: {why}")))?;
-        let points = theirs.iter().flatten().zip(found.tensor.row_major()).enumerate();
-        let points = points.map(|(n, (t, o))| Point::new(n as f64, *t, o)).collect();
+        let theirs: Vec<f64> = theirs.iter().flatten().copied().collect();
+        let energy = theirs.first_chunk().map(Stiffness::from_row_major);
+        let energy = energy.ok_or_else(|| VerificationError::Measurement("fewer than 36 moduli".into()))?;
+        // Theirs are second derivatives of the energy, ours derivatives of the Cauchy stress.
+        let theirs = match springs {
+            Springs::PrestressedNormal => energy.of_cauchy_stress(&report.stress.tensor),
+            _ => energy,
+        };
+        let points = theirs.row_major().into_iter().zip(found.tensor.row_major()).enumerate();
+        let points = points.map(|(n, (t, o))| Point::new(n as f64, t, o)).collect();
         let name = format!("500 smooth spheres, 36 moduli, {what}");
         let source = "matscipy 1.3.1, by tests/tools/matscipy_moduli.py";
         rows.push(Row::new(NAME, name, source, "Pa", Measure::OfLargest, 1e-8, points));
