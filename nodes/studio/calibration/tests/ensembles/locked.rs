@@ -1,26 +1,64 @@
-//! Packings of which the contacts do not slide: pressed at a low friction, then sheared at a high one.
+//! Packings that were sheared after they were pressed, other than those that taught.
 
 use crate::{csv, ours};
+use grainlab_calibration::CalibrationSample;
+use grainlab_core::contact::{ContactLaw, Rough, SpringLaw};
 use grainlab_core::results::InferredQuantity;
-use grainlab_emt::StrainRatioSource;
+use grainlab_emt::{Observation, StrainRatioSource};
 
 /// At unchanged contacts their stiffness follows q/p less than in the packings taught. `--nocapture` prints the numbers that the README
 /// of `grainlab_emt` has.
 #[test]
+fn intervals_contain_the_counts_of_rough_packings_that_were_sheared() {
+    let springs = SpringLaw::Rough(Rough { roughness: 1e-7, tangential_factor: 0.7 });
+    let observed = |sample: &CalibrationSample| {
+        let mut observation = sample.observation(StrainRatioSource::Zero);
+        observation.conditions.contact_law = Some(ContactLaw { springs, ..ContactLaw::default() });
+        observation
+    };
+    for (quantity, least) in
+        [(InferredQuantity::Z, 94), (InferredQuantity::Eps, 94), (InferredQuantity::EpsStiffness, 94)]
+    {
+        covers("sheared_rough.csv", "free-contact", quantity, observed, least);
+    }
+}
+
+#[test]
 fn intervals_of_eps_contain_the_count_of_packings_sheared_without_sliding() {
-    let relaxed = grainlab_emt::model("relaxed").unwrap();
-    let (mut squares, mut inside) = (0.0, 0);
-    let samples = csv::samples("locked.csv");
+    let observed =
+        |sample: &CalibrationSample| sample.observation(StrainRatioSource::Zero).with_relative_error(0.01);
+    covers("locked.csv", "relaxed", InferredQuantity::Eps, observed, 95);
+}
+
+/// Prints how often the intervals of a quantity contain its count in the samples of a table, %, and asks for `least`.
+fn covers(
+    table: &str,
+    model: &str,
+    quantity: InferredQuantity,
+    observed: impl Fn(&CalibrationSample) -> Observation,
+    least: usize,
+) {
+    let model = grainlab_emt::model(model).unwrap();
+    let (mut squares, mut sum, mut inside) = (0.0, 0.0, 0);
+    let samples = csv::samples(table);
     for sample in &samples {
-        let observation = sample.observation(StrainRatioSource::Zero).with_relative_error(0.01);
-        let found = relaxed.infer(&observation, ours()).unwrap();
-        let sigma = found.stddev(InferredQuantity::Eps).unwrap();
-        squares += ((found.structure.get(InferredQuantity::Eps).unwrap() - sample.eps) / sigma).powi(2);
-        let [low, high] = found.interval(InferredQuantity::Eps).unwrap();
-        inside += usize::from((low..=high).contains(&sample.eps));
+        let found = model.infer(&observed(sample), ours()).unwrap();
+        let counted = match quantity {
+            InferredQuantity::Z => sample.z,
+            InferredQuantity::Eps => sample.eps,
+            _ => sample.eps_stiffness,
+        };
+        let error = found.structure.get(quantity).unwrap() - counted;
+        sum += error;
+        squares += (error / found.stddev(quantity).unwrap()).powi(2);
+        let [low, high] = found.interval(quantity).unwrap();
+        inside += usize::from((low..=high).contains(&counted));
     }
     let n = samples.len();
-    let rms = (squares / n as f64).sqrt();
-    eprintln!("eps of {n} states, q/p -.2 to .3: rms {rms:.2} stated errors; {inside} in the 95 % intervals");
-    assert!(inside * 100 >= n * 95, "{inside} of {n}");
+    let (rms, mean) = ((squares / n as f64).sqrt(), sum / n as f64);
+    eprintln!(
+        "{table}, {} of {n} states: mean error {mean:.3}, rms {rms:.2} stated errors; {inside} in the 95 % intervals",
+        quantity.symbol()
+    );
+    assert!(inside * 100 >= n * least, "{inside} of {n}");
 }
