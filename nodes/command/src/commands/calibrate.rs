@@ -55,7 +55,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
     /// Write the calibration to this file (TOML); - is the standard output, as without this flag
-    #[arg(long, value_name = "FILE.toml")]
+    #[arg(long, short, alias = "output", value_name = "FILE.toml")]
     out: Option<PathBuf>,
 }
 

@@ -44,7 +44,7 @@ pub(crate) struct Args {
     #[arg(required = true, value_name = "FILE")]
     file: Option<PathBuf>,
     /// Folder of the campaign [default: recordings/campaigns/NAME]
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, short, alias = "output", value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     options: Options,

@@ -60,7 +60,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Folder for the directory of the run [default: recordings/runs]
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, short, alias = "output", value_name = "DIR")]
     out: Option<PathBuf>,
     /// Directory of the run itself: it begins there, continues if it was interrupted, and is left as it is if it is
     /// finished, so that the same command can be repeated

@@ -50,7 +50,7 @@ pub(crate) struct Args {
     #[arg(value_name = "RECORDS.csv")]
     records: PathBuf,
     /// Write the speeds to this file, for `grainlab invert --speeds`
-    #[arg(long, value_name = "SPEEDS.csv")]
+    #[arg(long, short, alias = "output", value_name = "SPEEDS.csv")]
     out: Option<PathBuf>,
     /// Draw each record with its picks, an SVG each, into this folder
     #[arg(long, value_name = "DIR")]

@@ -40,7 +40,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "grains")]
     quick: bool,
     /// Folder of the runs and of the page [default: recordings/campaigns/paper-GRAINS]
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, short, alias = "output", value_name = "DIR")]
     out: Option<PathBuf>,
     /// Instead, judge a campaign over s1 to s4: how far the means of each set of values are from Tables I and II, term by
     /// term

@@ -44,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ARGUMENTS", num_args = 0.., allow_hyphen_values = true, requires = "live", conflicts_with = "file")]
     ros_args: Option<Vec<String>>,
     /// File of the page [default: NAME.view.html beside the file, or view.html in the directory of a run]
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, alias = "out", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Show the page in a browser
     #[arg(long, conflicts_with = "png")]

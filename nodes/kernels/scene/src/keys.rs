@@ -82,9 +82,9 @@ keys! {
     REFERENCE = Key { kinds: STEPS, ..flag("phase.reference", "whether the state at the end is the reference of strains from then on; before, they count from the first step of the run") };
     PUBLISH = Key { kinds: STEPS, ..flag("phase.publish", "whether the packing at the end is published") };
 
-    RECORD = Key { kinds: STEPS, ..form("phase.record", "a table with one of every_steps, every_strain and every_time", Words("none"), "how often a packing within the phase is published, also at the exchange that ends the phase; the run is the same with and without") };
+    RECORD = Key { kinds: STEPS, ..form("phase.record", "a table with one of every_steps, every_strain and every_time", Words("none"), "how often a packing within the phase is published; publish = true adds the one that ends it; the run is the same with and without") };
     EVERY_STEPS = Key { kinds: STEPS, ..whole("phase.record.every_steps", 1, 1_000_000_000_000, Words("none"), "at the first exchange after each multiple of this number of solver steps of the run") };
-    EVERY_STRAIN = Key { kinds: STEPS, ..number("phase.record.every_strain", "", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of this strain in the phase, counted without sign") };
+    EVERY_STRAIN = Key { kinds: STEPS, ..number("phase.record.every_strain", "", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of this strain: the largest component of the rate, without sign, over the time of the phase") };
     EVERY_TIME = Key { kinds: STEPS, ..number("phase.record.every_time", "s", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of this simulated time in the phase") };
 
     METHOD = Key { kinds: GAS, ..choice("phase.method", &["event_driven", "soft"], "event_driven", "how the grains collide: as hard, elastic, frictionless spheres, or by the contact law") };

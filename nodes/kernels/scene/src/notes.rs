@@ -3,6 +3,9 @@
 use crate::model::{Phase, Scene};
 use grainlab_core::{ComponentControl, SymTensor};
 
+/// Density, kg/m³, below which one in g/cm³ is more probable.
+const LIGHT: f64 = 30.0;
+
 impl Scene {
     /// Notes on the scene, one line each: components that stay uncontrolled while others are controlled, and packings published at
     /// another friction than they were prepared with.
@@ -12,6 +15,12 @@ impl Scene {
             (phase.publish || phase.record.is_some()).then(|| self.friction_before(n))?
         };
         notes.extend(grouped(&self.phases, friction));
+        let density = self.material.density;
+        if density < LIGHT {
+            notes.push(format!(
+                "material.density is {density} kg/m3, lighter than grains are: check its unit"
+            ));
+        }
         notes
     }
 

@@ -37,7 +37,7 @@ pub struct Args {
     #[command(flatten)]
     messages: MessagePath,
     /// New folder; for mcap a new recording: a directory, or one file if the name ends with .mcap
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, alias = "out", value_name = "OUT")]
     output: PathBuf,
     /// Format of the output [default: csv; with --pictures, or a name that ends with .mcap: mcap]
     #[arg(long, value_enum)]

@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, clap::Args)]
 pub struct Output {
     /// New recording: a directory as rosbag2 has it, or one file if the name ends with .mcap
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, alias = "out", value_name = "OUT")]
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) form: Form,

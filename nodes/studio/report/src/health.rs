@@ -3,6 +3,7 @@
 use crate::run::Run;
 use grainlab_console::count;
 use grainlab_page::{Cell, Html, code, details, grid, html, lines, list, paragraph, table};
+use std::collections::BTreeSet;
 
 impl Run {
     /// Counts and warnings.
@@ -49,7 +50,8 @@ impl Run {
 
     /// Everything that readers of the numbers should know.
     fn warnings(&self) -> Html {
-        let of_packings = self.states.iter().flat_map(|s| &s.packing.warnings);
+        let mut seen = BTreeSet::new();
+        let of_packings = self.states.iter().flat_map(|s| &s.packing.warnings).filter(|w| seen.insert(*w));
         let strangers = match self.summary.strangers.len() {
             0 => None,
             n => Some(format!(

@@ -2,6 +2,7 @@
 
 use crate::energy;
 use crate::run::Run;
+use grainlab_console::count;
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{
     Html, Page, Section, card, finding, fixed, heading, html, list, paragraph, verdict, with_unit,
@@ -86,7 +87,16 @@ impl Run {
                 "The run is not complete, or cannot be read whole: the lines below say why.".to_owned(),
             );
         }
+        let within = self.timeline.fabrics.len().saturating_sub(self.states.len());
+        let within = (within > 0).then(|| {
+            paragraph(format!(
+                "{} within phases {} measured, too: the plots against time have them, these sentences do not.",
+                count(within, "packing"),
+                if within == 1 { "was" } else { "were" }
+            ))
+        });
         heading(&format!("grainlab · {}", self.name()), &self.headline(), "")
+            + within.unwrap_or_default()
             + finding(&done, &found, &doubts)
             + about
             + list(self.scene.as_ref().map(Scene::notes).unwrap_or_default())

@@ -42,7 +42,7 @@ pub(crate) struct Args {
     #[arg(value_name = "PATH")]
     path: PathBuf,
     /// Folder of the new files, made if it does not exist
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, short, alias = "output", value_name = "DIR")]
     out: PathBuf,
     /// Format of the new files
     #[arg(long, value_enum)]

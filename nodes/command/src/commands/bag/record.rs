@@ -33,7 +33,7 @@ Ends with SIGINT (Ctrl-C) or SIGTERM; the file is then complete. Exit 3 if any m
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
     /// Directory to make and record into [default: the next one under recordings/runs]
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, alias = "out", value_name = "DIR")]
     output: Option<PathBuf>,
     /// Topics to record, by name [default: all]
     #[arg(value_name = "TOPIC", conflicts_with = "topics")]

@@ -14,6 +14,9 @@ const MOVING: f64 = 0.01;
 /// Solid fraction above which spheres of nearly one size are not packed at random, with room for their overlaps.
 const RANDOM: f64 = 0.67;
 
+/// Solid fraction that spheres of no sizes reach while they barely overlap.
+const FULL: f64 = 0.95;
+
 /// Standard deviation of radii over their mean below which sizes count as one.
 const EQUAL_SIZES: f64 = 0.15;
 
@@ -105,6 +108,11 @@ fn unresisted(report: &PackingReport) -> Option<String> {
 /// Random packings of spheres of nearly one size have a solid fraction of at most .64 at small pressures.
 fn crystalline(report: &PackingReport) -> Option<String> {
     let phi = report.solid_fraction;
+    if phi > FULL {
+        return Some(format!(
+            "solid fraction {phi:.3}: no grains fill a cell so far; check the units of cell and radii"
+        ));
+    }
     (report.size_spread < EQUAL_SIZES && phi > RANDOM).then(|| {
         format!(
             "solid fraction {phi:.3} is above that of random packings of spheres of one size (0.64): the grains have \
