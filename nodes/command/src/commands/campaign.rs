@@ -28,7 +28,7 @@ from the mean of the finished members, at as many at a time as run now.";
 
 const GATHER: &str = "\
 states.csv, states.parquet: a row for each member and state.
-groups.csv, groups.parquet: a row for each scene, values set and phase: n, and KEY_mean and KEY_standard_error over the seeds (empty
+groups.csv, groups.parquet: a row for each scene, values set and phase: n, and KEY_mean and KEY_standard_error over the seeds, but of axes, which have no sign (empty
 for one seed). KEY_n is there if KEY is not known in every state of a group: its mean is over the others.
 
 The same campaign gives the same bytes of CSV. states.parquet also has grainlab_version, commit, host and begun (UTC) of each member.

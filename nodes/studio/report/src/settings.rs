@@ -15,7 +15,17 @@ pub(crate) struct Setting {
     pub(crate) values: Vec<String>,
 }
 
+/// Most settings that a figure shows: one along its axis, one as lines.
+const MOST_OF_A_FIGURE: usize = 2;
+
 impl Setting {
+    /// Adds the last part of a key that changes together with this one.
+    fn join(&mut self, name: &str) {
+        let last = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
+        let parts: BTreeSet<String> = self.name.split(", ").chain(name.split(", ")).map(last).collect();
+        self.name = parts.into_iter().collect::<Vec<_>>().join(", ");
+    }
+
     /// The values, if all are numbers.
     pub(crate) fn numbers(&self) -> Option<Vec<f64>> {
         self.values.iter().map(|v| v.parse().ok().filter(|v: &f64| v.is_finite())).collect()
@@ -59,13 +69,20 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
                     *value = if value.is_empty() { more } else { format!("{value}, {more}") };
                 }
             }
-            let last = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
-            let parts: BTreeSet<String> = known.name.split(", ").chain([name.as_str()]).map(last).collect();
-            known.name = parts.into_iter().collect::<Vec<_>>().join(", ");
+            known.join(name);
         }
     }
+    let of_scenes = of_scene.iter().any(|first| *first > 0);
+    // A key whose values follow from those of another one, as a drag that was set with each size, would be a third setting.
+    let follows = |b: &[usize], a: &[usize]| a != b && a.iter().zip(b).all(|(a, other)| b[*a] == *other);
+    while found.len() + usize::from(of_scenes) > MOST_OF_A_FIGURE {
+        let pair = found.keys().flat_map(|a| found.keys().map(move |b| (a.clone(), b.clone())));
+        let Some((a, b)) = pair.into_iter().find(|(a, b)| follows(b, a)) else { break };
+        let Some(follower) = found.remove(&b) else { break };
+        found.entry(a).and_modify(|known| known.join(&follower.name));
+    }
     let mut settings: Vec<Setting> = found.into_values().collect();
-    if of_scene.iter().any(|first| *first > 0) {
+    if of_scenes {
         settings.push(Setting { name: "scene".to_owned(), values: scenes });
     }
     settings
@@ -103,6 +120,19 @@ fn flatten(value: &Value, path: String, found: &mut BTreeMap<String, String>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_key_whose_values_follow_from_those_of_another_is_no_third_setting() {
+        let of = |spread: f64, count: u32, drag: f64| {
+            let mut run = Run::default();
+            run.scene_text = format!("numerics.skin = {spread}\ngrains.count = {count}\nphase.drag = {drag}");
+            run
+        };
+        let all = [0.1, 0.2].map(|s| [(50, 3e3), (100, 1.5e3), (200, 1.5e3)].map(|(n, drag)| of(s, n, drag)));
+        let found = differing(&all.iter().flatten().collect::<Vec<_>>());
+        let names: Vec<(&str, usize)> = found.iter().map(|s| (s.name.as_str(), s.different())).collect();
+        assert_eq!(names, [("numerics.skin", 2), ("count, drag", 3)]);
+    }
 
     #[test]
     fn keys_that_change_together_are_one_setting_and_a_seed_is_none() {

@@ -2,6 +2,7 @@
 
 use grainlab_campaign::{Campaign, Folder, Member, Standing};
 use grainlab_console::{Cell, Failure, count, print};
+use grainlab_core::quantity::{Quantity, Shape};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
@@ -39,7 +40,11 @@ pub(super) fn run(campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure>
 pub(crate) fn write(campaign: &Campaign, folder: &Folder, states: &[State<'_>]) -> Result<String, Failure> {
     let (mut table, keys) = table(campaign, states);
     let by: Vec<&str> = keys.iter().map(String::as_str).collect();
-    let groups = table.means(&by, &["seed"]);
+    // An axis has no sign, so that components of several have no mean: that of their fabric has the direction.
+    let axes = QUANTITIES.iter().filter(|q| matches!(q.shape, Shape::Vector)).flat_map(Quantity::columns);
+    let without: Vec<String> = axes.chain(["seed".to_owned()]).collect();
+    let without: Vec<&str> = without.iter().map(String::as_str).collect();
+    let groups = table.means(&by, &without);
     let csv = folder.write("states.csv", table.csv())?;
     table.extend(OF_RUN.map(str::to_owned).into(), states.iter().map(|s| s.of_run.to_vec()));
     let states = [csv, folder.write("states.parquet", table.parquet()?)?];

@@ -61,11 +61,13 @@ fn csv(members: &[Standing]) -> String {
     table.csv()
 }
 
-/// Time until the last member is finished, s, if each takes the mean of those that are, and as many as now run at a time.
+/// Time until the last member is finished, s, if each takes the mean of those that are, and as many as now run at a time. One that has
+/// run longer than the mean is expected to take as long again.
 fn seconds_left(members: &[Standing]) -> Option<f64> {
     let of = |states: &'static [&str]| members.iter().filter(move |m| states.contains(&m.state));
     let mean = Mean::of(of(&["finished"]).filter_map(|m| m.seconds))?.value;
-    let begun: f64 = of(&["running"]).map(|m| (mean - m.seconds.unwrap_or(0.0)).max(0.0)).sum();
+    let rest = |run: f64| if run < mean { mean - run } else { run };
+    let begun: f64 = of(&["running"]).map(|m| rest(m.seconds.unwrap_or(0.0))).sum();
     let left = begun + mean * of(&["waiting", "interrupted"]).count() as f64;
     Some(left / of(&["running"]).count() as f64).filter(|s| s.is_finite())
 }
@@ -84,7 +86,7 @@ mod tests {
         };
         let all =
             [("finished", 4.0), ("finished", 6.0), ("running", 2.0), ("running", 9.0), ("waiting", 0.0)];
-        assert_eq!(seconds_left(&members(&all)), Some((3.0 + 5.0) / 2.0));
+        assert_eq!(seconds_left(&members(&all)), Some((3.0 + 9.0 + 5.0) / 2.0));
         assert_eq!([&all[..2], &all[2..]].map(|some| seconds_left(&members(some))), [None; 2]);
         let text = rows(&members(&[("failed", 1.0); ROWS + 2]));
         assert_eq!(text.matches("  m: failed, 1.0 s: why\n").count(), ROWS, "{text}");
