@@ -9,6 +9,7 @@ use grainlab_console::{Failure, worse};
 use grainlab_msgs::Exit;
 use grainlab_recordings::{Message, MessagePath};
 use serde::Serialize;
+use std::fmt::Display;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::slice::from_ref;
 
@@ -19,7 +20,7 @@ Examples:
 
 Every message is decoded by the schema in the recording; where it has none, by that of --msg-path or of ROS 2's common interfaces. json: one line per message, with topic, type, log_time and
 publish_time (ns since 1970), sequence and data; numbers that are not finite are \"NaN\", \"Infinity\" and \"-Infinity\". Arrays are
-complete without --max-array. Exit 3 if a part could not be read or decoded.";
+complete without --max-array. A message that was recorded as JSON is printed as it is. Exit 3 if a part could not be read or decoded.";
 
 /// Arguments of `grainlab bag cat`.
 #[derive(Debug, clap::Args)]
@@ -64,14 +65,22 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         if args.count.is_some_and(|most| printed >= most) {
             break;
         }
-        let Some(decoded) = decoders.decode(&message) else { continue };
-        let mut shown = Shown::new(&decoded);
-        if let Some(longest) = args.max_array {
-            shown = shown.shortened(longest);
-        }
-        let written = match args.format {
-            Format::Json => json(&mut out, &message, shown),
-            Format::Text => text(&mut out, &message, shown),
+        let written = if message.channel.message_encoding == "json" {
+            let Some(data) = decoders.json(&message) else { continue };
+            match args.format {
+                Format::Json => raw_json(&mut out, &message, &data),
+                Format::Text => text(&mut out, &message, data + "\n"),
+            }
+        } else {
+            let Some(decoded) = decoders.decode(&message) else { continue };
+            let mut shown = Shown::new(&decoded);
+            if let Some(longest) = args.max_array {
+                shown = shown.shortened(longest);
+            }
+            match args.format {
+                Format::Json => json(&mut out, &message, shown),
+                Format::Text => text(&mut out, &message, shown.text()),
+            }
         };
         if let Some(exit) = ended(written)? {
             return Ok(exit);
@@ -94,18 +103,18 @@ fn ended(written: io::Result<()>) -> Result<Option<Exit>, Failure> {
 }
 
 #[derive(Serialize)]
-struct Line<'a> {
+struct Line<'a, D> {
     topic: &'a str,
     #[serde(rename = "type")]
     ros_type: &'a str,
     log_time: u64,
     publish_time: u64,
     sequence: u32,
-    data: Shown<'a>,
+    data: D,
 }
 
 /// Writes a message as one line of JSON.
-pub(crate) fn json(out: &mut impl Write, message: &Message, data: Shown<'_>) -> io::Result<()> {
+pub(crate) fn json(out: &mut impl Write, message: &Message, data: impl Serialize) -> io::Result<()> {
     let line = Line {
         topic: &message.channel.topic,
         ros_type: &message.channel.ros_type,
@@ -118,7 +127,16 @@ pub(crate) fn json(out: &mut impl Write, message: &Message, data: Shown<'_>) -> 
     out.write_all(b"\n")
 }
 
-fn text(out: &mut impl Write, message: &Message, data: Shown<'_>) -> io::Result<()> {
+/// Writes a message whose data are JSON as they are.
+fn raw_json(out: &mut impl Write, message: &Message, data: &str) -> io::Result<()> {
+    let mut line = Vec::new();
+    json(&mut line, message, ())?;
+    let before = line.strip_suffix(b"null}\n").unwrap_or(&line);
+    out.write_all(before)?;
+    writeln!(out, "{data}}}")
+}
+
+fn text(out: &mut impl Write, message: &Message, data: impl Display) -> io::Result<()> {
     let (seconds, ns) = (message.log_time / 1_000_000_000, message.log_time % 1_000_000_000);
-    writeln!(out, "# {} {seconds}.{ns:09}\n{}---", message.channel.topic, data.text())
+    writeln!(out, "# {} {seconds}.{ns:09}\n{data}---", message.channel.topic)
 }

@@ -4,6 +4,7 @@ use grainlab_any_message::{Message, Schema};
 use grainlab_console::{count, say};
 use grainlab_msgs::Exit;
 use grainlab_recordings::ChannelInfo;
+use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -34,7 +35,8 @@ pub(crate) fn schema_of(channel: &ChannelInfo) -> Result<Schema, String> {
     let (schema, message) = (channel.schema_encoding.as_str(), channel.message_encoding.as_str());
     if (schema, message) != ("ros2msg", "cdr") {
         return Err(format!(
-            "its messages are {message:?} by a schema in {schema:?}, not CDR by a schema in ros2msg"
+            "its messages are {message:?} by a schema in {schema:?}, not CDR by a schema in ros2msg: print them with a program \
+             that reads this encoding (`mcap cat --json`); `grainlab bag cut` and `filter` copy them as they are"
         ));
     }
     Schema::parse(&channel.ros_type, &channel.definition).map_err(|e| e.to_string())
@@ -64,6 +66,17 @@ impl Decoders {
         Some(decoded)
     }
 
+    /// The text of a message recorded as JSON, in one line; `None` if it is not valid.
+    pub(crate) fn json(&mut self, message: &grainlab_recordings::Message) -> Option<String> {
+        let text = str::from_utf8(&message.payload).map_err(|e| e.to_string());
+        let valid = text.and_then(|text| match serde_json::from_str::<IgnoredAny>(text) {
+            // Ends of lines in valid JSON are between values only.
+            Ok(_) => Ok(text.trim().replace(['\n', '\r'], " ")),
+            Err(e) => Err(e.to_string()),
+        });
+        valid.inspect_err(|e| self.fail(&message.channel.topic, &format!("it is not JSON: {e}"))).ok()
+    }
+
     fn fail(&mut self, topic: &str, problem: &str) {
         let new = || (problem.to_owned(), 0);
         self.failures.entry(topic.to_owned()).or_insert_with(new).1 += 1;
@@ -85,5 +98,38 @@ impl Decoders {
             );
         }
         if self.failures.is_empty() && self.invalid.is_empty() { Exit::Done } else { Exit::DataLoss }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainlab_recordings::{Recording, Selection};
+    use mcap::records::MessageHeader;
+
+    #[test]
+    fn json_is_kept_as_it_is_and_what_is_not_decoded_is_left_out_with_its_encoding_and_a_way() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let mut writer = mcap::Writer::new(file.reopen().unwrap()).unwrap();
+        for (topic, encoding, payload) in [
+            ("/j", "json", "{\"b\": 1.50,\n \"a\": [1e2]}"),
+            ("/j", "json", "{\"b\": \"line\nline\"}"),
+            ("/p", "protobuf", "\u{8}\u{1}"),
+        ] {
+            let schema = writer.add_schema("my.X", "any", b"x").unwrap();
+            let channel_id = writer.add_channel(schema, topic, encoding, &BTreeMap::new()).unwrap();
+            let header = MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
+            writer.write_to_known_channel(&header, payload.as_bytes()).unwrap();
+        }
+        writer.finish().unwrap();
+        let recording = Recording::open(file.path()).unwrap();
+        let messages: Vec<_> = recording.messages(&Selection::default()).unwrap().collect();
+        let mut decoders = Decoders::default();
+        assert_eq!(decoders.json(&messages[0]).unwrap(), "{\"b\": 1.50,  \"a\": [1e2]}");
+        assert!(decoders.json(&messages[1]).is_none() && decoders.decode(&messages[2]).is_none());
+        assert!(decoders.failures["/j"].0.starts_with("it is not JSON"));
+        let protobuf = &decoders.failures["/p"].0;
+        assert!(protobuf.contains("\"protobuf\"") && protobuf.contains("mcap cat"), "{protobuf}");
+        assert_eq!(decoders.losses(), Exit::DataLoss);
     }
 }

@@ -794,7 +794,7 @@ impl DPEventLoop {
       if let Some(dpd) = db.find_participant_proxy(participant_guid_prefix) {
         dpd
       } else {
-        error!("Participant was updated, but DB does not have it. Strange.");
+        debug!("Participant was updated, but DB does not have it: it has left.");
         return;
       };
 
