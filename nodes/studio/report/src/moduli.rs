@@ -103,7 +103,7 @@ impl Run {
         figure(
             "moduli-over-pressure",
             drawn.element(),
-            "One point for each measured packing, in their order.",
+            "One point for each state at the end of a phase, in their order.",
             &data,
         )
     }

@@ -90,7 +90,12 @@ impl<'a> OverSettings<'a> {
                 Some(by) => format!("For {} {curve}, the counted {symbol}", by.name),
                 None => format!("The counted {symbol}"),
             };
-            Some(change(&of, &self.along.name, [*from, *to]))
+            let mut text = change(&of, &self.along.name, [*from, *to]);
+            if let Some((at, between)) = beyond(&means) {
+                text.truncate(text.trim_end_matches('.').len());
+                text += &format!("; between them it is {} at {at}.", six_digits(between.value));
+            }
+            Some(text)
         };
         self.curves.iter().take(DESCRIBED).filter_map(sentence).collect()
     }
@@ -136,6 +141,14 @@ impl<'a> OverSettings<'a> {
         }
         paragraph(about) + grid(drawn)
     }
+}
+
+/// The mean that is farthest outside of those at both ends, if its error tells it from them.
+fn beyond(means: &[(f64, Mean)]) -> Option<(f64, Mean)> {
+    let [(_, from), between @ .., (_, to)] = means else { return None };
+    let outside = |m: &Mean| (m.value - from.value.max(to.value)).max(from.value.min(to.value) - m.value);
+    let far = between.iter().filter(|(_, m)| m.error.is_some_and(|e| outside(m) > MUCH * e));
+    far.max_by(|a, b| outside(&a.1).total_cmp(&outside(&b.1))).copied()
 }
 
 /// The change of a mean between two values of a setting.

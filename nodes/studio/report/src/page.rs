@@ -40,7 +40,7 @@ impl Run {
             ("inference", "Inferred and counted", Some(self.inferred())),
             ("packing", "The packing", (!views.is_empty()).then_some(packing)),
             ("numbers", "Numbers", self.last().map(|state| cards(state) + self.states_table())),
-            ("time", "Against time", Some(self.timeline.against_time() + self.timeline.path.figures())),
+            ("time", "Against time", Some(self.timeline.against_time() + self.stress_path())),
             ("structure", "Contacts and forces", Some(self.structure())),
             ("moduli", "Moduli", Some(self.moduli())),
             ("waves", "Waves", self.waves()),
@@ -61,6 +61,12 @@ impl Run {
             ..Page::default()
         };
         Ok(page.text())
+    }
+
+    fn stress_path(&self) -> Html {
+        let reference = self.scene.as_ref().and_then(|s| s.phases.iter().rposition(|p| p.reference));
+        let after = reference.map_or(0, |n| n as u32 + 1);
+        self.timeline.path.figures(after + self.timeline.first_phase())
     }
 
     /// Scene, end and key results of the run.

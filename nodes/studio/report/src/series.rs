@@ -11,6 +11,9 @@ use std::f64::consts::PI;
 /// Share of the posterior beyond the simulated packings from which z has only a lower end.
 const OPEN: f64 = 0.1;
 
+/// Pressures closer than this relative difference are one.
+const SAME_PRESSURE: f64 = 1e-3;
+
 /// A sample on the page.
 pub struct InferredSample<'a> {
     /// Name of the sample; may be empty.
@@ -25,6 +28,14 @@ pub struct InferredSample<'a> {
     pub doubts: &'a [String],
     /// Further sentences on it.
     pub notes: &'a [String],
+}
+
+impl InferredSample<'_> {
+    /// True if a speed was measured at this pressure.
+    fn is_measured(&self, pressure: f64) -> bool {
+        let is_here = |p: f64| (p - pressure).abs() <= SAME_PRESSURE * pressure;
+        self.series.rows.iter().any(|row| row.speed.is_some() && is_here(row.pressure))
+    }
 }
 
 /// The page of samples.
@@ -57,12 +68,14 @@ fn found(sample: &InferredSample<'_>) -> Html {
         true => format!("{:.2} or more at {}", p.z.low, kpa(p.pressure)),
         false => format!("{:.2} ± {:.2} at {}", p.z.mean, p.z.stddev, kpa(p.pressure)),
     };
-    let (z, over) = match e.pressures.as_slice() {
+    let measured: Vec<&PressureEstimate> =
+        e.pressures.iter().filter(|p| sample.is_measured(p.pressure)).collect();
+    let (z, over) = match measured.as_slice() {
         [] => return Html::default(),
         [one] => (at(one), format!("at {}", kpa(one.pressure))),
         [first, .., last] => (
             format!("{} and {}", at(first), at(last)),
-            format!("at {} pressures, {} to {}", e.pressures.len(), first.pressure / 1e3, kpa(last.pressure)),
+            format!("at {} pressures, {} to {}", measured.len(), first.pressure / 1e3, kpa(last.pressure)),
         ),
     };
     let speeds = grainlab_console::count(series.rows.iter().filter(|r| r.speed.is_some()).count(), "speed");
@@ -78,8 +91,8 @@ fn found(sample: &InferredSample<'_>) -> Html {
         let open = if eps.is_undetermined() { ", which is the prior's" } else { "" };
         Some(format!("{:.3} ± {:.3}{open} at {}", eps.mean, eps.stddev, kpa(p.pressure)))
     };
-    let ends = [e.pressures.first(), e.pressures.last().filter(|_| e.pressures.len() > 1)];
-    let eps: Vec<String> = ends.into_iter().flatten().filter_map(of_eps).collect();
+    let ends = [measured.first(), measured.last().filter(|_| measured.len() > 1)];
+    let eps: Vec<String> = ends.into_iter().flatten().filter_map(|p| of_eps(p)).collect();
     let eps = match eps.is_empty() {
         true => "The anisotropy of the contacts, eps, is not determined by them.".to_owned(),
         false => format!("The anisotropy of the contacts, eps, is {}.", eps.join(" and ")),
@@ -109,19 +122,39 @@ fn over_pressure(
         points: all().map(|(pressure, i)| Point::at(pressure / 1e3, of(&i))).collect(),
         ..Series::default()
     };
-    let middle = Series { marker: Some(Marker::Circle), ..line(|i| i.mean, Line::Straight) };
+    let marked = |is_measured: bool| Series {
+        marker: Some(Marker::Circle),
+        hollow: !is_measured,
+        line: None,
+        points: all()
+            .filter(|(p, _)| sample.is_measured(*p) == is_measured)
+            .map(|(p, i)| Point::at(p / 1e3, i.mean))
+            .collect(),
+        ..line(|i| i.mean, Line::Straight)
+    };
     let drawn = Figure {
         title: named(sample, title),
         subtitle: "mean and 95 % of the posterior".to_owned(),
         x: Axis::log("pressure, kPa"),
-        series: vec![line(|i| i.low, Line::Faint), middle, line(|i| i.high, Line::Faint)],
+        series: vec![
+            line(|i| i.low, Line::Faint),
+            line(|i| i.mean, Line::Straight),
+            line(|i| i.high, Line::Faint),
+            marked(true),
+            marked(false),
+        ],
         ..Figure::default()
     };
     let rows = all().map(|(pressure, i)| {
         [pressure, i.mean, i.stddev, i.low, i.high, i.prior_stddev].map(|v| v.to_string())
     });
     let data = csv(["pressure_pa", name, "sigma", "low", "high", "prior_sigma"], rows);
-    figure(&format!("{name}-{n}"), drawn.element(), "Mean and 95 % of the posterior.", &data)
+    figure(
+        &format!("{name}-{n}"),
+        drawn.element(),
+        "Mean and 95 % of the posterior; hollow: predicted, without a speed.",
+        &data,
+    )
 }
 
 fn structure(n: usize, sample: &InferredSample<'_>) -> Html {

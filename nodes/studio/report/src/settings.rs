@@ -19,6 +19,15 @@ pub(crate) struct Setting {
 const MOST_OF_A_FIGURE: usize = 2;
 
 impl Setting {
+    /// Writes numbers without a zero after the point, and stresses in kPa.
+    fn shorten(&mut self) {
+        let Some(numbers) = self.numbers() else { return };
+        let is_stress = ["stress", "pressure"].contains(&self.name.rsplit('.').next().unwrap_or_default());
+        let unit = if is_stress { 1e3 } else { 1.0 };
+        self.values = numbers.iter().map(|v| (v / unit).to_string()).collect();
+        self.name += if is_stress { ", kPa" } else { "" };
+    }
+
     /// Adds the last part of a key that changes together with this one.
     fn join(&mut self, name: &str) {
         let last = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
@@ -85,6 +94,7 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
     if of_scenes {
         settings.push(Setting { name: "scene".to_owned(), values: scenes });
     }
+    settings.iter_mut().for_each(Setting::shorten);
     settings
 }
 

@@ -6,10 +6,10 @@ use grainlab_page::{Html, csv, figure, grid, six_digits};
 /// Most points of the path; beyond, every second one is left out.
 const MOST: usize = 4096;
 
-/// Pressure, Pa, deviator, Pa, and logarithmic strain zz, at exchanges that are equally many apart.
+/// The phase, and pressure, Pa, deviator, Pa, and logarithmic strain zz, at exchanges that are equally many apart.
 #[derive(Debug, Default)]
 pub(crate) struct StressPath {
-    points: Vec<[f64; 3]>,
+    points: Vec<(u32, [f64; 3])>,
     /// Number of exchanges so far.
     seen: usize,
     /// Exponent of 2: of how many exchanges one is kept.
@@ -18,9 +18,9 @@ pub(crate) struct StressPath {
 
 impl StressPath {
     /// Takes an exchange.
-    pub(crate) fn push(&mut self, pressure: f64, deviator: f64, axial_strain: f64) {
+    pub(crate) fn push(&mut self, phase: u32, of: [f64; 3]) {
         if self.seen.is_multiple_of(1 << self.thinned) {
-            self.points.push([pressure, deviator, axial_strain]);
+            self.points.push((phase, of));
         }
         self.seen += 1;
         if self.points.len() > MOST {
@@ -29,25 +29,28 @@ impl StressPath {
         }
     }
 
-    /// Deviator over pressure, and over strain.
-    pub(crate) fn figures(&self) -> Html {
+    /// Deviator over pressure, and over strain, from a phase on: the first one after the reference state.
+    pub(crate) fn figures(&self, from: u32) -> Html {
+        let kept: Vec<[f64; 3]> = self.points.iter().filter(|(n, _)| *n >= from).map(|(_, v)| *v).collect();
+        if kept.len() < 2 {
+            return Html::default();
+        }
         let titles = ["deviator q, kPa", "pressure p, kPa", "axial strain, % (positive in extension)"];
-        let kept: Vec<_> = self.points.iter().map(|[p, q, zz]| [q * 1e-3, p * 1e-3, zz * 100.0]).collect();
+        let drawn: Vec<_> = kept.iter().map(|[p, q, zz]| [q * 1e-3, p * 1e-3, zz * 100.0]).collect();
         let over = |n: usize| Figure {
             title: titles[0].to_owned(),
             x: Axis::linear(titles[n]),
             series: vec![Series {
                 colour: Some(0),
                 line: Some(Line::Straight),
-                points: kept.iter().map(|v| Point::at(v[n], v[0])).collect(),
+                points: drawn.iter().map(|v| Point::at(v[n], v[0])).collect(),
                 ..Series::default()
             }],
             ..Figure::default()
         };
-        let rows = self.points.iter().map(|v| v.map(six_digits));
+        let rows = kept.iter().map(|v| v.map(six_digits));
         let data = csv(["pressure_pa", "deviator_pa", "strain_zz"], rows);
-        let about =
-            "Of the whole run, in the order of its exchanges. The strain counts from the reference state.";
+        let about = "From the reference state on, if a phase sets one, in the order of the exchanges.";
         grid(
             figure("stress-path", over(1).element(), about, &data)
                 + figure("stress-strain", over(2).element(), about, &data),
@@ -62,9 +65,9 @@ mod tests {
     #[test]
     fn a_path_of_any_length_is_kept_in_equal_steps_from_its_start() {
         let mut path = StressPath::default();
-        (0..100_000).for_each(|n| path.push(f64::from(n), 0.0, 0.0));
-        let steps = path.points.windows(2).map(|w| w[1][0] - w[0][0]);
+        (0..100_000).for_each(|n| path.push(1, [f64::from(n), 0.0, 0.0]));
+        let steps = path.points.windows(2).map(|w| w[1].1[0] - w[0].1[0]);
         assert!(path.points.len() > MOST / 2 && path.points.len() <= MOST);
-        assert!(path.points[0][0] == 0.0 && steps.into_iter().all(|s| s == 32.0));
+        assert!(path.points[0].1[0] == 0.0 && steps.into_iter().all(|s| s == 32.0));
     }
 }

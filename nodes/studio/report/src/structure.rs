@@ -6,7 +6,7 @@ use grainlab_core::{Packing, Vec3};
 use grainlab_page::plot::{Axis, Figure, Line, Point, Rose, Series};
 use grainlab_page::{Html, csv, figure, grid, html, paragraph, signed, six_digits};
 
-/// Values in the bins of orientation over their mean, and a of 1 + a (3 x² − 1).
+/// Values in the bins of orientation over the mean of all directions, and a of 1 + a (3 x² − 1).
 struct Oriented {
     bins: Vec<f64>,
     a: Option<f64>,
@@ -36,8 +36,10 @@ fn oriented(packing: &Packing, axis: &Vec3, force: fn(&grainlab_core::Contact) -
     }
     let (constant, slope) = ((f * yy - y * fy) / determinant, (n * fy - y * f) / determinant);
     let a = slope / constant;
-    let bins = sums.iter().zip(counts).map(|(sum, count)| sum / count / mean).collect();
-    Some(Oriented { bins, a: a.is_finite().then_some(a) })
+    // Over the mean of all directions, not of all contacts, as the curve is.
+    let (a, unit) = if a.is_finite() && constant > 0.0 { (Some(a), constant) } else { (None, mean) };
+    let bins = sums.iter().zip(counts).map(|(sum, count)| sum / count / unit).collect();
+    Some(Oriented { bins, a })
 }
 
 /// Contacts of each bin over their mean, and the recorded fit.
@@ -78,14 +80,14 @@ impl Run {
             (
                 "normal-force",
                 "Normal force",
-                "Mean over contacts of a direction, over that of all; a by least squares over the contacts.",
+                "Mean over the contacts of a direction, over the mean c of all directions; c and a by least squares over the contacts.",
                 2,
                 by_direction(|c| c.normal_force),
             ),
             (
                 "tangential-force",
                 "Tangential force",
-                "Mean magnitude, over that of all contacts; a by least squares over the contacts.",
+                "Mean magnitude, over the mean c of all directions; c and a by least squares over the contacts.",
                 3,
                 by_direction(|c| c.tangential_force.norm()),
             ),
@@ -125,6 +127,9 @@ fn forces(report: &PackingReport) -> Option<Html> {
     let left = |(f, d): &(f64, f64)| {
         [Point::at(f - 0.5 * FORCE_BIN_WIDTH, *d), Point::at(f + 0.5 * FORCE_BIN_WIDTH, *d)]
     };
+    // Empty bins interrupt the line.
+    let steps = bins.chunk_by(|a, b| (a.1 > 0.0) == (b.1 > 0.0)).filter(|of| of[0].1 > 0.0);
+    let steps = steps.map(|of| series("", Some(0), Some(Line::Straight), of.iter().flat_map(left).collect()));
     let plot = Figure {
         title: "Density of normal forces".into(),
         subtitle: format!(
@@ -134,15 +139,10 @@ fn forces(report: &PackingReport) -> Option<Html> {
         ),
         x: Axis::linear("f = F / mean F"),
         y: Axis::log(""),
-        series: vec![
-            series("", None, Some(Line::Faint), exponential.filter(|p| p.y >= 0.5 * least).collect()),
-            series(
-                "",
-                Some(0),
-                Some(Line::Straight),
-                bins.iter().filter(|b| b.1 > 0.0).flat_map(left).collect(),
-            ),
-        ],
+        series: [series("", None, Some(Line::Faint), exponential.filter(|p| p.y >= 0.5 * least).collect())]
+            .into_iter()
+            .chain(steps)
+            .collect(),
         ..Figure::default()
     };
     let data = csv(["force_over_mean", "density"], bins.iter().map(|(f, d)| [f, d].map(|v| six_digits(*v))));

@@ -150,7 +150,7 @@ impl Timeline {
         let (p, q) = (request.input.stress.mean(), request.input.stress.deviatoric_invariant());
         self.pressure.push(phase, time, p);
         self.deviator.push(phase, time, q);
-        self.path.push(p, q, request.strain.voigt()[2]);
+        self.path.push(request.phase, [p, q, request.strain.voigt()[2]]);
         self.solid_fraction.push(phase, time, request.solid_fraction);
         self.coordination.push(phase, time, request.coordination);
         self.unbalanced.push(phase, time, request.unbalanced);
