@@ -20,6 +20,10 @@ pub(crate) fn overlay(scene: &mut Table, mut over: Table) -> Vec<Fault> {
     if matches!(over.get("phase"), Some(Value::Table(_)))
         && let Some(Value::Table(changes)) = over.remove("phase")
     {
+        // A friction of every phase leaves nothing to that of the scene.
+        if changes.get("*").is_some_and(|change| change.get("friction").is_some()) {
+            scene.remove("friction");
+        }
         changes.into_iter().for_each(|(name, change)| change_phase(path(scene), &name, change, &mut faults));
     }
     merge(scene, over, "", &mut faults);

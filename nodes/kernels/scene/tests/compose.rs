@@ -196,8 +196,10 @@ fn an_unknown_key_is_named_with_a_suggestion() {
 
 #[test]
 fn a_friction_that_no_phase_takes_is_a_fault() {
-    let error = with("demo", "phase.*.friction=0.3").unwrap_err().to_string();
+    let error = with("demo", "phase.*.friction=0.3 friction=0.2").unwrap_err().to_string();
     assert!(error.contains("friction: is taken by no phase"), "{error}");
+    let phases = with("demo", "phase.*.friction=0.3").unwrap().scene.phases;
+    assert!(phases[1..].iter().all(|p| p.friction == 0.3), "that of every phase replaces that of the scene");
 }
 
 /// A built-in scene with keys set one after another.

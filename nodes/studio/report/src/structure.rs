@@ -2,7 +2,7 @@
 
 use crate::run::Run;
 use grainlab_core::results::{FORCE_BIN_WIDTH, ORIENTATION_BINS, PackingReport};
-use grainlab_core::{Packing, Vec3};
+use grainlab_core::{Contact, Vec3};
 use grainlab_page::plot::{Axis, Figure, Line, Point, Rose, Series};
 use grainlab_page::{Html, csv, figure, grid, html, paragraph, signed, six_digits};
 
@@ -12,15 +12,14 @@ struct Oriented {
     a: Option<f64>,
 }
 
-/// Mean of a force of the contacts in each bin of x = |n·h|, and its fit to single contacts by least squares.
-fn oriented(packing: &Packing, axis: &Vec3, force: fn(&grainlab_core::Contact) -> f64) -> Option<Oriented> {
+/// Mean of a force in each bin of x = |n·h|, from x and force of single contacts, and its fit to them by least squares.
+fn oriented(forces: impl Iterator<Item = (f64, f64)>) -> Option<Oriented> {
     let (mut sums, mut counts) = ([0.0; ORIENTATION_BINS], [0.0; ORIENTATION_BINS]);
     // Sums of the basis 1, y = 3 x² − 1: the normal equations.
     let [mut n, mut y, mut yy, mut f, mut fy] = [0.0; 5];
-    for contact in &packing.contacts {
-        let x = contact.normal.dot(axis).abs();
+    for (x, value) in forces {
         let bin = ((x * ORIENTATION_BINS as f64) as usize).min(ORIENTATION_BINS - 1);
-        let (value, basis) = (force(contact), 3.0 * x * x - 1.0);
+        let basis = 3.0 * x * x - 1.0;
         sums[bin] += value;
         counts[bin] += 1.0;
         n += 1.0;
@@ -70,7 +69,10 @@ impl Run {
         let axis = report.fabric.reference_axis;
         // Forces are only in the packing itself.
         let packing = self.timeline.last.as_ref().filter(|p| p.step == state.packing.step);
-        let by_direction = |force| packing.and_then(|p| oriented(p, &axis, force));
+        let by_direction = |force: fn(&Contact) -> f64| {
+            let of = |c: &Contact| (c.normal.dot(&axis).abs(), force(c));
+            packing.and_then(|p| oriented(p.contacts.iter().map(of)))
+        };
         let of_contacts = format!(
             "Contacts per solid angle, 1 if isotropic; a by maximum likelihood. ε = {} follows from the fabric tensor instead.",
             signed(report.fabric.contact_anisotropy, 4)
@@ -154,4 +156,23 @@ fn forces(report: &PackingReport) -> Option<Html> {
         end - FORCE_BIN_WIDTH
     );
     Some(grid(figure("force-distribution", plot.element(), caption, &data)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contacts that are more frequent along the axis: the mean over contacts is not that over directions.
+    #[test]
+    fn bins_are_on_the_scale_of_the_curve_however_contacts_are_distributed() {
+        let curve = |x: f64| 1.0 + 0.4 * (3.0 * x * x - 1.0);
+        let found =
+            oriented((0..20_000).map(|n| (f64::from(n) / 20_000.0).sqrt()).map(|x| (x, 3.0 * curve(x))));
+        let found = found.unwrap();
+        assert!((found.a.unwrap() - 0.4).abs() < 1e-9);
+        for (n, bin) in found.bins.iter().enumerate() {
+            let middle = (n as f64 + 0.5) / ORIENTATION_BINS as f64;
+            assert!((bin - curve(middle)).abs() < 0.02, "{n}: {bin}");
+        }
+    }
 }
