@@ -263,8 +263,10 @@ impl Listed {
         let times = || self.0.iter().map(|(_, time, _)| *time);
         let (first, last) = (times().min()?, times().max()?);
         let stated = (header.message_start_time, header.message_end_time);
-        let text =
-            || format!("its chunk has messages from {first} to {last} ns, its header states {stated:?}");
+        let text = || {
+            let (begin, end) = stated;
+            format!("its chunk has messages from {first} to {last} ns, its header states {begin} to {end} ns")
+        };
         (stated != (first, last)).then(text)
     }
 

@@ -56,14 +56,14 @@ fn launch_files_of_the_documentation_of_ros_2_start_or_are_refused_with_line_and
     let files: [(&str, Result<&str, [&str; 2]>); 10] = [
         ("mimic", Ok("3")),
         ("formats", Ok("7")),
-        ("substitutions", Err(["line 20", "$(env NAME DEFAULT) and $(dirname) are supported"])),
+        ("substitutions", Err(["line 18", "$(env NAME DEFAULT) and $(dirname) are supported"])),
         ("main_substitutions", Ok("1")),
         ("world_1", Ok("1")),
         ("world_2", Ok("1")),
         ("world_3", Ok("1")),
         ("broadcaster_listener", Ok("2")),
         ("large", Ok("6")),
-        ("rviz", Err(["line 3", "rviz2"])),
+        ("rviz", Err(["line 2", "rviz2"])),
     ];
     for (name, expected) in files {
         let lab = Lab::new();

@@ -133,8 +133,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 /// Starts the processes of a launch file that has no simulator.
 fn without_run(args: &Args) -> Result<Option<Exit>, Failure> {
     let (path, given) = split(&args.words)?;
-    let named = |e| Failure::usage(format!("{}: {e}", path.unwrap_or(Path::new(BUILT_IN[0].0)).display()));
-    let plans = read_file(path)?.without_run(&given, VIEWERS).map_err(named)?;
+    let plans = read_file(path)?.without_run(&given, VIEWERS).map_err(|e| fault_of(path, &e))?;
     let Some(plans) = plans else { return Ok(None) };
     let of_run = args.scene.is_some() || args.seed.is_some() || args.out.is_some() || args.run.is_some();
     if of_run || args.one_process || !args.set.is_empty() {
@@ -154,6 +153,11 @@ fn without_run(args: &Args) -> Result<Option<Exit>, Failure> {
     runtime.block_on(start_all(plans, domain)).map(Some)
 }
 
+/// A fault of the launch file, or of the default one.
+fn fault_of(path: Option<&Path>, fault: &dyn std::fmt::Display) -> Failure {
+    Failure::usage(format!("{}: {fault}", path.unwrap_or(Path::new(BUILT_IN[0].0)).display()))
+}
+
 /// The scene and the order of a launch. Invalid input is refused before a directory is created.
 fn planned(args: &Args) -> Result<(SceneText, Order), Failure> {
     let (path, given) = split(&args.words)?;
@@ -170,10 +174,10 @@ fn planned(args: &Args) -> Result<(SceneText, Order), Failure> {
         one_process: args.one_process,
     };
     args.engine.set(&mut order.arguments);
-    let plans = order.plans(Path::new("."))?;
+    let plans = order.plans(Path::new(".")).map_err(|e| fault_of(path, &e))?;
     refuse_unknown(&plans)?;
-    plans.iter().try_for_each(NodePlan::check_parameters).map_err(Failure::usage)?;
-    names_of_run(&plans).map_err(Failure::usage)?;
+    let checked = plans.iter().try_for_each(NodePlan::check_parameters);
+    checked.and_then(|()| names_of_run(&plans)).map_err(|e| fault_of(path, &e))?;
     Ok((scene, order))
 }
 

@@ -100,6 +100,7 @@ impl DemSimulator {
         self.send_queue.push_request(self.stress.id(), body.clone());
         self.samples.offer(bus, &request, self.run.scene().grains, &body)?;
         self.lockstep.ask(Question::of(&request), body, now);
+        self.next_notice = now + NOTICE_PERIOD;
         let delivered = self.send_queue.deliver(bus)?;
         Ok(match delivered {
             false => Next::Wait(HOLD),
@@ -161,11 +162,14 @@ impl DemSimulator {
             // A request that was dropped is repeated.
             tolerate_full(bus.publish(self.stress.id(), body))?;
         }
-        if self.lockstep.waited(now) > NOTICE_PERIOD && self.notice_due(now) {
-            let waited = self.lockstep.waited(now).as_secs();
+        if self.notice_due(now) {
+            let waited = self.lockstep.waited(now);
+            // The next one after twice the time.
+            self.next_notice = now + waited;
+            let (sequence, servos) = (self.lockstep.sequence(), bus.writers(self.strain_rate.id()));
+            let (waited, topic) = (waited.as_secs(), topics::STRAIN_RATE.name);
             log::warn!(
-                "no answer to request {} for {waited} s: is a servo running?",
-                self.lockstep.sequence()
+                "no answer to request {sequence} for {waited} s: it is awaited on {topic}, publishers there: {servos}"
             );
         }
         Ok(Next::Wait(self.lockstep.patience(now)))

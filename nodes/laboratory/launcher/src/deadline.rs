@@ -1,6 +1,7 @@
 //! Time limits at the end of a run for its pending results.
 
 use super::pending_results::{ResultState, Source};
+use super::plan::NodePlan;
 use super::time_limit::TimeLimit;
 use crate::nodes::NodeKind;
 use grainlab_node_kit::Exit;
@@ -32,8 +33,8 @@ pub(super) struct Deadline {
 
 impl Deadline {
     /// For a last packing that was published within a phase: it may have no results.
-    pub(super) fn within_a_phase(standing: ResultState) -> Self {
-        let whole = Self::of(standing);
+    pub(super) fn within_a_phase(standing: ResultState, logs: &Logs) -> Self {
+        let whole = Self::of(standing, logs);
         match standing {
             ResultState::Measured(_) => whole,
             ResultState::Open(_) => {
@@ -43,20 +44,18 @@ impl Deadline {
         }
     }
 
-    pub(super) fn of(standing: ResultState) -> Self {
+    pub(super) fn of(standing: ResultState, logs: &Logs) -> Self {
         let (time, exit, message) = match standing {
             ResultState::Measured(node) => {
-                let message = format!(
-                    "what {node} measured of the last packing was not inverted: see logs/{}.log",
-                    NodeKind::EmtInversion
-                );
+                let log = logs.of(Source::Node(NodeKind::EmtInversion));
+                let message = format!("what {node} measured of the last packing was not inverted: {log}");
                 (INVERTED_WITHIN, Exit::Failure, message)
             }
             ResultState::Open(Source::Instrument) => {
                 (INSTRUMENT_WITHIN, Exit::DataLoss, NONE_OF_LAST.to_owned())
             }
             ResultState::Open(node) | ResultState::Declined(node) => {
-                let message = format!("the last packing was not measured: see logs/{node}.log");
+                let message = format!("the last packing was not measured: {}", logs.of(node));
                 (MEASURED_WITHIN, Exit::Failure, message)
             }
             ResultState::Left => (ARRIVES_WITHIN, Exit::DataLoss, format!("{NONE_OF_LAST}: it has ended")),
@@ -68,10 +67,35 @@ impl Deadline {
 }
 
 /// The result that a node does not have for a packing, and the log with the reason.
-pub(super) fn nothing(source: Source) -> String {
+pub(super) fn nothing(source: Source, logs: &Logs) -> String {
     let data = match source {
         Source::Node(NodeKind::AcousticProbe) => "wave speeds",
         _ => "stiffness",
     };
-    format!("{data} to invert: see logs/{source}.log")
+    format!("{data} to invert: {}", logs.of(source))
+}
+
+/// The names of the processes of a run and of their logs: names and namespaces of the launch file are in them.
+#[derive(Debug)]
+pub(super) struct Logs(Vec<(Source, String)>);
+
+impl Logs {
+    pub(super) fn new(plans: &[NodePlan]) -> Self {
+        let name = |p: &NodePlan| (p.node.map_or(Source::Instrument, Source::Node), p.name.clone());
+        Self(plans.iter().map(name).collect())
+    }
+
+    /// The names of the processes of `source`.
+    pub(super) fn names(&self, source: Source) -> impl Iterator<Item = &str> {
+        self.0.iter().filter(move |(of, _)| *of == source).map(|(_, name)| name.as_str())
+    }
+
+    /// Advice to read the logs of `source`.
+    pub(super) fn of(&self, source: Source) -> String {
+        let logs = self.names(source).map(|name| format!("logs/{name}.log"));
+        match logs.collect::<Vec<_>>().join(", ") {
+            none if none.is_empty() => format!("the launch file starts no {source}"),
+            logs => format!("see {logs}"),
+        }
+    }
 }

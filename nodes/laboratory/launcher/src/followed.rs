@@ -1,6 +1,6 @@
 //! Progress and end of a run by its messages, for nodes as processes and in one process.
 
-use super::deadline::{Deadline, nothing};
+use super::deadline::{Deadline, Logs, nothing};
 use super::pending_results::{PendingResults, ResultState, Source};
 use super::plan::NodePlan;
 use super::progress::Progress;
@@ -61,6 +61,7 @@ pub(super) struct Followed {
     /// The watch failed: the end of the run would not be noticed.
     pub(super) blind: bool,
     pub(super) pending: PendingResults,
+    pub(super) logs: Logs,
     /// The probe reported work since the last check.
     probing: bool,
     /// Step of the packing that the probe measures, and when that was first seen.
@@ -88,6 +89,7 @@ impl Followed {
             failed: None,
             blind: false,
             pending: PendingResults::of(plans),
+            logs: Logs::new(plans),
             probing: false,
             probed: None,
             limited: None,
@@ -105,7 +107,7 @@ impl Followed {
             ResultState::Complete => Verdict::Complete,
             ResultState::Declined(_) | ResultState::Left if self.outline.ends_within => Verdict::Complete,
             ResultState::Declined(node) => {
-                self.complain(format!("the last packing has no {}", nothing(node)));
+                self.complain(format!("the last packing has no {}", nothing(node, &self.logs)));
                 Verdict::Invalid
             }
             standing => {
@@ -113,7 +115,7 @@ impl Followed {
                 let at_work = std::mem::take(&mut self.probing) && standing == PROBED;
                 let is_new = self.limited.replace(standing) != Some(standing) || at_work;
                 let of = if self.outline.ends_within { Deadline::within_a_phase } else { Deadline::of };
-                Verdict::Pending(is_new.then(|| of(standing)))
+                Verdict::Pending(is_new.then(|| of(standing, &self.logs)))
             }
         }
     }
@@ -186,10 +188,17 @@ impl Followed {
 
     /// Complains that a node ended with this code; false if its end was a reason already.
     pub(super) fn blame(&mut self, node: NodeKind, code: u8) -> bool {
-        let is_new = !self.reasons.iter().any(|reason| reason.starts_with(&format!("{node} ended")));
-        is_new
-            .then(|| self.complain(format!("{node} ended with exit code {code}: see logs/{node}.log")))
-            .is_some()
+        let says = |name: &str| self.reasons.iter().any(|r| r.starts_with(&format!("{name} ended")));
+        let is_new = !self.logs.names(Source::Node(node)).any(says);
+        let log = self.logs.of(Source::Node(node));
+        is_new.then(|| self.complain(format!("{node} ended with exit code {code}: {log}"))).is_some()
+    }
+
+    /// Complains about a simulator that ended with an error after its last message.
+    pub(super) fn simulator_failed(&mut self) {
+        let node = NodeKind::DemSimulator;
+        let log = self.logs.of(Source::Node(node));
+        self.complain(format!("{node} failed: {log}"));
     }
 
     /// Data of an external instrument do not belong to a packing of the run.
@@ -204,5 +213,35 @@ impl Followed {
         if let Some(what) = said::awaited(self.simulator.as_deref(), self.first_step) {
             self.progress.say(&format!("the run has not begun: {what}"));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reason_names_the_log_of_the_process_as_the_launch_file_calls_it() {
+        let plan = |node, name: &str| NodePlan {
+            name: name.to_owned(),
+            node: Some(node),
+            program: "grainlab".to_owned(),
+            arguments: Vec::new(),
+            respawn: false,
+            environment: Vec::new(),
+            ends_all: false,
+        };
+        let plans = [plan(NodeKind::Recorder, "left-recorder"), plan(NodeKind::DemSimulator, "left-sand")];
+        let outline = Outline { phases: 1, starts_from_packing: false, ends_within: false };
+        let mut followed = Followed::new(&plans, outline);
+        followed.simulator_failed();
+        assert!(followed.blame(NodeKind::Recorder, 1));
+        followed.finished = Some(RunState { packings: 1, last_packing_step: 7, ..RunState::default() });
+        let Verdict::Pending(Some(late)) = followed.verdict() else { panic!("it is measured") };
+        let needles = ["see logs/left-sand.log", "see logs/left-recorder.log"];
+        assert!(followed.reasons.iter().zip(needles).all(|(reason, log)| reason.ends_with(log)));
+        assert!(late.message.ends_with("the launch file starts no fabric_analyzer"), "{}", late.message);
+        followed.complain("left-recorder ended with exit code 3: the run ends".to_owned());
+        assert!(!followed.blame(NodeKind::Recorder, 1), "it has said so under its name");
     }
 }

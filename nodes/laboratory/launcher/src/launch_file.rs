@@ -8,9 +8,9 @@ mod words;
 
 use crate::nodes::{NodeKind, Viewer};
 use crate::plan::{NodePlan, PlanError};
-use entry::{Entry, File, Group, Include, Text};
+use entry::{Entry, File, Group, Include, Placed, Text};
 use scope::Scope;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The built-in launch files; the first one is the default.
@@ -28,14 +28,13 @@ const PLACES: usize = 254;
 
 /// Levels of files that include each other.
 const DEEPEST: usize = 16;
+const TOO_DEEP: &str = "more than 16 levels of files include each other";
 
 /// A parsed launch file, with the defaults of its arguments.
 #[derive(Debug)]
 pub struct LaunchFile {
     text: String,
-    /// Text of the file alone, for the lines of faults.
-    source: String,
-    entries: Vec<Entry>,
+    entries: Vec<Placed>,
     arguments: Vec<(String, Option<String>)>,
 }
 
@@ -45,14 +44,14 @@ impl LaunchFile {
     /// # Errors
     /// An action, a key or a substitution that is not supported, with its line.
     pub fn parse(text: &str, folder: &Path) -> Result<Self, PlanError> {
-        let (mut has_others, source) = (false, text.to_owned());
+        let mut has_others = false;
         let entries = read(text, folder, 0, &mut has_others)?;
         let mut arguments = Vec::new();
         declared(&entries, &mut arguments);
         // A resumed run does not read the included files again: their text is kept with this one.
         let whole = || serde_json::to_string(&File { launch: entries.clone() });
         let text = if has_others { whole().map_err(|e| PlanError(e.to_string()))? } else { text.to_owned() };
-        Ok(Self { text, source, entries, arguments })
+        Ok(Self { text, entries, arguments })
     }
 
     /// Text of the file, with those that it includes.
@@ -127,15 +126,7 @@ impl LaunchFile {
         }
         let variables = values.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
         let mut nodes = Vec::new();
-        let run = Scope::of(variables).run(&self.entries, viewers, &mut nodes);
-        run.map_err(|fault| fault.in_line_of(&self.source))?;
-        let mut names = BTreeSet::new();
-        if let Some(plan) = nodes.iter().find(|n| !names.insert(n.name.as_str())) {
-            let name = &plan.name;
-            return Err(PlanError(format!(
-                "two executables are called {name:?}: give one of them another name"
-            )));
-        }
+        Scope::of(variables).run(&self.entries, viewers, &mut nodes)?;
         if nodes.len() > PLACES {
             let count = nodes.len();
             return Err(PlanError(format!(
@@ -147,7 +138,7 @@ impl LaunchFile {
 }
 
 /// The actions of a file, with those of the files that it includes in the place of these.
-fn read(text: &str, folder: &Path, level: usize, has_others: &mut bool) -> Result<Vec<Entry>, PlanError> {
+fn read(text: &str, folder: &Path, level: usize, has_others: &mut bool) -> Result<Vec<Placed>, PlanError> {
     let here = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let whole = text.replace("$(dirname)", &here.to_string_lossy());
     *has_others |= whole != text;
@@ -158,27 +149,30 @@ fn read(text: &str, folder: &Path, level: usize, has_others: &mut bool) -> Resul
     included(file.launch, level, has_others)
 }
 
-fn included(entries: Vec<Entry>, level: usize, has_others: &mut bool) -> Result<Vec<Entry>, PlanError> {
-    let one = |entry| match entry {
-        Entry::Group(group) => {
-            let children = included(group.children, level, has_others)?;
-            Ok(Entry::Group(Group { children, ..group }))
-        }
-        Entry::Include(include) => {
-            *has_others = true;
-            of_file(include, level, has_others)
-        }
-        other => Ok(other),
+fn included(entries: Vec<Placed>, level: usize, has_others: &mut bool) -> Result<Vec<Placed>, PlanError> {
+    let one = |Placed { entry, line }| {
+        let entry = match entry {
+            Entry::Group(group) => {
+                let children = included(group.children, level, has_others)?;
+                Entry::Group(Group { children, ..group })
+            }
+            Entry::Include(include) => {
+                *has_others = true;
+                of_file(include, line, has_others, level).map_err(|fault| fault.in_line(line))?
+            }
+            other => other,
+        };
+        Ok(Placed { entry, line })
     };
     entries.into_iter().map(one).collect()
 }
 
 /// The actions of an included file, after values for its arguments.
-fn of_file(include: Include, level: usize, has_others: &mut bool) -> Result<Entry, PlanError> {
+fn of_file(include: Include, line: u64, has_others: &mut bool, level: usize) -> Result<Entry, PlanError> {
     let Include { file, arg, if_, unless } = include;
-    let fault = |reason: String| PlanError(format!("include {file}: {reason}"));
+    let fault = |reason: String| PlanError(reason).included(&file);
     if level >= DEEPEST {
-        return Err(fault(format!("more than {DEEPEST} levels of files include each other")));
+        return Err(fault(TOO_DEEP.to_owned()));
     }
     let built_in =
         file.strip_prefix("$(find-pkg-share grainlab)/launch/").and_then(|f| f.strip_suffix(".launch.yaml"));
@@ -193,15 +187,22 @@ fn of_file(include: Include, level: usize, has_others: &mut bool) -> Result<Entr
     let text = known.map(|(_, text)| Ok((*text).to_owned()));
     let text = text.unwrap_or_else(|| std::fs::read_to_string(path)).map_err(|e| fault(e.to_string()))?;
     let entries = read(&text, path.parent().unwrap_or(Path::new(".")), level + 1, has_others)
-        .map_err(|e| if e.0.starts_with("include ") { e } else { fault(e.0) })?;
-    let children = arg.into_iter().map(Entry::Let).chain(entries).collect();
-    Ok(Entry::Group(Group { children, scoped: Some(Text("false".to_owned())), if_, unless }))
+        .map_err(|e| if e.0.ends_with(TOO_DEEP) { e } else { fault(e.0) })?;
+    let values = arg.into_iter().map(|setting| Placed { entry: Entry::Let(setting), line });
+    let children = values.chain(entries).collect();
+    Ok(Entry::Group(Group {
+        children,
+        file: Some(file),
+        scoped: Some(Text("false".to_owned())),
+        if_,
+        unless,
+    }))
 }
 
 /// Every declared argument with its default.
-fn declared(entries: &[Entry], found: &mut Vec<(String, Option<String>)>) {
-    for entry in entries {
-        match entry {
+fn declared(entries: &[Placed], found: &mut Vec<(String, Option<String>)>) {
+    for placed in entries {
+        match &placed.entry {
             Entry::Arg(a) => found.push((a.name.clone(), a.default.as_ref().map(|d| d.0.clone()))),
             Entry::Group(group) => declared(&group.children, found),
             _ => {}

@@ -185,7 +185,7 @@ impl OneProcess {
         let of = |node| code(node).and_then(Exit::from_code).unwrap_or(Exit::Failure);
         let (recorder, simulator) = (of(NodeKind::Recorder), of(NodeKind::DemSimulator));
         if exit == Exit::Done && simulator != Exit::Done {
-            self.followed.complain(format!("{0} failed: see logs/{0}.log", NodeKind::DemSimulator));
+            self.followed.simulator_failed();
             exit = simulator;
         }
         if recorder != Exit::Done && exit != Exit::Usage {

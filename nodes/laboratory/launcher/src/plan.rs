@@ -14,13 +14,14 @@ impl PlanError {
         Self(format!("executable {name}: {reason}"))
     }
 
-    /// The fault with the line of `text` that has what it quotes first.
-    pub(crate) fn in_line_of(self, text: &str) -> Self {
-        let quoted = self.0.split('`').nth(1).filter(|quoted| !quoted.is_empty());
-        match quoted.and_then(|quoted| text.lines().position(|line| line.contains(quoted))) {
-            Some(n) => Self(format!("line {}: {}", n + 1, self.0)),
-            None => self,
-        }
+    /// The fault with the line of its action, unless it has one of an action within.
+    pub(crate) fn in_line(self, line: u64) -> Self {
+        if self.0.starts_with("line ") { self } else { Self(format!("line {line}: {self}")) }
+    }
+
+    /// The fault of an included file.
+    pub(crate) fn included(self, file: &str) -> Self {
+        Self(format!("include {file}: {self}"))
     }
 
     /// The number of these nodes is not the allowed one.

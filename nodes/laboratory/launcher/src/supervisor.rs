@@ -133,7 +133,7 @@ impl Supervisor {
         // A simulator that ended with an error fails the run, whatever was received before.
         let simulator = self.code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
         if exit == Exit::Done && simulator != Exit::Done {
-            self.followed.complain(format!("{SIMULATOR} failed: see logs/{SIMULATOR}.log"));
+            self.followed.simulator_failed();
             exit = simulator;
         }
         if self.foreign_failure {

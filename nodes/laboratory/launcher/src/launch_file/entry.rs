@@ -8,7 +8,23 @@ use serde::{Deserialize, Serialize, Serializer};
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
-    pub(super) launch: Vec<Entry>,
+    pub(super) launch: Vec<Placed>,
+}
+
+/// An action with its line in the file.
+#[derive(Clone, Debug, Serialize)]
+#[serde(transparent)]
+pub(super) struct Placed {
+    pub(super) entry: Entry,
+    #[serde(skip)]
+    pub(super) line: u64,
+}
+
+impl<'de> Deserialize<'de> for Placed {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let found = serde_saphyr::Spanned::<Entry>::deserialize(from)?;
+        Ok(Self { line: found.referenced.line(), entry: found.value })
+    }
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -94,7 +110,10 @@ pub(super) struct Remap {
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
 pub(super) struct Group {
-    pub(super) children: Vec<Entry>,
+    pub(super) children: Vec<Placed>,
+    /// The file that it is included from.
+    #[serde(skip)]
+    pub(super) file: Option<String>,
     pub(super) scoped: Option<Text>,
     #[serde(rename = "if")]
     pub(super) if_: Option<Text>,

@@ -1,6 +1,6 @@
 //! Actions in their order: variables, conditions, namespaces, processes.
 
-use super::entry::{Condition, Entry, Group, Program, Text};
+use super::entry::{Condition, Entry, Group, Placed, Program, Text};
 use super::words::{substitute, words};
 use crate::nodes::{NodeKind, Viewer};
 use crate::plan::{NodePlan, PlanError};
@@ -56,72 +56,82 @@ impl Scope {
     /// Runs actions; the processes are added to `plans`.
     pub(super) fn run(
         &mut self,
-        entries: &[Entry],
+        entries: &[Placed],
         viewers: &'static [Viewer],
         plans: &mut Vec<NodePlan>,
     ) -> Result<(), PlanError> {
-        for entry in entries {
-            match entry {
-                Entry::Arg(a) => {
-                    if !self.variables.contains_key(&a.name) {
-                        let none =
-                            || PlanError(format!("arg {:?} has no default and no value was given", a.name));
-                        let default = self.text(&a.default.as_ref().ok_or_else(none)?.0)?;
-                        self.variables.insert(a.name.clone(), default);
-                    }
-                    let value = &self.variables[&a.name];
-                    if !a.choice.is_empty() && !a.choice.iter().any(|c| c.value.0 == *value) {
-                        let choices =
-                            a.choice.iter().map(|c| c.value.0.as_str()).collect::<Vec<_>>().join(", ");
-                        return Err(PlanError(format!(
-                            "arg {:?} is {value:?}; it must be one of: {choices}",
-                            a.name
-                        )));
-                    }
+        for Placed { entry, line } in entries {
+            let run = self.action(entry, viewers, plans).and_then(|()| distinct(plans));
+            run.map_err(|fault| fault.in_line(*line))?;
+        }
+        Ok(())
+    }
+
+    fn action(
+        &mut self,
+        entry: &Entry,
+        viewers: &'static [Viewer],
+        plans: &mut Vec<NodePlan>,
+    ) -> Result<(), PlanError> {
+        match entry {
+            Entry::Arg(a) => {
+                if !self.variables.contains_key(&a.name) {
+                    let none =
+                        || PlanError(format!("arg {:?} has no default and no value was given", a.name));
+                    let default = self.text(&a.default.as_ref().ok_or_else(none)?.0)?;
+                    self.variables.insert(a.name.clone(), default);
                 }
-                Entry::Let(s) if self.holds((&s.if_, &s.unless))? => {
-                    let value = self.text(&s.value.0)?;
-                    self.variables.insert(s.name.clone(), value);
-                }
-                Entry::SetEnv(s) if self.holds((&s.if_, &s.unless))? => {
-                    let value = self.text(&s.value.0)?;
-                    self.environment.push((s.name.clone(), value));
-                }
-                Entry::SetParameter(s) if self.holds((&s.if_, &s.unless))? => {
-                    let value = self.text(&s.value.0)?;
-                    self.arguments.extend(["-p".to_owned(), format!("{}:={value}", s.name)]);
-                }
-                Entry::SetRemap(r) => {
-                    let rule = format!("{}:={}", self.text(&r.from.0)?, self.text(&r.to.0)?);
-                    self.arguments.extend(["-r".to_owned(), rule]);
-                }
-                Entry::PushRosNamespace(n) if self.holds((&n.if_, &n.unless))? => {
-                    self.namespace = self.below(&self.text(&n.namespace.0)?);
-                }
-                Entry::Group(group) => self.group(group, viewers, plans)?,
-                Entry::Include(include) => {
+                let value = &self.variables[&a.name];
+                if !a.choice.is_empty() && !a.choice.iter().any(|c| c.value.0 == *value) {
+                    let choices = a.choice.iter().map(|c| c.value.0.as_str()).collect::<Vec<_>>().join(", ");
                     return Err(PlanError(format!(
-                        "include {}: it is read with the file that has it",
-                        include.file
+                        "arg {:?} is {value:?}; it must be one of: {choices}",
+                        a.name
                     )));
                 }
-                Entry::Executable(p) if self.holds((&p.if_, &p.unless))? => {
-                    let fault = |what: &str| {
-                        PlanError(format!(
-                            "an executable has {what}; it has cmd, name, output, respawn, on_exit, env"
-                        ))
-                    };
-                    let cmd = p.cmd.as_deref().ok_or_else(|| fault("no cmd"))?;
-                    let of_node =
-                        [&p.pkg, &p.exec, &p.namespace, &p.args, &p.ros_args].iter().any(|key| key.is_some());
-                    if of_node || !p.param.is_empty() || !p.remap.is_empty() {
-                        return Err(fault("a key of a node"));
-                    }
-                    plans.push(self.executable(p, cmd, viewers)?);
-                }
-                Entry::Node(p) if self.holds((&p.if_, &p.unless))? => plans.push(self.node(p, viewers)?),
-                _ => {}
             }
+            Entry::Let(s) if self.holds((&s.if_, &s.unless))? => {
+                let value = self.text(&s.value.0)?;
+                self.variables.insert(s.name.clone(), value);
+            }
+            Entry::SetEnv(s) if self.holds((&s.if_, &s.unless))? => {
+                let value = self.text(&s.value.0)?;
+                self.environment.push((s.name.clone(), value));
+            }
+            Entry::SetParameter(s) if self.holds((&s.if_, &s.unless))? => {
+                let value = self.text(&s.value.0)?;
+                self.arguments.extend(["-p".to_owned(), format!("{}:={value}", s.name)]);
+            }
+            Entry::SetRemap(r) => {
+                let rule = format!("{}:={}", self.text(&r.from.0)?, self.text(&r.to.0)?);
+                self.arguments.extend(["-r".to_owned(), rule]);
+            }
+            Entry::PushRosNamespace(n) if self.holds((&n.if_, &n.unless))? => {
+                self.namespace = self.below(&self.text(&n.namespace.0)?);
+            }
+            Entry::Group(group) => self.group(group, viewers, plans)?,
+            Entry::Include(include) => {
+                return Err(PlanError(format!(
+                    "include {}: it is read with the file that has it",
+                    include.file
+                )));
+            }
+            Entry::Executable(p) if self.holds((&p.if_, &p.unless))? => {
+                let fault = |what: &str| {
+                    PlanError(format!(
+                        "an executable has {what}; it has cmd, name, output, respawn, on_exit, env"
+                    ))
+                };
+                let cmd = p.cmd.as_deref().ok_or_else(|| fault("no cmd"))?;
+                let of_node =
+                    [&p.pkg, &p.exec, &p.namespace, &p.args, &p.ros_args].iter().any(|key| key.is_some());
+                if of_node || !p.param.is_empty() || !p.remap.is_empty() {
+                    return Err(fault("a key of a node"));
+                }
+                plans.push(self.executable(p, cmd, viewers)?);
+            }
+            Entry::Node(p) if self.holds((&p.if_, &p.unless))? => plans.push(self.node(p, viewers)?),
+            _ => {}
         }
         Ok(())
     }
@@ -136,7 +146,8 @@ impl Scope {
             return Ok(());
         }
         let mut inner = self.clone();
-        inner.run(&group.children, viewers, plans)?;
+        let run = inner.run(&group.children, viewers, plans);
+        run.map_err(|fault| group.file.iter().fold(fault, |fault, file| fault.included(file)))?;
         if group.scoped.is_some() && !self.holds((&group.scoped, &None))? {
             *self = inner;
         }
@@ -268,6 +279,17 @@ impl Scope {
             environment.push((of.name.clone(), self.text(&of.value.0)?));
         }
         Ok(NodePlan { node, program, arguments, respawn, name, environment, ends_all: on_exit.is_some() })
+    }
+}
+
+/// Refuses a process with the name of an earlier one.
+fn distinct(plans: &[NodePlan]) -> Result<(), PlanError> {
+    match plans.split_last() {
+        Some((last, others)) if others.iter().any(|p| p.name == last.name) => {
+            let name = &last.name;
+            Err(PlanError(format!("two executables are called {name:?}: give one of them another name")))
+        }
+        _ => Ok(()),
     }
 }
 

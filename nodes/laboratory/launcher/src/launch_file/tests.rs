@@ -96,7 +96,9 @@ fn what_is_not_supported_is_refused_and_named() {
         (one("executable: {cmd: grainlab run recorder, name: ../../evil}"), "../../evil"),
         (one("executable: {cmd: grainlab run recorder, name: ''}"), "lower case"),
         (one("executable: {cmd: grainlab run recorder}\n- executable: {cmd: grainlab run recorder}"), "two"),
-        (one("arg: {name: scene}"), "no default"),
+        (one("arg: {name: scene}"), "line 2: arg \"scene\" has no default"),
+        (one("group:\n  - arg: {name: x, default: a}\n  - node: {pkg: grainlab}"), "line 4: a node has pkg"),
+        (one("executable: {cmd: sleep 1}\n- executable: {cmd: sleep 2}"), "line 3: two executables"),
         ("lunch: []".to_owned(), "lunch"),
     ] {
         let error = nodes(&text, &[]).expect_err(&text).to_string();
@@ -205,10 +207,7 @@ fn a_viewer_is_started_and_checked_like_a_node_of_the_laboratory_if_the_program_
         .nodes(&BTreeMap::new(), &[])
         .unwrap_err()
         .to_string();
-    assert!(
-        without.starts_with("executable window: there is no node \"window\"; there are: dem_"),
-        "{without}"
-    );
+    assert!(without.contains("executable window: there is no node \"window\"; there are: dem_"), "{without}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use grainlab_console::{Failure, say};
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, PublisherId, Wake};
 use grainlab_recordings::{ChannelInfo, QosOverrides, offered_profiles};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 /// Time for all subscriptions to be discovered after the first.
@@ -12,6 +12,8 @@ const SETTLE: Duration = Duration::from_millis(1000);
 
 /// The publisher of one topic.
 pub(super) struct TopicPublisher {
+    /// Name on the bus, behind a remap.
+    name: String,
     id: PublisherId,
     /// Packings of any length: large ones in parts.
     bulk: Option<BulkPublisher>,
@@ -55,12 +57,17 @@ pub(super) fn offer(
     }
     let writers = bus.foreign_writers(&topic);
     if let Some(writer) = writers.first() {
-        return Ok(Err(format!("a live node publishes it (writer {writer})")));
+        return Ok(Err(format!("a live node publishes {to} (writer {writer})")));
     }
+    let name = to.to_owned();
     let publisher = if topic.info == topics::PACKING.info {
-        BulkPublisher::advertise(bus, &topic).map(|bulk| TopicPublisher { id: bulk.id(), bulk: Some(bulk) })
+        BulkPublisher::advertise(bus, &topic).map(|bulk| TopicPublisher {
+            name,
+            id: bulk.id(),
+            bulk: Some(bulk),
+        })
     } else {
-        bus.advertise(&topic).map(|id| TopicPublisher { id, bulk: None })
+        bus.advertise(&topic).map(|id| TopicPublisher { name, id, bulk: None })
     };
     match publisher {
         Err(BusError::Name(error)) => Ok(Err(error.to_string())),
@@ -94,10 +101,11 @@ pub(super) fn wait_for_readers(
         }
         let complete = known.iter().all(|n| *n >= needed) && now - since >= SETTLE;
         if complete || now >= end {
-            let lonely = publishers.keys().zip(&known).filter(|(_, n)| **n < needed);
-            let lonely: Vec<&str> = lonely.map(|(name, _)| name.as_str()).collect();
+            let lonely = publishers.values().zip(&known).filter(|(_, n)| **n < needed);
+            let lonely: BTreeSet<&str> = lonely.map(|(publisher, _)| publisher.name.as_str()).collect();
             if !lonely.is_empty() && !patience.is_zero() {
-                say!("grainlab: fewer than {needed} subscribers of {}", lonely.join(", "));
+                let names = Vec::from_iter(lonely).join(", ");
+                say!("grainlab: fewer than {needed} subscribers of {names}");
             }
             return true;
         }

@@ -26,12 +26,19 @@ pub(super) fn to_json(value: &ParameterValue) -> Value {
     }
 }
 
-/// As a value of a parameter file. Doubles keep their point, so that they stay doubles.
+/// As a value of a parameter file. Doubles have a point and the sign of an exponent: YAML 1.1 reads `1e-7` and `1.0e7` as texts.
 pub(super) fn to_yaml(value: &ParameterValue) -> String {
     let number = |v: &f64| match v {
         v if v.is_nan() => ".nan".to_owned(),
         v if v.is_infinite() => if *v > 0.0 { ".inf" } else { "-.inf" }.to_owned(),
-        v => format!("{v:?}"),
+        v => match format!("{v:?}").split_once('e') {
+            None => format!("{v:?}"),
+            Some((digits, exponent)) => {
+                let point = if digits.contains('.') { "" } else { ".0" };
+                let sign = if exponent.starts_with('-') { "" } else { "+" };
+                format!("{digits}{point}e{sign}{exponent}")
+            }
+        },
     };
     match value {
         ParameterValue::Double(v) => number(v),
@@ -77,6 +84,21 @@ mod tests {
             ParameterValue::StringArray(vec!["a".into()]),
         ] {
             assert_eq!(parse(&to_yaml(&value)).unwrap(), value, "{}", to_yaml(&value));
+        }
+    }
+
+    #[test]
+    fn doubles_with_an_exponent_are_numbers_for_yaml_1_1_too() {
+        let texts = [
+            (1e-7, "1.0e-7"),
+            (-2.5e-9, "-2.5e-9"),
+            (1e22, "1.0e+22"),
+            (0.5, "0.5"),
+            (7e10, "70000000000.0"),
+        ];
+        for (number, text) in texts {
+            let value = ParameterValue::Double(number);
+            assert_eq!((to_yaml(&value).as_str(), parse(text).unwrap()), (text, value));
         }
     }
 }

@@ -3,17 +3,15 @@
 use super::listen::Listener;
 use super::qos::QosArgs;
 use super::stream::{Stream, Summary};
-use crate::view::{Common, OutputFormat, seconds};
+use crate::view::{Common, OutputFormat, schema, seconds};
+use grainlab_any_message::{Element, Length, Schema};
 use grainlab_console::{Failure, count, fixed, print_more};
-use grainlab_msgs::TypeInfo;
 use grainlab_node_kit::Exit;
+use grainlab_recordings::MessagePath;
 use std::time::{Duration, Instant};
 
 /// Bytes of the encapsulation header of a sample.
 const ENCAPSULATION: usize = 4;
-
-/// Stamps before 2017, ns since 1970, are simulated times.
-const WALL_TIME: u64 = 1_500_000_000_000_000_000;
 
 /// Arguments of all three.
 #[derive(Debug, clap::Args)]
@@ -56,7 +54,13 @@ pub(super) fn delay_line(s: &Summary) -> String {
         let [mean, min, max] = [m.mean, m.min, m.max].map(|v| fixed(Some(1e6 * v), 1));
         format!("{mean} us on average, {min} to {max} us")
     };
-    let age = s.age.map_or_else(String::new, |age| format!("; age of the stamps {}", micros(age)));
+    let mut age = s.age.map_or_else(String::new, |age| format!("; age of the stamps {}", micros(age)));
+    if s.simulated > 0 {
+        let stamps = count(s.simulated, "stamp");
+        age += &format!("; {stamps} before 2017: simulated or not set, so no age");
+    } else if age.is_empty() {
+        age += "; no age: the type is not known to begin with a std_msgs/Header";
+    }
     let transport = s.transport.map_or_else(
         || " without a time of publishing".to_owned(),
         |transport| format!(", from the publisher to here {}", micros(transport)),
@@ -71,7 +75,8 @@ fn few(s: &Summary) -> String {
 pub(super) fn measure(window: &Window, line: fn(&Summary) -> String) -> Result<Exit, Failure> {
     let mut listener =
         Listener::open(&window.topic, None, &QosArgs::default(), false, window.common.patience())?;
-    let stamped = begins_with_header(listener.topic.info.type_name);
+    let schema = schema(listener.topic.info.type_name, &MessagePath::default());
+    let stamped = schema.is_ok_and(|(_, schema)| begins_with_header(&schema));
     let each = Duration::from_secs_f64(window.duration.unwrap_or(if window.window.is_some() {
         86_400.0
     } else {
@@ -103,17 +108,52 @@ pub(super) fn measure(window: &Window, line: fn(&Summary) -> String) -> Result<E
     }
 }
 
-/// True for a type, among those that this program knows, whose messages begin with a `std_msgs/Header`.
-fn begins_with_header(type_name: &str) -> bool {
-    TypeInfo::by_name(type_name).is_some_and(|info| {
-        let mut lines = info.definition.lines().map(|l| l.split('#').next().unwrap_or("").trim());
-        lines.find(|line| !line.is_empty()).is_some_and(|line| line.starts_with("std_msgs/Header "))
-    })
+/// True for a type whose messages begin with a `std_msgs/Header`.
+fn begins_with_header(schema: &Schema) -> bool {
+    let is_header = |element: &Element| matches!(element, Element::Message(m) if m.name == "std_msgs/Header");
+    let first = schema.root().fields.first().map(|field| &field.kind);
+    first.is_some_and(|kind| kind.length == Length::One && is_header(&kind.element))
 }
 
-/// The stamp of a little-endian body that begins with a header, ns since 1970; `None` for simulated time.
+/// The stamp of a body in CDR that begins with a header, ns since 1970.
 fn header_stamp(body: &[u8]) -> Option<u64> {
-    let word = |at: usize| Some(u32::from_le_bytes(body.get(at..at + 4)?.try_into().ok()?));
-    let nanos = u64::from(word(ENCAPSULATION)?) * 1_000_000_000 + u64::from(word(ENCAPSULATION + 4)?);
-    (nanos > WALL_TIME).then_some(nanos)
+    let word = |at: usize| {
+        let bytes = body.get(at..at + 4)?.try_into().ok()?;
+        Some(if body[1] == 0 { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
+    };
+    Some(u64::from(word(ENCAPSULATION)?) * 1_000_000_000 + u64::from(word(ENCAPSULATION + 4)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainlab_node_kit::SampleInfo;
+
+    #[test]
+    fn a_delay_has_an_age_by_wall_time_and_says_why_not_by_other_stamps() {
+        let of = |name| begins_with_header(&schema(name, &MessagePath::default()).unwrap().1);
+        assert!(of("grainlab_msgs/msg/Stress") && of("sensor_msgs/msg/Imu") && !of("std_msgs/msg/String"));
+        let body =
+            |[sec, nanosec]: [u32; 2]| [[0, 1, 0, 0], sec.to_le_bytes(), nanosec.to_le_bytes()].concat();
+        let big_endian = [[0; 4], 7_u32.to_be_bytes(), 5_u32.to_be_bytes()].concat();
+        assert_eq!(header_stamp(&big_endian), Some(7_000_000_005));
+        let info = SampleInfo {
+            writer: grainlab_msgs::Guid([1; 16]),
+            sequence: 1,
+            source_time: None,
+            received: 1_800_000_000_000_250_000,
+            about: None,
+        };
+        let line = |stamp: Option<Vec<u8>>| {
+            let mut stream = Stream::default();
+            stream.add(&info, 8, stamp.and_then(|body| header_stamp(&body)));
+            delay_line(&stream.summary(1.0))
+        };
+        assert!(
+            line(Some(body([1_800_000_000, 0])))
+                .ends_with("age of the stamps 250.0 us on average, 250.0 to 250.0 us")
+        );
+        assert!(line(Some(body([12, 0]))).ends_with("1 stamp before 2017: simulated or not set, so no age"));
+        assert!(line(None).contains("no age: the type"));
+    }
 }

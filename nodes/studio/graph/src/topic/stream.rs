@@ -5,6 +5,9 @@ use grainlab_node_kit::SampleInfo;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+/// Stamps before 2017, ns since 1970, are simulated times, or not set.
+const WALL_TIME: u64 = 1_500_000_000_000_000_000;
+
 /// Samples of one writer in one window.
 #[derive(Clone, Copy, Debug)]
 struct Span {
@@ -21,6 +24,7 @@ pub(super) struct Stream {
     intervals: Moments,
     transport: Moments,
     age: Moments,
+    simulated: u64,
 }
 
 /// Mean, spread and range of a quantity.
@@ -80,6 +84,8 @@ pub(super) struct Summary {
     pub(super) transport: Option<Moments>,
     /// Age of the header stamps at arrival, s; null for types without header and for simulated stamps.
     pub(super) age: Option<Moments>,
+    /// Number of stamps that are no wall time.
+    pub(super) simulated: u64,
 }
 
 impl Stream {
@@ -97,8 +103,10 @@ impl Stream {
         if let Some(sent) = info.source_time {
             self.transport.add(seconds_between(sent, info.received));
         }
-        if let Some(stamp) = stamp {
-            self.age.add(seconds_between(stamp, info.received));
+        match stamp {
+            Some(stamp) if stamp > WALL_TIME => self.age.add(seconds_between(stamp, info.received)),
+            Some(_) => self.simulated += 1,
+            None => {}
         }
     }
 
@@ -128,6 +136,7 @@ impl Stream {
             interval_stddev: some(&self.intervals).map(|m| m.stddev()),
             transport: some(&self.transport),
             age: some(&self.age),
+            simulated: self.simulated,
         }
     }
 }
