@@ -11,7 +11,7 @@ pub struct Measurement {
     /// Measured quantities, about e3.
     pub report: PackingReport,
     /// Notes on the import of the packing, and warnings as `grainlab analyze` prints them: motion, forces that do not balance or
-    /// are not those of the contact law, contacts that are missing. Empty for a packing at rest.
+    /// are not those of the contact law, contacts that are missing. None for most packings at rest.
     pub warnings: Vec<String>,
 }
 

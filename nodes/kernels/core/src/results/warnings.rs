@@ -28,7 +28,7 @@ const BELOW: f64 = 1e-3;
 const NO_RESISTANCE: f64 = 1e-6;
 
 /// Warnings about `packing` and its measurement: forces that do not balance, motion, contacts that its positions, its law or its
-/// friction contradict, bounds that do not hold. Empty for a packing at rest.
+/// friction contradict, bounds that do not hold. None for most packings at rest.
 pub fn warnings(packing: &Packing, report: &PackingReport) -> Vec<String> {
     let contacts = contact_search::doubts(packing).unwrap_or_else(|e| vec![e.to_string()]);
     report_warnings(report).into_iter().chain(moving(packing)).chain(contacts).collect()
