@@ -28,6 +28,23 @@ def number(row, *names):
     return next((float(row[n]) for n in names if row.get(n)), 0.0)
 
 
+ALIASES = {"p_pa": ("pressure_pa", 1.0), "p_kpa": ("pressure_pa", 1e3), "pressure_kpa": ("pressure_pa", 1e3),
+           "density_g_cm3": ("density", 1e3)}
+
+
+def in_si(row):
+    """The row with pressure_pa and density, of columns that `grainlab pick` reads in other units; it refuses two of one quantity."""
+    meant = [ALIASES.get(column, (column, 1.0)) for column in row]
+    names, read = [name for name, _ in meant], {}
+    for (column, cell), (name, factor) in zip(row.items(), meant):
+        try:
+            cell = cell if factor == 1.0 else str(factor * float(cell))
+        except ValueError:
+            pass  # empty, or refused by `grainlab pick`
+        read[name if names.count(name) == 1 else column] = cell
+    return read
+
+
 class Records:
     """The records of a folder, by states: one sample at one pressure."""
 
@@ -41,6 +58,7 @@ class Records:
         states = {}
         for row in rows:
             if row.get("file") and None not in row.values():  # a row that is being written waits
+                row = in_si(row)
                 path = (self.folder / row["file"]).resolve()
                 stamp = (path.stat().st_size, path.stat().st_mtime_ns) if path.exists() else None
                 try:

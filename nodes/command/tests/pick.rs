@@ -75,6 +75,29 @@ fn records_become_the_speeds_that_the_inversion_reads() {
 }
 
 #[test]
+fn a_record_that_ends_soon_after_the_pick_is_noted_and_the_note_goes_with_the_speed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    file(folder.path(), "s.csv", 0.1 / 300.0, |t, s, r| format!("{t:e},{s:.5},{r:.5}"));
+    let lines = std::fs::read_to_string(path("s.csv")).unwrap();
+    let short: Vec<&str> = lines.lines().take(800).collect();
+    std::fs::write(path("short.csv"), short.join("\n")).unwrap();
+    let table = "file,mode,distance,diameter,delay,pressure_pa,density\nshort.csv,s,0.1,1e-4,0,1e5,1550\ns.csv,s,0.1,1e-4,0,4e5,1550\n";
+    std::fs::write(path("records.csv"), table).unwrap();
+    let out = grainlab(folder.path(), &["pick", "records.csv", "--out", "speeds.csv"]);
+    assert_eq!(out.status.code(), Some(0), "{}", String::from_utf8_lossy(&out.stderr));
+    let speeds = std::fs::read_to_string(path("speeds.csv")).unwrap();
+    let rows: Vec<&str> = speeds.lines().collect();
+    assert!(
+        rows[0].ends_with(",_notes") && rows[1].contains("the record ends soon after the pick"),
+        "{speeds}"
+    );
+    assert!(!rows[2].contains("ends soon"), "{speeds}");
+    let invert = ["invert", "--speeds", "speeds.csv", "--grain-shear-modulus", "29e9", "--poisson", "0.2"];
+    assert_eq!(grainlab(folder.path(), &invert).status.code(), Some(0));
+}
+
+#[test]
 fn a_fault_is_named_with_its_file_and_line_and_a_refused_record_keeps_the_others() {
     let folder = tempfile::tempdir().unwrap();
     records(folder.path());

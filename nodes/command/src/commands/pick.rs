@@ -27,14 +27,14 @@ The table has a row for each record, as CSV with a header:
   time_column, source_column, receiver_column  numbers of the columns in the file [1, 2, 3]
   time_unit                                  s, ms or us [s]
   sample, mode, direction, angle_deg, pressure_pa, density, ...  are copied to the output: columns of `grainlab invert --speeds`.
-                                             Of mode p the first wave is picked, of the others the first strong one
+                                             Of mode p the first wave is picked, of the others the first strong one, or of s, sv and sh the largest
 
 Every record is picked by its first break, its peak and its cross-correlation with the source. The same is done with computed records of a
 path of known speed, with the source, loss, noise and crosstalk of the record, and drawn dispersion and near field: their mean error is
 the bias, their scatter the error. Printed are the time of long waves, which is the one that was read less the bias (us), the standard deviations (+-),
 the speed of long waves with all its errors, the path over the wavelength (waves) and the arrival over the noise (S/N). Recommended is the pick with the least error.
 In the output, speed_shared_sigma is the error that the rows of one mode and direction share: of distance and delay, and half of the variance of
-the time, which is ringing, dispersion and near field; speed_sigma is the rest.
+the time, which is ringing, dispersion and near field; speed_sigma is the rest; _notes has the remarks on the record.
 
 Examples:
   Speeds, and what was picked:
@@ -62,6 +62,9 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
+
+/// Speed of the slowest wave in a record, over that of the pick, above which the record may end before S arrives.
+const SOON: f64 = 0.5;
 
 /// A row with its picks, or the reason why it has none.
 type Found = (Row, Result<Picks, String>);
@@ -175,6 +178,20 @@ fn notes(row: &Row, p: &Picks) -> Vec<String> {
         (!row.has_delay, "the delay of the electronics was taken as 0"),
     ];
     notes.extend(cases.into_iter().filter(|(holds, _)| *holds).map(|(_, note)| note.to_owned()));
+    let (best, is_s) = (p.picks[p.recommended].speed, row.passage.longitudinal == Some(false));
+    if let Some(other) = p.other_speed {
+        let [first, larger] = if is_s { [other, best] } else { [best, other] };
+        let taken = if is_s { "larger was taken, and the first may be P" } else { "first was taken" };
+        notes.push(format!(
+            "a larger wave of the same shape ({larger:.1} m/s) follows the first strong one ({first:.1} m/s): the {taken}; the error covers both"
+        ));
+    }
+    if row.passage.longitudinal != Some(true) && p.slowest > SOON * best {
+        notes.push(format!(
+            "the record ends soon after the pick: a larger wave, slower than {:.1} m/s, would not be seen in it",
+            p.slowest
+        ));
+    }
     notes
 }
 
@@ -184,13 +201,14 @@ fn speeds(all: &[Found]) -> String {
         all.first().map(|(row, _)| row.copied.iter().map(|(n, _)| n.as_str()).collect()).unwrap_or_default();
     let mut csv = CsvText::default();
     names.iter().for_each(|name| csv.cell(name));
-    csv.row(["frequency", "speed", "speed_sigma", "speed_shared_sigma"]);
+    csv.row(["frequency", "speed", "speed_sigma", "speed_shared_sigma", "_notes"]);
     for (row, picked) in all {
         let Ok(picked) = picked else { continue };
         let best = picked.picks[picked.recommended];
         row.copied.iter().for_each(|(_, value)| csv.cell(value));
         let [own, shared] = [best.speed_own_stddev(), best.speed_common_stddev];
         [picked.frequency, best.speed, own, shared].iter().for_each(|value| csv.number(Some(*value)));
+        csv.cell(&notes(row, picked).join("; "));
         csv.end();
     }
     csv.finish()

@@ -10,13 +10,14 @@ pub(crate) const NOT_UTF8: &str = "it is not UTF-8 text: save it as UTF-8 (sprea
 
 /// Separator of the cells of a header or a line of numbers.
 pub(crate) fn separator(line: &str) -> char {
-    [';', ',', '\t'].into_iter().find(|s| line.contains(*s)).unwrap_or(' ')
+    let separates = |s: &char| line.contains(*s) && !(*s == '\t' && line.contains(",\t"));
+    [';', '\t', ','].into_iter().find(separates).unwrap_or(' ')
 }
 
-/// A cell as a number is written in a program: where semicolons separate cells, commas are decimal points.
+/// A cell as a number is written in a program: where semicolons or tabs separate cells, commas are decimal points.
 fn with_point(cell: &str, separator: char) -> Cow<'_, str> {
     let number = cell.replacen(',', ".", 1);
-    let is_german = separator == ';' && cell.contains(',') && number.parse::<f64>().is_ok();
+    let is_german = [';', '\t'].contains(&separator) && cell.contains(',') && number.parse::<f64>().is_ok();
     if is_german { Cow::Owned(number) } else { Cow::Borrowed(cell) }
 }
 
@@ -66,6 +67,9 @@ pub(crate) fn read(path: &Path) -> Result<(String, String), Failure> {
 
 /// The text of a table with commas between its cells, line by line.
 fn table(bytes: &[u8]) -> Result<String, String> {
+    if bytes.starts_with(b"PK\x03\x04") {
+        return Err("this is an Excel workbook: save it as CSV".to_owned());
+    }
     let text = std::str::from_utf8(bytes).map_err(|e| {
         let line = 1 + bytes[..e.valid_up_to()].iter().filter(|b| **b == b'\n').count();
         format!("line {line}: {NOT_UTF8}")
@@ -90,8 +94,15 @@ mod tests {
         let german = "\u{feff}# Sand; fein\r\nsample;speed;x\r\n\r\nA, fein;321,8;\r\n\"B;c\";1,5e3;2\r\n";
         let expected = "# Sand; fein\nsample,speed,x\n\n\"A, fein\",321.8,\n\"B;c\",1.5e3,2\n";
         assert_eq!(table(german.as_bytes()).unwrap(), expected);
-        assert_eq!(table(b"a\tb\n1\t2\n").unwrap(), "a,b\n1,2\n");
+        assert_eq!(table(b"a\tb\n1,5\t2\n").unwrap(), "a,b\n1.5,2\n");
+        assert_eq!(cells("0,5\t2", separator("0,5\t2")), ["0.5", "2"]);
+        assert_eq!(cells("0.5,\t2", separator("0.5,\t2")), ["0.5", "2"]);
         assert_eq!(table(b"a,b\n\"x;y\",2\n").unwrap(), "a,b\n\"x;y\",2\n");
+    }
+
+    #[test]
+    fn an_excel_workbook_is_named() {
+        assert!(table(b"PK\x03\x04aaaa").unwrap_err().contains("Excel workbook: save it as CSV"));
     }
 
     #[test]

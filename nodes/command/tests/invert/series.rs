@@ -100,6 +100,18 @@ fn wrong_units_and_missing_inputs_are_named_with_their_line() {
 }
 
 #[test]
+fn loading_and_unloading_in_one_sample_are_doubted_and_rows_that_are_there_twice_refused() {
+    let doubt = "speeds at 100 kPa were measured twice, with other pressures between";
+    let words = |out: String| out.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (_, out, _) = run(&[], &(sand(0.0) + "1e5,p,440,4\n"));
+    assert!(words(out).contains(doubt));
+    let (_, out, _) = run(&[], &sand(0.0));
+    assert!(!words(out).contains("measured twice"));
+    let (code, _, err) = run(&[], &(sand(0.0) + "1e5,p,425,4.3\n"));
+    assert!(code == Some(2) && err.contains("duplicate rows: lines 2 and 9"), "{err}");
+}
+
+#[test]
 fn semicolons_and_decimal_commas_give_the_answer_of_commas() {
     let german = sand(0.0).replace(',', ";").replace('.', ",");
     let both = [sand(0.0), german].map(|table| run(&["--format=csv"], &table));

@@ -256,6 +256,10 @@ impl Args {
             conditions: Conditions {
                 shear_modulus_stddev: self.grain_shear_modulus_sigma,
                 poisson_ratio_stddev: self.poisson_sigma,
+                contact_law: self
+                    .contact
+                    .filter(|c| *c == Contact::Hertz)
+                    .and_then(|_| "hertz_mindlin".parse().ok()),
                 ..Conditions::default()
             },
             ..State::default()

@@ -307,10 +307,14 @@ fn sentences(answer: &Answer, want: &BTreeMap<String, f64>) -> Result<Vec<String
         let worst: Vec<f64> = (0..FACTORS.len())
             .map(|f| of.iter().map(|k| answer.quantities[*k].sigma_by_error[f]).fold(0.0, f64::max))
             .collect();
+        let at_worst = match of.len() {
+            1 => "",
+            _ => " at the pressure where it is largest",
+        };
         let last = worst.iter().rposition(|s| s <= sigma);
         notes.push(match last {
             None => format!(
-                "{name} +- {sigma} is not reached: it would be +- {} with {} of these errors; measure more speeds",
+                "{name} +- {sigma} is not reached: it would be +- {}{at_worst} with {} of these errors; measure more speeds",
                 fixed(Some(worst[0]), 4),
                 FACTORS[0]
             ),

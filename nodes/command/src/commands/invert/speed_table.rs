@@ -129,7 +129,7 @@ fn parsed(text: &str) -> Result<Vec<SpeedLine>, String> {
     Ok(lines)
 }
 
-/// Refuses a header with unknown columns, columns that are there twice, and without one that is needed.
+/// Refuses a header with unknown columns without a leading underscore, columns that are there twice, and without one that is needed.
 pub(crate) fn checked_header(header: &StringRecord, columns: &[&str], needed: &[&str]) -> Result<(), String> {
     let known = || columns.join(", ");
     for (at, column) in header.iter().enumerate() {
@@ -139,7 +139,7 @@ pub(crate) fn checked_header(header: &StringRecord, columns: &[&str], needed: &[
                 false => format!("columns {other} and {column} are one quantity: keep one of them"),
             });
         }
-        if columns.contains(&column) {
+        if columns.contains(&column) || column.starts_with('_') {
             continue;
         }
         let hint = match slips::meant(column, columns) {
@@ -179,6 +179,14 @@ pub(super) fn planned(
     let names = ["pressure_pa", "mode", "angle_deg"].into_iter().chain(extra.iter().map(|(name, _)| *name));
     let first = [cell(Some(pressure)), mode.to_owned(), cell(angle)].into_iter();
     row(&names.collect(), &first.chain(extra.iter().map(|(_, value)| cell(*value))).collect())
+}
+
+/// A note on angles that are probably in radians.
+pub(super) fn in_radians(lines: &[SpeedLine]) -> Option<String> {
+    let largest = lines.iter().filter_map(|l| l.angle_deg).fold(0.0, f64::max);
+    (largest > 0.0 && largest < 3.2).then(|| {
+        format!("no angle_deg is larger than {largest}: degrees are expected, and these look like radians")
+    })
 }
 
 /// A row of a table with this header.
@@ -344,6 +352,15 @@ mod tests {
     }
 
     #[test]
+    fn angles_that_are_all_small_look_like_radians() {
+        let found = |second: f64| {
+            in_radians(&parsed(&format!("angle_deg,mode,speed\n0,p,500\n{second},p,480\n")).unwrap())
+        };
+        assert!(found(1.5708).unwrap().contains("look like radians"));
+        assert_eq!((found(0.0), found(90.0)), (None, None));
+    }
+
+    #[test]
     fn each_fault_is_named_with_its_line() {
         for (text, fault) in [
             ("angle_deg,mode,speed\n", "no measured speed below the header"),
@@ -354,6 +371,7 @@ mod tests {
             ("angle_deg,mode,speed\n,sv,500\n", "line 2: mode \"sv\" without a direction"),
             ("angle_deg,mode,speed,speed_sigma\nnan,p,500,1\n", "line 2: angle = NaN"),
             ("angle_deg,mode,speed\n400,p,500\n", "line 2: angle = 400"),
+            ("angle_deg,mode,_velocity\n0,p,500\n", "there is no column speed"),
             ("angle_deg,mode,velocity\n0,p,500\n", "column velocity is unknown; columns are sample"),
             ("pressure_pa,phi,mode,speed\n1e5,62,p,500\n", "line 2: phi = 62"),
             (

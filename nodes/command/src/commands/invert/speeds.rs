@@ -1,6 +1,6 @@
 //! Wave speeds of one state, for the models of smooth spheres: the moduli that fit them, with their covariance.
 
-use super::speed_table::SpeedLine;
+use super::speed_table::{SpeedLine, in_radians};
 use super::state::State;
 use grainlab_console::Failure;
 use grainlab_core::{Vec3, WaveSpeed};
@@ -39,6 +39,7 @@ pub(super) fn add(
         Failure::new(exit, format!("{name}: {e}"))
     })?;
     state.notes = notes_on_fit(&fitted, speeds.len(), |at| format!("that of line {}", lines[at].line));
+    state.notes.extend(in_radians(lines));
     state.in_conflict = fitted.conflict.is_some();
     state.moduli = fitted.observation.moduli;
     state.full_covariance = fitted.observation.covariance;

@@ -50,7 +50,7 @@ fn parsed(text: &str, row: &Row) -> Result<Record, String> {
     })
 }
 
-/// The numbers of a line, which commas, semicolons, tabs or spaces separate; with semicolons, commas are decimal points.
+/// The numbers of a line, which commas, semicolons, tabs or spaces separate; with semicolons or tabs, commas are decimal points.
 fn numbers(line: &str, columns: &[usize; 3]) -> Option<[f64; 3]> {
     let cells = separated::cells(line, separated::separator(line));
     let cell = |c: usize| cells.get(c)?.trim_matches('"').parse::<f64>().ok().filter(|v| v.is_finite());

@@ -55,6 +55,8 @@ pub(super) struct Separated {
     pub(super) is_cut: bool,
     /// Correlation of the opposite sign over that of the arrival, where the sign is not known.
     pub(super) opposite: f64,
+    /// Time of the other candidate less that of the arrival, where the largest wave follows the first strong one.
+    pub(super) other: Option<f64>,
     /// Time of the onset after that of the source.
     pub(super) onset: f64,
     /// Signal in the two periods before the onset, over that after it.
@@ -117,7 +119,8 @@ pub(super) fn separated(
         range.max_by(|a, b| explained(*a).1.total_cmp(&explained(*b).1)).unwrap_or(start)
     };
     let is_p = passage.longitudinal == Some(true);
-    let most = explained(top(start..last)).1;
+    let loudest = top(start..last);
+    let most = explained(loudest).1;
     let talk = |k: usize| {
         let later = ((k - zero) as f64 / band.duration - CLIMB).max(0.0);
         (mixed * energy * (-FADES * later).exp()).powi(2)
@@ -127,7 +130,10 @@ pub(super) fn separated(
         let first = (start..last).find(|k| explained(*k).1 > level.max(talk(*k)))?;
         Some(top(first..(first + (CLIMB * band.duration) as usize).min(last)))
     };
-    let strong = wave(FIRST[1]);
+    let first = wave(FIRST[1]);
+    // A source of shear waves also sends weaker compression waves, so that the larger of two waves is taken as S.
+    let is_s = passage.longitudinal == Some(false);
+    let strong = first.map(|first: usize| if is_s { first.max(loudest) } else { first });
     let weak = if is_p { wave(FIRST[0]) } else { strong };
     let (strong, coarse) = (strong.unwrap_or(start), weak.unwrap_or(start));
     // The crest of either sign next to the peak of the envelope.
@@ -170,6 +176,8 @@ pub(super) fn separated(
         crest_of(began - BEFORE * period, began - EARLY * period) / crest_of(began, began + band.duration);
     let clear = receiver.clone();
     receiver.iter_mut().enumerate().for_each(|(k, r)| *r *= kept(k));
+    let behind = first.filter(|first| !is_p && *first < loudest);
+    let other = behind.map(|first| (first + loudest) as f64 - 2.0 * strong as f64);
     let stands_out = weak.map_or(0.0, |k| (explained(k).1 / variance).sqrt());
     let delay = at as f64 - zero as f64;
     Separated {
@@ -183,6 +191,7 @@ pub(super) fn separated(
         stands_out,
         is_cut,
         opposite: opposite.max(0.0),
+        other,
         onset,
         early: if early.is_finite() { early } else { 0.0 },
     }

@@ -40,6 +40,9 @@ const CHANCE: f64 = 0.05;
 /// Error where the opposite sign fits as well, periods.
 const HALF: f64 = 0.5;
 
+/// Standard deviations of the speed that reach the other of two arrivals.
+const REACHES: f64 = 1.96;
+
 /// Share of the variance of a time that records of one path and mode have in common: dispersion, near field and ringing are much the
 /// same in all of them, noise is not.
 const ALIKE: f64 = 0.5;
@@ -98,6 +101,11 @@ pub struct Picks {
     pub sign_doubt: f64,
     /// True if two picks are further apart than their errors allow; the errors are then as large as the difference.
     pub contradictory: bool,
+    /// Speed of the other candidate, m/s, where the largest wave follows the first strong one; the errors reach it. The larger is picked
+    /// where the wave is known to be S, else the first.
+    pub other_speed: Option<f64>,
+    /// Speed of the slowest wave that the record shows whole, m/s.
+    pub slowest: f64,
     /// Sampling rate of the receiver as it was picked, Hz.
     pub sample_rate: f64,
     /// The receiver without offset and crosstalk, with the sign of the source, over the largest sample of the arrival.
@@ -197,7 +205,15 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
             *p = Pick { time_stddev: p.time_stddev.hypot(most), ..*p }.with_speed(passage);
         }
     }
+    let other =
+        found.other.map(|late| late / record.sample_rate).filter(|late| picks[recommended].time + late > 0.0);
+    let other_speed = other.map(|late| passage.distance / (picks[recommended].time + late));
+    for p in picks.iter_mut().filter(|_| other.is_some()) {
+        let off = other_speed.map_or(0.0, |speed| (speed / p.speed - 1.0).abs() / REACHES);
+        *p = Pick { time_stddev: p.time_stddev.hypot(off * p.time), ..*p }.with_speed(passage);
+    }
     let best = picks[recommended];
+    let whole = (samples as f64 - band.from as f64 - band.duration - system).max(1.0) / record.sample_rate;
     let wavelengths = best.time * band.frequency * record.sample_rate;
     let per_grain = wavelengths * passage.diameter / passage.distance;
     let refusal = match best {
@@ -228,6 +244,8 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         contradictory,
         alike,
         sign_doubt,
+        other_speed,
+        slowest: passage.distance / whole,
         sample_rate: record.sample_rate,
         receiver: found.clear.iter().map(|r| r / largest(&found.receiver)).collect(),
         picks,

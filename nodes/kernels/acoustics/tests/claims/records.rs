@@ -80,6 +80,37 @@ fn the_speed_is_found_within_its_error_whatever_the_amplifier_does() {
 }
 
 #[test]
+fn a_larger_wave_after_the_first_strong_one_is_taken_as_s_and_the_error_covers_both() {
+    let [first, distance] = [500.0, 0.2];
+    for lobe in [0.4, 0.45, 0.5, 0.6, 0.7, 0.8] {
+        for (reversed, longitudinal) in [(None, Some(false)), (Some(false), Some(false)), (None, None)] {
+            let mut record = recorded(0.003, 7, |r, _| r);
+            for (k, r) in record.receiver.iter_mut().enumerate() {
+                let wave = |speed: f64| burst(k, distance / speed + 2e-6);
+                *r += lobe * wave(first) + wave(SPEED) - burst(k, DISTANCE / SPEED + 2e-6);
+            }
+            let found =
+                picks(&record, &Passage { distance, reversed, longitudinal, ..passage() }, 1).unwrap();
+            let (speed, stddev) = best(&found);
+            let name = format!(
+                "{lobe}, {reversed:?}, {longitudinal:?}: {speed} +- {stddev}, {:?}",
+                found.other_speed
+            );
+            assert!((speed - SPEED).abs() < 1.97 * stddev, "{name}");
+            // A lobe at the threshold may be taken as near field, whose error is smaller.
+            let Some(other) = found.other_speed else {
+                assert!(lobe <= 0.4, "{name}");
+                continue;
+            };
+            let [taken, left] = if longitudinal.is_some() { [SPEED, first] } else { [first, SPEED] };
+            assert!((speed / taken - 1.0).abs() < 0.05 && (other / left - 1.0).abs() < 0.05, "{name}");
+            assert!((speed - first).abs() < 2.1 * stddev, "{name}");
+            assert!((found.slowest / (distance / 0.8e-3) - 1.0).abs() < 0.1, "{}", found.slowest);
+        }
+    }
+}
+
+#[test]
 fn a_record_without_an_arrival_is_refused() {
     for seed in 0..20 {
         for change in [|_: f64, _: f64| 0.0, |_: f64, s: f64| 0.1 * s] {

@@ -33,6 +33,11 @@ impl Args {
                 "--grain-shear-modulus {shear_modulus} must be from 1e5 to 1e12: Pa is expected (glass: 29e9, quartz: 44e9)"
             ));
         }
+        if let Some([first, second]) = repeated(lines) {
+            return Err(format!(
+                "duplicate rows: lines {first} and {second} are the same; keep one of them, and of speeds that were measured again their mean"
+            ));
+        }
         let mut assumed = Vec::new();
         if let Some(spread) = self.size_spread.filter(|s| !(0.0..=0.5).contains(s)) {
             return Err(format!("--size-spread {spread} must be from 0 to 0.5"));
@@ -185,6 +190,21 @@ impl Args {
         }
         Ok((series, assumed))
     }
+}
+
+/// Numbers of two lines with the same cells, one of them a speed.
+fn repeated(lines: &[SpeedLine]) -> Option<[u64; 2]> {
+    let again = |(n, of): (usize, &SpeedLine)| {
+        let mut of = of.clone();
+        let line = of.line;
+        let mut later = lines[n + 1..].iter().filter(|l| l.speed.is_some());
+        let is_same = |later: &&SpeedLine| {
+            of.line = later.line;
+            of == **later
+        };
+        later.find(is_same).map(|l| [line, l.line])
+    };
+    lines.iter().enumerate().find_map(again)
 }
 
 /// The line of an S wave with 4/3 vₛ² above v_p², without directions at one pressure.

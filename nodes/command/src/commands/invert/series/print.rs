@@ -1,5 +1,6 @@
 //! Answers on a series as text and as CSV, and the sentences on what they depend on.
 
+use super::super::speed_table::in_radians;
 use super::sample::Sample;
 use grainlab_console::{CsvText, Table, fixed, wrapped};
 use grainlab_emt::{Interval, PressureEstimate, SeriesEstimate, SeriesPrior, SeriesRow, SpeedMode};
@@ -273,6 +274,22 @@ fn range(values: &[f64]) -> String {
     }
 }
 
+/// Pressures, kPa, at which a wave has speeds before and after one at another pressure, in the order of the rows.
+fn returns(sample: &Sample) -> Vec<String> {
+    let all = sample.lines.iter().zip(&sample.series.rows).filter(|(line, _)| line.speed.is_some());
+    let (mut before, mut found): (Vec<_>, Vec<String>) = (Vec::new(), Vec::new());
+    for (line, row) in all {
+        let of_wave = before.iter().filter(|(wave, _)| *wave == line.wave).map(|(_, pressure)| *pressure);
+        let is_back = of_wave.skip_while(|p| *p != row.pressure).any(|p| p != row.pressure);
+        let at = kilopascals(row.pressure);
+        if is_back && !found.contains(&at) {
+            found.push(at);
+        }
+        before.push((line.wave, row.pressure));
+    }
+    found
+}
+
 /// Reasons to doubt the result, and further sentences: on what is not determined, and what z depends on.
 pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
     let (e, s) = (&sample.estimate, &sample.sensitivity);
@@ -283,6 +300,14 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
     if sample.status != "contradictory" {
         doubts.extend(contradicting_pressures(e));
     }
+    let returns = returns(sample);
+    if !returns.is_empty() {
+        doubts.push(format!(
+            "speeds at {} kPa were measured twice, with other pressures between: states of loading and unloading differ; name them as two samples",
+            returns.join(", ")
+        ));
+    }
+    doubts.extend(in_radians(&sample.lines));
     if let Some(difference) = sample.series.unequal_twins() {
         doubts.push(format!(
             "SV along, SV across and SH along the axis are one modulus, and their speeds differ by {:.1} % in every state: check mode and direction",
@@ -328,7 +353,7 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
         }
     }
     if !open.is_empty() {
-        notes.push(format!("not determined by these data: {}", open.join(", ")));
+        doubts.push(format!("not determined by these data: {}", open.join(", ")));
     }
     let below = prior.lowest_stiffness_ratio;
     let ends = [
