@@ -356,7 +356,7 @@ mod tests {
         let found = |second: f64| {
             in_radians(&parsed(&format!("angle_deg,mode,speed\n0,p,500\n{second},p,480\n")).unwrap())
         };
-        assert!(found(1.5708).unwrap().contains("look like radians"));
+        assert!(found(1.55).unwrap().contains("look like radians"));
         assert_eq!((found(0.0), found(90.0)), (None, None));
     }
 
