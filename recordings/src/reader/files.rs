@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
-use grainlab_console::Failure;
+use grainlab_console::{Failure, count};
 use serde::Deserialize;
 
 use crate::input;
@@ -52,8 +52,18 @@ impl BagInformation {
         if path.is_dir() {
             return Self::of(path).ok().flatten();
         }
-        let names = |bag: &Self| bag.relative_file_paths.iter().any(|name| path.ends_with(name));
-        Self::of(path.parent()?).ok().flatten().filter(names)
+        Self::of(path.parent()?).ok().flatten().filter(|bag| bag.names(path))
+    }
+
+    /// True if it names this file.
+    pub(super) fn names(&self, file: &Path) -> bool {
+        self.relative_file_paths.iter().any(|name| file.ends_with(name))
+    }
+
+    /// A difference of the number of messages that it states from the number found.
+    pub(super) fn differs(&self, found: u64) -> Option<String> {
+        let stated = self.message_count.filter(|n| *n != found)?;
+        Some(format!("it states {}, the files hold {found}", count(stated, "message")))
     }
 
     /// True for this mode of compression: `message` or `file`.
@@ -68,12 +78,14 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
         return Ok(vec![path.to_owned()]);
     }
     let mut files: Vec<PathBuf> = Vec::new();
-    for name in listed(path) {
+    for name in BagInformation::beside(path).map(|bag| bag.relative_file_paths).unwrap_or_default() {
         let file = path.join(&name);
-        if file.exists() {
+        let is_inside = Path::new(&name).components().all(|part| matches!(part, Component::Normal(_)));
+        if is_inside && file.exists() {
             files.push(file);
         } else {
-            let detail = "metadata.yaml names it".to_owned();
+            let outside = if is_inside { "" } else { ", outside of its directory, which is not read" };
+            let detail = format!("metadata.yaml names it{outside}");
             warnings.insert(Warning { path: file, offset: 0, kind: WarningKind::MissingFile, detail });
         }
     }
@@ -117,13 +129,6 @@ fn gaps(directory: &Path, files: &[PathBuf]) -> Vec<Warning> {
             detail: "the parts before and after it are there".to_owned(),
         })
         .collect()
-}
-
-fn listed(directory: &Path) -> Vec<String> {
-    let names = BagInformation::beside(directory).map(|bag| bag.relative_file_paths);
-    // A name that points out of the directory is not one of its parts.
-    let inside = |name: &String| Path::new(name).components().count() == 1 && !name.starts_with('.');
-    names.unwrap_or_default().into_iter().filter(inside).collect()
 }
 
 /// `<name>` and n of `<name>_<n>.mcap`: parts are numbered without leading zeros.

@@ -48,9 +48,10 @@ impl Recording {
             )));
         }
         let mut paths = files::of_recording(path, &mut warnings)?;
-        // A recorder that has just begun its next file has written nothing to it.
+        // A recorder that has just begun its next file has written nothing to it, and metadata.yaml does not name it.
         let is_empty = |file: &PathBuf| file.metadata().is_ok_and(|m| m.len() == 0);
-        if paths.len() > 1 && paths.last().is_some_and(is_empty) {
+        let is_begun = |file: &PathBuf| is_empty(file) && !bag.as_ref().is_some_and(|bag| bag.names(file));
+        if paths.len() > 1 && paths.last().is_some_and(is_begun) {
             paths.pop();
         }
         let parts = paths.len();
@@ -66,6 +67,12 @@ impl Recording {
         }
         if files.is_empty() {
             return Err(error::empty(path));
+        }
+        let found: u64 = files.iter().flat_map(|f| f.index.counts.values()).sum();
+        let stated = bag.as_ref().filter(|_| path.is_dir()).and_then(|bag| bag.differs(found));
+        if let Some(detail) = stated.filter(|_| warnings.is_empty()) {
+            let kind = WarningKind::Inconsistent;
+            warnings.insert(Warning { path: path.join("metadata.yaml"), offset: 0, kind, detail });
         }
         Ok(Self { path: path.to_owned(), files, bag, compressed, warnings: Mutex::new(warnings) })
     }

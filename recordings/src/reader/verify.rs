@@ -103,11 +103,7 @@ impl Recording {
         let stated = BagInformation::of(self.path());
         let wrong = match &stated {
             Err(e) => Some(format!("it cannot be read: {e}")),
-            Ok(bag) => bag
-                .as_ref()
-                .and_then(|bag| bag.message_count)
-                .filter(|n| *n != found.messages)
-                .map(|n| format!("it states {}, the files hold {}", count(n, "message"), found.messages)),
+            Ok(bag) => bag.as_ref().and_then(|bag| bag.differs(found.messages)),
         };
         let wrong = wrong.map(|detail| (self.path().join("metadata.yaml"), detail));
         for (path, detail) in definitions.iter().cloned().chain(wrong) {

@@ -166,3 +166,32 @@ fn files_of_other_formats_are_refused_with_their_name_and_a_remedy() {
         assert!(error.contains(name) && error.contains("ros2 bag convert"), "{error}");
     }
 }
+
+/// A file is lost where it has no byte, is not where `metadata.yaml` says, or where fewer messages are found than that states.
+#[test]
+fn a_directory_that_lacks_messages_of_its_metadata_is_damaged_and_parts_in_folders_are_read() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path();
+    fs::create_dir(directory.join("data")).unwrap();
+    for name in ["r_0.mcap", "data/r_1.mcap"] {
+        write(&directory.join(name), |w| string(w, "one", HI));
+    }
+    fs::write(directory.join("empty.mcap"), b"").unwrap();
+    let stated = |files: &str, messages: u64| {
+        let information = format!("relative_file_paths: [{files}]\n  message_count: {messages}");
+        let text = format!("rosbag2_bagfile_information:\n  {information}\n");
+        fs::write(directory.join("metadata.yaml"), text).unwrap();
+        let warnings = open(directory).warnings();
+        warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+    };
+    assert_eq!(stated("r_0.mcap, data/r_1.mcap", 2), "");
+    for (files, messages, fault) in [
+        ("r_0.mcap, data/r_1.mcap", 3, "states 3 messages, the files hold 2"),
+        ("r_0.mcap, data/r_1.mcap, empty.mcap", 3, "it is empty"),
+        ("r_0.mcap, ../r_1.mcap", 2, "outside of its directory"),
+        ("r_0.mcap, data/r_9.mcap", 2, "data/r_9.mcap is missing"),
+    ] {
+        let found = stated(files, messages);
+        assert!(found.contains(fault), "{fault}: {found}");
+    }
+}
