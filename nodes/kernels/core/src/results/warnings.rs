@@ -59,8 +59,8 @@ fn moving(packing: &Packing) -> Option<String> {
     let kinetic: f64 = carrying().map(energy).sum();
     (elastic > 0.0 && kinetic > MOVING * elastic).then(|| {
         format!(
-            "the packing is in motion: the kinetic energy of its grains is {:.1e} of the elastic energy of its contacts (more \
-             than {MOVING}); check the velocities and their units, or let it come to rest",
+            "the packing is in motion: the kinetic energy of its grains that carry force, about their mean velocity, is {:.1e} of \
+             half the sum of normal force times overlap (more than {MOVING}); check the velocities and their units, or let it come to rest",
             kinetic / elastic
         )
     })
