@@ -9,7 +9,7 @@ use syn::{Item, UseTree, Visibility};
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
 const LABORATORY: usize = 55_490;
-const STUDIO_AND_COMMAND: usize = 30_690;
+const STUDIO_AND_COMMAND: usize = 30_720;
 const TESTS: usize = 49_790;
 
 /// First words that leave open what is described.

@@ -12,6 +12,12 @@ use std::time::{Duration, Instant};
 /// Longest sleep while subscriptions are waited for: the graph is looked at then.
 const POLL: Duration = Duration::from_millis(100);
 
+/// Time from a match at this end to the first message: a reader that has not yet matched the writer would never get it.
+const SETTLE: Duration = Duration::from_millis(600);
+
+/// Longest wait for the acknowledgement of the last message.
+const ACKNOWLEDGED: Duration = Duration::from_secs(2);
+
 /// Arguments of `grainlab topic pub`.
 #[derive(Debug, clap::Args)]
 #[command(
@@ -97,6 +103,14 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             return Err(Failure::new(Exit::Interrupted, "interrupted"));
         }
     }
+    if needed > 0 {
+        let settled = Instant::now() + SETTLE;
+        while let Some(left) = settled.checked_duration_since(Instant::now()).filter(|left| !left.is_zero()) {
+            if bus.wait(left) == Wake::Shutdown {
+                return Err(Failure::new(Exit::Interrupted, "interrupted"));
+            }
+        }
+    }
     let start = Instant::now();
     let (mut sent, mut exit) = (0, Exit::Done);
     loop {
@@ -122,6 +136,12 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             }
         }
         if is_last {
+            if !bus.flush(ACKNOWLEDGED) {
+                grainlab_console::say!(
+                    "grainlab: a subscription of {name} has not acknowledged the last message"
+                );
+                exit = Exit::DataLoss;
+            }
             return Ok(exit);
         }
     }
