@@ -62,7 +62,7 @@ fn keys(contacts: &[Contact]) -> BTreeSet<(u32, u32, [i8; 3])> {
     contacts.iter().map(key).collect()
 }
 
-/// The number of `contacts` and the grains of the first; `None` if there are none.
+/// Text with the number of `contacts` and the grains of the first one; `None` for an empty list.
 fn counted<'a>(
     packing: &Packing,
     contacts: impl Iterator<Item = &'a Contact>,

@@ -8,13 +8,13 @@ use crate::{Packing, Vec3, contact_search, non_rattlers};
 /// tenths.
 const RESTLESS: f64 = 0.01;
 
-/// Kinetic over elastic energy above which a packing is in motion. Packings at rest are below 1e-6.
+/// Ratio of the kinetic energy to half the sum of normal force times overlap, above which a packing is in motion. Packings at rest are below 1e-6.
 const MOVING: f64 = 0.01;
 
 /// Solid fraction above which spheres of nearly one size are not packed at random, with room for their overlaps.
 const RANDOM: f64 = 0.67;
 
-/// Solid fraction that spheres of no sizes reach while they barely overlap.
+/// Solid fraction above which spheres of any sizes would overlap by large parts of their radii.
 const FULL: f64 = 0.95;
 
 /// Standard deviation of radii over their mean below which sizes count as one.

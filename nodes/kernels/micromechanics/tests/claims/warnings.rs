@@ -59,16 +59,19 @@ fn rolling_springs_that_the_network_lacks_are_reported() {
 }
 
 #[test]
-fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_reported() {
+fn theta_below_its_bound_forces_out_of_balance_and_an_impossible_filling_are_reported() {
     let packing = lattice(OVERLAP);
     let mut report = report(&packing);
     assert_eq!(report.unbalanced_force_ratio, Some(0.0));
     let Ok(stiffness) = &mut report.elasticity else { panic!("a lattice is stiff") };
     stiffness.bounds.bulk_reuss = Some(1.1 * stiffness.tensor.bulk_voigt());
     report.unbalanced_force_ratio = Some(0.2);
+    report.solid_fraction = 5.1;
     let found = warnings(&packing, &report).join("; ");
     assert!(
-        found.contains("below its lower bound") && found.contains("2.00e-1 of the mean contact force"),
+        found.contains("below its lower bound")
+            && found.contains("2.00e-1 of the mean contact force")
+            && found.contains("5.100: no grains fill a cell so far"),
         "{found}"
     );
 }
