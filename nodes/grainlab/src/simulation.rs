@@ -122,6 +122,11 @@ impl Simulation {
         &self.notes
     }
 
+    /// Notes on the scene, as `grainlab scene check` prints them: other frictions before, an implausible density.
+    pub fn scene_notes(&self) -> Vec<String> {
+        self.run.scene().notes()
+    }
+
     /// Goes on until a packing is due, a phase has ended, `limit` has passed, or the path is done, for one exchange at least; the
     /// packing, if one is due. For programs that have to look for signals, or at the run.
     ///

@@ -75,6 +75,7 @@ fn a_packing_that_no_law_made_is_measured_with_a_warning() {
 #[test]
 fn a_run_goes_on_however_short_its_turns_are() {
     let mut run = simulate("demo", &SMALL).unwrap();
+    assert!(run.notes().is_empty() && run.scene_notes().iter().any(|n| n.contains("friction 10")));
     for _ in 0..100 {
         run.advance(Duration::ZERO).unwrap();
     }

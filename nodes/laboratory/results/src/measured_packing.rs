@@ -36,7 +36,7 @@ pub static ORIGIN: &[Quantity<MeasuredPacking>] = quantities! { MeasuredPacking:
         Scalar, |m| m.position.map(|p| p.phase as u64);
     "end_of_phase" "" "" "whether the phase met its end conditions; a packing within a phase need not be at rest"
         Scalar, |m| m.position.map(|p| p.end_of_phase);
-    "seconds" "" "s" "wall time of the measurement" Scalar, |m| m.seconds;
+    "wall_time_s" "" "s" "wall time of the measurement" Scalar, |m| m.seconds;
 };
 
 impl MeasuredPacking {
@@ -180,7 +180,7 @@ pub(crate) mod tests {
     fn every_row_is_as_long_as_the_header() {
         let table = MeasuredPacking::table(&[measured(&lattice(true)), measured(&lattice(false))]).csv();
         let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
-        assert_eq!(rows[0][..5], ["source", "step", "phase", "end_of_phase", "seconds"]);
+        assert_eq!(rows[0][..5], ["source", "step", "phase", "end_of_phase", "wall_time_s"]);
         assert!(rows.iter().all(|r| r.len() == rows[0].len()), "{table}");
         let at = |name: &str| rows[0].iter().position(|c| *c == name).unwrap();
         assert_eq!((rows[1][at("symmetry")], rows[2][at("symmetry")]), ("cubic", ""));

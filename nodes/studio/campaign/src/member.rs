@@ -34,20 +34,29 @@ pub struct Member {
 impl Member {
     /// A member, named after its scene, the settings from number `common` on, and its seed.
     pub(crate) fn new(scene: &str, seed: u64, set: Vec<Setting>, common: usize) -> Self {
-        let stem = scene.rsplit('/').next().unwrap_or(scene);
-        let stem = stem.strip_suffix(".toml").unwrap_or(stem);
         let own = set.iter().skip(common).map(|s| {
             let key = s.key.strip_prefix("phase.*.").unwrap_or(&s.key);
             format!("-{key}={}", plain(&s.value))
         });
-        let name: String = std::iter::once(stem.to_owned()).chain(own).chain([format!("-{seed}")]).collect();
+        let stem = stem(scene).to_owned();
+        let name: String = std::iter::once(stem).chain(own).chain([format!("-{seed}")]).collect();
         Self { name: file_name(&name), scene: scene.to_owned(), seed, set }
+    }
+
+    /// The scene without its folder, which differs between machines.
+    pub fn scene_name(&self) -> &str {
+        stem(&self.scene)
     }
 
     /// The settings as arguments of a command.
     pub fn sets(&self) -> Vec<String> {
         self.set.iter().map(ToString::to_string).collect()
     }
+}
+
+fn stem(scene: &str) -> &str {
+    let file = scene.rsplit('/').next().unwrap_or(scene);
+    file.strip_suffix(".toml").unwrap_or(file)
 }
 
 /// One text for each number, so that two spellings of it give one name.
@@ -76,7 +85,7 @@ mod tests {
             vec![set("grains.count", "500"), set("friction", "0.05")],
             1,
         );
-        assert_eq!(member.name, "uniaxial-friction=0.05-3");
+        assert_eq!((member.name.as_str(), member.scene_name()), ("uniaxial-friction=0.05-3", "uniaxial"));
         assert_eq!(member.sets(), ["grains.count=500", "friction=0.05"]);
         let member =
             Member::new("s2", 1, vec![set("phase.*.drag", "1000.0"), set("phase.settle-*.x", "1")], 0);

@@ -16,7 +16,7 @@
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   };
   window.grainlabPage = { isDark, save };
-  // A saved plot has the colours that the page shows: they are resolved, because the style of the page does not go with it.
+  // A saved plot has the colours of the light page: they are resolved, because the style of the page does not go with it.
   const standalone = (svg) => {
     const copy = svg.cloneNode(true), from = [svg, ...svg.querySelectorAll("*")], to = [copy, ...copy.querySelectorAll("*")];
     from.forEach((element, n) => {
@@ -42,7 +42,9 @@
       for (const [key, value] of Object.entries(at)) copy.setAttribute(key, value);
       whole.append(copy);
     });
-    const words = [drawing.querySelector("h3"), drawing.querySelector("figcaption > span:not(.save)")].flatMap((e) => (e ? e.textContent.trim().split(/\s+/) : []));
+    // Figures without a caption share the paragraph above their grid.
+    const caption = drawing.querySelector("figcaption > span:not(.save)") ?? drawing.parentElement.previousElementSibling?.closest("p");
+    const words = [drawing.querySelector("h3"), caption].flatMap((e) => (e ? e.textContent.trim().split(/\s+/) : []));
     const lines = words.reduce((all, word) => {
       if ((all[all.length - 1] + word).length * 6.2 > width) all.push("");
       all[all.length - 1] += `${word} `;
@@ -66,7 +68,12 @@
     if (!kind) return;
     const drawing = e.target.closest(".drawing"), name = `${drawing.id.replace(/^plot-/, "")}.${kind}`;
     if (kind === "csv") save(name, "text/csv", drawing.querySelector("script").textContent);
-    else save(name, "image/svg+xml", file(drawing));
+    else {
+      const theme = root.dataset.theme ?? "";
+      root.dataset.theme = "light";
+      save(name, "image/svg+xml", file(drawing));
+      root.dataset.theme = theme;
+    }
   });
 
   document.querySelectorAll(".sortable thead th").forEach((header) => {

@@ -11,6 +11,7 @@ use grainlab_core::results::QUANTITIES;
 use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
 use grainlab_micromechanics::{PackingView, Settings, analyze as measure};
 use grainlab_recordings::import::Imported;
+use grainlab_results::MeasuredPacking;
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -37,7 +38,7 @@ fn settings(axis: Option<&Bound<'_, PyAny>>, springs: &str, tolerance: Option<f6
     Ok(settings)
 }
 
-/// Everything that `grainlab analyze` reports of a packing, by key.
+/// Everything that `grainlab analyze` reports of a packing, by key, and its warnings.
 #[pyfunction]
 pub(crate) fn analyze_one<'py>(
     py: Python<'py>,
@@ -45,12 +46,12 @@ pub(crate) fn analyze_one<'py>(
     axis: Bound<'_, PyAny>,
     springs: &str,
     tolerance: Option<f64>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<(Bound<'py, PyDict>, Vec<String>)> {
     let settings = settings(Some(&axis), springs, tolerance)?;
     let (packing, position) = (packing.get().packing(), packing.get().position());
-    let mut found = py.detach(|| measure(packing, &settings)).map_err(error::physics)?;
-    position.inspect(|position| position.judge_strain(&mut found.report));
-    values::quantities(py, QUANTITIES, &found.report)
+    let found = py.detach(|| measure(packing, &settings)).map_err(error::physics)?;
+    let found = MeasuredPacking::new(String::new(), found.report).at(position).doubted(packing, &[]);
+    Ok((values::quantities(py, QUANTITIES, &found.report)?, found.warnings))
 }
 
 /// The text of `grainlab analyze --format csv`, a row for each packing, with its status and reason.

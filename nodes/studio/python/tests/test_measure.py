@@ -120,3 +120,9 @@ def test_other_threads_run_during_a_computation(golden):
     thread.join()
     # With the lock held, a tick would fall between two computations only: at most eleven.
     assert sum(began < t < ended for t in ticks) > 20
+
+
+def test_a_packing_in_motion_is_measured_with_a_warning(golden):
+    moving = grainlab.Packing(golden.cell, golden.positions, golden.radii, velocities=0 * golden.positions + [10, 0, 0])
+    with pytest.warns(UserWarning, match="in motion"):
+        grainlab.analyze(moving)

@@ -2,7 +2,7 @@
 
 use crate::run::Run;
 use crate::settings::{Setting, differing};
-use grainlab_core::results::InferredQuantity;
+use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
 use grainlab_page::{Html, Mean, csv, figure, grid, paragraph, plus_minus, six_digits};
 use std::collections::BTreeSet;
@@ -206,8 +206,10 @@ pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
 
 /// Name of a quantity with its meaning, where its symbol is all that a column has.
 fn titled(name: &str) -> String {
-    let known = InferredQuantity::countable().find(|q| q.symbol() == name);
-    known.map_or_else(|| name.to_owned(), |q| format!("{name}: {}", q.meaning()))
+    let mut inferred = InferredQuantity::countable().map(|q| (q.symbol(), q.meaning()));
+    let known = inferred.find(|(symbol, _)| *symbol == name);
+    let known = known.or_else(|| QUANTITIES.iter().map(|q| (q.symbol, q.meaning)).find(|q| q.0 == name));
+    known.map_or_else(|| name.to_owned(), |(_, meaning)| format!("{name}: {meaning}"))
 }
 
 /// Decimal places that give a standard error two digits.

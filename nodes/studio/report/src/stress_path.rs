@@ -35,15 +35,16 @@ impl StressPath {
         if kept.len() < 2 {
             return Html::default();
         }
-        let titles = ["deviator q, kPa", "pressure p, kPa", "axial strain, % (positive in extension)"];
-        let drawn: Vec<_> = kept.iter().map(|[p, q, zz]| [q * 1e-3, p * 1e-3, zz * 100.0]).collect();
+        let labels = ["pressure p, kPa", "axial strain, % (positive in extension)"];
+        let titles = ["Deviator q over pressure, kPa", "Deviator q over strain, kPa"];
+        let drawn: Vec<_> = kept.iter().map(|[p, q, zz]| [p * 1e-3, zz * 100.0, q * 1e-3]).collect();
         let over = |n: usize| Figure {
-            title: titles[0].to_owned(),
-            x: Axis::linear(titles[n]),
+            title: titles[n].to_owned(),
+            x: Axis::linear(labels[n]),
             series: vec![Series {
                 colour: Some(0),
                 line: Some(Line::Straight),
-                points: drawn.iter().map(|v| Point::at(v[n], v[0])).collect(),
+                points: drawn.iter().map(|v| Point::at(v[n], v[2])).collect(),
                 ..Series::default()
             }],
             ..Figure::default()
@@ -52,8 +53,8 @@ impl StressPath {
         let data = csv(["pressure_pa", "deviator_pa", "strain_zz"], rows);
         let about = "From the reference state on, if a phase sets one, in the order of the exchanges.";
         grid(
-            figure("stress-path", over(1).element(), about, &data)
-                + figure("stress-strain", over(2).element(), about, &data),
+            figure("stress-path", over(0).element(), about, &data)
+                + figure("stress-strain", over(1).element(), about, &data),
         )
     }
 }

@@ -146,7 +146,7 @@ fn table(campaign: &Campaign, states: &[State<'_>]) -> (Dataset, Vec<String>) {
     let settings = keys.iter().map(|key| typed(states.iter().map(|s| value(s, key)).collect()));
     let settings: Vec<Vec<Cell>> = settings.collect();
     // The source is the member, and a recording has no time of a measurement.
-    let origin = || ORIGIN.iter().filter(|q| !["source", "seconds"].contains(&q.key));
+    let origin = || ORIGIN.iter().filter(|q| !["source", "wall_time_s"].contains(&q.key));
     let inferred: Vec<BTreeMap<String, Cell>> = states.iter().map(|s| inferred(&s.found.results)).collect();
     let mut names: Vec<&String> = inferred.iter().flat_map(BTreeMap::keys).collect();
     names.sort();
@@ -160,7 +160,7 @@ fn table(campaign: &Campaign, states: &[State<'_>]) -> (Dataset, Vec<String>) {
     for (n, (state, inferred)) in states.iter().zip(&inferred).enumerate() {
         let member = state.member;
         let text = |text: &str| Cell::Text(text.to_owned());
-        let head = [text(&member.name), text(&member.scene), Cell::Count(member.seed)].into_iter();
+        let head = [text(&member.name), text(member.scene_name()), Cell::Count(member.seed)].into_iter();
         let settings = settings.iter().map(|values| values[n].clone());
         let packing = &state.found.packing;
         let measured = typed_cells(origin(), packing).chain(typed_cells(QUANTITIES, &packing.report));

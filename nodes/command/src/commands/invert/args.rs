@@ -125,7 +125,7 @@ pub(crate) struct Args {
     /// Standard deviation of the density, kg/m3
     #[arg(long, value_name = "SIGMA", default_value_t = 0.0)]
     pub(super) density_sigma: f64,
-    /// Solid fraction of the sample
+    /// Solid fraction of the sample; emt and hertz-mindlin use it
     #[arg(long, value_name = "PHI", conflicts_with = "table")]
     pub(super) phi: Option<f64>,
     /// Axial stress less the lateral one over pressure [default: unknown: 0 +- 0.15, cut at +- 0.3, in relaxed; isotropic in

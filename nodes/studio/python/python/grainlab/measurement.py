@@ -35,7 +35,8 @@ def analyze(
 ) -> dict[str, Any]:
     """Structure, stress and stiffness: all that ``grainlab analyze`` reports, by key, in SI units (see :func:`quantities`).
 
-    One packing gives a dict: unknown values are None, and stiffnesses arrays (6, 6), Pa. Raises PhysicsError. A list of packings, or the
+    One packing gives a dict: unknown values are None, and stiffnesses arrays (6, 6), Pa; doubts, as of a packing in motion, are warnings.
+    Raises PhysicsError. A list of packings, or the
     path of a file of them, gives the columns of ``grainlab analyze --format csv``, arrays (n,): ``pandas.DataFrame(...)`` takes them, and
     ``invert(table=...)``. There a packing without an answer has NaN, ``status`` unknown, and its ``reason``; it raises nothing. The
     packings are measured on all cores.
@@ -47,7 +48,9 @@ def analyze(
     >>> grainlab.analyze(recording.packings())["g13_pa"]
     """
     if isinstance(packing, Packing):
-        return _grainlab.analyze_one(packing, axis, springs, tolerance)
+        found, doubts = _grainlab.analyze_one(packing, axis, springs, tolerance)
+        warn(doubts)
+        return found
     return tables.parsed(_grainlab.analyze_all(packings_of(packing), axis, springs, tolerance))
 
 
