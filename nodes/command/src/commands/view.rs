@@ -52,7 +52,7 @@ pub(crate) struct Args {
     /// Draw one state into this PNG file instead, without a browser
     #[arg(long, value_name = "FILE", conflicts_with = "output")]
     png: Option<PathBuf>,
-    /// Size of the PNG, pixels
+    /// Size of the PNG, pixels; texts that do not fit are left out
     #[arg(long, value_name = "WxH", default_value = "1200x900", requires = "png")]
     size: String,
     /// State of the PNG, counted from 1 in order of time; negative from the end

@@ -1,6 +1,7 @@
 //! Colours of a picture with their meaning.
 
 use crate::canvas::Canvas;
+use crate::lettering::Lettering;
 use crate::palette::{CARRIER, Colour, MOST_CONTACTS, Quantity, RATTLER, by_coordination, ramp};
 use crate::view::View;
 
@@ -31,6 +32,12 @@ impl Legend {
                 Self("contacts per grain (those with rattlers not counted)", entries.collect())
             }
         }
+    }
+
+    /// Width in pixels.
+    pub(crate) fn width(&self, letters: Lettering) -> usize {
+        let entry = |(_, text): &(Colour, String)| letters.width_of(text) + 3 * letters.line() / 2;
+        letters.width_of(self.0).max(self.1.iter().map(entry).sum())
     }
 
     /// Draws it with its upper left corner.

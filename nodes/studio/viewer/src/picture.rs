@@ -16,6 +16,9 @@ const CAPTION: &str = "Periodic cell: each grain is drawn once, whole, where its
 /// Largest side of a picture, pixels.
 const LARGEST: usize = 8192;
 
+/// Fewest lines of a picture with texts.
+const LINES: usize = 12;
+
 /// Width and height, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
@@ -82,6 +85,14 @@ impl Picture {
             );
         }
         let margin = 3 * line / 4;
+        let fits = |text: &String| letters.width_of(text) + 2 * margin <= size.width;
+        above.retain(fits);
+        if legend.width(letters) + 2 * margin > size.width || size.height < LINES * line {
+            // A thumbnail has no room for texts.
+            let all = [0.0, 0.0, size.width as f64, size.height as f64];
+            let scene = scene(view, quantity, parts, size.width, all).draw(size.height);
+            return Self(Canvas::new([size.width, size.height], ground, letters, scene));
+        }
         let below = size.height.saturating_sub(margin + ROWS * line);
         let room = [
             margin,

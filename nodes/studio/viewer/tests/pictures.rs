@@ -134,6 +134,16 @@ fn a_force_chain_has_the_colours_of_the_forces_between_small_grains() {
 }
 
 #[test]
+fn a_picture_without_room_for_its_texts_has_none() {
+    let of = |label: &str, size: &str| {
+        let (view, size) = (View::new(&chain(), label), size.parse().unwrap());
+        Picture::new(&view, Quantity::Coordination, size, Ground::Light).png().unwrap()
+    };
+    assert!(of("one", "640x480") != of("two", "640x480"));
+    ["200x150", "16x16", "1600x100"].iter().for_each(|small| assert!(of("one", small) == of("two", small)));
+}
+
+#[test]
 fn a_size_is_two_numbers_of_pixels() {
     assert_eq!("640x480".parse::<Size>().unwrap(), Size { width: 640, height: 480 });
     for wrong in ["640", "640x", "x480", "0x480", "640x99999", "6.4x480", "-640x480"] {
