@@ -122,7 +122,9 @@ def test_other_threads_run_during_a_computation(golden):
     assert sum(began < t < ended for t in ticks) > 20
 
 
-def test_a_packing_in_motion_is_measured_with_a_warning(golden):
-    moving = grainlab.Packing(golden.cell, golden.positions, golden.radii, velocities=0 * golden.positions + [10, 0, 0])
-    with pytest.warns(UserWarning, match="in motion"):
+def test_a_packing_that_is_not_at_rest_is_measured_with_a_warning(golden):
+    velocities = np.zeros(golden.positions.shape)
+    velocities[0, 0] = 10.0
+    moving = grainlab.Packing(golden.cell, golden.positions, golden.radii, velocities=velocities)
+    with pytest.warns(UserWarning, match="not at rest"):
         grainlab.analyze(moving)

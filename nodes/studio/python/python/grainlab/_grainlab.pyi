@@ -256,7 +256,7 @@ def unpickled(bytes: bytes, source: str, notes: list[str]) -> Packing:
 def page(name: str, packings: list[Packing]) -> str:
     """A page that shows packings in three dimensions: HTML."""
 def analyze_one(packing: Packing, axis: Any, springs: str, tolerance: float | None) -> tuple[dict[str, Any], list[str]]:
-    """Everything that `grainlab analyze` reports of a packing, by key."""
+    """Everything that `grainlab analyze` reports of a packing, by key, and its warnings."""
 def analyze_all(packings: list[Packing], axis: Any, springs: str, tolerance: float | None) -> str:
     """The text of `grainlab analyze --format csv`, a row for each packing, with its status and reason."""
 def probe_all(packings: list[Packing], flags: list[tuple[str, str]]) -> tuple[str, str | None]:

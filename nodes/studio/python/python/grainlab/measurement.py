@@ -35,7 +35,7 @@ def analyze(
 ) -> dict[str, Any]:
     """Structure, stress and stiffness: all that ``grainlab analyze`` reports, by key, in SI units (see :func:`quantities`).
 
-    One packing gives a dict: unknown values are None, and stiffnesses arrays (6, 6), Pa; doubts, as of a packing in motion, are warnings.
+    One packing gives a dict: unknown values are None, and stiffnesses arrays (6, 6), Pa; doubts, as of a packing that is not at rest, are warnings.
     Raises PhysicsError. A list of packings, or the
     path of a file of them, gives the columns of ``grainlab analyze --format csv``, arrays (n,): ``pandas.DataFrame(...)`` takes them, and
     ``invert(table=...)``. There a packing without an answer has NaN, ``status`` unknown, and its ``reason``; it raises nothing. The
