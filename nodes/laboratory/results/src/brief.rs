@@ -1,4 +1,4 @@
-//! A launched run in at most 20 lines: preparation, measurements, estimates, and the directory.
+//! A launched run in some 20 lines: preparation, measurements, estimates, and the directory.
 
 mod states;
 

@@ -112,6 +112,7 @@ impl Findings {
     pub fn doubts(states: &[&InvertedPacking], noun: &str) -> Vec<String> {
         let mut doubts = Doubts::default();
         states.iter().enumerate().for_each(|(n, state)| doubts.of(n, state));
+        states.iter().enumerate().for_each(|(n, state)| doubts.further(n, state));
         doubts.finish(states.len(), noun)
     }
 
@@ -314,17 +315,29 @@ impl Word {
 }
 
 impl Doubts {
-    fn add(&mut self, n: usize, text: String) {
+    fn add(&mut self, n: usize, text: &str) {
+        if !self.count(n, text) {
+            self.0.push((text.split(' ').map(Word::of).collect(), BTreeSet::from([n])));
+        }
+    }
+
+    /// Counts a state for a reason, and is true, if another state has the reason.
+    fn count(&mut self, n: usize, text: &str) -> bool {
         let words: Vec<Word> = text.split(' ').map(Word::of).collect();
         let is_known = |(known, _): &&mut (Vec<Word>, BTreeSet<usize>)| {
             known.len() == words.len() && known.iter().zip(&words).all(|(a, b)| a.is_like(b))
         };
-        match self.0.iter_mut().find(is_known) {
-            Some((known, of)) => {
-                known.iter_mut().zip(words).for_each(|(known, word)| known.take(word));
-                of.insert(n);
-            }
-            None => self.0.push((words, BTreeSet::from([n]))),
+        let Some((known, of)) = self.0.iter_mut().find(is_known) else { return false };
+        known.iter_mut().zip(words).for_each(|(known, word)| known.take(word));
+        of.insert(n);
+        true
+    }
+
+    /// Counts a state for the first reasons of other estimates that are further ones of its own.
+    fn further(&mut self, n: usize, state: &InvertedPacking) {
+        for best in recommended(state).iter().filter(|best| best.status != "ok") {
+            let reasons = best.warnings.iter().skip(1).map(|why| doubted(best, why));
+            reasons.for_each(|reason| _ = self.count(n, &reason));
         }
     }
 
@@ -332,19 +345,19 @@ impl Doubts {
     fn of(&mut self, n: usize, state: &InvertedPacking) {
         match (recommended(state), state.packing.report.elasticity.as_ref()) {
             (Some(best), _) if best.status != "ok" => {
-                let why = best.warnings.first().map_or_else(String::new, |w| format!(": {w}"));
-                self.add(n, format!("the estimate is {}{why}", best.status));
+                let alone = || format!("the estimate is {}", best.status);
+                self.add(n, &best.warnings.first().map_or_else(alone, |why| doubted(best, why)));
             }
             (Some(_), _) => {}
-            (None, Err(why)) => self.add(n, format!("nothing was inferred: there is no stiffness: {why}")),
+            (None, Err(why)) => self.add(n, &format!("nothing was inferred: there is no stiffness: {why}")),
             (None, Ok(_)) => {
                 let results: Vec<&Inference> = state.results.iter().collect();
                 let why = Inference::why_unknown(&results);
                 let why = why.unwrap_or_else(|| "no moduli were inverted".to_owned());
-                self.add(n, format!("nothing was inferred: {why}"));
+                self.add(n, &format!("nothing was inferred: {why}"));
             }
         }
-        state.packing.warnings.iter().for_each(|w| self.add(n, w.clone()));
+        state.packing.warnings.iter().for_each(|w| self.add(n, w));
     }
 
     fn finish(self, all: usize, noun: &str) -> Vec<String> {
@@ -361,6 +374,10 @@ impl Doubts {
         let lines = self.0[..shown].iter().map(of);
         lines.chain((more > 0).then(|| format!("And {}.", count(more, "further warning")))).collect()
     }
+}
+
+fn doubted(estimate: &Inference, why: &str) -> String {
+    format!("the estimate is {}: {why}", estimate.status)
 }
 
 /// A text with a capital letter and a full stop.
@@ -469,6 +486,19 @@ mod tests {
             state(4, true, result("ok", Some((6.0, 0.1)), &[])),
         ];
         assert_eq!(Findings::of(&states).doubts, ["In 3 of 4 states: q/p = -0.6 to 0.81, far from C33."]);
+    }
+
+    #[test]
+    fn a_reason_counts_in_every_state_that_has_it_not_only_where_it_is_the_first() {
+        let of = |n, why: &[&str]| state(n, true, result("extrapolated", Some((6.0, 0.1)), why));
+        let states = [of(1, &["the pressure", "the law"]), of(2, &["the law"]), of(3, &["the law", "x"])];
+        assert_eq!(
+            Findings::of(&states).doubts,
+            [
+                "In 1 of 3 states: the estimate is extrapolated: the pressure.",
+                "In every state: the estimate is extrapolated: the law."
+            ]
+        );
     }
 
     #[test]

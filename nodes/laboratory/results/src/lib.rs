@@ -8,7 +8,7 @@
 //! - [`read_back`]: the results in a recording; [`continuity`]: the messages that it lacks
 //! - [`posterior_draws`]: draws from a posterior as files
 //! - [`findings`]: the same in sentences, with reasons to doubt
-//! - [`Summary`]: a launched run; [`summary_text`]: all of it as text; [`brief`]: at most 20 lines
+//! - [`Summary`]: a launched run; [`summary_text`]: all of it as text; [`brief`]: some 20 lines
 
 mod acoustic;
 mod acoustic_text;

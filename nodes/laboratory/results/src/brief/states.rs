@@ -1,5 +1,6 @@
 //! Several packings of a run, one line each, in at most 100 columns.
 
+use crate::findings::Findings;
 use crate::inference::{Inference, Origin, by_origin};
 use crate::packing_text::{eps, moduli, stress_ratio};
 use crate::read_back::InvertedPacking;
@@ -85,6 +86,8 @@ pub(super) fn lines(states: &[InvertedPacking]) -> Vec<String> {
     if left_out > 0 {
         note(format!("and {} before these: summary.json has all", count(left_out, "packing")));
     }
+    let all: Vec<&InvertedPacking> = states.iter().collect();
+    notes.extend(Findings::doubts(&all, "state"));
     let table = t.without_empty_columns().text();
     table.lines().map(str::to_owned).chain(notes).collect()
 }
