@@ -216,6 +216,24 @@ fn a_check_names_each_statement_of_the_metadata_that_the_files_contradict() {
     assert!(faults("")[0].starts_with("/t: its message of 5 ns does not decode"));
 }
 
+/// Recorders number messages differently, and a default of a field is in no message.
+#[test]
+fn a_message_that_two_programs_recorded_is_merged_to_one_though_number_and_default_differ() {
+    let root = tempfile::tempdir().unwrap();
+    let paths = [(1, "string data\n"), (0, "string data \"none\"\n")].map(|(sequence, text)| {
+        let path = root.path().join(format!("{sequence}.mcap"));
+        write(&path, |w| {
+            let schema = w.add_schema("my/msg/A", "ros2msg", text.as_bytes()).unwrap();
+            let channel_id = w.add_channel(schema, "/t", "cdr", &BTreeMap::new()).unwrap();
+            let header = MessageHeader { channel_id, sequence, log_time: 5, publish_time: 4 };
+            w.write_to_known_channel(&header, HI).unwrap();
+        });
+        open(&path)
+    });
+    let done = copy(&paths, &Select::default(), &root.path().join("both"), &CopyOptions::default()).unwrap();
+    assert_eq!((done.messages, done.topics.len()), (1, 1), "{:?}", done.notes);
+}
+
 #[test]
 fn files_of_other_formats_are_refused_with_their_name_and_a_remedy() {
     let root = tempfile::tempdir().unwrap();
@@ -254,4 +272,6 @@ fn a_directory_that_lacks_messages_of_its_metadata_is_damaged_and_parts_in_folde
         let found = stated(files, messages);
         assert!(found.contains(fault), "{fault}: {found}");
     }
+    let missing = recover(directory).unwrap().missing;
+    assert_eq!(missing.len(), 1, "a recovery says it, too: {missing:?}");
 }
