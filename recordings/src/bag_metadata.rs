@@ -24,6 +24,8 @@ pub(crate) struct BagMetadata {
     /// Texts of the user by their names, as JSON; null without.
     pub(crate) custom_data: serde_json::Value,
     ros_distro: Option<String>,
+    /// Hashes of the types of topics, for channels without.
+    type_hashes: BTreeMap<String, String>,
     /// True if each message is compressed by itself.
     compressed: bool,
 }
@@ -45,6 +47,9 @@ impl BagMetadata {
     /// Takes what a user stored in the metadata of a source; returns the names that it has otherwise already.
     pub(crate) fn carry(&mut self, source: &Recording) -> Vec<String> {
         let Some(bag) = &source.bag else { return Vec::new() };
+        for (topic, hash) in bag.type_hashes() {
+            self.type_hashes.entry(topic).or_insert(hash);
+        }
         self.ros_distro = self.ros_distro.take().or_else(|| bag.ros_distro.clone());
         let (Some(known), Some(new)) = (self.custom_data.as_object_mut(), bag.custom_data.as_object()) else {
             if self.custom_data.is_null() {
@@ -89,6 +94,8 @@ impl BagMetadata {
         );
         // Writing to a String cannot fail.
         for TopicCount { spec, messages } in self.topics.values() {
+            let own = Some(&spec.type_hash).filter(|hash| !hash.is_empty());
+            let hash = own.or_else(|| self.type_hashes.get(&spec.name)).map_or("", String::as_str);
             let _ = write!(
                 t,
                 "    - topic_metadata:\n        name: {}\n        type: {}\n        serialization_format: cdr\n        \
@@ -96,7 +103,7 @@ impl BagMetadata {
                 quoted(&spec.name),
                 quoted(&spec.ros_type),
                 quoted(&spec.qos),
-                quoted(&spec.type_hash)
+                quoted(hash)
             );
         }
         let [format, mode] = if self.compressed { ["zstd", "message"] } else { [""; 2] };

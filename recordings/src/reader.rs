@@ -26,6 +26,7 @@ mod messages;
 mod recording;
 mod records;
 mod selection;
+mod stated;
 mod stored_file;
 mod verify;
 mod walk;

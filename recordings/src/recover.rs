@@ -31,6 +31,8 @@ pub struct Recovery {
     pub path: PathBuf,
     /// Files of the recording, in order.
     pub files: Vec<RecoveredFile>,
+    /// Files of its `metadata.yaml` that are missing or have no byte.
+    pub missing: Vec<Warning>,
     /// True if a new `metadata.yaml` was written.
     pub metadata_written: bool,
 }
@@ -56,7 +58,7 @@ impl Recovery {
 
     /// Parts of the recording that could not be read.
     pub fn unreadable(&self) -> impl Iterator<Item = &Warning> {
-        self.files.iter().flat_map(|f| &f.unreadable)
+        self.missing.iter().chain(self.files.iter().flat_map(|f| &f.unreadable))
     }
 }
 
@@ -76,13 +78,17 @@ pub fn recover(path: &Path) -> Result<Recovery, Failure> {
             )));
         }
     }
+    let mut missing = recording.warnings();
+    missing.retain(|w| {
+        w.kind == WarningKind::MissingFile || w.kind == WarningKind::Truncated && !paths.contains(&w.path)
+    });
     drop(recording);
     let mut files = Vec::with_capacity(paths.len());
     for path in paths {
         files.push(file(path)?);
     }
     let metadata_written = path.is_dir() && bring_up_to_date(path, &files)?;
-    Ok(Recovery { path: path.to_owned(), files, metadata_written })
+    Ok(Recovery { path: path.to_owned(), files, missing, metadata_written })
 }
 
 fn file(path: PathBuf) -> Result<RecoveredFile, Failure> {

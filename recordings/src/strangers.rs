@@ -16,6 +16,9 @@ pub const AUTHORS: &str = "authors";
 /// Key of the metadata record of a recording with what makes it doubtful, one line each.
 pub const DISPUTES: &str = "disputes";
 
+/// Key of the metadata record of a recording with a sentence on the topics that its recorder left out.
+pub const LEFT_OUT: &str = "left_out";
+
 /// A process whose messages were left out of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StrangerView {
@@ -67,6 +70,11 @@ pub fn authors(recording: &Recording) -> Authors {
 /// Doubts that the recorders of a recording noted: two processes of one name or one task, another scene.
 pub fn noted_disputes(recording: &Recording) -> Vec<String> {
     read(recording, DISPUTES).unwrap_or_default()
+}
+
+/// A sentence on the topics that the recorder of a run left out, with what to do.
+pub fn left_out(recording: &Recording) -> Option<String> {
+    recording.metadata(METADATA_RECORD)?.remove(LEFT_OUT)
 }
 
 /// Why it is unknown which messages of a recording are right, one line each: what its recorders noted, and messages

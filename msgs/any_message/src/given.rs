@@ -10,7 +10,7 @@ use crate::value::{Array, Message, Value};
 
 impl Schema {
     /// The message with these values of fields, as JSON or YAML has them. Fields that are not given have their defaults, or 0, an empty
-    /// text, no elements. Numbers that are not finite are texts, as [`Shown::json`](crate::Shown::json) writes them.
+    /// text, no elements. Numbers that are not finite are texts, as [`Shown::json`](crate::Shown::json) or YAML (`.inf`) writes them.
     ///
     /// # Errors
     /// A value that its field does not hold, or a field that the type does not have: with its path.
@@ -78,7 +78,9 @@ fn value(kind: &FieldType, given: Option<&Json>) -> Result<Value, String> {
 }
 
 fn wrong(given: &Json, kind: &FieldType) -> String {
-    format!(": {given} is not of the type {kind}")
+    let is_large = given.is_number() && kind.element == Element::Primitive(Primitive::F32);
+    let range = if is_large { format!(", {:e} to {:e}", f32::MIN, f32::MAX) } else { String::new() };
+    format!(": {given} is not of the type {kind}{range}")
 }
 
 fn one(element: &Element, given: Option<&Json>) -> Result<Value, String> {
@@ -97,7 +99,7 @@ fn one(element: &Element, given: Option<&Json>) -> Result<Value, String> {
 
 fn primitive(kind: Primitive, given: &Json) -> Option<Value> {
     let float = || match given.as_str() {
-        Some(text) => text.parse::<f64>().ok().filter(|value| !value.is_finite()),
+        Some(text) => text.replacen('.', "", 1).parse::<f64>().ok().filter(|value| !value.is_finite()),
         None => given.as_f64(),
     };
     let bit = || given.as_u64().filter(|n| *n < 2).map(|n| n == 1);
@@ -111,7 +113,10 @@ fn primitive(kind: Primitive, given: &Json) -> Option<Value> {
         Primitive::U32 => Value::U32(given.as_u64()?.try_into().ok()?),
         Primitive::I64 => Value::I64(given.as_i64()?),
         Primitive::U64 => Value::U64(given.as_u64()?),
-        Primitive::F32 => Value::F32(float()? as f32),
+        Primitive::F32 => {
+            let wide = float()?;
+            Value::F32(Some(wide as f32).filter(|v| v.is_finite() == wide.is_finite())?)
+        }
         Primitive::F64 => Value::F64(float()?),
     })
 }
@@ -141,5 +146,22 @@ fn gathered(element: &Element, all: Vec<Value>) -> Array {
         Element::Primitive(Primitive::F64) => of!(F64),
         Element::String(_) | Element::WString(_) => of!(Text),
         Element::Message(_) => of!(Message),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_yaml_that_are_not_finite_are_taken_and_those_beyond_float32_are_refused_with_its_range() {
+        let schema = Schema::parse("p/msg/A", "float32 x\nfloat64 y").unwrap();
+        let given = |x: Json, y: Json| schema.given(&serde_json::json!({"x": x, "y": y}));
+        let both = given("-.inf".into(), ".nan".into()).unwrap();
+        assert!(matches!(both.values[0], Value::F32(f32::NEG_INFINITY)));
+        assert!(matches!(both.values[1], Value::F64(y) if y.is_nan()));
+        let refused = given(Json::from(1e300), Json::from(1e300)).unwrap_err();
+        assert!(refused.ends_with("is not of the type float32, -3.4028235e38 to 3.4028235e38"), "{refused}");
+        assert!(given(Json::from(0), "1.5".into()).is_err());
     }
 }

@@ -1,6 +1,7 @@
 //! Selection of messages to copy, and options of the output.
 
 use clap::ValueEnum;
+use grainlab_console::Failure;
 
 use crate::compression::Compression;
 use crate::reader::ChannelInfo;
@@ -89,12 +90,12 @@ pub struct Select<'a> {
     pub end: Option<u64>,
     /// Copy latched messages from before the start.
     pub latched: bool,
-    /// Called with the log time of each message of the interval.
-    pub progress: &'a dyn Fn(u64),
+    /// Called with the log time of each message of the interval; an error ends the copy.
+    pub progress: &'a dyn Fn(u64) -> Result<(), Failure>,
 }
 
 impl Default for Select<'_> {
     fn default() -> Self {
-        Self { topic: &|_| true, start: None, end: None, latched: true, progress: &|_| () }
+        Self { topic: &|_| true, start: None, end: None, latched: true, progress: &|_| Ok(()) }
     }
 }

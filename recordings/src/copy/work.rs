@@ -39,7 +39,7 @@ pub struct Copied {
 /// `.mcap`. Parts that cannot be read become warnings of the recordings.
 ///
 /// # Errors
-/// If the output exists, two recordings have different types under one topic, or writing fails. Nothing is left then.
+/// If the output exists, two recordings have different types under one topic, writing fails, or `progress` does. Nothing is left then.
 pub fn copy(
     recordings: &[Recording],
     select: &Select<'_>,
@@ -71,7 +71,7 @@ pub fn copy(
     for message in merged(recordings, &topics, select, &mut repeated) {
         let Some(place) = places.of(&message.channel) else { continue };
         messages += 1;
-        (select.progress)(message.log_time);
+        (select.progress)(message.log_time)?;
         made += write(&mut output, &mut pictures, place, message.log_time, &message)?;
     }
     for record in &extras.metadata {

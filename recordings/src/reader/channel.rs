@@ -1,6 +1,6 @@
 //! Topics of a recording.
 
-use grainlab_any_message::Schema;
+use grainlab_any_message::{Comparison, Schema};
 use std::collections::BTreeMap;
 
 use super::definition::StoredDefinition;
@@ -31,7 +31,7 @@ pub struct ChannelInfo {
 }
 
 impl ChannelInfo {
-    /// True if messages of both have the same bytes for the same content: definitions may differ in comments.
+    /// True if messages of both have the same bytes for the same content: definitions may differ in comments and defaults.
     pub fn is_read_as(&self, other: &Self) -> bool {
         let encodings = |c: &Self| (c.message_encoding.clone(), c.schema_encoding.clone());
         if self.ros_type != other.ros_type || encodings(self) != encodings(other) {
@@ -44,8 +44,8 @@ impl ChannelInfo {
             Schema::parse(&c.ros_type, &c.definition).ok().filter(|_| c.schema_encoding == "ros2msg")
         };
         match (parsed(self), parsed(other)) {
-            // A copy may have the hash of another definition.
-            (Some(a), Some(b)) => a == b,
+            // A copy may have the hash of another definition. Defaults of fields are in no message.
+            (Some(a), Some(b)) => [a.compare(&b), b.compare(&a)].iter().all(|c| *c == Comparison::Same),
             _ => !self.type_hash.is_empty() && self.type_hash == other.type_hash,
         }
     }

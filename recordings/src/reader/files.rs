@@ -23,13 +23,49 @@ struct BagFile {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct BagInformation {
-    relative_file_paths: Vec<String>,
+    pub(super) relative_file_paths: Vec<String>,
     pub(super) message_count: Option<u64>,
     pub(super) compression_format: String,
-    compression_mode: String,
+    pub(super) compression_mode: String,
+    pub(super) storage_identifier: Option<String>,
+    pub(super) starting_time: Time,
+    pub(super) duration: Time,
+    pub(super) topics_with_message_count: Option<Vec<TopicEntry>>,
+    pub(super) files: Vec<FileEntry>,
     /// Texts of the user by their names, or null.
     pub(crate) custom_data: serde_json::Value,
     pub(crate) ros_distro: Option<String>,
+}
+
+/// A time or a duration.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Time {
+    #[serde(alias = "nanoseconds_since_epoch")]
+    pub(super) nanoseconds: Option<u64>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct TopicEntry {
+    pub(super) topic_metadata: TopicMetadata,
+    pub(super) message_count: u64,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct TopicMetadata {
+    pub(super) name: String,
+    #[serde(rename = "type")]
+    pub(super) ros_type: String,
+    type_description_hash: Option<String>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct FileEntry {
+    pub(super) path: String,
+    pub(super) message_count: Option<u64>,
 }
 
 impl BagInformation {
@@ -58,6 +94,12 @@ impl BagInformation {
     /// True if it names this file.
     pub(super) fn names(&self, file: &Path) -> bool {
         self.relative_file_paths.iter().any(|name| file.ends_with(name))
+    }
+
+    /// The topics with the hashes of their types, where it has them.
+    pub(crate) fn type_hashes(&self) -> impl Iterator<Item = (String, String)> {
+        let topics = self.topics_with_message_count.iter().flatten().map(|entry| &entry.topic_metadata);
+        topics.filter_map(|topic| Some((topic.name.clone(), topic.type_description_hash.clone()?)))
     }
 
     /// A difference of the number of messages that it states from the number found.

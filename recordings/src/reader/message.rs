@@ -64,9 +64,9 @@ impl Message {
         from_cdr(&self.own_bytes()?).map_err(|e| e.to_string())
     }
 
-    /// True for the same message in another recording: topic, type, times, sequence and bytes.
+    /// True for the same message in another recording: topic, type, times and bytes. Recorders number differently.
     pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
-        let key = |m: &Self| (m.sequence, m.log_time, m.publish_time);
+        let key = |m: &Self| (m.log_time, m.publish_time);
         let name = |m: &Self| (m.channel.topic.clone(), m.channel.ros_type.clone());
         key(self) == key(other) && name(self) == name(other) && *self.payload == *other.payload
     }

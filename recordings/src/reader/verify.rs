@@ -16,6 +16,7 @@ use super::file::OpenFile;
 use super::files::BagInformation;
 use super::recording::Recording;
 use super::records::{FRAME, RawRecord};
+use super::selection::Selection;
 use super::walk::{Walked, walk};
 
 /// The result of a complete check.
@@ -79,7 +80,27 @@ impl Recording {
         self.ros_definitions().filter_map(fault).collect()
     }
 
-    /// Reads all data: counts, and all faults: checksums, the index against the messages, log times that decrease, and the ledger
+    /// The first message of each topic that its definition does not decode.
+    fn undecodable(&self) -> BTreeMap<String, String> {
+        let (mut schemas, mut wrong) = (BTreeMap::new(), BTreeMap::new());
+        for message in self.messages(&Selection::default()).into_iter().flatten() {
+            let c = &message.channel;
+            let parsed = || {
+                let is_known =
+                    (c.schema_encoding.as_str(), c.message_encoding.as_str()) == ("ros2msg", "cdr");
+                Schema::parse(&c.ros_type, &c.definition).ok().filter(|_| is_known)
+            };
+            let schema = schemas.entry(Arc::as_ptr(c).addr()).or_insert_with(parsed);
+            if let Some(Err(e)) = schema.as_ref().map(|schema| schema.decode(&message.payload)) {
+                let new =
+                    || format!("{}: its message of {} ns does not decode: {e}", c.topic, message.log_time);
+                wrong.entry(c.topic.clone()).or_insert_with(new);
+            }
+        }
+        wrong
+    }
+
+    /// Reads all data: counts, and all faults: checksums, the index against the messages, log times that decrease, the messages against their definitions, and the ledger
     /// against the messages.
     pub fn check(&self) -> Check {
         let found = Contents::of(self);
@@ -99,13 +120,17 @@ impl Recording {
                 }
             }
         }
+        for detail in self.undecodable().into_values() {
+            let path = self.path().to_owned();
+            self.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
+        }
         let definitions = self.definition_faults();
         let stated = BagInformation::of(self.path());
         let wrong = match &stated {
-            Err(e) => Some(format!("it cannot be read: {e}")),
-            Ok(bag) => bag.as_ref().and_then(|bag| bag.differs(found.messages)),
+            Err(e) => vec![format!("it cannot be read: {e}")],
+            Ok(bag) => bag.as_ref().map(|bag| bag.differences(self, &found)).unwrap_or_default(),
         };
-        let wrong = wrong.map(|detail| (self.path().join("metadata.yaml"), detail));
+        let wrong = wrong.into_iter().map(|detail| (self.path().join("metadata.yaml"), detail));
         for (path, detail) in definitions.iter().cloned().chain(wrong) {
             self.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
         }
@@ -135,15 +160,19 @@ impl Recording {
 
 /// Counts of all files.
 #[derive(Default)]
-struct Contents {
+pub(super) struct Contents {
     records: u64,
     chunks: u64,
-    messages: u64,
+    pub(super) messages: u64,
     attachments: u64,
     checksums: u64,
-    by_topic: BTreeMap<String, u64>,
+    pub(super) by_topic: BTreeMap<String, u64>,
+    /// Lowest log time.
+    pub(super) first: Option<u64>,
+    /// Longest time from the lowest log time before a message to that of the message.
+    pub(super) longest: u64,
     /// Highest log time of the files before, and of this one.
-    last: u64,
+    pub(super) last: u64,
     last_of_file: Option<u64>,
 }
 
@@ -238,6 +267,9 @@ impl Contents {
             let detail = "it begins before the end of the previous file".to_owned();
             warn(file.warning(at, WarningKind::Inconsistent, detail));
         }
+        let first = self.first.map_or(header.log_time, |first| first.min(header.log_time));
+        self.first = Some(first);
+        self.longest = self.longest.max(header.log_time - first);
         self.last_of_file = Some(self.last_of_file.map_or(header.log_time, |t| t.max(header.log_time)));
     }
 }

@@ -119,6 +119,21 @@ fn a_message_that_two_recordings_have_is_written_once_and_said() {
 }
 
 #[test]
+fn a_copy_that_is_interrupted_leaves_nothing() {
+    let root = tempfile::tempdir().unwrap();
+    let (run, _) = run_in(&root, 300);
+    let interrupted =
+        |_| Err(grainlab_console::Failure::new(grainlab_msgs::Exit::Interrupted, "interrupted"));
+    for name in ["cut", "cut.mcap"] {
+        let select = Select { progress: &interrupted, ..Select::default() };
+        let error =
+            copy(&[open(&run)], &select, &root.path().join(name), &CopyOptions::default()).unwrap_err();
+        assert_eq!(error.exit, grainlab_msgs::Exit::Interrupted);
+    }
+    assert_eq!(std::fs::read_dir(root.path()).unwrap().count(), 1, "only the run is there");
+}
+
+#[test]
 fn recordings_of_two_runs_in_one_are_said() {
     let root = tempfile::tempdir().unwrap();
     let paths = ["a", "b"].map(|name| {

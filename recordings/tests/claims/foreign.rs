@@ -156,6 +156,84 @@ fn a_check_names_definitions_and_metadata_that_are_wrong_and_counts_checksums() 
     assert_eq!(open(&root.path().join("r/r_0.mcap")).check().warnings.len(), 1);
 }
 
+/// Times that are rounded, the duration of rosbag2 where messages came out of order, and topics without messages are no faults.
+#[test]
+fn a_check_names_each_statement_of_the_metadata_that_the_files_contradict() {
+    let root = tempfile::tempdir().unwrap();
+    let at = |writer: &mut Writer<BufWriter<File>>, log_time| {
+        let schema = writer.add_schema("std_msgs/msg/String", "ros2msg", b"string data\n").unwrap();
+        let channel_id = writer.add_channel(schema, "/t", "cdr", &BTreeMap::new()).unwrap();
+        let header = MessageHeader { channel_id, sequence: 1, log_time, publish_time: log_time };
+        writer.write_to_known_channel(&header, HI).unwrap();
+    };
+    write(&root.path().join("r_0.mcap"), |w| {
+        [2, 5, 1].into_iter().for_each(|s| at(w, s * 1_000_000_000));
+    });
+    let topic = |name: &str, kind: &str, n: u64| {
+        format!(
+            "    - topic_metadata: {{name: {name}, type: {kind}, type_description_hash: RIHS01_7}}\n      message_count: {n}\n"
+        )
+    };
+    let whole = format!(
+        "  storage_identifier: mcap\n  message_count: 3\n  compression_mode: none\n  compression_format: ''\n  starting_time:\n    \
+         nanoseconds_since_epoch: 1000000100\n  duration:\n    nanoseconds: 3000000000\n  topics_with_message_count:\n{}{}  files:\n    \
+         - {{path: r_0.mcap, message_count: 3}}\n",
+        topic("/t", "std_msgs/msg/String", 3),
+        topic("/silent", "std_msgs/msg/String", 0)
+    );
+    let faults = |text: &str| {
+        metadata(root.path(), text);
+        open(root.path()).check().warnings.iter().map(|w| w.detail.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(faults(&whole), [""; 0]);
+    copied(root.path(), &root.path().join("copy"));
+    let text = fs::read_to_string(root.path().join("copy/metadata.yaml")).unwrap();
+    assert!(text.contains("type_description_hash: \"RIHS01_7\""), "{text}");
+    for (from, to, expected) in [
+        ("identifier: mcap", "identifier: sqlite3", "storage_identifier: it states \"sqlite3\""),
+        ("mode: none", "mode: FILE", "compression_mode: it states \"FILE\""),
+        ("format: ''", "format: lz4", "compression_format: it states \"lz4\""),
+        ("epoch: 1000000100", "epoch: 7", "starting_time: it states 7 ns"),
+        ("seconds: 3000000000", "seconds: 9000000000", "duration: it states 9000000000 ns"),
+        ("name: /t", "name: /other", "/t: it does not list it"),
+        ("count: 0", "count: 4", "/silent: it states 4 messages, the files hold 0"),
+        (
+            "std_msgs/msg/String",
+            "a/msg/B",
+            "/t: it states the type a/msg/B, the files have std_msgs/msg/String",
+        ),
+        (
+            "r_0.mcap, message_count: 3",
+            "r_0.mcap, message_count: 2",
+            "files: it states 2 messages in r_0.mcap",
+        ),
+        ("path: r_0.mcap", "path: r_7.mcap", "files: relative_file_paths does not name r_7.mcap"),
+    ] {
+        let found = faults(&whole.replacen(from, to, 1));
+        assert!(found.iter().any(|f| f.starts_with(expected)), "{expected}: {found:?}");
+    }
+    write(&root.path().join("r_0.mcap"), |w| string(w, "", b"\0\x01\0\0\x09\0\0\0hi\0"));
+    assert!(faults("")[0].starts_with("/t: its message of 5 ns does not decode"));
+}
+
+/// Recorders number messages differently, and a default of a field is in no message.
+#[test]
+fn a_message_that_two_programs_recorded_is_merged_to_one_though_number_and_default_differ() {
+    let root = tempfile::tempdir().unwrap();
+    let paths = [(1, "string data\n"), (0, "string data \"none\"\n")].map(|(sequence, text)| {
+        let path = root.path().join(format!("{sequence}.mcap"));
+        write(&path, |w| {
+            let schema = w.add_schema("my/msg/A", "ros2msg", text.as_bytes()).unwrap();
+            let channel_id = w.add_channel(schema, "/t", "cdr", &BTreeMap::new()).unwrap();
+            let header = MessageHeader { channel_id, sequence, log_time: 5, publish_time: 4 };
+            w.write_to_known_channel(&header, HI).unwrap();
+        });
+        open(&path)
+    });
+    let done = copy(&paths, &Select::default(), &root.path().join("both"), &CopyOptions::default()).unwrap();
+    assert_eq!((done.messages, done.topics.len()), (1, 1), "{:?}", done.notes);
+}
+
 #[test]
 fn files_of_other_formats_are_refused_with_their_name_and_a_remedy() {
     let root = tempfile::tempdir().unwrap();
@@ -194,4 +272,6 @@ fn a_directory_that_lacks_messages_of_its_metadata_is_damaged_and_parts_in_folde
         let found = stated(files, messages);
         assert!(found.contains(fault), "{fault}: {found}");
     }
+    let missing = recover(directory).unwrap().missing;
+    assert_eq!(missing.len(), 1, "a recovery says it, too: {missing:?}");
 }

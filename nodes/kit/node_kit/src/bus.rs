@@ -129,6 +129,11 @@ pub trait Bus {
     /// topics, as known at the last [`Bus::wait`].
     fn offers(&self) -> Vec<Offer>;
 
+    /// The same of writers whose samples are not taken.
+    fn strange_offers(&self) -> Vec<Offer> {
+        Vec::new()
+    }
+
     /// Counts one message of `topic` that `publisher`, a writer of another topic, sent in parts: [`Bus::published`]
     /// lists it as if that writer were one of `topic`.
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError>;

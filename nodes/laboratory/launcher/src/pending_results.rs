@@ -4,7 +4,7 @@
 use super::plan::NodePlan;
 use crate::nodes::NodeKind;
 use crate::recorded_speeds::RecordedSpeeds;
-use grainlab_msgs::topics;
+use grainlab_msgs::{Topic, topics};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -95,7 +95,7 @@ pub(crate) struct PendingResults {
     /// results stay pending.
     inversions: usize,
     /// True while third-party programs run, which may publish wave speeds. If they published those of one packing, the run
-    /// waits for those of its last packing.
+    /// waits for those of its last packing; for data that `until_inverted` names and no node measures, in any case.
     instruments: bool,
     /// Names of those programs.
     programs: Vec<String>,
@@ -108,13 +108,22 @@ impl PendingResults {
         let has = |node: NodeKind| plans.iter().any(|p| p.is(node));
         let kind = |node: NodeKind| Some(Kind::new(node.measures()?.name, Source::Node(node)));
         let mut kinds: Vec<Kind> = NodeKind::all(&[]).filter(|node| has(*node)).filter_map(kind).collect();
+        let instruments = plans.iter().any(|p| p.node.is_none());
+        let simulator = plans.iter().find(|p| p.is(NodeKind::DemSimulator)).filter(|_| instruments);
+        if let Some(Ok(Some((.., parameters)))) = simulator.map(NodePlan::parsed) {
+            let named: Vec<String> = parameters.get("until_inverted");
+            for topic in named.iter().filter_map(|name| Topic::by_name(name)) {
+                if !kinds.iter().any(|k| k.topic == topic.name) {
+                    kinds.push(Kind::new(topic.name, Source::Instrument));
+                }
+            }
+        }
         if kinds.is_empty() {
             kinds.push(Kind::new(topics::MODULI.name, Source::Node(NodeKind::FabricAnalyzer)));
         }
         let inversions = plans.iter().filter(|p| p.is(NodeKind::EmtInversion)).count().max(1);
         let programs = plans.iter().filter(|p| p.node.is_none() && !has(NodeKind::AcousticProbe));
         let mut programs: Vec<String> = programs.map(|p| p.name.clone()).collect();
-        let instruments = !programs.is_empty();
         // One of them is the servo, if no node is.
         if !has(NodeKind::ServoController) && programs.len() == 1 {
             programs.clear();
@@ -122,11 +131,14 @@ impl PendingResults {
         Self { kinds, inversions, instruments, programs }
     }
 
-    /// A sentence on third-party programs, if none of them sent wave speeds of any packing.
+    /// A sentence on third-party programs, if none of them sent data of any packing.
     pub(crate) fn silent_programs(&self) -> Option<String> {
-        let sent = self.kinds.iter().any(|k| k.source == Source::Instrument);
+        let sent = self.kinds.iter().any(|k| k.source == Source::Instrument && !k.measured.is_empty());
         let text = || {
-            format!("no wave speeds of a packing came from {} before the run ended", self.programs.join(", "))
+            format!(
+                "no wave speeds or other data of a packing came from {} before the run ended",
+                self.programs.join(", ")
+            )
         };
         (!sent && !self.programs.is_empty()).then(text)
     }
@@ -312,6 +324,37 @@ mod tests {
         assert_eq!(d.state_of(7), ResultState::Settling);
         assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));
         assert_eq!(d.state_of(11), ResultState::Open(Source::Instrument));
+    }
+
+    #[test]
+    fn data_of_a_program_that_until_inverted_names_are_waited_for() {
+        let given = ["run", "dem_simulator", "--ros-args", "-p", "until_inverted:=[packing_report,moduli]"];
+        let simulator = NodePlan {
+            name: "dem_simulator".to_owned(),
+            node: Some(NodeKind::DemSimulator),
+            program: "grainlab".to_owned(),
+            arguments: given.map(str::to_owned).into(),
+            respawn: false,
+            environment: Vec::new(),
+            ends_all: false,
+        };
+        let node = |node, name: &str| NodePlan { node, name: name.to_owned(), ..simulator.clone() };
+        let analyzer = NodePlan { arguments: Vec::new(), ..node(Some(NodeKind::FabricAnalyzer), "analyzer") };
+        let servo = NodePlan { arguments: Vec::new(), ..node(Some(NodeKind::ServoController), "servo") };
+        let mut d = PendingResults::of(&[simulator.clone(), analyzer, servo, node(None, "watch")]);
+        d.measured("packing_report", 9);
+        d.inverted("packing_report", 9, 2);
+        assert_eq!(d.state_of(9), ResultState::Open(Source::Instrument));
+        assert!(
+            d.silent_programs()
+                .unwrap()
+                .starts_with("no wave speeds or other data of a packing came from watch")
+        );
+        d.measured("moduli", 9);
+        assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));
+        assert_eq!(d.silent_programs(), None);
+        d.inverted("moduli", 9, 2);
+        assert_eq!(d.state_of(9), ResultState::Settling);
     }
 
     #[test]

@@ -70,7 +70,7 @@ impl NodePlan {
     pub(crate) fn parsed(&self) -> Result<Option<(NodeKind, Names, Parameters)>, PlanError> {
         let Some(node) = self.node else { return Ok(None) };
         // After `run NODE`.
-        let parsed = node.parse(&self.arguments[2..]);
+        let parsed = node.parse(self.arguments.get(2..).unwrap_or_default());
         let (names, parameters) = parsed.map_err(|reason| PlanError::of(&self.name, reason))?;
         Ok(Some((node, names, parameters)))
     }

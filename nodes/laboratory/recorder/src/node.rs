@@ -7,7 +7,7 @@ use crate::disputes::Disputes;
 use crate::known_processes::KnownProcesses;
 use crate::repeats::{Novelty, Repeats};
 use crate::snapshot::{Kept, Snapshot};
-use crate::strangers::grouped;
+use crate::strangers::{LeftOut, grouped};
 use crate::tallies::losses;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Guid, Topic, from_cdr, topics};
@@ -88,6 +88,8 @@ pub struct Recorder {
     snapshot: Option<Snapshot>,
     /// Finds topics outside the contract.
     finder: Option<Finder>,
+    /// Those topics, where they are not recorded.
+    left_out: LeftOut,
 }
 
 impl Recorder {
@@ -158,6 +160,7 @@ impl Recorder {
             stepped: None,
             stalled: false,
             finder: settings.others.clone().map(Finder::new),
+            left_out: LeftOut::default(),
             snapshot: settings.snapshot.clone().map(Snapshot::new).transpose().map_err(|e| failed(&e))?,
         })
     }
@@ -383,6 +386,10 @@ impl Node for Recorder {
                 (now - last).as_secs_f64()
             );
         }
+        // Once a second.
+        if self.finder.is_none() && last.as_secs() != now.as_secs() {
+            self.left_out.look(bus, &self.names);
+        }
         self.find(bus)?;
         self.take_all(bus)?;
         Ok(Next::Wait(TICK))
@@ -407,6 +414,10 @@ impl Node for Recorder {
         }
         let express = |value: serde_json::Result<String>| value.map_err(|e| lost(&e));
         writer.set_metadata(strangers::STRANGERS, &express(serde_json::to_string(&strangers))?);
+        if let Some(sentence) = self.left_out.sentence() {
+            log::info!("{sentence}");
+            writer.set_metadata(strangers::LEFT_OUT, &sentence);
+        }
         if !self.disputes.lines.is_empty() {
             writer.set_metadata(strangers::DISPUTES, &express(serde_json::to_string(&self.disputes.lines))?);
         }

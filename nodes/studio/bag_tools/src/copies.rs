@@ -26,7 +26,7 @@ Examples:
   grainlab bag merge robot.mcap camera.mcap --exclude /rosout -o all.mcap
 
 Messages in order of log time; those of equal time in the order of the recordings. A message that several recordings have, with
-the same times and bytes, is written once, which is said. A topic of several recordings becomes one,
+the same times and bytes, is written once, whatever its sequence number, which is said. A topic of several recordings becomes one,
 with the QoS of the first; it is an error if its fields differ. Stored files and metadata records are kept; those with the
 same name and different content get a number, with a message. Exit 3 if a part could not be read.";
 

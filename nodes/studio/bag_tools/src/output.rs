@@ -104,7 +104,7 @@ impl Job<'_> {
         let ranges = recordings.iter().filter_map(Recording::time_range);
         let range = ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         let progress =
-            Progress::new(range.map(|(a, b)| (start.unwrap_or(a).max(a), end.unwrap_or(b).min(b))));
+            Progress::new(range.map(|(a, b)| (start.unwrap_or(a).max(a), end.unwrap_or(b).min(b))))?;
         let take = |c: &ChannelInfo| topics.take(c);
         let select =
             Select { topic: &take, start, end, latched: self.latched, progress: &|time| progress.at(time) };

@@ -133,10 +133,10 @@ impl<'a> Tables<'a> {
     }
 
     fn pass(&mut self, recording: &Recording, selection: &Selection) -> Result<(), Failure> {
-        let progress = Progress::new(recording.time_range());
+        let progress = Progress::new(recording.time_range())?;
         self.list.iter_mut().for_each(|table| table.rows = 0);
         for message in recording.messages(selection).map_err(Failure::failed)? {
-            progress.at(message.log_time);
+            progress.at(message.log_time)?;
             if self.wanted.as_ref().is_some_and(|w| !w.take(&message.channel)) {
                 continue;
             }

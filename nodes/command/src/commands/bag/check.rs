@@ -11,8 +11,8 @@ Examples:
   grainlab bag check recordings/runs/demo-1-1
   grainlab bag check run.mcap --format json
 
-Reads every record: framing, checksums of chunks, attachments, summary and data, the index and metadata.yaml against the messages, the order
-of files, the recorder's ledger against the messages, what its recorder noted as disputed between processes, and the definitions
+Reads every record: framing, checksums of chunks, attachments, summary and data, the index and metadata.yaml (topics, counts, times, files, storage, compression) against the messages, the messages
+against the definitions of their types, the order of files, the recorder's ledger against the messages, what its recorder noted as disputed between processes, and the definitions
 of types against those of this program. Exit 0 without faults, else 3; a definition that is read by the names of its fields is no fault, nor are several runs in one recording, nor a
 ledger that is absent because another program, a copy, or `bag recover` wrote the file: then losses cannot be judged. What `bag recover` left out but for
 an incomplete end is a fault.";

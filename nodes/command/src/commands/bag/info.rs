@@ -17,6 +17,7 @@ pub(super) fn run(args: &Recorded) -> Result<Exit, Failure> {
         run: recording.metadata(METADATA_RECORD).and_then(|record| record.get("run").cloned()),
         strangers: strangers::strangers(&recording),
         disputes: strangers::disputes(&recording),
+        left_out: strangers::left_out(&recording),
         several_runs: SeveralRuns::of_scenes(&recording).map(|s| s.to_string()),
         unaccounted: recording.unaccounted(),
     };
@@ -40,6 +41,8 @@ struct View {
     strangers: Vec<StrangerView>,
     /// Why it is unknown which messages are right.
     disputes: Vec<String>,
+    /// Topics that the recorder of the run left out, in a sentence; null without.
+    left_out: Option<String>,
     /// That the recording has the scenes of several runs; null if it has one or none.
     several_runs: Option<String>,
     /// Files whose recorder was killed, or is still running: their messages are not in the counts of lost ones.
@@ -57,6 +60,7 @@ fn notes(view: &View) -> Vec<String> {
     view.disputes
         .iter()
         .chain(&view.several_runs)
+        .chain(&view.left_out)
         .cloned()
         .chain(view.unaccounted.iter().map(uncounted))
         .collect()

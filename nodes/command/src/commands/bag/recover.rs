@@ -11,7 +11,7 @@ Examples:
 Completes the recording of a recorder that was killed, so that other tools read it: every readable message keeps its
 bytes, times and sequence number, and every file is completed with its index; the directory gets a metadata.yaml. The original
 is kept as NAME.mcap.orig (metadata.yaml.orig) and may be removed after a check of the new one. A second call changes nothing. A recording that
-is complete is not changed. Exit 3 if a part could not be read, with a message.";
+is complete is not changed. Exit 3 if a part could not be read, or a file of metadata.yaml is missing, with a message.";
 
 /// Arguments of `grainlab bag recover`.
 #[derive(Debug, clap::Args)]

@@ -7,6 +7,7 @@ use grainlab_launcher::{Received, Supervised};
 use grainlab_node_kit::{Exit, RunId};
 use grainlab_recordings::Recording;
 use grainlab_recordings::scenes::SceneText;
+use grainlab_recordings::strangers;
 use grainlab_results::continuity::Exchanges;
 use grainlab_results::read_back::{self, ReadBack};
 use grainlab_results::{Launched, MeasuredPacking, NodeEnd, Printed, Summary};
@@ -98,6 +99,8 @@ pub(super) fn finish(
         reasons: supervised.reasons,
     };
     back.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));
+    let left_out = recording.as_ref().ok().and_then(strangers::left_out);
+    left_out.iter().for_each(|line| grainlab_console::say!("grainlab: {line}"));
     // The launcher has printed its reasons.
     back.complaints.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     let summary = Summary::new(launched, back, tallies.as_deref());

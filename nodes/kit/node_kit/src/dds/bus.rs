@@ -410,6 +410,10 @@ impl Bus for DdsBus {
         self.graph.offers(|guid| self.gate.admits(guid))
     }
 
+    fn strange_offers(&self) -> Vec<Offer> {
+        self.graph.offers(|guid| !self.gate.admits(guid))
+    }
+
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("count_published"))?;

@@ -239,6 +239,25 @@ fn offered_by(qos: &QosPolicies) -> Qos {
     }
 }
 
+/// The policies of which more is requested than offered, and how the tools of the command line set them.
+fn unfit(requested: &QosPolicies, offered: &QosPolicies) -> String {
+    let [wanted, given] = [offered_by(requested), offered_by(offered)];
+    let all = [
+        ("reliability", wanted.reliable && !given.reliable, ["reliable", "best_effort"]),
+        ("durability", wanted.transient_local && !given.transient_local, ["transient_local", "volatile"]),
+    ];
+    let unfit = all.into_iter().filter(|(_, unfit, _)| *unfit);
+    let list: Vec<String> = unfit
+        .map(|(policy, _, [more, less])| {
+            format!("{policy}, requested {more}, offered {less} (--qos-{policy} {more} or {less})")
+        })
+        .collect();
+    match offered.compliance_failure_wrt(requested) {
+        Some(other) if list.is_empty() => format!("{other:?}").to_lowercase(),
+        _ => list.join("; "),
+    }
+}
+
 fn policies(reliable: bool, transient_local: bool, depth: u32, max_samples: u32) -> QosPolicies {
     let clamped = |n: u32| i32::try_from(n).unwrap_or(i32::MAX);
     QosPolicyBuilder::new()
@@ -412,11 +431,10 @@ impl Discovery {
             let [local, remote] = [local, remote].map(|guid| Guid(guid.to_bytes()));
             Change::Matched { local, remote }
         };
-        let misfit =
-            |remote: GUID, what: &str, requested: &dyn std::fmt::Debug, offered: &dyn std::fmt::Debug| {
-                let remote = Guid(remote.to_bytes());
-                Change::Misfit(format!("{what} ({remote}): requested {requested:?}, offered {offered:?}"))
-            };
+        let misfit = |remote: GUID, what: &str, requested: &QosPolicies, offered: &QosPolicies| {
+            let policies = unfit(requested, offered);
+            Change::Misfit(format!("{what} ({}): {policies}", Guid(remote.to_bytes())))
+        };
         Some(match self.0.try_recv_status()? {
             Event::WriterDetected { writer } => {
                 let id = Guid(writer.guid.to_bytes());
@@ -438,13 +456,13 @@ impl Discovery {
             }
             Event::RemoteReaderQosIncompatible { remote_reader, requested_qos, offered_qos, .. } => misfit(
                 remote_reader,
-                "a reader requests more than this process offers and receives nothing",
+                "a reader requests more than this process offers and receives nothing: offer what it requests",
                 &requested_qos,
                 &offered_qos,
             ),
             Event::RemoteWriterQosIncompatible { remote_writer, requested_qos, offered_qos, .. } => misfit(
                 remote_writer,
-                "a writer offers less than this process requests, so that its samples are not received",
+                "a writer offers less than this process requests, so that its samples are not received: request what it offers",
                 &requested_qos,
                 &offered_qos,
             ),

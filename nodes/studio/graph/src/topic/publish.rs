@@ -69,9 +69,10 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let (type_name, schema) = schema(&args.type_name, &args.messages)?;
     let text = args.values.as_deref().unwrap_or("{}");
-    let options = serde_saphyr::options! { strict_booleans: true };
-    let wrong =
-        |e| format!("{text:?} is not YAML (numbers that are not finite are \"NaN\", \"inf\", \"-inf\"): {e}");
+    let non_finite_float_policy = serde_saphyr::NonFiniteFloatPolicy::AsString;
+    let options =
+        serde_saphyr::options! { strict_booleans: true, non_finite_float_policy: non_finite_float_policy };
+    let wrong = |e| format!("{text:?} is not YAML: {e}");
     let given = serde_saphyr::from_str_with_options(text, options).map_err(|e| Failure::usage(wrong(e)))?;
     let message = schema.given(&given).map_err(|fault| Failure::usage(format!("{type_name}: {fault}")))?;
     let shown = grainlab_any_message::Shown::new(&message).json();

@@ -17,3 +17,14 @@ fn rtps_ticks_become_nanoseconds_to_half_a_tick() {
         assert_eq!(nanos(Timestamp::from_ticks(ticks)), expected);
     }
 }
+
+#[test]
+fn qos_that_does_not_fit_is_named_by_its_policies_with_what_to_type() {
+    let [strict, loose] = [true, false].map(|both| policies(both, both, 5, 10));
+    let durability = "durability, requested transient_local, offered volatile (--qos-durability transient_local or volatile)";
+    let both = format!(
+        "reliability, requested reliable, offered best_effort (--qos-reliability reliable or best_effort); {durability}"
+    );
+    assert_eq!(unfit(&strict, &loose), both);
+    assert_eq!(unfit(&strict, &policies(true, false, 5, 10)), durability);
+}
