@@ -67,7 +67,13 @@ fn records_become_the_speeds_that_the_inversion_reads() {
     assert!(rows.iter().all(|row| row[column("speed_shared_sigma")].parse::<f64>().unwrap() > 0.0));
     let note = "the delay of the electronics was taken as 0: all records";
     assert!(String::from_utf8_lossy(&out.stderr).contains(note));
-    assert!(folder.path().join("picked/002-p-p-along.svg").exists());
+    let drawn = std::fs::read_to_string(folder.path().join("picked/002-p-p-along.svg")).unwrap();
+    assert!(
+        ["first_arrival", "peak", "cross_correlation"]
+            .iter()
+            .any(|by| drawn.contains(&format!("m/s by {by}"))),
+        "{drawn}"
+    );
     assert_eq!(std::fs::read_dir(folder.path().join("picked")).unwrap().count(), 2);
     let invert = ["invert", "--speeds", "speeds.csv", "--grain-shear-modulus", "29e9", "--poisson", "0.2"];
     let read = grainlab(folder.path(), &invert);

@@ -174,3 +174,23 @@ fn scenes_are_listed_shown_checked_and_begun() {
         "{err}"
     );
 }
+
+#[test]
+fn a_packing_to_start_from_that_no_phase_would_call_at_rest_is_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let packing = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/reference/ref_packing_500.csv.gz");
+    let check = |limit: &str| {
+        let path = folder.path().join("on.toml");
+        let scene = format!(
+            "name = 'on'\nfriction = 0.1\nstart.packing = '{packing}'\n[[phase]]\nkind = 'servo'\ncontrol.xx.stress = 1e5\n\
+             until.unbalanced = {limit}\n"
+        );
+        std::fs::write(&path, scene).unwrap();
+        let check = grainlab(&["scene", "check", &path.to_string_lossy()]);
+        assert_eq!(check.status.code(), Some(0), "{}", text(&check.stderr));
+        text(&check.stdout)
+    };
+    assert!(!check("1e-9").contains("do not balance"));
+    let noted = check("1e-12");
+    assert!(noted.contains("do not balance") && noted.contains("phases end at 1e-12 or less"), "{noted}");
+}

@@ -111,6 +111,11 @@ impl DataFile {
         // The name follows the numbers.
         let name = words.iter().skip_while(|w| !w.starts_with(char::is_alphabetic)).copied();
         let name = name.collect::<Vec<_>>().join(" ");
+        if name.is_empty() {
+            let problem =
+                "numbers without a name, as in `500 atoms` or `0 0.01 xlo xhi`: this is no LAMMPS data file";
+            return Err(line.error(problem));
+        }
         if !self.named.insert(name.clone()) {
             return Err(line.error(format!("{name} occurs twice")));
         }

@@ -83,7 +83,7 @@ fn two_columns_of_a_dump_that_give_one_quantity_must_agree() {
 }
 
 #[test]
-fn a_data_file_states_its_box_once_and_all_velocities_or_none() {
+fn a_data_file_names_its_numbers_and_states_its_box_once_and_all_velocities_or_none() {
     let data = |header: &str, velocities: &str| {
         let text = format!(
             "LAMMPS data file, timestep = 12\n\n2 atoms\n0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\n{header}\nAtoms # sphere\n\n\
@@ -94,6 +94,7 @@ fn a_data_file_states_its_box_once_and_all_velocities_or_none() {
     let error = |header: &str, velocities: &str| data(header, velocities).unwrap_err().to_string();
     let moving = "\nVelocities\n\n2 1 0 0 0 0 0\n";
     assert!(error("0 2 xlo xhi\n", "").contains("xlo xhi occurs twice"));
+    assert!(error("7 8 9\n", "").contains("line 7: numbers without a name"));
     assert!(error("1 0 0 avec\n0 1 0 bvec\n0 0 1 cvec\n0 0 0 abc origin\n", "").contains("a box twice"));
     assert!(error("", moving).contains("1 velocities, but none of grain 1"));
     assert!(error("", &format!("{moving}2 1 0 0 0 0 0\n")).contains("occurs twice"));

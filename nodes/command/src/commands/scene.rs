@@ -2,9 +2,11 @@
 
 use clap::Subcommand;
 use grainlab_console::{Failure, Table, print, say, worse};
+use grainlab_core::non_rattlers;
+use grainlab_micromechanics::unbalanced_force_ratio;
 use grainlab_node_kit::Exit;
-use grainlab_recordings::scenes;
-use grainlab_scene::BUILT_IN;
+use grainlab_recordings::scenes::{self, SceneText};
+use grainlab_scene::{BUILT_IN, Condition, Measure};
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::PathBuf;
@@ -93,7 +95,7 @@ fn check_all(names: &[String]) -> Result<Exit, Failure> {
                 let (scene, published) = (&found.scene, found.scene.phases.iter().filter(|p| p.publish));
                 let numbers = [scene.grains as usize, scene.phases.len(), published.count()];
                 table.row([name.clone()].into_iter().chain(numbers.map(|n| n.to_string())));
-                notes.extend(scene.notes().into_iter().map(|note| format!("note: {name}, {note}\n")));
+                notes.extend(notes_on(&found).into_iter().map(|note| format!("note: {name}, {note}\n")));
                 sound = true;
             }
             Err(failure) => {
@@ -106,6 +108,26 @@ fn check_all(names: &[String]) -> Result<Exit, Failure> {
         print(&(table.text() + &notes.concat()))?;
     }
     Ok(exit)
+}
+
+/// Notes on a scene, and on the packing that it starts from where no phase would call it at rest.
+pub(super) fn notes_on(found: &SceneText) -> Vec<String> {
+    let mut notes = found.scene.notes();
+    let limit = |c: &Condition| match *c {
+        Condition::AtMost(Measure::Unbalanced, limit) => Some(limit),
+        _ => None,
+    };
+    let limits = found.scene.phases.iter().flat_map(|phase| phase.until.all.iter().filter_map(limit));
+    let unbalanced = found.start.as_ref().and_then(|p| unbalanced_force_ratio(p, &non_rattlers(p)));
+    if let (Some(found), Some(limit)) = (unbalanced, limits.reduce(f64::max))
+        && found > limit
+    {
+        notes.push(format!(
+            "forces of the packing to start from do not balance: the mean net force of a grain is {found:.1e} of the mean contact \
+             force, and phases end at {limit:e} or less; the run begins with its motion"
+        ));
+    }
+    notes
 }
 
 fn create(new: &New) -> Result<Exit, Failure> {

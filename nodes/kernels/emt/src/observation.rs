@@ -87,10 +87,12 @@ impl Observation {
         })
     }
 
-    /// Observation with independent errors of this relative standard deviation for all moduli: 0.01 is one percent.
+    /// Observation with independent errors of this relative standard deviation for all moduli: 0.01 is one percent. A
+    /// negative or infinite one is refused by [`Observation::checked`].
     #[must_use]
     pub fn with_relative_error(mut self, relative: f64) -> Self {
-        let variance = self.moduli.values().map(|m| m.map_or(0.0, |m| (relative * m).powi(2)));
+        // The sign is kept for the check.
+        let variance = self.moduli.values().map(|m| m.map_or(0.0, |m| relative * relative.abs() * m * m));
         self.covariance = Some(ModuliCovariance::from_diagonal(&variance.into()));
         self
     }
@@ -212,13 +214,17 @@ fn check_covariance(covariance: &ModuliCovariance) -> Result<(), EmtError> {
     if asymmetry > slack {
         return Err(EmtError::Covariance { fault: "it is not symmetric", value: asymmetry });
     }
+    let least = covariance.diagonal().min();
+    if least < -slack {
+        return Err(EmtError::Covariance {
+            fault: "a variance, or the relative error, is negative",
+            value: least,
+        });
+    }
     // A diagonal matrix, the common case, needs no eigenvalues.
     let diagonal = ModuliCovariance::from_diagonal(&covariance.diagonal());
-    let lowest = if *covariance == diagonal {
-        covariance.diagonal().min()
-    } else {
-        SymmetricEigen::new(*covariance).eigenvalues.min()
-    };
+    let lowest =
+        if *covariance == diagonal { least } else { SymmetricEigen::new(*covariance).eigenvalues.min() };
     if lowest < -slack {
         return Err(EmtError::Covariance { fault: "it has a negative eigenvalue", value: lowest });
     }

@@ -3,6 +3,7 @@
 use super::finish::finish;
 use super::order;
 use super::output::Output;
+use crate::commands::scene::notes_on;
 use grainlab_console::Failure;
 use grainlab_launcher::{NodePlan, Outline, RecordedSpeeds, Run, Supervised, Supervisor, run_in_one_process};
 use grainlab_node_kit::{Exit, FreeDomain, Network, OffTheBus, RunId};
@@ -30,7 +31,7 @@ pub(super) fn conduct(
         scene.scene.grains,
         directory.display()
     );
-    for note in scene.scene.notes() {
+    for note in notes_on(scene) {
         grainlab_console::say!("grainlab: note: {note}");
     }
     // Programs that measured packings before an interruption are waited for as before it.

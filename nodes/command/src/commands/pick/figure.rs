@@ -59,8 +59,8 @@ fn figure(row: &Row, record: &Record, picked: &Picks) -> Figure {
         [Entry::Colour(k + 1, p.method.word().into()), speed]
     };
     Figure {
-        title: format!("{}: {:.1} +- {:.1} m/s", row.name, best.speed, best.speed_stddev),
-        subtitle: "source above, receiver below (no offset, no crosstalk, sign of the source); lines: long waves by each pick, 95 %".into(),
+        title: format!("{}: {:.1} +- {:.1} m/s by {}", row.name, best.speed, best.speed_stddev, best.method.word()),
+        subtitle: "source above, receiver below (no offset, no crosstalk, sign of the source); lines: long waves by each pick, 95 %; *: least error".into(),
         x: Axis::linear("time after the start of the source, µs"),
         y: Axis::linear("signal over the largest of the source, of the arrival"),
         series: [source, receiver].into_iter().chain(picked.picks.iter().enumerate().map(mark)).collect(),

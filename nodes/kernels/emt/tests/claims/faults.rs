@@ -158,6 +158,9 @@ fn moduli_that_leave_another_one_no_stable_value_are_refused_by_its_name() {
 fn uncertainties_must_be_uncertainties() {
     assert!(matches!(fault(|o| o.conditions.pressure.stddev = -1.0), EmtError::NegativeStddev { .. }));
     assert!(matches!(fault(|o| o.conditions.gamma.stddev = -0.1), EmtError::NegativeStddev { .. }));
+    let relative = |error: f64| fault(|o| o.clone_from(&sound().with_relative_error(error))).to_string();
+    assert!(relative(-0.01).contains("the relative error, is negative"));
+    assert!([f64::NAN, f64::INFINITY].into_iter().all(|error| relative(error).contains("is not finite")));
     let of = |c: Mat3| sound().with_g12_g13_theta_covariance(&(c * 1e12));
     let skew = of(Mat3::new(1.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0));
     assert!(fault(|o| o.clone_from(&skew)).to_string().contains("symmetric"));

@@ -185,6 +185,28 @@ fn a_theta_that_contradicts_the_other_five_gives_a_warning_about_given_moduli_on
     assert_eq!(found.information(InferredQuantity::Z).unwrap()[Modulus::C13 as usize], 0.0);
 }
 
+/// At the least errors the covariance of six would be singular but for rounding.
+#[test]
+fn a_theta_that_follows_from_the_other_moduli_adds_nothing_at_any_error() {
+    let off = [(Modulus::G12, 1.02), (Modulus::C33, 0.99), (Modulus::C13, 1.03)];
+    let sound = moduli(5.2, 0.03).without(Modulus::Theta);
+    let five = off.iter().fold(sound, |m, (q, by)| m.with(*q, by * m.get(*q).unwrap()));
+    let six = Observation::new(five, conditions()).checked().unwrap().moduli;
+    let theta = six.get(Modulus::Theta).unwrap();
+    for error in [0.0, 1e-7, 8e-7, 2e-6, 5e-6, 1e-5, 2e-5, 4e-5, 1e-3, 0.01] {
+        let infer = |m: Moduli| {
+            let o = Observation::new(m, conditions()).with_relative_error(error);
+            Relaxed.infer(&o, ours()).unwrap_or_else(|e| panic!("{error}: {e}"))
+        };
+        let (with, without) = (infer(six), infer(five));
+        let sigmas = |e: &Estimate| [InferredQuantity::K, InferredQuantity::Z].map(|q| e.stddev(q).unwrap());
+        assert_eq!((sigmas(&with), with.misfit), (sigmas(&without), without.misfit), "{error}");
+        // One that does not follow counts, where the errors leave it room.
+        let measured = infer(six.with(Modulus::Theta, 1.002 * theta)).misfit.unwrap();
+        assert_eq!(measured.degrees_of_freedom, if error < 1e-4 { 3 } else { 4 }, "{error}");
+    }
+}
+
 #[test]
 fn an_orthotropic_medium_is_no_transversely_isotropic_one() {
     let m = moduli(5.2, 0.03);

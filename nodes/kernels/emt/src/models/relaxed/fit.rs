@@ -9,8 +9,9 @@ use crate::point_estimate::{Jacobian, PointEstimate};
 use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
-/// Relative error of the relation between the six moduli below which only five of them are independent.
-const NO_ROOM: f64 = 1e-6;
+/// Relative imbalance of the six moduli, and error of it, below which Θ follows from the other five and adds nothing: moduli of
+/// four digits, and a hundredth of the scatter of packings.
+const NO_ROOM: f64 = 1e-4;
 
 /// Share of the weight of a datum that the others must leave, for a difference from their prediction to be meaningful: they
 /// predict nothing where the fit goes through the datum, and the difference is rounding.
@@ -22,7 +23,7 @@ type ByInvariants = SMatrix<f64, MODULI, INVARIANTS>;
 type WithFollowing = SMatrix<f64, 2, MODULI>;
 
 /// The moduli used, in units of [`State::unit`]. A modulus that was not measured but follows from the others is left
-/// out; if all six were measured and their relation holds exactly, Θ is left out. Rows of moduli left out or not known
+/// out; if all six are given and Θ follows from the others, Θ is left out. Rows of moduli left out or not known
 /// have residual 0 and variance 1.
 pub(super) struct Data {
     pub(super) value: Moduli,
@@ -37,7 +38,8 @@ impl Data {
         let no_room = || {
             let errors = observation.covariance.as_ref();
             let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c));
-            observation.moduli.imbalance().is_some() && stddev.is_none_or(|s| s < NO_ROOM)
+            let follows = |imbalance: f64| imbalance.abs() < NO_ROOM || stddev.is_none_or(|s| s < NO_ROOM);
+            observation.moduli.imbalance().is_some_and(follows)
         };
         let left_out = observation.derived.or_else(|| no_room().then_some(Modulus::Theta));
         let is_used: [bool; MODULI] =
