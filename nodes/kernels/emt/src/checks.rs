@@ -106,6 +106,7 @@ pub(crate) fn common(
         add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
     }
     add(conditions.contact_law.is_none() && !any_contact, Warning::ContactLawAssumed);
+    add(compares_state && observation.grains.is_none(), Warning::GrainsUnknown);
     if !compares_state {
         for Outside { quantity, value, range, .. } in outside_errors(conditions, calibration) {
             add(true, Warning::StateOutsideFit { quantity, value, range });

@@ -75,6 +75,11 @@ pub enum Warning {
         "the spread of the grain sizes is not known: any from 0 to 0.3 is equally probable, in value and error"
     )]
     SizesUnknown,
+    /// The number of grains is not known; that of the packings of the calibration was taken.
+    #[error(
+        "the number of grains is not known: the error has the scatter of samples of 2000 grains; that of fewer is larger"
+    )]
+    GrainsUnknown,
     /// An input of the state contributes most of the variance of a quantity.
     #[error("{input} widens most: {:.0} % of the variance of {quantity} is due to it", 100.0 * share)]
     WidenedMost {
@@ -352,6 +357,7 @@ impl Warning {
             Warning::GammaAssumedZero
                 | Warning::StressRatioUnknown
                 | Warning::SizesUnknown
+                | Warning::GrainsUnknown
                 | Warning::WidenedMost { .. }
                 | Warning::ContactLawAssumed
                 | Warning::ContactsInferred { .. }

@@ -8,11 +8,13 @@ use toml::{Table, Value};
 const NO_SETTINGS: [&str; 3] = ["name", "description", "seed"];
 
 /// A setting with its value in each run.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Setting {
-    /// Key of the scene; of several that change together, the last parts of all.
+    /// Key of the scene; of several with the same values, the last parts of all.
     pub(crate) name: String,
     pub(crate) values: Vec<String>,
+    /// Last parts of keys with other values that change together with these.
+    with: BTreeSet<String>,
 }
 
 /// Most settings that a figure shows: one along its axis, one as lines.
@@ -28,11 +30,24 @@ impl Setting {
         self.name += if is_stress { ", kPa" } else { "" };
     }
 
-    /// Adds the last part of a key that changes together with this one.
-    fn join(&mut self, name: &str) {
+    /// Takes a key that changes together with this one.
+    fn join(&mut self, other: &Self) {
         let last = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
-        let parts: BTreeSet<String> = self.name.split(", ").chain(name.split(", ")).map(last).collect();
-        self.name = parts.into_iter().collect::<Vec<_>>().join(", ");
+        let parts = |setting: &Self| setting.name.split(", ").map(last).collect::<BTreeSet<String>>();
+        if self.values == other.values {
+            self.name = parts(self).union(&parts(other)).cloned().collect::<Vec<_>>().join(", ");
+        } else {
+            self.with.extend(parts(other));
+        }
+        self.with.extend(other.with.iter().cloned());
+    }
+
+    /// False for numbers that rise and fall independently, as those of a random design.
+    fn goes_with(&self, other: &Self) -> bool {
+        let (Some(a), Some(b)) = (self.numbers(), other.numbers()) else { return true };
+        let mut pairs: Vec<(f64, f64)> = a.into_iter().zip(b).collect();
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        pairs.is_sorted_by(|a, b| a.1 <= b.1) || pairs.is_sorted_by(|a, b| a.1 >= b.1)
     }
 
     /// The values, if all are numbers.
@@ -52,7 +67,7 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
     let scenes: Vec<String> = runs.iter().map(|run| run.scene_name()).collect();
     let tables: Vec<BTreeMap<String, String>> = runs.iter().map(|run| keys(&run.scene_text)).collect();
     let names: BTreeSet<&String> = tables.iter().flat_map(BTreeMap::keys).collect();
-    let mut found: BTreeMap<Vec<usize>, Setting> = BTreeMap::new();
+    let mut found: Vec<(Vec<usize>, Setting)> = Vec::new();
     let firsts = |values: &[String]| -> Vec<usize> {
         values.iter().map(|v| values.iter().position(|w| w == v).unwrap_or(0)).collect()
     };
@@ -62,39 +77,50 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
         if values.iter().zip(&of_scene).all(|(v, first)| *v == values[*first]) {
             continue;
         }
-        let new = Setting { name: name.clone(), values };
-        let known = found.entry(firsts(&new.values)).or_insert_with(|| new.clone());
-        if known.name != new.name {
-            // Values have their keys where not every scene has these, as for laws of sizes.
-            let word = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
-            for (value, other) in known
-                .values
-                .iter_mut()
-                .zip(&new.values)
-                .filter(|(value, other)| value.is_empty() != other.is_empty() || value.contains(' '))
-            {
-                if !other.is_empty() {
-                    let more = format!("{} {other}", word(name));
-                    *value = if value.is_empty() { more } else { format!("{value}, {more}") };
-                }
+        let new = Setting { name: name.clone(), values, ..Setting::default() };
+        let pattern = firsts(&new.values);
+        let Some((_, known)) = found.iter_mut().find(|(p, known)| *p == pattern && known.goes_with(&new))
+        else {
+            found.push((pattern, new));
+            continue;
+        };
+        known.join(&new);
+        // Values have their keys where not every scene has these, as for laws of sizes.
+        let word = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
+        for (value, other) in known
+            .values
+            .iter_mut()
+            .zip(&new.values)
+            .filter(|(value, other)| value.is_empty() != other.is_empty() || value.contains(' '))
+        {
+            if !other.is_empty() {
+                let more = format!("{} {other}", word(name));
+                *value = if value.is_empty() { more } else { format!("{value}, {more}") };
             }
-            known.join(name);
         }
     }
+    found.sort_by(|a, b| a.0.cmp(&b.0));
     let of_scenes = of_scene.iter().any(|first| *first > 0);
     // A key whose values follow from those of another one, as a drag that was set with each size, would be a third setting.
     let follows = |b: &[usize], a: &[usize]| a != b && a.iter().zip(b).all(|(a, other)| b[*a] == *other);
     while found.len() + usize::from(of_scenes) > MOST_OF_A_FIGURE {
-        let pair = found.keys().flat_map(|a| found.keys().map(move |b| (a.clone(), b.clone())));
-        let Some((a, b)) = pair.into_iter().find(|(a, b)| follows(b, a)) else { break };
-        let Some(follower) = found.remove(&b) else { break };
-        found.entry(a).and_modify(|known| known.join(&follower.name));
+        let pairs = (0..found.len()).flat_map(|a| (0..found.len()).map(move |b| (a, b)));
+        let joins = |(a, b): &(usize, usize)| {
+            follows(&found[*b].0, &found[*a].0) && found[*a].1.goes_with(&found[*b].1)
+        };
+        let Some((a, b)) = pairs.into_iter().find(joins) else { break };
+        let follower = found[b].1.clone();
+        found[a].1.join(&follower);
+        found.remove(b);
     }
-    let mut settings: Vec<Setting> = found.into_values().collect();
+    let mut settings: Vec<Setting> = found.into_iter().map(|(_, setting)| setting).collect();
     if of_scenes {
-        settings.push(Setting { name: "scene".to_owned(), values: scenes });
+        settings.push(Setting { name: "scene".to_owned(), values: scenes, ..Setting::default() });
     }
     settings.iter_mut().for_each(Setting::shorten);
+    for setting in settings.iter_mut().filter(|s| !s.with.is_empty()) {
+        setting.name += &format!(" (with {})", setting.with.iter().cloned().collect::<Vec<_>>().join(", "));
+    }
     settings
 }
 
@@ -141,7 +167,20 @@ mod tests {
         let all = [0.1, 0.2].map(|s| [(50, 3e3), (100, 1.5e3), (200, 1.5e3)].map(|(n, drag)| of(s, n, drag)));
         let found = differing(&all.iter().flatten().collect::<Vec<_>>());
         let names: Vec<(&str, usize)> = found.iter().map(|s| (s.name.as_str(), s.different())).collect();
-        assert_eq!(names, [("numerics.skin", 2), ("count, drag", 3)]);
+        assert_eq!(names, [("numerics.skin", 2), ("grains.count (with drag)", 3)]);
+    }
+
+    #[test]
+    fn settings_of_a_random_design_stay_apart() {
+        let of = |[mu, drag, spread]: [f64; 3]| {
+            let mut run = Run::default();
+            run.scene_text = format!("friction = {mu}\ndrag = {drag}\nspread = {spread}");
+            run
+        };
+        let runs = [[0.1, 3e3, 0.02], [0.2, 1e3, 0.03], [0.3, 2e3, 0.01]].map(of);
+        let names = |runs: &[&Run]| differing(runs).into_iter().map(|s| s.name).collect::<Vec<_>>();
+        assert_eq!(names(&runs.each_ref()), ["drag", "friction", "spread"]);
+        assert_eq!(names(&[&runs[0], &runs[1]]), ["drag (with friction, spread)"]);
     }
 
     #[test]

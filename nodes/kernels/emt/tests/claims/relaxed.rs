@@ -238,13 +238,17 @@ fn an_orthotropic_medium_is_no_transversely_isotropic_one() {
 
 /// Integrated over the priors, as an estimate for each q/p and each spread: what is unknown is in value and error, and said.
 #[test]
-fn unknown_stress_and_sizes_are_marginalised_and_said() {
+fn unknown_stress_and_sizes_are_marginalised_and_they_and_the_number_of_grains_said() {
     let o = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.002);
+    let o = Observation { grains: Some(2000), ..o };
     let known = Relaxed.infer(&o, ours()).unwrap();
     let unknown = Conditions { stress_ratio: None, size_spread: None, ..conditions() };
-    let assumed = Relaxed.infer(&Observation { conditions: unknown, ..o.clone() }, ours()).unwrap();
-    let told = |w: &Warning| matches!(w, Warning::StressRatioUnknown | Warning::SizesUnknown);
-    assert_eq!(assumed.warnings.iter().filter(|w| told(w)).count(), 2);
+    let assumed =
+        Relaxed.infer(&Observation { conditions: unknown, grains: None, ..o.clone() }, ours()).unwrap();
+    let told = |w: &Warning| {
+        matches!(w, Warning::StressRatioUnknown | Warning::SizesUnknown | Warning::GrainsUnknown)
+    };
+    assert_eq!(assumed.warnings.iter().filter(|w| told(w)).count(), 3);
     assert!(!known.warnings.iter().any(told), "{:?}", known.warnings);
     // ε follows q/p linearly: its error by q/p is its range over that of q/p, times the standard deviation.
     let at = |q: f64, stddev: f64| {

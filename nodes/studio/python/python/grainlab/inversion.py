@@ -42,7 +42,7 @@ def invert(
 
     Keywords of a state, each a number or an array (n,): ``pressure``; the moduli ``g12 g13 theta c11 c33 c13``; ``shear_modulus`` of the
     grains, all in Pa; ``poisson_ratio``, ``phi``, ``stress_ratio`` (q/p), ``size_spread``, ``gamma`` (deviatoric over volumetric strain),
-    all without unit; ``grains``, ``sample``. Only emt and hertz-mindlin use ``phi``, only emt and the ratios ``gamma``. Each may have an error, a standard deviation in its unit: ``g12_sigma``. NaN, None
+    all without unit; ``grains``, their number, 2000 if not known; ``sample``. Only emt and hertz-mindlin use ``phi``, only emt and the ratios ``gamma``. Each may have an error, a standard deviation in its unit: ``g12_sigma``. NaN, None
     and what a mask hides are not known. ``error`` is the relative error of each modulus without its own; None: unknown.
 
     Numbers give a dict: ``k``, ``z``, ``eps`` and others with ``_sigma`` and the 95 % ``_interval``, None if undetermined; ``status`` (ok,
