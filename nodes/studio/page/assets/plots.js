@@ -33,7 +33,7 @@
         const box = e.getBBox(), moved = e.transform.baseVal.consolidate()?.matrix.e ?? 0;
         return [box.x + box.width / 2 + moved, e.tagName === "circle" ? Number(e.getAttribute("cy")) : box.y + box.height / 2];
       });
-      const line = series.querySelector("path:not([stroke-opacity])"), corners = line ? [...line.getAttribute("d").matchAll(/[ML] ([-\d.]+) ([-\d.]+)/g)].map((c) => [Number(c[1]), Number(c[2])]) : [];
+      const line = series.querySelector("path:not([stroke-opacity]):not([d*=H])"), corners = line ? [...line.getAttribute("d").matchAll(/[ML] ([-\d.]+) ([-\d.]+)/g)].map((c) => [Number(c[1]), Number(c[2])]) : [];
       const points = marks.length ? marks : corners, near = points.reduce((best, p) => (best && Math.abs(best[0] - x) <= Math.abs(p[0] - x) ? best : p), null);
       // A point has a value near it; a curve none before its first corner and behind its last one, but for a few pixels.
       if (!near || Math.abs(near[0] - x) > (marks.length ? 14 : 4) && (marks.length || x < points[0][0] || x > points.at(-1)[0])) continue;
