@@ -68,6 +68,12 @@ impl<'a> OverSettings<'a> {
         Some(Self { along, by, whole, x, kept, places, curves, left_out })
     }
 
+    /// True if runs differ in the seed alone, so that there is something to average.
+    fn has_seeds(&self) -> bool {
+        let place = |n: &usize| (self.by.as_ref().map_or("", |s| &s.values[*n]), self.x[*n].to_bits());
+        self.kept.iter().map(place).collect::<BTreeSet<_>>().len() < self.kept.len()
+    }
+
     /// Means of a quantity over seeds along a curve.
     fn means(&self, quantity: usize, curve: &str) -> Vec<(f64, Mean)> {
         let of_curve = |n: &&usize| self.by.as_ref().map_or("", |s| &s.values[**n]) == curve;
@@ -134,7 +140,10 @@ impl<'a> OverSettings<'a> {
         let drawn: Html = self.whole[0].1.iter().enumerate().filter(has_value).map(draw).collect();
         let curves =
             self.by.as_ref().map_or_else(String::new, |s| format!(", with a curve for each {}", s.name));
-        let mut about = format!("Points: means over seeds; bars: their standard errors{curves}.");
+        let mut about = match self.has_seeds() {
+            true => format!("Points: means over seeds; bars: their standard errors{curves}."),
+            false => format!("Points: single runs{curves}."),
+        };
         if self.left_out > 0 {
             let runs = grainlab_console::count(self.left_out, "run");
             about += &format!(" Left out: {runs}, not complete or repeated.");
@@ -161,9 +170,8 @@ fn change(of: &str, along: &str, [(from, a), (to, b)]: [(f64, Mean); 2]) -> Stri
     let apart = a.standard_errors_from(&b).filter(|apart| *apart > MUCH);
     match (a.differs_from(&b), apart) {
         (None, _) => {
-            format!(
-                "{of} is {first} and {second}, with a single run at one of them: the scatter is not known."
-            )
+            let single = if a.count == b.count { "each" } else { "one of them" };
+            format!("{of} is {first} and {second}, with a single run at {single}: the scatter is not known.")
         }
         (Some(true), _) if b.value > a.value => format!("{of} rises from {first} to {second}."),
         (Some(true), _) => format!("{of} falls from {first} to {second}."),
@@ -233,6 +241,7 @@ mod tests {
             "{two}"
         );
         assert!(said(&[5.0, 5.2, 5.1], &[5.1, 5.0, 5.2]).contains("does not change beyond its scatter"));
-        assert!(said(&[5.0], &[4.0]).ends_with("the scatter is not known."));
+        assert!(said(&[5.0], &[4.0]).ends_with("with a single run at each: the scatter is not known."));
+        assert!(said(&[5.0], &[4.0, 4.1]).contains("with a single run at one of them"));
     }
 }
