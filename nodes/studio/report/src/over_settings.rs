@@ -185,13 +185,13 @@ fn change(of: &str, along: &str, [(from, a), (to, b)]: [(f64, Mean); 2]) -> Stri
     }
 }
 
-/// A figure for each quantity: a point for each run, in the order of the table.
+/// A figure for each quantity: a point for each run, over its number in the table.
 pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
     let draw = |(q, (name, _)): (usize, &(String, Option<f64>))| {
         let values =
             || all.iter().enumerate().filter_map(|(n, (run, values))| Some((n + 1, run, values[q].1?)));
         let points = values().map(|(n, run, value)| Point {
-            tooltip: Some(format!("{}: {}", run.name(), six_digits(value))),
+            tooltip: Some(format!("{n} {}: {}", run.name(), six_digits(value))),
             ..Point::at(n as f64, value)
         });
         let series = vec![Series {
@@ -202,11 +202,12 @@ pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
         }];
         let drawn = Figure {
             title: titled(name),
-            x: Axis::linear("run, in the order of the table"),
+            x: Axis::linear("number of the run in the table"),
             series,
             ..Figure::default()
         };
-        let data = csv(["run", "value"], values().map(|(_, run, value)| [run.name(), six_digits(value)]));
+        let rows = values().map(|(n, run, value)| [n.to_string(), run.name(), six_digits(value)]);
+        let data = csv(["no", "run", "value"], rows);
         (values().next().is_some()).then(|| figure(&format!("by-run-{}", q + 1), drawn.element(), "", &data))
     };
     grid(all[0].1.iter().enumerate().filter_map(draw).collect())

@@ -231,6 +231,7 @@ fn the_table_of_many_runs_has_a_row_for_each_and_leads_to_their_pages() {
     });
     let page = overview(&runs);
     assert!(page.contains("2 runs of made") && page.contains("href=\"one/report.html\""));
+    assert!(page.contains("<th scope=\"row\" class=\"n\">2</th><td><a href=\"two%20"), "rows are numbered");
     // These runs have only a summary.
     assert!(page.contains("two &amp; three</a>") && page.contains("damaged") && !page.contains(">complete<"));
 }
