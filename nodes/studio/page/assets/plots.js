@@ -109,10 +109,10 @@
       group.replaceChildren();
       for (const [v, words] of marks(of)) {
         make("line", { ...line(of.share(v)), class: "grid" }, group);
-        make("text", { ...text(of.share(v)), class: "ink" }, group).textContent = words.replace("-", "−");
+        make("text", { ...text(of.share(v), words), class: "ink" }, group).textContent = words.replace("-", "−");
       }
     };
-    redraw(".marks", part, (s) => ({ x1: left + width * s, x2: left + width * s, y1: top, y2: bottom }), (s) => ({ x: left + width * s, y: bottom + 16, "text-anchor": "middle" }));
+    redraw(".marks", part, (s) => ({ x1: left + width * s, x2: left + width * s, y1: top, y2: bottom }), (s, words) => ({ x: Math.min(left + width * s, svg.viewBox.baseVal.width - 3.8 * words.length), y: bottom + 16, "text-anchor": "middle" }));
     redraw(".marks-up", axis(svg.dataset.up), (s) => ({ x1: left, x2: right, y1: bottom - (bottom - top) * s, y2: bottom - (bottom - top) * s }), (s) => ({ x: left - 8, y: bottom - (bottom - top) * s + 4, "text-anchor": "end" }));
   };
   // Plots over a common axis show the same part.

@@ -34,6 +34,7 @@ pub(super) struct Key {
 /// A plot under construction.
 pub(super) struct Drawing {
     text: String,
+    width: f64,
     frame: Area,
 }
 
@@ -60,7 +61,7 @@ impl Drawing {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
              font-size=\"12\"{attributes}>\n{first}<rect width=\"{width}\" height=\"{height}\" class=\"paper\"/>\n"
         );
-        Self { text, frame }
+        Self { text, width, frame }
     }
 
     /// The complete SVG.
@@ -105,7 +106,7 @@ impl Drawing {
         let _ = writeln!(self.text, "{element}");
     }
 
-    /// Lines and labels of the horizontal axis; a label that has no room is left out.
+    /// Lines and labels of the horizontal axis. A label that has no room is left out, and the last one ends within the picture.
     pub(super) fn marks(&mut self, x: &Range) {
         let [_, top, _, bottom] = self.frame;
         let mut free = f64::NEG_INFINITY;
@@ -113,9 +114,10 @@ impl Drawing {
             for (value, text) in x.marks() {
                 let (at, half) = (x.at(value), HALF_LETTER * text.chars().count() as f64);
                 drawing.segment([at, top, at, bottom], "grid");
-                if at - half > free {
-                    drawing.text([at, bottom + 16.0], "middle", "class=\"ink\"", &text);
-                    free = at + half + HALF_LETTER;
+                let middle = at.min(drawing.width - half);
+                if middle - half > free {
+                    drawing.text([middle, bottom + 16.0], "middle", "class=\"ink\"", &text);
+                    free = middle + half + HALF_LETTER;
                 }
             }
         });
