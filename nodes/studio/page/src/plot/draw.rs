@@ -17,6 +17,12 @@ const FRAME: Area = [70.0, 60.0, 640.0, 490.0];
 /// Half the width of a digit.
 pub(super) const HALF_LETTER: f64 = 3.8;
 
+/// Distance between two lines of a title.
+pub(super) const TITLE_LINE: f64 = 16.0;
+
+/// Mean width of a letter of a title.
+const TITLE_LETTER: f64 = 7.3;
+
 /// Distance between two lines of the legend.
 const LEGEND_LINE: f64 = 20.0;
 
@@ -51,7 +57,10 @@ impl Drawing {
     /// A small plot of a page, with axes at `frame`. The text `about` is for readers who do not see it.
     pub(super) fn small(size: [f64; 2], frame: Area, title: &str, about: &str, attributes: &str) -> Self {
         let mut drawing = Self::blank(size, frame, &(of_page(about) + attributes), "");
-        drawing.text([8.0, 20.0], "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", title);
+        for (n, line) in title_lines(title, size[0]).iter().enumerate() {
+            let at = [8.0, 20.0 + TITLE_LINE * n as f64];
+            drawing.text(at, "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", line);
+        }
         drawing
     }
 
@@ -246,6 +255,25 @@ impl Drawing {
             "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" {more}>{content}</text>"
         );
     }
+}
+
+/// Lines of the title of a small plot of this width: whole words, and parts of one that is longer than a line.
+pub(super) fn title_lines(title: &str, width: f64) -> Vec<String> {
+    let most = ((width - 16.0) / TITLE_LETTER) as usize;
+    let mut lines = vec![String::new()];
+    for word in title.split_whitespace() {
+        for part in word.chars().collect::<Vec<_>>().chunks(most) {
+            let last = lines.len() - 1;
+            let gap = if lines[last].is_empty() { "" } else { " " };
+            if lines[last].chars().count() + gap.len() + part.len() > most {
+                lines.push(part.iter().collect());
+            } else {
+                lines[last] += gap;
+                lines[last].extend(part);
+            }
+        }
+    }
+    lines
 }
 
 /// Attributes of a plot whose colours are those of its page.
