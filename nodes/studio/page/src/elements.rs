@@ -202,9 +202,30 @@ pub fn six_digits(value: f64) -> String {
     }
 }
 
+/// A part of a name of a file for a quantity or a setting: small letters, digits and `_`, Greek letters by their names, and `-`
+/// for anything else.
+pub fn slug(name: &str) -> String {
+    let letter = |c: char| match c {
+        'φ' => "phi".to_owned(),
+        'ε' => "eps".to_owned(),
+        'θ' => "theta".to_owned(),
+        'µ' | 'μ' => "mu".to_owned(),
+        'a'..='z' | '0'..='9' | '_' => c.to_string(),
+        _ => " ".to_owned(),
+    };
+    let text: String = name.to_lowercase().chars().map(letter).collect();
+    text.split_whitespace().collect::<Vec<_>>().join("-")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_name_of_a_file_has_plain_letters() {
+        let all = ["φ", "ε_k", "Θ", "G12", "error of z", "phase.load.friction", "Ä, b"].map(slug);
+        assert_eq!(all, ["phi", "eps_k", "theta", "g12", "error-of-z", "phase-load-friction", "b"]);
+    }
 
     #[test]
     fn numbers_keep_six_digits_and_no_zeros_that_say_nothing_and_zero_has_no_sign() {

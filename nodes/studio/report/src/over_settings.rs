@@ -4,7 +4,7 @@ use crate::run::Run;
 use crate::settings::{Setting, differing};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
-use grainlab_page::{Html, Mean, csv, figure, grid, paragraph, plus_minus, six_digits};
+use grainlab_page::{Html, Mean, csv, figure, grid, paragraph, plus_minus, six_digits, slug};
 use std::collections::BTreeSet;
 
 /// Ratio of the ends from which an axis is logarithmic.
@@ -128,8 +128,11 @@ impl<'a> OverSettings<'a> {
             }
             let (title, x) = (titled(name), axis.clone());
             let drawn = Figure { title, x, series, ..Figure::default() };
-            let data = csv([along.as_str(), by, "n", "mean", "standard_error"], rows);
-            figure(&format!("over-settings-{}", q + 1), drawn.element(), "", &data)
+            let data = match by {
+                "" => csv([along.as_str(), "n", "mean", "standard_error"], rows.into_iter().map(|[at, _, n, m, e]| [at, n, m, e])),
+                by => csv([along.as_str(), by, "n", "mean", "standard_error"], rows),
+            };
+            figure(&format!("over-{}-{}", slug(along), file(name)), drawn.element(), "", &data)
         };
         // Equal values, such as those of a target, need no figure.
         let has_value = |(q, _): &(usize, _)| {
@@ -208,7 +211,7 @@ pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
         };
         let rows = values().map(|(n, run, value)| [n.to_string(), run.name(), six_digits(value)]);
         let data = csv(["no", "run", "value"], rows);
-        (values().next().is_some()).then(|| figure(&format!("by-run-{}", q + 1), drawn.element(), "", &data))
+        (values().next().is_some()).then(|| figure(&format!("by-run-{}", file(name)), drawn.element(), "", &data))
     };
     grid(all[0].1.iter().enumerate().filter_map(draw).collect())
 }
@@ -219,6 +222,11 @@ fn titled(name: &str) -> String {
     let known = inferred.find(|(symbol, _)| *symbol == name);
     let known = known.or_else(|| QUANTITIES.iter().map(|q| (q.symbol, q.meaning)).find(|q| q.0 == name));
     known.map_or_else(|| name.to_owned(), |(_, meaning)| format!("{name}: {meaning}"))
+}
+
+/// Part of the name of a file for a quantity, without its unit.
+fn file(name: &str) -> String {
+    slug(name.split(", ").next().unwrap_or(name))
 }
 
 /// Decimal places that give a standard error two digits.

@@ -4,7 +4,7 @@ use crate::page::STYLE;
 use grainlab_emt::{Interval, PressureEstimate, SeriesEstimate, SpeedMode, SpeedSeries};
 use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 use grainlab_page::{
-    Cell, Html, Page, Section, csv, details, figure, finding, grid, heading, html, list, paragraph, table,
+    Cell, Html, Page, Section, csv, details, figure, finding, grid, heading, html, list, paragraph, slug, table,
 };
 use std::f64::consts::PI;
 
@@ -105,6 +105,16 @@ fn lower_end(p: &PressureEstimate) -> Option<String> {
     (p.z_beyond > OPEN).then(|| format!("{:.2} or more", p.z.low))
 }
 
+/// Name of the file of a figure of a sample.
+fn file(n: usize, sample: &InferredSample<'_>, figure: &str) -> String {
+    let name = slug(sample.name);
+    match (name.is_empty(), n) {
+        (false, _) => format!("{figure}-{name}"),
+        (true, 0) => figure.to_owned(),
+        (true, n) => format!("{figure}-{}", n + 1),
+    }
+}
+
 fn named(sample: &InferredSample<'_>, what: &str) -> String {
     if sample.name.is_empty() { what.to_owned() } else { format!("{}: {what}", sample.name) }
 }
@@ -179,7 +189,7 @@ fn over_pressure(
     if sample.is_contradictory {
         caption += " The status is contradictory.";
     }
-    figure(&format!("{name}-{n}"), drawn.element(), caption, &data)
+    figure(&file(n, sample, &format!("{name}-over-pressure")), drawn.element(), caption, &data)
 }
 
 fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
@@ -270,7 +280,7 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
     });
     let data = csv(["pressure_pa", "mode", "speed", "predicted", "predicted_sigma"], rows);
     grid(figure(
-        &format!("speeds-{n}"),
+        &file(n, sample, "speeds"),
         drawn.element(),
         "Markers: measured. Lines with errors: predicted from the other speeds.",
         &data,

@@ -122,6 +122,7 @@ fn an_extreme_of_one_exchange_is_in_the_data_of_the_page() {
     let page = Run::read(folder.path()).html().unwrap();
     let line = page.lines().find(|l| l.starts_with("xx,") && l.contains(",987.654"));
     assert_eq!(line, Some("xx,0.001234,987.654"));
+    assert!(page.contains("series,time_s,stress_kpa\n") && page.contains("series,time_s,solid_fraction\n"));
     let lines = page.lines().filter(|l| l.starts_with("xx,")).count();
     assert!((100..=2500).contains(&lines), "{lines} points of {} exchanges", 2 * EXCHANGES);
 }

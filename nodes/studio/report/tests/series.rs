@@ -40,21 +40,21 @@ fn page(pressures: &[f64], angles: &[f64], (z_beyond, is_contradictory): (f64, b
 #[test]
 fn the_page_of_a_series_has_eps_as_z_in_figure_sentence_and_table() {
     let with = page(&[1e5, 4e5], &[0.0, FRAC_PI_2], (0.0, false));
-    for part in ["id=\"plot-eps-0\"", "The anisotropy of the contacts, eps, is 0.0", "sigma of eps"] {
+    for part in ["id=\"plot-eps-over-pressure\"", "The anisotropy of the contacts, eps, is 0.0", "sigma of eps"] {
         assert!(with.contains(part), "{part}");
     }
     let without = page(&[1e5, 4e5], &[0.0], (0.0, false));
-    assert!(without.contains("eps, is not determined by them") && !without.contains("id=\"plot-eps-0\""));
+    assert!(without.contains("eps, is not determined by them") && !without.contains("id=\"plot-eps-over-pressure\""));
 }
 
 #[test]
 fn one_pressure_has_its_interval_as_a_bar_and_its_status_in_the_caption() {
     let one = page(&[1e5], &[0.0, FRAC_PI_2], (0.0, true));
-    let z = one.split("id=\"plot-z-0\"").nth(1).unwrap().split("</figure>").next().unwrap();
+    let z = one.split("id=\"plot-z-over-pressure\"").nth(1).unwrap().split("</figure>").next().unwrap();
     assert_eq!(z.matches(" V ").count(), 1, "{z}");
     assert!(z.contains("The status is contradictory."), "{z}");
     let two = page(&[1e5, 4e5], &[0.0, FRAC_PI_2], (0.0, false));
-    assert!(!two.split("id=\"plot-speeds-0\"").next().unwrap().contains(" V "));
+    assert!(!two.split("id=\"plot-speeds\"").next().unwrap().contains(" V "));
 }
 
 #[test]
