@@ -61,11 +61,12 @@ impl Judged {
         self.interval.map(|[low, high]| (low..=high).contains(&self.counted))
     }
 
-    /// Distance from the counted value: `-0.108, 1.7 σ`.
+    /// Distance from the counted value: `−0.108, 1.7 σ`.
     pub fn distance(&self) -> String {
         let off = self.inferred - self.counted;
         let digits = self.quantity.digits();
-        format!("{off:+.digits$}{}", self.sigmas().map_or_else(String::new, |s| format!(", {s:.1} σ")))
+        let off = format!("{off:+.digits$}").replace('-', "−");
+        format!("{off}{}", self.sigmas().map_or_else(String::new, |s| format!(", {s:.1} σ")))
     }
 
     /// Distance from the counted value in standard deviations.
@@ -84,7 +85,7 @@ impl Judged {
     pub fn value(&self) -> String {
         let digits = self.quantity.digits();
         let sigma = self.sigma.map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
-        format!("{:.digits$}{sigma}", self.inferred)
+        format!("{:.digits$}{sigma}", self.inferred).replace('-', "−")
     }
 }
 

@@ -70,7 +70,8 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     let names = columns.iter().map(|(name, ..)| name.as_str());
     let varied: Vec<Setting> = differing(&runs.iter().map(|(run, _)| run).collect::<Vec<_>>());
     let varied: Vec<Setting> = varied.into_iter().filter(|s| s.name != "scene").collect();
-    let settings_names = varied.iter().map(|s| s.name.as_str());
+    let settings_names: Vec<String> = varied.iter().map(Setting::header).collect();
+    let settings_names = settings_names.iter().map(String::as_str);
     let fixed_columns = ["no", "run", "scene", "seed"].into_iter();
     let header: Vec<&str> = fixed_columns.chain(settings_names).chain(["end"]).chain(names).collect();
     csv.row(&header);

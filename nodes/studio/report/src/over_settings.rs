@@ -4,7 +4,7 @@ use crate::run::Run;
 use crate::settings::{Setting, differing};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
-use grainlab_page::{Html, Mean, csv, figure, grid, paragraph, plus_minus, six_digits, slug};
+use grainlab_page::{Html, Mean, csv, figure, fixed, grid, paragraph, plus_minus, six_digits, slug};
 use std::collections::BTreeSet;
 
 /// Ratio of the ends from which an axis is logarithmic.
@@ -93,13 +93,13 @@ impl<'a> OverSettings<'a> {
             let means = self.means(quantity, curve);
             let [from, .., to] = means.as_slice() else { return None };
             let of = match &self.by {
-                Some(by) => format!("For {} {curve}, the counted {symbol}", by.name),
+                Some(by) => format!("For {} {}, the counted {symbol}", by.name, by.of(curve)),
                 None => format!("The counted {symbol}"),
             };
-            let mut text = change(&of, &self.along.name, [*from, *to]);
+            let mut text = change(&of, &self.along, [*from, *to]);
             if let Some((at, between)) = beyond(&means) {
                 text.truncate(text.trim_end_matches('.').len());
-                text += &format!("; between them it is {} at {at}.", six_digits(between.value));
+                text += &format!("; between them it is {} at {}.", six_digits(between.value), self.along.of(at));
             }
             Some(text)
         };
@@ -108,9 +108,9 @@ impl<'a> OverSettings<'a> {
 
     /// A figure for each quantity: means with standard errors.
     pub(crate) fn figures(&self) -> Html {
-        let (along, by) = (&self.along.name, self.by.as_ref().map_or("", |s| &s.name));
+        let (along, by) = (self.along.header(), self.by.as_ref().map_or_else(String::new, Setting::header));
         let is_log = self.places[0] > 0.0 && self.places[self.places.len() - 1] >= DECADE * self.places[0];
-        let axis = if is_log { Axis::log(along) } else { Axis::linear(along) };
+        let axis = if is_log { Axis::log(&along) } else { Axis::linear(&along) };
         let draw = |(q, (name, _)): (usize, &(String, Option<f64>))| {
             let (mut rows, mut series) = (Vec::new(), Vec::new());
             for (c, of) in self.curves.iter().enumerate() {
@@ -128,11 +128,11 @@ impl<'a> OverSettings<'a> {
             }
             let (title, x) = (titled(name), axis.clone());
             let drawn = Figure { title, x, series, ..Figure::default() };
-            let data = match by {
+            let data = match by.as_str() {
                 "" => csv([along.as_str(), "n", "mean", "standard_error"], rows.into_iter().map(|[at, _, n, m, e]| [at, n, m, e])),
                 by => csv([along.as_str(), by, "n", "mean", "standard_error"], rows),
             };
-            figure(&format!("over-{}-{}", slug(along), file(name)), drawn.element(), "", &data)
+            figure(&format!("over-{}-{}", slug(&self.along.name), file(name)), drawn.element(), "", &data)
         };
         // Equal values, such as those of a target, need no figure.
         let has_value = |(q, _): &(usize, _)| {
@@ -142,7 +142,7 @@ impl<'a> OverSettings<'a> {
         };
         let drawn: Html = self.whole[0].1.iter().enumerate().filter(has_value).map(draw).collect();
         let curves =
-            self.by.as_ref().map_or_else(String::new, |s| format!(", with a curve for each {}", s.name));
+            if by.is_empty() { String::new() } else { format!(", with a curve for each {by}") };
         let mut about = match self.has_seeds() {
             true => format!("Points: means over seeds; bars: their standard errors{curves}."),
             false => format!("Points: single runs{curves}."),
@@ -164,12 +164,13 @@ fn beyond(means: &[(f64, Mean)]) -> Option<(f64, Mean)> {
 }
 
 /// The change of a mean between two values of a setting.
-fn change(of: &str, along: &str, [(from, a), (to, b)]: [(f64, Mean); 2]) -> String {
+fn change(of: &str, along: &Setting, [(from, a), (to, b)]: [(f64, Mean); 2]) -> String {
     let value = |m: &Mean| {
         let digits = digits(m.error.unwrap_or(0.1 * m.value));
-        format!("{:.digits$}", m.value) + &plus_minus(m.error, digits)
+        fixed(m.value, digits) + &plus_minus(m.error, digits)
     };
-    let [first, second] = [format!("{} at {along} {from}", value(&a)), format!("{} at {to}", value(&b))];
+    let first = format!("{} at {} {}", value(&a), along.name, along.of(from));
+    let second = format!("{} at {}", value(&b), along.of(to));
     let apart = a.standard_errors_from(&b).filter(|apart| *apart > MUCH);
     match (a.differs_from(&b), apart) {
         (None, _) => {
@@ -241,7 +242,9 @@ mod tests {
     #[test]
     fn a_change_is_said_if_runs_show_it_and_too_few_runs_are_said_to_be_too_few() {
         let mean = |values: &[f64]| Mean::of(values.iter().copied()).unwrap();
-        let said = |a: &[f64], b: &[f64]| change("z", "friction", [(0.1, mean(a)), (0.4, mean(b))]);
+        let of = |name: &str, unit| Setting { name: name.into(), unit, ..Setting::default() };
+        let friction = of("friction", "");
+        let said = |a: &[f64], b: &[f64]| change("z", &friction, [(0.1, mean(a)), (0.4, mean(b))]);
         let many = said(&[5.3, 5.4, 5.35, 5.32], &[4.5, 4.55, 4.48, 4.5]);
         assert!(many.starts_with("z falls from 5.34") && many.contains(" at friction 0.1 to 4.5"), "{many}");
         let two = said(&[5.269, 5.413], &[4.488, 4.528]);
@@ -251,6 +254,8 @@ mod tests {
         );
         assert!(said(&[5.0, 5.2, 5.1], &[5.1, 5.0, 5.2]).contains("does not change beyond its scatter"));
         assert!(said(&[5.0], &[4.0]).ends_with("with a single run at each: the scatter is not known."));
+        let stress = change("z", &of("stress", "kPa"), [(20.0, mean(&[5.0])), (40.0, mean(&[5.5]))]);
+        assert!(stress.contains(" at stress 20 kPa and ") && stress.contains(" at 40 kPa,"), "{stress}");
         assert!(said(&[5.0], &[4.0, 4.1]).contains("with a single run at one of them"));
     }
 }

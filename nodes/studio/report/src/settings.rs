@@ -2,16 +2,19 @@
 
 use crate::run::Run;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
 use toml::{Table, Value};
 
 /// Keys of a scene that change nothing in it but the random numbers.
 const NO_SETTINGS: [&str; 3] = ["name", "description", "seed"];
 
 /// A setting with its value in each run.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Setting {
     /// Key of the scene; of several that change together, the last parts of all.
     pub(crate) name: String,
+    /// Unit of the values; may be empty.
+    pub(crate) unit: &'static str,
     pub(crate) values: Vec<String>,
 }
 
@@ -25,7 +28,17 @@ impl Setting {
         let is_stress = ["stress", "pressure"].contains(&self.name.rsplit('.').next().unwrap_or_default());
         let unit = if is_stress { 1e3 } else { 1.0 };
         self.values = numbers.iter().map(|v| (v / unit).to_string()).collect();
-        self.name += if is_stress { ", kPa" } else { "" };
+        self.unit = if is_stress { "kPa" } else { "" };
+    }
+
+    /// Name and unit, of a column or an axis.
+    pub(crate) fn header(&self) -> String {
+        [&*self.name, self.unit].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// A value with the unit.
+    pub(crate) fn of(&self, value: impl Display) -> String {
+        format!("{value} {}", self.unit).trim_end().to_owned()
     }
 
     /// Adds the last part of a key that changes together with this one.
@@ -62,7 +75,7 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
         if values.iter().zip(&of_scene).all(|(v, first)| *v == values[*first]) {
             continue;
         }
-        let new = Setting { name: name.clone(), values };
+        let new = Setting { name: name.clone(), values, ..Setting::default() };
         let known = found.entry(firsts(&new.values)).or_insert_with(|| new.clone());
         if known.name != new.name {
             // Values have their keys where not every scene has these, as for laws of sizes.
@@ -92,7 +105,7 @@ pub(crate) fn differing(runs: &[&Run]) -> Vec<Setting> {
     }
     let mut settings: Vec<Setting> = found.into_values().collect();
     if of_scenes {
-        settings.push(Setting { name: "scene".to_owned(), values: scenes });
+        settings.push(Setting { name: "scene".to_owned(), values: scenes, ..Setting::default() });
     }
     settings.iter_mut().for_each(Setting::shorten);
     settings

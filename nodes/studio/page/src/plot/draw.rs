@@ -4,6 +4,7 @@ use super::axis::Range;
 use super::figure::{Entry, Line, Marker, Series, Theme};
 use super::labels::Area;
 use super::style::style;
+use crate::elements::true_minus;
 use crate::markup::{Html, escaped};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -105,7 +106,7 @@ impl Drawing {
 
     /// Adds elements over which scripts show these words.
     pub(super) fn saying(&mut self, words: &str, draw: impl FnOnce(&mut Self)) {
-        self.add(format_args!("<g data-said=\"{}\">", escaped(words)));
+        self.add(format_args!("<g data-said=\"{}\">", escaped(&true_minus(words))));
         draw(self);
         self.add(format_args!("</g>"));
     }
@@ -192,7 +193,7 @@ impl Drawing {
     pub(super) fn marker(&mut self, [x, y]: [f64; 2], key: Key, tooltip: &str) {
         let class = format!("{} {}", class(key.colour), if key.hollow { "hollow" } else { "full" });
         let title =
-            if tooltip.is_empty() { String::new() } else { format!("<title>{}</title>", escaped(tooltip)) };
+            if tooltip.is_empty() { String::new() } else { format!("<title>{}</title>", escaped(&true_minus(tooltip))) };
         let (element, shape) = match corners(key.marker) {
             None => ("circle", format!("cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.5\"")),
             Some(corners) => {
@@ -249,7 +250,7 @@ impl Drawing {
     }
 
     pub(super) fn text(&mut self, [x, y]: [f64; 2], anchor: &str, more: &str, content: &str) {
-        let content = escaped(content);
+        let content = escaped(&true_minus(content));
         let _ = writeln!(
             self.text,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" {more}>{content}</text>"
