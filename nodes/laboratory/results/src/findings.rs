@@ -1,8 +1,11 @@
 //! Findings of a run in sentences made from its numbers: what was done, what was found, how sure it is, and what to doubt.
 
+mod doubts;
+
 use crate::inference::{Inference, by_origin};
 use crate::packing_text::eps;
 use crate::read_back::InvertedPacking;
+use doubts::Doubts;
 use grainlab_console::count;
 use grainlab_core::results::{InferredQuantity, PackingReport};
 use grainlab_msgs::topics::PACKING_REPORT;
@@ -13,12 +16,6 @@ const NORMAL_95: f64 = 1.96;
 
 /// Deviator over mean stress from which a state is not called isotropic.
 const ISOTROPIC: f64 = 0.01;
-
-/// States from which errors of one sign are said.
-const ONE_SIDED: usize = 4;
-
-/// Warnings that are written out; the others are counted.
-const MOST_DOUBTS: usize = 4;
 
 /// Sentences on a run, or on many.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -64,11 +61,12 @@ impl Judged {
         self.interval.map(|[low, high]| (low..=high).contains(&self.counted))
     }
 
-    /// Distance from the counted value: `-0.108, 1.7 σ`.
+    /// Distance from the counted value: `−0.108, 1.7 σ`.
     pub fn distance(&self) -> String {
         let off = self.inferred - self.counted;
         let digits = self.quantity.digits();
-        format!("{off:+.digits$}{}", self.sigmas().map_or_else(String::new, |s| format!(", {s:.1} σ")))
+        let off = format!("{off:+.digits$}").replace('-', "−");
+        format!("{off}{}", self.sigmas().map_or_else(String::new, |s| format!(", {s:.1} σ")))
     }
 
     /// Distance from the counted value in standard deviations.
@@ -87,7 +85,7 @@ impl Judged {
     pub fn value(&self) -> String {
         let digits = self.quantity.digits();
         let sigma = self.sigma.map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
-        format!("{:.digits$}{sigma}", self.inferred)
+        format!("{:.digits$}{sigma}", self.inferred).replace('-', "−")
     }
 }
 
@@ -113,7 +111,8 @@ impl Findings {
         let mut doubts = Doubts::default();
         states.iter().enumerate().for_each(|(n, state)| doubts.of(n, state));
         states.iter().enumerate().for_each(|(n, state)| doubts.further(n, state));
-        doubts.finish(states.len(), noun)
+        let beside = doubts::beside_the_count(states, noun);
+        beside.into_iter().chain(doubts.finish(states.len(), noun)).collect()
     }
 
     /// The inversion of several states in sentences; none if nothing was inferred.
@@ -141,18 +140,6 @@ impl Findings {
         if !with.is_empty() {
             let inside = with.iter().filter(|is_inside| **is_inside).count();
             found.push(format!("{inside} of {} counted values lie in their 95 % intervals.", with.len()));
-        }
-        for (side, sign) in [("low", -1.0), ("high", 1.0)] {
-            let is_aside = |q: &InferredQuantity| {
-                let of: Vec<&Judged> = judged.iter().filter(|j| j.quantity == *q).collect();
-                of.len() >= ONE_SIDED && of.iter().all(|j| sign * (j.inferred - j.counted) > 0.0)
-            };
-            let of: Vec<&str> =
-                InferredQuantity::countable().filter(is_aside).map(InferredQuantity::symbol).collect();
-            let are = if of.len() == 1 { "is" } else { "are" };
-            found.extend(
-                (!of.is_empty()).then(|| format!("{} {are} inferred too {side} in all of them.", and(&of))),
-            );
         }
         found
     }
@@ -258,135 +245,6 @@ pub fn and(parts: &[impl AsRef<str>]) -> String {
     }
 }
 
-/// Reasons to doubt, each with the numbers of the states that have it, in the order of the first ones. Texts that differ by
-/// numbers alone are one reason.
-#[derive(Default)]
-struct Doubts(Vec<(Vec<Word>, BTreeSet<usize>)>);
-
-/// A word of a reason, or the least and greatest of its numbers with the marks around them.
-#[derive(PartialEq)]
-enum Word {
-    Text(String),
-    Numbers([String; 2], [f64; 2], [String; 2]),
-}
-
-impl Word {
-    fn of(word: &str) -> Self {
-        let number = word.trim_matches(['(', ')', ',', ';', ':', '[', ']', '.']);
-        let marks = word.split_once(number).filter(|_| {
-            number.starts_with(['-', '+', '.']) || number.starts_with(|c: char| c.is_ascii_digit())
-        });
-        match (number.parse::<f64>(), marks) {
-            (Ok(value), Some((before, after))) => Self::Numbers(
-                [number.to_owned(), number.to_owned()],
-                [value; 2],
-                [before.to_owned(), after.to_owned()],
-            ),
-            _ => Self::Text(word.to_owned()),
-        }
-    }
-
-    fn is_like(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Numbers(_, _, marks), Self::Numbers(_, _, others)) => marks == others,
-            _ => self == other,
-        }
-    }
-
-    fn take(&mut self, other: Self) {
-        if let (Self::Numbers([low, high], [least, greatest], _), Self::Numbers([text, _], [value, _], _)) =
-            (self, other)
-        {
-            if value < *least {
-                (*low, *least) = (text, value);
-            } else if value > *greatest {
-                (*high, *greatest) = (text, value);
-            }
-        }
-    }
-
-    fn text(&self) -> String {
-        match self {
-            Self::Text(text) => text.clone(),
-            Self::Numbers([low, high], _, [before, after]) if low == high => format!("{before}{low}{after}"),
-            Self::Numbers([low, high], _, [before, after]) => format!("{before}{low} to {high}{after}"),
-        }
-    }
-}
-
-impl Doubts {
-    fn add(&mut self, n: usize, text: &str) {
-        if !self.count(n, text) {
-            self.0.push((text.split(' ').map(Word::of).collect(), BTreeSet::from([n])));
-        }
-    }
-
-    /// Counts a state for a reason, and is true, if another state has the reason.
-    fn count(&mut self, n: usize, text: &str) -> bool {
-        let words: Vec<Word> = text.split(' ').map(Word::of).collect();
-        let is_known = |(known, _): &&mut (Vec<Word>, BTreeSet<usize>)| {
-            known.len() == words.len() && known.iter().zip(&words).all(|(a, b)| a.is_like(b))
-        };
-        let Some((known, of)) = self.0.iter_mut().find(is_known) else { return false };
-        known.iter_mut().zip(words).for_each(|(known, word)| known.take(word));
-        of.insert(n);
-        true
-    }
-
-    /// Counts a state for the first reasons of other estimates that are further ones of its own.
-    fn further(&mut self, n: usize, state: &InvertedPacking) {
-        for best in recommended(state).iter().filter(|best| best.status != "ok") {
-            let reasons = best.warnings.iter().skip(1).map(|why| doubted(best, why));
-            reasons.for_each(|reason| _ = self.count(n, &reason));
-        }
-    }
-
-    /// Takes the doubts about a state: of its inversion first, then of the packing.
-    fn of(&mut self, n: usize, state: &InvertedPacking) {
-        match (recommended(state), state.packing.report.elasticity.as_ref()) {
-            (Some(best), _) if best.status != "ok" => {
-                let alone = || format!("the estimate is {}", best.status);
-                self.add(n, &best.warnings.first().map_or_else(alone, |why| doubted(best, why)));
-            }
-            (Some(_), _) => {}
-            (None, Err(why)) => self.add(n, &format!("nothing was inferred: there is no stiffness: {why}")),
-            (None, Ok(_)) => {
-                let results: Vec<&Inference> = state.results.iter().collect();
-                let why = Inference::why_unknown(&results);
-                let why = why.unwrap_or_else(|| "no moduli were inverted".to_owned());
-                self.add(n, &format!("nothing was inferred: {why}"));
-            }
-        }
-        state.packing.warnings.iter().for_each(|w| self.add(n, w));
-    }
-
-    fn finish(self, all: usize, noun: &str) -> Vec<String> {
-        let shown = if self.0.len() > MOST_DOUBTS { MOST_DOUBTS - 1 } else { self.0.len() };
-        let more = self.0.len() - shown;
-        let of = |(words, of): &(Vec<Word>, BTreeSet<usize>)| {
-            let text = words.iter().map(Word::text).collect::<Vec<_>>().join(" ");
-            match (all, of.len()) {
-                (1, _) => sentence(&text),
-                (all, some) if all == some => format!("In every {noun}: {text}."),
-                (all, some) => format!("In {some} of {}: {text}.", count(all, noun)),
-            }
-        };
-        let lines = self.0[..shown].iter().map(of);
-        lines.chain((more > 0).then(|| format!("And {}.", count(more, "further warning")))).collect()
-    }
-}
-
-fn doubted(estimate: &Inference, why: &str) -> String {
-    format!("the estimate is {}: {why}", estimate.status)
-}
-
-/// A text with a capital letter and a full stop.
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-    format!("{first}{}.", letters.as_str().trim_end_matches('.'))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -425,11 +283,12 @@ mod tests {
                 "The counted z lies in the 95 % interval."
             ]
         );
-        let found = of(true, result("ok", Some((5.0, 0.1)), &[])).found;
+        let Findings { found, doubts, .. } = of(true, result("ok", Some((5.0, 0.1)), &[]));
         assert!(
             found[0].contains("10.0 σ away")
                 && found[1] == "The counted z lies outside of the 95 % interval."
         );
+        assert_eq!(doubts, ["The counted z is outside of its 95 % interval."]);
     }
 
     #[test]
@@ -470,6 +329,17 @@ mod tests {
             ]
         );
         assert_eq!(doubts, ["In 1 of 2 states: the estimate is extrapolated: far."]);
+    }
+
+    #[test]
+    fn errors_of_one_sign_and_fewer_values_in_their_intervals_than_by_chance_are_doubts() {
+        let of = |z: [f64; 4]| {
+            let one = |(n, z)| state(n, true, result("ok", Some((z, 0.1)), &[]));
+            Findings::of(&(1..).zip(z).map(one).collect::<Vec<_>>()).doubts
+        };
+        assert!(of([5.95, 6.05, 5.9, 5.5]).is_empty());
+        assert_eq!(of([6.1, 6.05, 6.1, 6.15]), ["z is inferred too high in every state."]);
+        assert_eq!(of([5.5, 6.5, 5.5, 6.1]), ["Only 1 of 4 counted values lie in their 95 % intervals."]);
     }
 
     #[test]

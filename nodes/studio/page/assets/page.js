@@ -44,7 +44,7 @@
     });
     // Figures without a caption share the paragraph above their grid.
     const caption = drawing.querySelector("figcaption > span:not(.save)") ?? drawing.parentElement.previousElementSibling?.closest("p");
-    const words = [drawing.querySelector("h3"), caption].flatMap((e) => (e ? e.textContent.trim().split(/\s+/) : []));
+    const words = [drawing.querySelector("h3"), caption].flatMap((e) => (e ? e.textContent.trim().replace(/[^.:]$/, "$&.").split(/\s+/) : []));
     const lines = words.reduce((all, word) => {
       if ((all[all.length - 1] + word).length * 6.2 > width) all.push("");
       all[all.length - 1] += `${word} `;

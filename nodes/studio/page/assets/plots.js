@@ -19,6 +19,21 @@
   };
   const frame = (svg) => svg.dataset.frame.split(" ").map(Number);
 
+  // Middle of an element; of a polygon that of its corners, since a triangle reaches further up than down.
+  const middleOf = (e) => {
+    const box = e.getBBox(), corners = [...(e.points ?? [])], mean = (key) => corners.reduce((sum, p) => sum + p[key], 0) / corners.length;
+    return corners.length ? [mean("x"), mean("y")] : [box.x + box.width / 2, box.y + box.height / 2];
+  };
+  // Points of the markers of a series, and corners of its line.
+  const placesOf = (series) => {
+    const marks = [...series.querySelectorAll("circle,polygon")].filter((e) => e.style.display !== "none").map((e) => {
+      const moved = e.transform.baseVal.consolidate()?.matrix, [x, y] = middleOf(e);
+      return [x + (moved?.e ?? 0), y + (moved?.f ?? 0)];
+    });
+    const line = series.querySelector("path:not([stroke-opacity]):not([d*=H])");
+    return { marks, corners: line ? [...line.getAttribute("d").matchAll(/[ML] ([-\d.]+) ([-\d.]+)/g)].map((c) => [Number(c[1]), Number(c[2])]) : [] };
+  };
+
   const readout = document.createElement("div");
   readout.className = "readout";
   readout.setAttribute("aria-hidden", "true");
@@ -28,13 +43,7 @@
     const [left, top, right, bottom] = frame(svg), across = axis(svg.dataset.shown ?? svg.dataset.x), up = axis(svg.dataset.up ?? svg.dataset.y);
     const at = across.at((x - left) / (right - left)), of = svg.closest("[data-axis]")?.dataset.axis, found = [];
     for (const series of svg.querySelectorAll(".series")) {
-      // Points of the markers, or corners of the line.
-      const marks = [...series.querySelectorAll("circle,polygon")].filter((e) => e.style.display !== "none").map((e) => {
-        const box = e.getBBox(), moved = e.transform.baseVal.consolidate()?.matrix.e ?? 0;
-        return [box.x + box.width / 2 + moved, e.tagName === "circle" ? Number(e.getAttribute("cy")) : box.y + box.height / 2];
-      });
-      const line = series.querySelector("path:not([stroke-opacity])"), corners = line ? [...line.getAttribute("d").matchAll(/[ML] ([-\d.]+) ([-\d.]+)/g)].map((c) => [Number(c[1]), Number(c[2])]) : [];
-      const points = marks.length ? marks : corners, near = points.reduce((best, p) => (best && Math.abs(best[0] - x) <= Math.abs(p[0] - x) ? best : p), null);
+      const { marks, corners } = placesOf(series), points = marks.length ? marks : corners, near = points.reduce((best, p) => (best && Math.abs(best[0] - x) <= Math.abs(p[0] - x) ? best : p), null);
       // A point has a value near it; a curve none before its first corner and behind its last one, but for a few pixels.
       if (!near || Math.abs(near[0] - x) > (marks.length ? 14 : 4) && (marks.length || x < points[0][0] || x > points.at(-1)[0])) continue;
       found.push([marks.length ? across.at((near[0] - left) / (right - left)) : at, `${series.dataset.name} ${written(up.at((bottom - near[1]) / (bottom - top)), up)}`.trim()]);
@@ -85,7 +94,16 @@
     const [high, low] = heights.length ? [Math.min(...heights) - room / 2, Math.max(...heights) + room / 2] : [top, bottom], tall = Math.max(low - high, 1);
     const up = (y) => top + ((y - high) / tall) * (bottom - top), whole_up = axis(svg.dataset.y), value = (y) => whole_up.at((bottom - y) / (bottom - top));
     svg.dataset.up = `${value(high + tall)} ${value(high)} ${whole_up.log ? "log" : "linear"}`;
-    svg.querySelector(".ends")?.remove();
+    // A name stands at the height at which its line leaves the part.
+    const ends = [...svg.querySelectorAll(".ends text")].map((text) => {
+      const series = [...svg.querySelectorAll(".series")].find((one) => one.dataset.name === text.textContent), { marks, corners } = placesOf(series);
+      const all = (corners.length ? corners : marks).map(([x, y]) => [to(x), up(y)]), after = all.findIndex((p) => p[0] > right), [b, a] = [all[after] ?? all.at(-1), all[after - 1]];
+      const y = after > 0 && corners.length ? a[1] + ((b[1] - a[1]) * (right - a[0])) / (b[0] - a[0]) : (after > 0 ? a : b ?? [0, bottom])[1];
+      return { text, y: Math.min(bottom, Math.max(top, y)) };
+    }).sort((a, b) => a.y - b.y);
+    ends.forEach((end, n) => (end.y = Math.max(end.y, n ? ends[n - 1].y + 13 : top)));
+    ends.reverse().forEach((end, n) => (end.y = Math.min(end.y, n ? ends[n - 1].y - 13 : bottom)));
+    ends.forEach((end) => end.text.setAttribute("y", end.y + 4));
     const clip = make("clipPath", { id: `part-${++clips}` }, svg);
     make("rect", { x: left, y: top - 6, width, height: bottom - top + 12 }, clip);
     for (const element of svg.querySelectorAll(".series > *, .curves > text, .bands > *")) {
@@ -93,12 +111,17 @@
       if (d && !/[HV]/.test(d)) {
         element.setAttribute("d", d.replace(/([ML]) ([-\d.]+) ([-\d.]+)/g, (_, letter, x, y) => `${letter} ${to(Number(x)).toFixed(1)} ${up(Number(y)).toFixed(1)}`));
         element.setAttribute("clip-path", `url(#${clip.id})`);
+      } else if (d) {
+        // An error bar: its caps keep their width.
+        const [l, , r, x, low, high] = [...d.matchAll(/[-\d.]+/g)].map(Number), at = to(x), [from, end] = [up(low), up(high)], half = (r - l) / 2;
+        element.setAttribute("d", `M ${at - half} ${from} H ${at + half} M ${at} ${from} V ${end} M ${at - half} ${end} H ${at + half}`);
+        element.setAttribute("clip-path", `url(#${clip.id})`);
       } else if (element.tagName === "rect") {
         const [from, end] = [cut(to(box.x)), cut(to(box.x + box.width))];
         element.setAttribute("x", from);
         element.setAttribute("width", end - from);
       } else {
-        const middle = [box.x + box.width / 2, box.y + box.height / 2], x = to(middle[0]), y = element.closest(".bands") ? middle[1] : up(middle[1]);
+        const middle = middleOf(element), x = to(middle[0]), y = element.closest(".bands") ? middle[1] : up(middle[1]);
         element.setAttribute("transform", `translate(${x - middle[0]} ${y - middle[1]})`);
         if (x < left || x > right) element.style.display = "none";
       }
@@ -109,10 +132,10 @@
       group.replaceChildren();
       for (const [v, words] of marks(of)) {
         make("line", { ...line(of.share(v)), class: "grid" }, group);
-        make("text", { ...text(of.share(v)), class: "ink" }, group).textContent = words.replace("-", "−");
+        make("text", { ...text(of.share(v), words), class: "ink" }, group).textContent = words.replace("-", "−");
       }
     };
-    redraw(".marks", part, (s) => ({ x1: left + width * s, x2: left + width * s, y1: top, y2: bottom }), (s) => ({ x: left + width * s, y: bottom + 16, "text-anchor": "middle" }));
+    redraw(".marks", part, (s) => ({ x1: left + width * s, x2: left + width * s, y1: top, y2: bottom }), (s, words) => ({ x: Math.min(left + width * s, svg.viewBox.baseVal.width - 3.8 * words.length), y: bottom + 16, "text-anchor": "middle" }));
     redraw(".marks-up", axis(svg.dataset.up), (s) => ({ x1: left, x2: right, y1: bottom - (bottom - top) * s, y2: bottom - (bottom - top) * s }), (s) => ({ x: left - 8, y: bottom - (bottom - top) * s + 4, "text-anchor": "end" }));
   };
   // Plots over a common axis show the same part.

@@ -151,11 +151,12 @@ pub fn heading(kind: &str, title: &str, about: &str) -> Html {
 
 /// The findings of a page: what was done, what was found, and reasons to doubt, each a sentence.
 pub fn finding(done: &str, found: &[String], doubts: &[String]) -> Html {
+    let doubts = doubts.iter().map(|text| true_minus(text));
     html!(
         "<div class=\"finding\"><p>{{ done }}</p>\n{% if found %}<p class=\"found\">{{ found }}</p>\n{% endif %}\
          {% if doubts %}<p>Reasons to doubt:</p>{{ doubts }}{% else %}<p>No reason to doubt it was found.</p>\n{% endif %}</div>\n",
-        done,
-        found => found.join(" "),
+        done => true_minus(done),
+        found => true_minus(&found.join(" ")),
         doubts => list(doubts)
     )
 }
@@ -176,6 +177,19 @@ pub fn signed(value: impl Into<Option<f64>>, digits: usize) -> String {
         let text = format!("{v:+.digits$}");
         if text.contains(|c: char| c.is_ascii_digit() && c != '0') { text } else { text[1..].to_owned() }
     })
+}
+
+/// A text with a true minus sign before each number.
+pub(crate) fn true_minus(text: &str) -> String {
+    let mut before = ' ';
+    let mut letters = text.chars().peekable();
+    let mut written = String::with_capacity(text.len());
+    while let Some(letter) = letters.next() {
+        let is_number = letters.peek().is_some_and(char::is_ascii_digit) && " (\u{a0}".contains(before);
+        written.push(if letter == '-' && is_number { '−' } else { letter });
+        before = letter;
+    }
+    written
 }
 
 fn finite(value: impl Into<Option<f64>>, text: impl FnOnce(f64) -> String) -> String {
@@ -202,9 +216,36 @@ pub fn six_digits(value: f64) -> String {
     }
 }
 
+/// A part of a name of a file for a quantity or a setting: small letters, digits and `_`, Greek letters by their names, and `-`
+/// for anything else.
+pub fn slug(name: &str) -> String {
+    let letter = |c: char| match c {
+        'φ' => "phi".to_owned(),
+        'ε' => "eps".to_owned(),
+        'θ' => "theta".to_owned(),
+        'µ' | 'μ' => "mu".to_owned(),
+        'a'..='z' | '0'..='9' | '_' => c.to_string(),
+        _ => " ".to_owned(),
+    };
+    let text: String = name.to_lowercase().chars().map(letter).collect();
+    text.split_whitespace().collect::<Vec<_>>().join("-")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_in_a_sentence_has_a_true_minus_and_a_name_and_a_power_keep_theirs() {
+        let text = true_minus("-0.5 (-2, 1e-5) of load-50kPa");
+        assert_eq!(text, "−0.5 (−2, 1e-5) of load-50kPa");
+    }
+
+    #[test]
+    fn a_name_of_a_file_has_plain_letters() {
+        let all = ["φ", "ε_k", "Θ", "G12", "error of z", "phase.load.friction", "Ä, b"].map(slug);
+        assert_eq!(all, ["phi", "eps_k", "theta", "g12", "error-of-z", "phase-load-friction", "b"]);
+    }
 
     #[test]
     fn numbers_keep_six_digits_and_no_zeros_that_say_nothing_and_zero_has_no_sign() {

@@ -18,7 +18,7 @@ pub mod plot;
 pub use dataset::Dataset;
 pub use elements::{
     Cell, card, code, csv, data, details, figure, finding, fixed, grid, heading, lines, list, paragraph,
-    plus_minus, signed, six_digits, table, verdict, with_unit,
+    plus_minus, signed, six_digits, slug, table, verdict, with_unit,
 };
 pub use markup::Html;
 #[doc(hidden)]

@@ -131,6 +131,14 @@ mod tests {
     }
 
     #[test]
+    fn the_last_label_of_an_axis_ends_within_the_picture() {
+        let svg = figure(vec![Point::at(50.0, 1.0), Point::at(950.0, 2.0)]).element();
+        let label = svg.split(">1000<").next().unwrap().rsplit("x=\"").next().unwrap();
+        let middle: f64 = label.split('"').next().unwrap().parse().unwrap();
+        assert!(middle + 4.0 * draw::HALF_LETTER <= 340.0, "{middle}");
+    }
+
+    #[test]
     fn without_any_point_the_axes_still_have_a_range() {
         let svg = figure(Vec::new()).svg(Theme::Light);
         assert!(!svg.contains("NaN") && svg.ends_with("</svg>\n"), "{svg}");

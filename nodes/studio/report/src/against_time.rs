@@ -184,7 +184,13 @@ impl Timeline {
             let name = if curve.name.is_empty() { plot.id } else { &curve.name };
             curve.points.iter().map(|(t, v)| [name.to_owned(), six_digits(*t), six_digits(*v)])
         });
-        let data = if with_data { csv(["series", "time_s", "value"], rows) } else { String::new() };
+        let unit = match plot.title.rsplit(", ").next() {
+            Some("kPa") => "_kpa",
+            Some("%") => "_percent",
+            _ => "",
+        };
+        let value = plot.id.replace('-', "_") + unit;
+        let data = if with_data { csv(["series", "time_s", &value], rows) } else { String::new() };
         let both = html!(
             "<div data-axis=\"phase\">{{ by_phase }}</div><div data-axis=\"time\">{{ by_time }}</div>",
             by_phase => by_phase.svg(),

@@ -70,8 +70,9 @@ pub fn overview(runs: &[(Run, String)]) -> String {
     let names = columns.iter().map(|(name, ..)| name.as_str());
     let varied: Vec<Setting> = differing(&runs.iter().map(|(run, _)| run).collect::<Vec<_>>());
     let varied: Vec<Setting> = varied.into_iter().filter(|s| s.name != "scene").collect();
-    let settings_names = varied.iter().map(|s| s.name.as_str());
-    let fixed_columns = ["run", "scene", "seed"].into_iter();
+    let settings_names: Vec<String> = varied.iter().map(Setting::header).collect();
+    let settings_names = settings_names.iter().map(String::as_str);
+    let fixed_columns = ["no", "run", "scene", "seed"].into_iter();
     let header: Vec<&str> = fixed_columns.chain(settings_names).chain(["end"]).chain(names).collect();
     csv.row(&header);
     let mut rows = Vec::new();
@@ -93,10 +94,12 @@ pub fn overview(runs: &[(Run, String)]) -> String {
         let seed = run.seed().map(|s| s.to_string()).unwrap_or_default();
         let class = if run.summary.exit == Some(0) && !run.is_incomplete() { "" } else { "bad" };
         let linked = html!("<a href=\"{{ link }}\">{{ name }}</a>", link, name);
-        let mut row = vec![Cell::text(linked), Cell::text(&scene), Cell::number(&seed)];
+        // A number stays with its row when a reader sorts the table.
+        let no = n + 1;
+        let mut row = vec![Cell::number(no), Cell::text(linked), Cell::text(&scene), Cell::number(&seed)];
         row.extend(varied.iter().map(|s| Cell::number(&s.values[n])));
         row.push(Cell::classed(&end, class));
-        let mut line = vec![name, scene.clone(), seed];
+        let mut line = vec![no.to_string(), name, scene.clone(), seed];
         line.extend(varied.iter().map(|s| s.values[n].clone()));
         line.push(end);
         for ((name, digits, value), outliers) in numbers(run).iter().zip(&distributions[&settings(run)]) {

@@ -4,7 +4,7 @@ use crate::run::Run;
 use crate::settings::{Setting, differing};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
-use grainlab_page::{Html, Mean, csv, figure, grid, paragraph, plus_minus, six_digits};
+use grainlab_page::{Html, Mean, csv, figure, fixed, grid, paragraph, plus_minus, six_digits, slug};
 use std::collections::BTreeSet;
 
 /// Ratio of the ends from which an axis is logarithmic.
@@ -68,6 +68,12 @@ impl<'a> OverSettings<'a> {
         Some(Self { along, by, whole, x, kept, places, curves, left_out })
     }
 
+    /// True if runs differ in the seed alone, so that there is something to average.
+    fn has_seeds(&self) -> bool {
+        let place = |n: &usize| (self.by.as_ref().map_or("", |s| &s.values[*n]), self.x[*n].to_bits());
+        self.kept.iter().map(place).collect::<BTreeSet<_>>().len() < self.kept.len()
+    }
+
     /// Means of a quantity over seeds along a curve.
     fn means(&self, quantity: usize, curve: &str) -> Vec<(f64, Mean)> {
         let of_curve = |n: &&usize| self.by.as_ref().map_or("", |s| &s.values[**n]) == curve;
@@ -87,13 +93,14 @@ impl<'a> OverSettings<'a> {
             let means = self.means(quantity, curve);
             let [from, .., to] = means.as_slice() else { return None };
             let of = match &self.by {
-                Some(by) => format!("For {} {curve}, the counted {symbol}", by.name),
+                Some(by) => format!("For {} {}, the counted {symbol}", by.name, by.of(curve)),
                 None => format!("The counted {symbol}"),
             };
-            let mut text = change(&of, &self.along.name, [*from, *to]);
+            let mut text = change(&of, &self.along, [*from, *to]);
             if let Some((at, between)) = beyond(&means) {
                 text.truncate(text.trim_end_matches('.').len());
-                text += &format!("; between them it is {} at {at}.", six_digits(between.value));
+                text +=
+                    &format!("; between them it is {} at {}.", six_digits(between.value), self.along.of(at));
             }
             Some(text)
         };
@@ -102,9 +109,9 @@ impl<'a> OverSettings<'a> {
 
     /// A figure for each quantity: means with standard errors.
     pub(crate) fn figures(&self) -> Html {
-        let (along, by) = (&self.along.name, self.by.as_ref().map_or("", |s| &s.name));
+        let (along, by) = (self.along.header(), self.by.as_ref().map_or_else(String::new, Setting::header));
         let is_log = self.places[0] > 0.0 && self.places[self.places.len() - 1] >= DECADE * self.places[0];
-        let axis = if is_log { Axis::log(along) } else { Axis::linear(along) };
+        let axis = if is_log { Axis::log(&along) } else { Axis::linear(&along) };
         let draw = |(q, (name, _)): (usize, &(String, Option<f64>))| {
             let (mut rows, mut series) = (Vec::new(), Vec::new());
             for (c, of) in self.curves.iter().enumerate() {
@@ -122,8 +129,14 @@ impl<'a> OverSettings<'a> {
             }
             let (title, x) = (titled(name), axis.clone());
             let drawn = Figure { title, x, series, ..Figure::default() };
-            let data = csv([along.as_str(), by, "n", "mean", "standard_error"], rows);
-            figure(&format!("over-settings-{}", q + 1), drawn.element(), "", &data)
+            let data = match by.as_str() {
+                "" => csv(
+                    [along.as_str(), "n", "mean", "standard_error"],
+                    rows.into_iter().map(|[at, _, n, m, e]| [at, n, m, e]),
+                ),
+                by => csv([along.as_str(), by, "n", "mean", "standard_error"], rows),
+            };
+            figure(&format!("over-{}-{}", slug(&self.along.name), file(name)), drawn.element(), "", &data)
         };
         // Equal values, such as those of a target, need no figure.
         let has_value = |(q, _): &(usize, _)| {
@@ -132,9 +145,11 @@ impl<'a> OverSettings<'a> {
             ends[1] - ends[0] > ALIKE * ends[1].abs()
         };
         let drawn: Html = self.whole[0].1.iter().enumerate().filter(has_value).map(draw).collect();
-        let curves =
-            self.by.as_ref().map_or_else(String::new, |s| format!(", with a curve for each {}", s.name));
-        let mut about = format!("Points: means over seeds; bars: their standard errors{curves}.");
+        let curves = if by.is_empty() { String::new() } else { format!(", with a curve for each {by}") };
+        let mut about = match self.has_seeds() {
+            true => format!("Points: means over seeds; bars: their standard errors{curves}."),
+            false => format!("Points: single runs{curves}."),
+        };
         if self.left_out > 0 {
             let runs = grainlab_console::count(self.left_out, "run");
             about += &format!(" Left out: {runs}, not complete or repeated.");
@@ -152,18 +167,18 @@ fn beyond(means: &[(f64, Mean)]) -> Option<(f64, Mean)> {
 }
 
 /// The change of a mean between two values of a setting.
-fn change(of: &str, along: &str, [(from, a), (to, b)]: [(f64, Mean); 2]) -> String {
+fn change(of: &str, along: &Setting, [(from, a), (to, b)]: [(f64, Mean); 2]) -> String {
     let value = |m: &Mean| {
         let digits = digits(m.error.unwrap_or(0.1 * m.value));
-        format!("{:.digits$}", m.value) + &plus_minus(m.error, digits)
+        fixed(m.value, digits) + &plus_minus(m.error, digits)
     };
-    let [first, second] = [format!("{} at {along} {from}", value(&a)), format!("{} at {to}", value(&b))];
+    let first = format!("{} at {} {}", value(&a), along.name, along.of(from));
+    let second = format!("{} at {}", value(&b), along.of(to));
     let apart = a.standard_errors_from(&b).filter(|apart| *apart > MUCH);
     match (a.differs_from(&b), apart) {
         (None, _) => {
-            format!(
-                "{of} is {first} and {second}, with a single run at one of them: the scatter is not known."
-            )
+            let single = if a.count == b.count { "each" } else { "one of them" };
+            format!("{of} is {first} and {second}, with a single run at {single}: the scatter is not known.")
         }
         (Some(true), _) if b.value > a.value => format!("{of} rises from {first} to {second}."),
         (Some(true), _) => format!("{of} falls from {first} to {second}."),
@@ -177,13 +192,13 @@ fn change(of: &str, along: &str, [(from, a), (to, b)]: [(f64, Mean); 2]) -> Stri
     }
 }
 
-/// A figure for each quantity: a point for each run, in the order of the table.
+/// A figure for each quantity: a point for each run, over its number in the table.
 pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
     let draw = |(q, (name, _)): (usize, &(String, Option<f64>))| {
         let values =
             || all.iter().enumerate().filter_map(|(n, (run, values))| Some((n + 1, run, values[q].1?)));
         let points = values().map(|(n, run, value)| Point {
-            tooltip: Some(format!("{}: {}", run.name(), six_digits(value))),
+            tooltip: Some(format!("{n} {}: {}", run.name(), six_digits(value))),
             ..Point::at(n as f64, value)
         });
         let series = vec![Series {
@@ -194,12 +209,14 @@ pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
         }];
         let drawn = Figure {
             title: titled(name),
-            x: Axis::linear("run, in the order of the table"),
+            x: Axis::linear("number of the run in the table"),
             series,
             ..Figure::default()
         };
-        let data = csv(["run", "value"], values().map(|(_, run, value)| [run.name(), six_digits(value)]));
-        (values().next().is_some()).then(|| figure(&format!("by-run-{}", q + 1), drawn.element(), "", &data))
+        let rows = values().map(|(n, run, value)| [n.to_string(), run.name(), six_digits(value)]);
+        let data = csv(["no", "run", "value"], rows);
+        (values().next().is_some())
+            .then(|| figure(&format!("by-run-{}", file(name)), drawn.element(), "", &data))
     };
     grid(all[0].1.iter().enumerate().filter_map(draw).collect())
 }
@@ -210,6 +227,11 @@ fn titled(name: &str) -> String {
     let known = inferred.find(|(symbol, _)| *symbol == name);
     let known = known.or_else(|| QUANTITIES.iter().map(|q| (q.symbol, q.meaning)).find(|q| q.0 == name));
     known.map_or_else(|| name.to_owned(), |(_, meaning)| format!("{name}: {meaning}"))
+}
+
+/// Part of the name of a file for a quantity, without its unit.
+fn file(name: &str) -> String {
+    slug(name.split(", ").next().unwrap_or(name))
 }
 
 /// Decimal places that give a standard error two digits.
@@ -224,7 +246,9 @@ mod tests {
     #[test]
     fn a_change_is_said_if_runs_show_it_and_too_few_runs_are_said_to_be_too_few() {
         let mean = |values: &[f64]| Mean::of(values.iter().copied()).unwrap();
-        let said = |a: &[f64], b: &[f64]| change("z", "friction", [(0.1, mean(a)), (0.4, mean(b))]);
+        let of = |name: &str, unit| Setting { name: name.into(), unit, ..Setting::default() };
+        let friction = of("friction", "");
+        let said = |a: &[f64], b: &[f64]| change("z", &friction, [(0.1, mean(a)), (0.4, mean(b))]);
         let many = said(&[5.3, 5.4, 5.35, 5.32], &[4.5, 4.55, 4.48, 4.5]);
         assert!(many.starts_with("z falls from 5.34") && many.contains(" at friction 0.1 to 4.5"), "{many}");
         let two = said(&[5.269, 5.413], &[4.488, 4.528]);
@@ -233,6 +257,9 @@ mod tests {
             "{two}"
         );
         assert!(said(&[5.0, 5.2, 5.1], &[5.1, 5.0, 5.2]).contains("does not change beyond its scatter"));
-        assert!(said(&[5.0], &[4.0]).ends_with("the scatter is not known."));
+        assert!(said(&[5.0], &[4.0]).ends_with("with a single run at each: the scatter is not known."));
+        let stress = change("z", &of("stress", "kPa"), [(20.0, mean(&[5.0])), (40.0, mean(&[5.5]))]);
+        assert!(stress.contains(" at stress 20 kPa and ") && stress.contains(" at 40 kPa,"), "{stress}");
+        assert!(said(&[5.0], &[4.0, 4.1]).contains("with a single run at one of them"));
     }
 }

@@ -4,7 +4,8 @@ use crate::page::STYLE;
 use grainlab_emt::{Interval, PressureEstimate, SeriesEstimate, SpeedMode, SpeedSeries};
 use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 use grainlab_page::{
-    Cell, Html, Page, Section, csv, details, figure, finding, grid, heading, html, list, paragraph, table,
+    Cell, Html, Page, Section, csv, details, figure, finding, grid, heading, html, list, paragraph, slug,
+    table,
 };
 use std::f64::consts::PI;
 
@@ -63,10 +64,9 @@ pub fn series_page(samples: &[InferredSample<'_>]) -> String {
 fn found(sample: &InferredSample<'_>) -> Html {
     let InferredSample { series, estimate: e, doubts, .. } = sample;
     let kpa = |p: f64| format!("{} kPa", p / 1e3);
-    // Beyond the packings that were simulated there is only a lower end.
-    let at = |p: &PressureEstimate| match p.z_beyond > OPEN {
-        true => format!("{:.2} or more at {}", p.z.low, kpa(p.pressure)),
-        false => format!("{:.2} ± {:.2} at {}", p.z.mean, p.z.stddev, kpa(p.pressure)),
+    let at = |p: &PressureEstimate| {
+        let z = lower_end(p).unwrap_or_else(|| format!("{:.2} ± {:.2}", p.z.mean, p.z.stddev));
+        format!("{z} at {}", kpa(p.pressure))
     };
     let measured: Vec<&PressureEstimate> =
         e.pressures.iter().filter(|p| sample.is_measured(p.pressure)).collect();
@@ -101,6 +101,21 @@ fn found(sample: &InferredSample<'_>) -> Html {
     finding(&done, &found, doubts)
 }
 
+/// All that is known of z where the posterior reaches beyond the packings that were simulated; `None` elsewhere.
+fn lower_end(p: &PressureEstimate) -> Option<String> {
+    (p.z_beyond > OPEN).then(|| format!("{:.2} or more", p.z.low))
+}
+
+/// Name of the file of a figure of a sample.
+fn file(n: usize, sample: &InferredSample<'_>, figure: &str) -> String {
+    let name = slug(sample.name);
+    match (name.is_empty(), n) {
+        (false, _) => format!("{figure}-{name}"),
+        (true, 0) => figure.to_owned(),
+        (true, n) => format!("{figure}-{}", n + 1),
+    }
+}
+
 fn named(sample: &InferredSample<'_>, what: &str) -> String {
     if sample.name.is_empty() { what.to_owned() } else { format!("{}: {what}", sample.name) }
 }
@@ -112,31 +127,41 @@ fn over_pressure(
     (name, title): (&str, &str),
     of: impl Fn(&PressureEstimate) -> Option<Interval>,
 ) -> Html {
-    let all = || sample.estimate.pressures.iter().filter_map(|p| Some((p.pressure, of(p)?)));
-    if all().next().is_none() {
+    let all: Vec<(&PressureEstimate, Interval)> =
+        sample.estimate.pressures.iter().filter_map(|p| Some((p, of(p)?))).collect();
+    if all.is_empty() {
         return Html::default();
     }
+    let place = |p: &PressureEstimate, value: f64| Point::at(p.pressure / 1e3, value);
     let line = |of: fn(&Interval) -> f64, line: Line| Series {
         colour: Some(0),
         line: Some(line),
-        points: all().map(|(pressure, i)| Point::at(pressure / 1e3, of(&i))).collect(),
+        points: all.iter().map(|(p, i)| place(p, of(i))).collect(),
         ..Series::default()
     };
     let marked = |is_measured: bool| Series {
         marker: Some(Marker::Circle),
         hollow: !is_measured,
         line: None,
-        points: all()
-            .filter(|(p, _)| sample.is_measured(*p) == is_measured)
-            .map(|(p, i)| Point::at(p / 1e3, i.mean))
+        points: all
+            .iter()
+            .filter(|(p, _)| sample.is_measured(p.pressure) == is_measured)
+            .map(|(p, i)| place(p, i.mean))
             .collect(),
         ..line(|i| i.mean, Line::Straight)
     };
+    // A line through one point is none: the interval is a bar there.
+    let bar = all
+        .iter()
+        .filter(|_| all.len() == 1)
+        .map(|(p, i)| Point { error: Some(0.5 * (i.high - i.low)), ..place(p, 0.5 * (i.low + i.high)) });
+    let bar = Series { colour: Some(0), points: bar.collect(), ..Series::default() };
     let drawn = Figure {
         title: named(sample, title),
         subtitle: "mean and 95 % of the posterior".to_owned(),
         x: Axis::log("pressure, kPa"),
         series: vec![
+            bar,
             line(|i| i.low, Line::Faint),
             line(|i| i.mean, Line::Straight),
             line(|i| i.high, Line::Faint),
@@ -145,16 +170,27 @@ fn over_pressure(
         ],
         ..Figure::default()
     };
-    let rows = all().map(|(pressure, i)| {
-        [pressure, i.mean, i.stddev, i.low, i.high, i.prior_stddev].map(|v| v.to_string())
+    let stated = |p: &PressureEstimate, i: &Interval| {
+        let lower = lower_end(p).filter(|_| name == "z");
+        lower.or_else(|| i.is_undetermined().then(|| "not determined".to_owned())).unwrap_or_default()
+    };
+    let rows = all.iter().map(|(p, i)| {
+        let [pressure, mean, sigma, low, high, prior] =
+            [p.pressure, i.mean, i.stddev, i.low, i.high, i.prior_stddev].map(|v| v.to_string());
+        [pressure, mean, sigma, low, high, prior, stated(p, i)]
     });
-    let data = csv(["pressure_pa", name, "sigma", "low", "high", "prior_sigma"], rows);
-    figure(
-        &format!("{name}-{n}"),
-        drawn.element(),
-        "Mean and 95 % of the posterior; hollow: predicted, without a speed.",
-        &data,
-    )
+    let data = csv(["pressure_pa", name, "sigma", "low", "high", "prior_sigma", "statement"], rows);
+    let mut caption = "Mean and 95 % of the posterior; hollow: predicted, without a speed.".to_owned();
+    for (p, i) in &all {
+        let text = stated(p, i);
+        if !text.is_empty() {
+            caption += &format!(" At {} kPa {name} is {text}.", p.pressure / 1e3);
+        }
+    }
+    if sample.is_contradictory {
+        caption += " The status is contradictory.";
+    }
+    figure(&file(n, sample, &format!("{name}-over-pressure")), drawn.element(), caption, &data)
 }
 
 fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
@@ -173,8 +209,8 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
         let eps = |of: fn(&Interval) -> f64| p.eps.as_ref().map(of);
         [
             Cell::fixed(p.pressure / 1e3, 1),
-            Cell::fixed(p.z.mean, 2),
-            Cell::fixed(p.z.stddev, 2),
+            Cell::number(lower_end(p).unwrap_or_else(|| format!("{:.2}", p.z.mean))),
+            Cell::fixed(Some(p.z.stddev).filter(|_| lower_end(p).is_none()), 2),
             Cell::fixed(p.z.left(), 2),
             Cell::fixed(eps(|i| i.mean), 4),
             Cell::fixed(eps(|i| i.stddev), 4),
@@ -245,7 +281,7 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
     });
     let data = csv(["pressure_pa", "mode", "speed", "predicted", "predicted_sigma"], rows);
     grid(figure(
-        &format!("speeds-{n}"),
+        &file(n, sample, "speeds"),
         drawn.element(),
         "Markers: measured. Lines with errors: predicted from the other speeds.",
         &data,

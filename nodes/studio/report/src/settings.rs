@@ -2,6 +2,7 @@
 
 use crate::run::Run;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
 use toml::{Table, Value};
 
 /// Keys of a scene that change nothing in it but the random numbers.
@@ -12,9 +13,11 @@ const NO_SETTINGS: [&str; 3] = ["name", "description", "seed"];
 pub(crate) struct Setting {
     /// Key of the scene; of several with the same values, the last parts of all.
     pub(crate) name: String,
+    /// Unit of the values; may be empty.
+    pub(crate) unit: &'static str,
     pub(crate) values: Vec<String>,
     /// Last parts of keys with other values that change together with these.
-    with: BTreeSet<String>,
+    pub(crate) with: BTreeSet<String>,
 }
 
 /// Most settings that a figure shows: one along its axis, one as lines.
@@ -27,7 +30,17 @@ impl Setting {
         let is_stress = ["stress", "pressure"].contains(&self.name.rsplit('.').next().unwrap_or_default());
         let unit = if is_stress { 1e3 } else { 1.0 };
         self.values = numbers.iter().map(|v| (v / unit).to_string()).collect();
-        self.name += if is_stress { ", kPa" } else { "" };
+        self.unit = if is_stress { "kPa" } else { "" };
+    }
+
+    /// Name and unit, of a column or an axis.
+    pub(crate) fn header(&self) -> String {
+        [&*self.name, self.unit].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// A value with the unit.
+    pub(crate) fn of(&self, value: impl Display) -> String {
+        format!("{value} {}", self.unit).trim_end().to_owned()
     }
 
     /// Takes a key that changes together with this one.

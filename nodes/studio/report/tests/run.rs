@@ -122,6 +122,7 @@ fn an_extreme_of_one_exchange_is_in_the_data_of_the_page() {
     let page = Run::read(folder.path()).html().unwrap();
     let line = page.lines().find(|l| l.starts_with("xx,") && l.contains(",987.654"));
     assert_eq!(line, Some("xx,0.001234,987.654"));
+    assert!(page.contains("series,time_s,stress_kpa\n") && page.contains("series,time_s,solid_fraction\n"));
     let lines = page.lines().filter(|l| l.starts_with("xx,")).count();
     assert!((100..=2500).contains(&lines), "{lines} points of {} exchanges", 2 * EXCHANGES);
 }
@@ -231,6 +232,7 @@ fn the_table_of_many_runs_has_a_row_for_each_and_leads_to_their_pages() {
     });
     let page = overview(&runs);
     assert!(page.contains("2 runs of made") && page.contains("href=\"one/report.html\""));
+    assert!(page.contains("<th scope=\"row\" class=\"n\">2</th><td><a href=\"two%20"), "rows are numbered");
     // These runs have only a summary.
     assert!(page.contains("two &amp; three</a>") && page.contains("damaged") && !page.contains(">complete<"));
 }

@@ -40,7 +40,7 @@ pub(crate) struct Canvas {
     pub(crate) width: usize,
     pub(crate) height: usize,
     pub(crate) letters: Lettering,
-    ink: Colour,
+    pub(crate) ink: Colour,
     /// Red, green, blue and opacity.
     pub(crate) pixels: Vec<u8>,
 }

@@ -18,7 +18,7 @@ impl Legend {
         match quantity {
             Quantity::Force => {
                 let full = view.force_of_full_colour();
-                let entry = |n: u32| (ramp(f64::from(n) / 3.0), newtons(f64::from(n) / 3.0 * full));
+                let entry = |n: u32| (ramp(f64::from(n) / 3.0), newtons(f64::from(n) / 3.0 * full, full));
                 let mut entries: Vec<_> = (0..=3).map(entry).collect();
                 entries[3].1.insert_str(0, ">=");
                 Self("mean normal force of the contacts of a grain", entries)
@@ -53,12 +53,26 @@ impl Legend {
     }
 }
 
-/// A force with its unit.
-pub(crate) fn newtons(force: f64) -> String {
+/// A force in the unit and with the decimal places that give the largest one three digits.
+pub(crate) fn newtons(force: f64, largest: f64) -> String {
     if force == 0.0 {
         return "0".to_owned();
     }
     let units = [(1.0, "N"), (1e-3, "mN"), (1e-6, "µN"), (1e-9, "nN")];
-    let (size, name) = units.into_iter().find(|(size, _)| force >= *size).unwrap_or(units[3]);
-    format!("{:.3} {name}", force / size)
+    let (size, name) = units.into_iter().find(|(size, _)| largest >= *size).unwrap_or(units[3]);
+    let digits = (2.0 - (largest / size).log10().floor()).clamp(0.0, 2.0) as usize;
+    format!("{:.digits$} {name}", force / size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_forces_of_a_legend_have_one_unit_and_three_digits() {
+        let of = |full: f64| [1.0, 2.0, 3.0].map(|n| newtons(n / 3.0 * full, full));
+        assert_eq!(of(2.046e-3), ["0.68 mN", "1.36 mN", "2.05 mN"]);
+        assert_eq!(of(6.0e-4), ["200 µN", "400 µN", "600 µN"]);
+        assert_eq!((of(31.5)[2].as_str(), newtons(0.0, 1.0).as_str()), ("31.5 N", "0"));
+    }
 }

@@ -18,11 +18,12 @@ pub(crate) fn round_length(most: f64) -> (f64, String) {
 /// A scale bar with its lower right corner; `scale` is in pixels a metre.
 pub(crate) fn scale_bar(canvas: &mut Canvas, scale: f64, [right, bottom]: [f64; 2]) {
     let (length, text) = round_length(PART * canvas.width as f64 / scale);
-    let (letters, left) = (canvas.letters, right - length * scale);
-    let (line, middle) = (letters.line() as f64, 0.5 * (left + right));
-    let thick = 0.16 * line;
-    canvas.line([[left, bottom - thick], [right, bottom - thick]], thick);
-    let at = [middle - 0.5 * letters.width_of(&text) as f64, bottom - 1.5 * line];
+    let (letters, width) = (canvas.letters, (length * scale).round());
+    let (line, left) = (letters.line() as f64, right - width);
+    // The ends are straight: round caps would lie outside of the length.
+    let (thick, ink) = ((0.16 * line).round().max(1.0), canvas.ink);
+    canvas.fill([left, bottom - 1.5 * thick].map(|v| v as usize), [width, thick].map(|v| v as usize), ink);
+    let at = [left + 0.5 * (width - letters.width_of(&text) as f64), bottom - 1.5 * line];
     canvas.write(&text, at.map(|v| v.round().max(0.0) as usize));
 }
 
@@ -43,6 +44,22 @@ pub(crate) fn triad(canvas: &mut Canvas, [right, bottom]: [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::canvas::Ground;
+    use crate::lettering::Lettering;
+
+    #[test]
+    fn a_scale_bar_is_as_long_as_it_says_to_a_pixel() {
+        for scale in [31_234.0, 8_765.4, 150.0] {
+            let (width, height) = (800, 600);
+            let pixels = vec![0; 4 * width * height];
+            let mut canvas = Canvas::new([width, height], Ground::Clear, Lettering::of(height), pixels);
+            scale_bar(&mut canvas, scale, [790.0, 590.0]);
+            let inked = |row: &[u8]| row.chunks_exact(4).filter(|pixel| pixel[3] > 0).count();
+            let bar = canvas.pixels.chunks_exact(4 * width).map(inked).rfind(|n| *n > 0).unwrap();
+            let length = round_length(PART * width as f64 / scale).0 * scale;
+            assert!((bar as f64 - length).abs() <= 0.5, "{bar} pixels for {length}");
+        }
+    }
 
     #[test]
     fn a_scale_bar_is_1_2_or_5_of_a_decade_and_at_most_as_long_as_its_room() {

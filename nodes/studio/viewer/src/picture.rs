@@ -77,7 +77,8 @@ impl Picture {
         if ground != Ground::Clear {
             above.extend([view.label.clone(), view.part.clone().unwrap_or_else(|| CAPTION.to_owned())]);
             above.extend(parts.slice.map(|slice| format!("{slice}")));
-            let full = newtons(view.force_of_full_colour());
+            let full = view.force_of_full_colour();
+            let full = newtons(full, full);
             above.extend(
                 parts
                     .chains

@@ -4,6 +4,7 @@ use super::axis::Range;
 use super::figure::{Entry, Line, Marker, Series, Theme};
 use super::labels::Area;
 use super::style::style;
+use crate::elements::true_minus;
 use crate::markup::{Html, escaped};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -16,6 +17,12 @@ const FRAME: Area = [70.0, 60.0, 640.0, 490.0];
 
 /// Half the width of a digit.
 pub(super) const HALF_LETTER: f64 = 3.8;
+
+/// Distance between two lines of a title.
+pub(super) const TITLE_LINE: f64 = 16.0;
+
+/// Mean width of a letter of a title.
+const TITLE_LETTER: f64 = 7.3;
 
 /// Distance between two lines of the legend.
 const LEGEND_LINE: f64 = 20.0;
@@ -34,6 +41,7 @@ pub(super) struct Key {
 /// A plot under construction.
 pub(super) struct Drawing {
     text: String,
+    width: f64,
     frame: Area,
 }
 
@@ -50,7 +58,10 @@ impl Drawing {
     /// A small plot of a page, with axes at `frame`. The text `about` is for readers who do not see it.
     pub(super) fn small(size: [f64; 2], frame: Area, title: &str, about: &str, attributes: &str) -> Self {
         let mut drawing = Self::blank(size, frame, &(of_page(about) + attributes), "");
-        drawing.text([8.0, 20.0], "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", title);
+        for (n, line) in title_lines(title, size[0]).iter().enumerate() {
+            let at = [8.0, 20.0 + TITLE_LINE * n as f64];
+            drawing.text(at, "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", line);
+        }
         drawing
     }
 
@@ -60,7 +71,7 @@ impl Drawing {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
              font-size=\"12\"{attributes}>\n{first}<rect width=\"{width}\" height=\"{height}\" class=\"paper\"/>\n"
         );
-        Self { text, frame }
+        Self { text, width, frame }
     }
 
     /// The complete SVG.
@@ -95,7 +106,7 @@ impl Drawing {
 
     /// Adds elements over which scripts show these words.
     pub(super) fn saying(&mut self, words: &str, draw: impl FnOnce(&mut Self)) {
-        self.add(format_args!("<g data-said=\"{}\">", escaped(words)));
+        self.add(format_args!("<g data-said=\"{}\">", escaped(&true_minus(words))));
         draw(self);
         self.add(format_args!("</g>"));
     }
@@ -105,7 +116,7 @@ impl Drawing {
         let _ = writeln!(self.text, "{element}");
     }
 
-    /// Lines and labels of the horizontal axis; a label that has no room is left out.
+    /// Lines and labels of the horizontal axis. A label that has no room is left out, and the last one ends within the picture.
     pub(super) fn marks(&mut self, x: &Range) {
         let [_, top, _, bottom] = self.frame;
         let mut free = f64::NEG_INFINITY;
@@ -113,9 +124,10 @@ impl Drawing {
             for (value, text) in x.marks() {
                 let (at, half) = (x.at(value), HALF_LETTER * text.chars().count() as f64);
                 drawing.segment([at, top, at, bottom], "grid");
-                if at - half > free {
-                    drawing.text([at, bottom + 16.0], "middle", "class=\"ink\"", &text);
-                    free = at + half + HALF_LETTER;
+                let middle = at.min(drawing.width - half);
+                if middle - half > free {
+                    drawing.text([middle, bottom + 16.0], "middle", "class=\"ink\"", &text);
+                    free = middle + half + HALF_LETTER;
                 }
             }
         });
@@ -180,8 +192,11 @@ impl Drawing {
     /// A point with its tooltip.
     pub(super) fn marker(&mut self, [x, y]: [f64; 2], key: Key, tooltip: &str) {
         let class = format!("{} {}", class(key.colour), if key.hollow { "hollow" } else { "full" });
-        let title =
-            if tooltip.is_empty() { String::new() } else { format!("<title>{}</title>", escaped(tooltip)) };
+        let title = if tooltip.is_empty() {
+            String::new()
+        } else {
+            format!("<title>{}</title>", escaped(&true_minus(tooltip)))
+        };
         let (element, shape) = match corners(key.marker) {
             None => ("circle", format!("cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.5\"")),
             Some(corners) => {
@@ -238,12 +253,31 @@ impl Drawing {
     }
 
     pub(super) fn text(&mut self, [x, y]: [f64; 2], anchor: &str, more: &str, content: &str) {
-        let content = escaped(content);
+        let content = escaped(&true_minus(content));
         let _ = writeln!(
             self.text,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" {more}>{content}</text>"
         );
     }
+}
+
+/// Lines of the title of a small plot of this width: whole words, and parts of one that is longer than a line.
+pub(super) fn title_lines(title: &str, width: f64) -> Vec<String> {
+    let most = ((width - 16.0) / TITLE_LETTER) as usize;
+    let mut lines = vec![String::new()];
+    for word in title.split_whitespace() {
+        for part in word.chars().collect::<Vec<_>>().chunks(most) {
+            let last = lines.len() - 1;
+            let gap = if lines[last].is_empty() { "" } else { " " };
+            if lines[last].chars().count() + gap.len() + part.len() > most {
+                lines.push(part.iter().collect());
+            } else {
+                lines[last] += gap;
+                lines[last].extend(part);
+            }
+        }
+    }
+    lines
 }
 
 /// Attributes of a plot whose colours are those of its page.

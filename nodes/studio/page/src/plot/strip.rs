@@ -1,7 +1,7 @@
 //! One of several plots over a common axis: small, with the legend beside its title, and bands for the stages of that axis.
 
 use super::axis::Range;
-use super::draw::{Drawing, class};
+use super::draw::{Drawing, TITLE_LINE, class, title_lines};
 use super::figure::{Entry, Figure, Scale, Series};
 use super::labels::spread;
 use crate::markup::{Html, escaped};
@@ -56,7 +56,10 @@ impl Strip {
             if legend.is_empty() { named.iter().map(|s| s.entry()).collect() } else { legend.clone() };
         let rows = if is_beside { Vec::new() } else { rows(&entries) };
         let margin = if is_beside && longest > 0 { LETTER * longest as f64 + 10.0 } else { 12.0 };
-        let top = TOP[0] + TOP[1] * rows.len() as f64;
+        let about = format!("{title}. {subtitle}");
+        let title = if y.name.is_empty() { title.clone() } else { format!("{title}: {}", y.name) };
+        let below_title = TOP[0] + TITLE_LINE * (title_lines(&title, WIDTH).len() - 1) as f64;
+        let top = below_title + TOP[1] * rows.len() as f64;
         let (right, bottom) = (WIDTH - margin, top + HEIGHT);
         let [_, up] = self.figure.ranges([0.0, top, right, bottom]);
         let digits = up.marks().iter().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
@@ -73,8 +76,6 @@ impl Strip {
             of(&across, x.scale),
             of(&up, y.scale)
         );
-        let about = format!("{title}. {subtitle}");
-        let title = if y.name.is_empty() { title.clone() } else { format!("{title}: {}", y.name) };
         let mut drawing = Drawing::small([WIDTH, bottom + 40.0], frame, &title, &about, &attributes);
         drawing.group("bands", |drawing| self.draw_bands(drawing, &across));
         if self.by_band {
@@ -97,7 +98,7 @@ impl Strip {
         for (n, row) in rows.iter().enumerate() {
             let mut at = 8.0;
             for (entry, width) in row {
-                drawing.entry([at, TOP[0] + TOP[1] * n as f64], entry);
+                drawing.entry([at, below_title + TOP[1] * n as f64], entry);
                 at += width;
             }
         }
@@ -149,6 +150,19 @@ fn rows(entries: &[Entry]) -> Vec<Vec<(&Entry, f64)>> {
 mod tests {
     use super::*;
     use crate::plot::{Axis, Line, Point, Series};
+
+    #[test]
+    fn a_title_is_in_as_many_lines_as_the_width_needs_and_the_axes_begin_below() {
+        let of = |title: &str| {
+            let figure = Figure { title: title.into(), ..Figure::default() };
+            let svg = Strip { figure, ..Strip::default() }.svg();
+            let top = svg.split("data-frame=\"").nth(1).unwrap().split(' ').nth(1).unwrap().to_owned();
+            (svg.matches("font-weight=\"600\"").count(), top)
+        };
+        assert_eq!(of("coordination number z"), (1, "34".into()));
+        assert_eq!(of("long beach sand from the Baltic sea: coordination number z"), (2, "50".into()));
+        assert_eq!(of(&"x".repeat(100)), (3, "66".into()));
+    }
 
     #[test]
     fn a_band_beyond_the_values_ends_at_the_frame_and_a_narrow_one_has_no_label() {

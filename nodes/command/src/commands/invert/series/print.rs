@@ -388,7 +388,7 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
     let beyond = e.pressures.iter().map(|p| p.z_beyond).fold(0.0, f64::max);
     if beyond > AT_END {
         doubts.push(format!(
-            "up to {:.0} % of the posterior has z above 6.6, beyond the simulated packings: read it as 6.6 or more",
+            "up to {:.0} % of the posterior has z above 6.6, beyond the simulated packings: only the lower end of z is known there",
             100.0 * beyond
         ));
     }
