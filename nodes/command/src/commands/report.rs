@@ -41,20 +41,28 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let output = args.output.clone().unwrap_or_else(|| OVERVIEW.into());
     let mut all = Vec::with_capacity(args.runs.len());
-    let mut exit = Exit::Done;
+    let (mut exit, mut repeated) = (Exit::Done, 0);
     for directory in &args.runs {
         match read(directory) {
             Ok(run) => {
                 let path = beside(directory);
                 write(&run, &path)?;
                 exit = worse(exit, standing(directory, &run));
-                all.push((run.without_series(), link(&output, &path)));
+                if all.iter().any(|(other, _)| run.repeats(other)) {
+                    repeated += 1;
+                } else {
+                    all.push((run.without_series(), link(&output, &path)));
+                }
             }
             Err(failure) => {
                 say!("grainlab: {failure}");
                 exit = worse(exit, Exit::Failure);
             }
         }
+    }
+    if repeated > 0 {
+        let repeated = count(repeated, "run");
+        say!("grainlab: left out of the page: {repeated} with the scene, seed and packings of another one");
     }
     if all.is_empty() {
         return Err(Failure::failed("there is no run to report"));

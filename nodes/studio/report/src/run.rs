@@ -174,6 +174,12 @@ impl Run {
         Self { timeline: Timeline::default(), ..self }
     }
 
+    /// True for a run of the same scene and seed with the same packings at the ends of its phases.
+    pub fn repeats(&self, other: &Self) -> bool {
+        let reports = |run: &Self| run.states.iter().map(|s| s.packing.report.clone()).collect::<Vec<_>>();
+        self.scene_text == other.scene_text && !self.states.is_empty() && reports(self) == reports(other)
+    }
+
     /// Name of the directory.
     pub(crate) fn name(&self) -> String {
         let resolved = self.directory.canonicalize().unwrap_or_else(|_| self.directory.clone());

@@ -257,6 +257,8 @@ fn the_table_of_many_runs_marks_what_differs_among_runs_with_the_same_settings()
             (Run::read(&run), format!("{n}/{FILE}"))
         })
         .collect();
+    let repeats = |a: usize, b: usize| runs[a].0.repeats(&runs[b].0);
+    assert!(repeats(1, 1) && !repeats(1, 2) && !repeats(4, 5) && !repeats(5, 6));
     let page = overview(&runs);
     let rows = page.split("<tr>").filter(|row| row.contains(FILE));
     let marked: Vec<usize> = rows.map(|row| row.matches("class=\"n outlier\"").count()).collect();

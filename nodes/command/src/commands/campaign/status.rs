@@ -28,6 +28,7 @@ pub(super) fn run(campaign: &Campaign, folder: &Folder, format: Format) -> Resul
         let process = match process {
             Some(who) => format!("{who} runs the campaign\n"),
             None if is_over => String::new(),
+            None if members.iter().any(|m| m.state == "running") => "its members run without it\n".into(),
             None => "no process of this host runs it: the command that began it continues it\n".into(),
         };
         let (all, words) = (count(members.len(), "member"), Standing::words(&members));
