@@ -64,7 +64,7 @@ pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited<'_>, begins_wit
                 true => "a path begins with one gas phase and has no other",
                 false => "a path that starts from a packing has no gas phase",
             };
-            r.fault("phase", format!("phase {i} ({}): {rule}", phase.name));
+            r.fault("phase", format!("phase {} ({}): {rule}", i + 1, phase.name));
         }
     }
     phases

@@ -51,7 +51,9 @@ pub(crate) fn analyze_one<'py>(
     let (packing, position) = (packing.get().packing(), packing.get().position());
     let found = py.detach(|| measure(packing, &settings)).map_err(error::physics)?;
     let found = MeasuredPacking::new(String::new(), found.report).at(position).doubted(packing, &[]);
-    Ok((values::quantities(py, QUANTITIES, &found.report)?, found.warnings))
+    let without = found.report.elasticity.as_ref().err().map(ToString::to_string);
+    let doubts = found.warnings.iter().cloned().chain(without).collect();
+    Ok((values::quantities(py, QUANTITIES, &found.report)?, doubts))
 }
 
 /// The text of `grainlab analyze --format csv`, a row for each packing, with its status and reason.

@@ -128,3 +128,11 @@ def test_a_packing_that_is_not_at_rest_is_measured_with_a_warning(golden):
     moving = grainlab.Packing(golden.cell, golden.positions, golden.radii, velocities=velocities)
     with pytest.warns(UserWarning, match="not at rest"):
         grainlab.analyze(moving)
+
+
+def test_what_contradicts_or_is_not_jammed_is_a_warning(golden):
+    contradictory = dict(g12=104.2e6, g13=112.4e6, theta=136e6, pressure=50e3, stress_ratio=0, size_spread=0, poisson_ratio=0.5)
+    with pytest.warns(UserWarning, match="the estimate is contradictory: "):
+        assert grainlab.invert(**contradictory)["status"] == "contradictory"
+    with pytest.warns(UserWarning, match="contact"):
+        assert grainlab.analyze(grainlab.Packing(golden.cell, golden.positions, 0.5 * golden.radii))["theta_pa"] is None

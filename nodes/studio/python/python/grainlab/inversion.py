@@ -12,7 +12,7 @@ from typing import Any
 
 from . import _grainlab, tables
 from .program import call, flags
-from .scenes import toml, whole
+from .scenes import toml, warn, whole
 
 #: Columns of `grainlab invert --table` by the keywords of `invert`.
 COLUMNS = {
@@ -104,6 +104,8 @@ def invert(
         bounds = (found.pop(low), found.pop(low.removesuffix("low") + "high"))
         found[low.removesuffix("low") + "interval"] = None if None in bounds else bounds
     found["warnings"] = warnings[0]
+    if found["status"] == "contradictory":
+        warn(["the estimate is contradictory: " + "; ".join(warnings[0][:1])])
     return found if drawn is None else {**found, "draws": drawn}
 
 
