@@ -184,24 +184,19 @@ fn fingerprint(content: impl FnOnce(&mut DefaultHasher)) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_core::{Cell, Mat3, Material, Vec3};
+    use grainlab_core::{Cell, Vec3};
 
     fn packing(step: u64, x: f64, grains: usize) -> Packing {
         Packing {
             step,
             time: 1e-6 * step as f64,
-            cell: Cell::cube(4e-3).unwrap(),
-            deformation: Mat3::identity(),
-            ids: (0..grains as u32).collect(),
-            radii: vec![1e-3; grains],
-            positions: vec![Vec3::new(x, 1e-3, 1e-3); grains],
-            velocities: vec![Vec3::zeros(); grains],
-            spins: vec![Vec3::zeros(); grains],
-            contacts: Vec::new(),
-            material: Material::GLASS,
-            law: Default::default(),
             friction: 0.3,
             time_step: 1e-7,
+            ..Packing::at_rest(
+                Cell::cube(4e-3).unwrap(),
+                vec![1e-3; grains],
+                vec![Vec3::new(x, 1e-3, 1e-3); grains],
+            )
         }
     }
 

@@ -1,22 +1,13 @@
 //! Pictures show the packing: sizes, places, contacts and colours.
 
-use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
 use grainlab_msgs::geometry_msgs::Point;
 use grainlab_msgs::sensor_msgs::{PointCloud2, PointField};
 use grainlab_msgs::visualization_msgs::{Marker, MarkerArray};
 use grainlab_pictures::{Drawn, RATTLER, markers, points};
 
 fn contact(i: u32, j: u32, image: [i8; 3], normal: Vec3, force: f64) -> Contact {
-    Contact {
-        i,
-        j,
-        image,
-        overlap: 1e-9,
-        normal,
-        normal_force: force,
-        tangential_force: Vec3::zeros(),
-        rolling_force: Vec3::zeros(),
-    }
+    Contact::pressed([i, j], image, normal, 1e-9, force)
 }
 
 /// Three grains along x, the last one held two cells away, in contact across a face of the cell; a fourth without contacts.
@@ -24,27 +15,23 @@ fn packing() -> Packing {
     Packing {
         step: 40,
         time: 2.5,
-        cell: Cell::new(Mat3::new(8.0, 0.0, 0.0, 0.0, 4.0, 1.0, 0.0, 0.0, 4.0)).unwrap(),
-        deformation: Mat3::identity(),
         ids: vec![10, 11, 7, 3],
-        radii: vec![2.0, 1.0, 1.0, 0.5],
-        positions: vec![
-            Vec3::new(2.0, 1.0, 1.0),
-            Vec3::new(5.0, 1.0, 1.0),
-            Vec3::new(-9.0, 1.0, 1.0),
-            Vec3::new(5.0, 3.0, 3.0),
-        ],
-        velocities: vec![Vec3::zeros(); 4],
-        spins: vec![Vec3::zeros(); 4],
         contacts: vec![
             contact(0, 1, [0; 3], Vec3::x(), 1.0),
             contact(0, 2, [1, 0, 0], -Vec3::x(), 2.0),
             contact(1, 2, [2, 0, 0], Vec3::x(), 6.0),
         ],
-        material: Material::GLASS,
-        law: Default::default(),
         friction: 0.3,
-        time_step: 0.0,
+        ..Packing::at_rest(
+            Cell::new(Mat3::new(8.0, 0.0, 0.0, 0.0, 4.0, 1.0, 0.0, 0.0, 4.0)).unwrap(),
+            vec![2.0, 1.0, 1.0, 0.5],
+            vec![
+                Vec3::new(2.0, 1.0, 1.0),
+                Vec3::new(5.0, 1.0, 1.0),
+                Vec3::new(-9.0, 1.0, 1.0),
+                Vec3::new(5.0, 3.0, 3.0),
+            ],
+        )
     }
 }
 

@@ -1,6 +1,6 @@
 use super::refuses;
 use grainlab_core::contact::{ContactLaw, RollingResistance};
-use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3, contact_search};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{from_cdr, msg, to_cdr};
 use proptest::array::{uniform3, uniform9};
@@ -30,38 +30,18 @@ fn matrix() -> impl Strategy<Value = Mat3> {
         .prop_filter("regular", |m| m.determinant() > 0.05)
 }
 
-/// Every contact of these spheres with images up to two cells away, with a fraction of Hertz's force.
+/// Every contact of these spheres, with a fraction of Hertz's force; none where two centres coincide.
 fn contacts(
     cell: &Cell,
     material: &Material,
-    grains: &[(f64, Vec3)],
+    (radii, positions): &(Vec<f64>, Vec<Vec3>),
     share: f64,
     [tangential_force, rolling_force]: [Vec3; 2],
 ) -> Vec<Contact> {
-    let mut found = Vec::new();
-    for (i, j) in (0..grains.len()).flat_map(|i| (i..grains.len()).map(move |j| (i, j))) {
-        for n in 0..125i8 {
-            let image = [n / 25 - 2, n / 5 % 5 - 2, n % 5 - 2];
-            let branch = grains[j].1 - grains[i].1 + cell.shift(image);
-            let overlap = grains[i].0 + grains[j].0 - branch.norm();
-            if overlap > 1e-9 && branch.norm() > 1e-6 && (i < j || image > [0; 3]) {
-                let radius = grainlab_core::effective_radius(grains[i].0, grains[j].0);
-                let normal_force = share * material.normal_force(radius, overlap);
-                let (normal, (i, j)) = (branch.normalize(), (i as u32, j as u32));
-                found.push(Contact {
-                    i,
-                    j,
-                    image,
-                    overlap,
-                    normal,
-                    normal_force,
-                    tangential_force,
-                    rolling_force,
-                });
-            }
-        }
-    }
-    found
+    let force = |r_eff, overlap| share * material.normal_force(r_eff, overlap);
+    let found = contact_search::find(cell, positions, radii, force).unwrap_or_default();
+    let loaded = |c: Contact| Contact { tangential_force, rolling_force, ..c };
+    found.into_iter().filter(|c| c.overlap > 1e-9).map(loaded).collect()
 }
 
 fn rolling() -> ContactLaw {
@@ -81,7 +61,7 @@ prop_compose! {
         // A cell that is large enough for the five largest spheres.
         let cell = Cell::new(matrix_of(&cell)).unwrap();
         let material = Material { shear_modulus, poisson_ratio, density };
-        let spheres: Vec<(f64, Vec3)> = grains.iter().map(|g| (g.0, g.1)).collect();
+        let spheres: (Vec<f64>, Vec<Vec3>) = grains.iter().map(|g| (g.0, g.1)).unzip();
         Packing {
             step, time, time_step, deformation, friction, cell, material,
             law: if resists_rolling { rolling() } else { ContactLaw::default() },

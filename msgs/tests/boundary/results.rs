@@ -41,15 +41,7 @@ pub(crate) fn report() -> PackingReport {
 }
 
 fn stiffness() -> ElasticStiffness {
-    let relaxed = TransverseIsotropy {
-        c11: 360e6,
-        c12: 80e6,
-        c13: 70e6,
-        c33: 400e6,
-        g13: 150e6,
-        g12: 140e6,
-        residual: 0.0,
-    };
+    let relaxed = TransverseIsotropy::of_constants(360e6, 400e6, 70e6, 150e6, 140e6);
     let affine = TransverseIsotropy { c11: 460e6, g13: 200e6, ..relaxed };
     let uniform_rotation = TransverseIsotropy { c11: 460e6, g13: 199e6, ..relaxed };
     ElasticStiffness {

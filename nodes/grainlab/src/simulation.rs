@@ -146,10 +146,7 @@ impl Simulation {
             return Ok(Some(state));
         }
         let began = Instant::now();
-        while let Some(request) = self.run.request() {
-            let simulation = |e: &dyn std::fmt::Display| Error::Simulation(e.to_string());
-            let output = grainlab_servo::control(&request.input).map_err(|e| simulation(&e))?;
-            let outcome = self.run.advance(&output.rate).map_err(|e| simulation(&e))?;
+        while let Some(outcome) = self.run.exchange().map_err(|e| Error::Simulation(e.to_string()))? {
             if outcome.packing_due {
                 return self.state().map(Some);
             }

@@ -34,6 +34,17 @@ pub struct ImportOptions {
 }
 
 impl ImportOptions {
+    /// Grains of this material and friction, of a file that does not say so.
+    pub fn of_grains(material: &Material, friction: f64) -> Self {
+        Self {
+            shear_modulus: Some(material.shear_modulus),
+            poisson_ratio: Some(material.poisson_ratio),
+            density: Some(material.density),
+            friction: Some(friction),
+            ..Self::default()
+        }
+    }
+
     /// The command-line flags of the data given: all of them, except the topic, are for files that lack these data.
     pub fn flags_given(&self) -> Vec<&'static str> {
         [

@@ -1,7 +1,7 @@
 //! Copies have the messages of their sources, and nothing is lost or overwritten on the way.
 
 use crate::support::{SIMULATOR, START, contract, options, run_in, sample, write_run};
-use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Material, Packing, Vec3};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::to_cdr;
 use grainlab_pictures::{Drawn, Picture};
@@ -280,32 +280,19 @@ fn pictures_stand_beside_their_packings_and_a_packing_without_one_is_named() {
 fn reference_packing() -> Packing {
     let radius = 1e-4;
     let overlap = 1e-8;
-    let material = Material::GLASS;
-    let contact = Contact {
-        i: 0,
-        j: 1,
-        image: [0; 3],
-        overlap,
-        normal: Vec3::x(),
-        normal_force: material.normal_force(radius / 2.0, overlap),
-        tangential_force: Vec3::zeros(),
-        rolling_force: Vec3::zeros(),
-    };
+    let force = Material::GLASS.normal_force(radius / 2.0, overlap);
+    let contact = Contact::pressed([0, 1], [0; 3], Vec3::x(), overlap, force);
     Packing {
         step: 7,
         time: 0.25,
-        cell: Cell::cube(1e-3).unwrap(),
-        deformation: Mat3::identity(),
-        ids: vec![0, 1],
-        radii: vec![radius; 2],
-        positions: vec![Vec3::repeat(2e-4), Vec3::new(4e-4 - overlap, 2e-4, 2e-4)],
-        velocities: vec![Vec3::zeros(); 2],
-        spins: vec![Vec3::zeros(); 2],
         contacts: vec![contact],
-        material,
-        law: Default::default(),
         friction: 0.3,
         time_step: 1e-8,
+        ..Packing::at_rest(
+            Cell::cube(1e-3).unwrap(),
+            vec![radius; 2],
+            vec![Vec3::repeat(2e-4), Vec3::new(4e-4 - overlap, 2e-4, 2e-4)],
+        )
     }
 }
 

@@ -17,18 +17,11 @@ fn two_grains() -> Packing {
     Packing {
         step: 7,
         time: 0.5,
-        cell: Cell::new(Mat3::identity()).unwrap(),
-        deformation: Mat3::identity(),
         ids,
-        radii,
-        positions,
-        velocities: vec![[0.0; 3].into(); 2],
-        spins: vec![[0.0; 3].into(); 2],
-        contacts: Vec::new(),
         material: Material { shear_modulus: 29e9, poisson_ratio: 0.2, density: 2500.0 },
-        law: Default::default(),
         friction: 0.3,
         time_step: 1e-6,
+        ..Packing::at_rest(Cell::new(Mat3::identity()).unwrap(), radii, positions)
     }
     .validated()
     .unwrap()

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use grainlab_core::Vec3;
+use grainlab_core::{Material, Vec3};
 use grainlab_recordings::import::{
     ImportError, ImportOptions, Setting, csv, extended_xyz, lammps_data, lammps_dump, load,
 };
@@ -10,13 +10,7 @@ use grainlab_recordings::import::{
 use crate::reference_packing::{golden, reference};
 
 fn glass() -> ImportOptions {
-    ImportOptions {
-        shear_modulus: Some(29e9),
-        poisson_ratio: Some(0.2),
-        density: Some(2500.0),
-        friction: Some(0.1),
-        ..ImportOptions::default()
-    }
+    ImportOptions::of_grains(&Material::GLASS, 0.1)
 }
 
 fn in_cube(edge: f64) -> ImportOptions {
@@ -340,13 +334,7 @@ fn a_frame_of_extended_xyz_with_a_fault_names_its_line() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.xyz");
         std::fs::write(&path, text).unwrap();
-        let options = ImportOptions {
-            shear_modulus: Some(1e9),
-            poisson_ratio: Some(0.2),
-            density: Some(1e3),
-            friction: Some(0.0),
-            ..ImportOptions::default()
-        };
+        let options = ImportOptions::of_grains(&Material::GLASS, 0.0);
         load(&path, &options).map(|loaded| loaded.packings.len()).map_err(|e| e.to_string())
     };
     assert_eq!(read(format!("1\n{header}\n0 0 0 0.1\n")), Ok(1));

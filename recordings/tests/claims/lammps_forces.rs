@@ -1,7 +1,7 @@
 //! Contact forces dumped by LAMMPS, for a packing from LAMMPS (`tests/golden/lammps/make.in`).
 
 use grainlab_core::stress::stress;
-use grainlab_core::{Packing, Vec3};
+use grainlab_core::{Material, Packing, Vec3};
 use grainlab_recordings::import::{self, ImportError, ImportOptions, load};
 use std::path::{Path, PathBuf};
 
@@ -12,13 +12,9 @@ fn golden(name: &str) -> PathBuf {
 /// With these contact forces and columns.
 fn options(forces: String, columns: &[&str]) -> ImportOptions {
     ImportOptions {
-        shear_modulus: Some(29e9),
-        poisson_ratio: Some(0.2),
-        density: Some(2500.0),
-        friction: Some(0.3),
         contact_forces: Some(forces),
         contact_columns: columns.iter().map(|c| (*c).to_owned()).collect(),
-        ..ImportOptions::default()
+        ..ImportOptions::of_grains(&Material::GLASS, 0.3)
     }
 }
 

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use grainlab_core::Material;
 use grainlab_core::contact_search::SearchError;
 use grainlab_recordings::import::{ImportError, ImportOptions, load};
 use std::io::Write;
@@ -41,11 +42,7 @@ impl Folder {
 fn in_cube(edge: f64) -> ImportOptions {
     ImportOptions {
         cell: Some(grainlab_core::Mat3::identity() * edge),
-        shear_modulus: Some(29e9),
-        poisson_ratio: Some(0.2),
-        density: Some(2500.0),
-        friction: Some(0.1),
-        ..ImportOptions::default()
+        ..ImportOptions::of_grains(&Material::GLASS, 0.1)
     }
 }
 

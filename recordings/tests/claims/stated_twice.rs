@@ -1,18 +1,12 @@
 //! Statements made twice, or of half of the grains, are refused if they contradict each other.
 
-use grainlab_core::Vec3;
+use grainlab_core::{Material, Vec3};
 use grainlab_recordings::import::{ImportError, Imported};
 use grainlab_recordings::import::{ImportOptions, csv, extended_xyz, lammps_data, lammps_dump, yade};
 use std::ops::ControlFlow;
 
 fn glass() -> ImportOptions {
-    ImportOptions {
-        shear_modulus: Some(29e9),
-        poisson_ratio: Some(0.2),
-        density: Some(2500.0),
-        friction: Some(0.1),
-        ..ImportOptions::default()
-    }
+    ImportOptions::of_grains(&Material::GLASS, 0.1)
 }
 
 fn xyz(comment: &str, grains: &str) -> Result<Imported, ImportError> {

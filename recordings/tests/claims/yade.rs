@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use grainlab_core::Material;
 use grainlab_core::stress::stress;
 use grainlab_recordings::import::{ImportOptions, Imported, load, yade};
 
@@ -11,13 +12,7 @@ fn golden(name: &str) -> PathBuf {
 }
 
 fn glass() -> ImportOptions {
-    ImportOptions {
-        shear_modulus: Some(29e9),
-        poisson_ratio: Some(0.2),
-        density: Some(2500.0),
-        friction: Some(0.1),
-        ..ImportOptions::default()
-    }
+    ImportOptions::of_grains(&Material::GLASS, 0.1)
 }
 
 fn one(name: &str, options: &ImportOptions) -> Imported {

@@ -3,7 +3,7 @@
 use fuzzing::{Counting, Target};
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::results::PackingReport;
-use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Packing, Vec3};
 use grainlab_msgs::boundary::{ModelResult, ModuliReading, WaveSpeedsReading, packing_message};
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::{Message, from_cdr, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs, to_cdr};
@@ -17,30 +17,22 @@ const MEMORY: (usize, usize) = (1 << 20, 64);
 
 fn packing() -> Packing {
     let contact = |i, j, z: f64| Contact {
-        i,
-        j,
-        image: [0, 0, 0],
-        overlap: 1e-6,
-        normal: Vec3::z() * z,
-        normal_force: 1.0,
         tangential_force: Vec3::x(),
         rolling_force: Vec3::y(),
+        ..Contact::pressed([i, j], [0; 3], Vec3::z() * z, 1e-6, 1.0)
     };
     Packing {
         step: 7,
         time: 0.1,
-        cell: Cell::cube(1e-2).unwrap(),
-        deformation: Mat3::identity(),
-        ids: vec![0, 1, 2],
-        radii: vec![1e-3; 3],
-        positions: (0..3).map(|k| Vec3::z() * (k as f64 * 1.999e-3)).collect(),
-        velocities: vec![Vec3::zeros(); 3],
-        spins: vec![Vec3::zeros(); 3],
         contacts: vec![contact(0, 1, 1.0), contact(1, 2, 1.0)],
-        material: Material::GLASS,
         law: ContactLaw::new("hertz_mindlin", &[1e4, 0.0, 0.1]).expect("a law with resistance to rolling"),
         friction: 0.3,
         time_step: 1e-7,
+        ..Packing::at_rest(
+            Cell::cube(1e-2).unwrap(),
+            vec![1e-3; 3],
+            (0..3).map(|k| Vec3::z() * (k as f64 * 1.999e-3)).collect(),
+        )
     }
 }
 

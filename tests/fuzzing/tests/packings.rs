@@ -1,7 +1,7 @@
 //! Packings as text: LAMMPS, YADE, CSV.
 
 use fuzzing::{Counting, Target};
-use grainlab_core::{Mat3, Vec3};
+use grainlab_core::{Mat3, Material, Vec3};
 use grainlab_recordings::import::{ImportOptions, csv, lammps_data, lammps_dump, yade};
 
 #[global_allocator]
@@ -16,13 +16,7 @@ const WORDS: [&str; 12] =
 
 /// Data that files lack.
 fn complete() -> ImportOptions {
-    ImportOptions {
-        shear_modulus: Some(29e9),
-        poisson_ratio: Some(0.2),
-        density: Some(2500.0),
-        friction: Some(0.1),
-        ..ImportOptions::default()
-    }
+    ImportOptions::of_grains(&Material::GLASS, 0.1)
 }
 
 fn with_cell() -> ImportOptions {

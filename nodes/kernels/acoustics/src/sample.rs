@@ -51,13 +51,10 @@ impl Sample {
         let diameter = mean_diameter(&packing);
         let setting = EngineSettings {
             friction,
-            damping: 0.0,
-            drag: 0.0,
-            spin_drag: 0.0,
             tangential: TangentialLaw::Incremental,
             time_step: TimeStep::FractionOfStable(SAFETY),
             skin: SKIN * diameter,
-            thermostat_speed: None,
+            ..EngineSettings::default()
         };
         let mut engine = Engine::from_packing(&packing, setting)?;
         engine.initialise()?;

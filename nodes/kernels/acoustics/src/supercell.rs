@@ -106,17 +106,5 @@ fn contact(
         return Err(DemError::Image { grain: c.i }.into());
     }
     let image: [i8; 3] = image.map(|k| k as i8).into();
-    let (i, j) = (i as u32, j as u32);
-    if i < j || (i == j && image > [0; 3]) {
-        return Ok(Contact { i, j, image, ..*c });
-    }
-    // This contact with its grains exchanged.
-    Ok(Contact {
-        i: j,
-        j: i,
-        image: image.map(|k| -k),
-        normal: -c.normal,
-        tangential_force: -c.tangential_force,
-        ..*c
-    })
+    Ok(c.named(i as u32, j as u32, image))
 }

@@ -117,36 +117,14 @@ mod tests {
     fn pair() -> Packing {
         let (a, b) = (Vec3::new(0.02, 0.3, 0.4), Vec3::new(0.92, 0.31, 0.42));
         let cell = Cell::new(Mat3::new(1.0, 0.2, 0.0, 0.0, 0.118, -0.1, 0.0, 0.0, 1.0)).unwrap();
-        let contact = |i: u32, j: u32, image, from: Vec3, to: Vec3, radii: f64| {
-            let branch = to - from + cell.shift(image);
-            let overlap = radii - branch.norm();
-            let normal_force = Material::GLASS.normal_force(0.03, overlap);
-            Contact {
-                i,
-                j,
-                image,
-                overlap,
-                normal: branch.normalize(),
-                normal_force,
-                tangential_force: Vec3::zeros(),
-                rolling_force: Vec3::zeros(),
-            }
-        };
+        let branch = b - a + cell.shift([-1, 0, 0]);
+        let overlap = 0.11 - branch.norm();
+        let force = Material::GLASS.normal_force(0.03, overlap);
         Packing {
-            step: 0,
-            time: 0.0,
-            cell,
-            deformation: Mat3::identity(),
             ids: vec![7, 3],
-            radii: vec![0.05, 0.06],
-            positions: vec![a, b],
-            velocities: vec![Vec3::zeros(); 2],
-            spins: vec![Vec3::zeros(); 2],
-            contacts: vec![contact(0, 1, [-1, 0, 0], a, b, 0.11)],
-            material: Material::GLASS,
-            law: Default::default(),
+            contacts: vec![Contact::pressed([0, 1], [-1, 0, 0], branch.normalize(), overlap, force)],
             friction: 0.1,
-            time_step: 0.0,
+            ..Packing::at_rest(cell, vec![0.05, 0.06], vec![a, b])
         }
     }
 
@@ -195,16 +173,7 @@ mod tests {
         p.radii = vec![0.051];
         (p.ids, p.positions) = (vec![1], vec![Vec3::zeros()]);
         (p.velocities, p.spins) = (vec![Vec3::zeros()], vec![Vec3::zeros()]);
-        let own = |k: i8| Contact {
-            i: 0,
-            j: 0,
-            image: [0, 0, k],
-            overlap: 0.102 - 0.1,
-            normal: Vec3::z() * f64::from(k),
-            normal_force: 1.0,
-            tangential_force: Vec3::zeros(),
-            rolling_force: Vec3::zeros(),
-        };
+        let own = |k: i8| Contact::pressed([0, 0], [0, 0, k], Vec3::z() * f64::from(k), 0.102 - 0.1, 1.0);
         p.contacts = vec![own(1)];
         assert!(p.clone().validated().unwrap().consistent().is_ok());
         p.contacts = vec![own(-1), own(1)];

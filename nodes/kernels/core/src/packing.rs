@@ -31,6 +31,28 @@ pub struct Contact {
 const SLIDING: f64 = 0.999;
 
 impl Contact {
+    /// A contact of the grains `i` and `j` with this overlap, m, and normal force, N, and without any other force.
+    pub fn pressed([i, j]: [u32; 2], image: [i8; 3], normal: Vec3, overlap: f64, normal_force: f64) -> Self {
+        let (tangential_force, rolling_force) = (Vec3::zeros(), Vec3::zeros());
+        Self { i, j, image, overlap, normal, normal_force, tangential_force, rolling_force }
+    }
+
+    /// This contact as one of the grains `i` and `j` and this image, or with the two exchanged: in the order of a packing.
+    pub fn named(self, i: u32, j: u32, image: [i8; 3]) -> Self {
+        if (i, [0; 3]) < (j, image) {
+            return Self { i, j, image, ..self };
+        }
+        Self {
+            i: j,
+            j: i,
+            image: image.map(|k| -k),
+            normal: -self.normal,
+            tangential_force: -self.tangential_force,
+            rolling_force: -self.rolling_force,
+            ..self
+        }
+    }
+
     /// True if the contact is at the Coulomb limit: |F_t| ≥ 0.999 μ F_n. Never true where there is no such limit
     /// (μ = 0 or infinite).
     pub fn slides(&self, friction: f64) -> bool {
@@ -174,6 +196,27 @@ pub enum PackingError {
 }
 
 impl Packing {
+    /// Glass spheres at rest with the ids 0, 1, 2, …, without contacts, friction and history.
+    pub fn at_rest(cell: Cell, radii: Vec<f64>, positions: Vec<Vec3>) -> Self {
+        let n = radii.len();
+        Self {
+            step: 0,
+            time: 0.0,
+            cell,
+            deformation: Mat3::identity(),
+            ids: (0..n as u32).collect(),
+            radii,
+            positions,
+            velocities: vec![Vec3::zeros(); n],
+            spins: vec![Vec3::zeros(); n],
+            contacts: Vec::new(),
+            material: Material::GLASS,
+            law: ContactLaw::default(),
+            friction: 0.0,
+            time_step: 0.0,
+        }
+    }
+
     /// The packing itself if it is one, else the first fault found.
     pub fn validated(self) -> Result<Self, PackingError> {
         self.check().map(|()| self)

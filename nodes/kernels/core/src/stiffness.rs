@@ -102,15 +102,8 @@ impl Stiffness {
         let c11 = sum / 2.0 + g12;
         let c12 = sum / 2.0 - g12;
         let c13 = (c(1, 3) + c(3, 1) + c(2, 3) + c(3, 2)) / 4.0;
-        let mut t = TransverseIsotropy {
-            c11,
-            c12,
-            c13,
-            c33: c(3, 3),
-            g13: 0.5 * (c(4, 4) + c(5, 5)),
-            g12,
-            residual: 0.0,
-        };
+        let (c33, g13) = (c(3, 3), 0.5 * (c(4, 4) + c(5, 5)));
+        let mut t = TransverseIsotropy { c11, c12, c13, c33, g13, g12, residual: 0.0 };
         let difference = mandel(&(self.0 - t.stiffness().0)).norm();
         t.residual = difference / mandel(&self.0).norm();
         t
@@ -157,6 +150,11 @@ impl Stiffness {
 }
 
 impl TransverseIsotropy {
+    /// The medium with these five constants: C11, C33, C13, C44 = G13 and C66 = G12.
+    pub const fn of_constants(c11: f64, c33: f64, c13: f64, g13: f64, g12: f64) -> Self {
+        Self { c11, c12: c11 - 2.0 * g12, c13, c33, g13, g12, residual: 0.0 }
+    }
+
     /// The stiffness with these moduli.
     pub fn stiffness(&self) -> Stiffness {
         let mut m = Matrix6::zeros();
@@ -189,15 +187,7 @@ mod tests {
     use nalgebra::Vector3;
 
     fn sample() -> Stiffness {
-        let t = TransverseIsotropy {
-            c11: 360.0,
-            c12: 80.0,
-            c13: 70.0,
-            c33: 400.0,
-            g13: 150.0,
-            g12: 140.0,
-            residual: 0.0,
-        };
+        let t = TransverseIsotropy::of_constants(360.0, 400.0, 70.0, 150.0, 140.0);
         t.stiffness()
     }
 

@@ -161,27 +161,10 @@ mod tests {
     use super::*;
     use crate::stiffness::TransverseIsotropy;
 
-    const MEDIUM: TransverseIsotropy = TransverseIsotropy {
-        c11: 360.0,
-        c12: 80.0,
-        c13: 70.0,
-        c33: 400.0,
-        g13: 150.0,
-        g12: 140.0,
-        residual: 0.0,
-    };
+    const MEDIUM: TransverseIsotropy = TransverseIsotropy::of_constants(360.0, 400.0, 70.0, 150.0, 140.0);
 
     fn isotropic() -> Stiffness {
-        let t = TransverseIsotropy {
-            c11: 400.0,
-            c12: 100.0,
-            c13: 100.0,
-            c33: 400.0,
-            g13: 150.0,
-            g12: 150.0,
-            ..MEDIUM
-        };
-        t.stiffness()
+        TransverseIsotropy::of_constants(400.0, 400.0, 100.0, 150.0, 150.0).stiffness()
     }
 
     fn close(a: f64, b: f64) -> bool {

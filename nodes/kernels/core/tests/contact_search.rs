@@ -156,3 +156,17 @@ fn what_cannot_be_a_contact_is_refused() {
     assert_eq!(find(Vec3::new(200.5, 0.0, 0.0)).unwrap(), []);
     assert_eq!(find(Vec3::new(100.05, 0.0, 0.0)).unwrap()[0].image, [-100, 0, 0]);
 }
+
+/// As one with the grains exchanged, each direction of a contact is reversed: normal, tangential and rolling force.
+#[test]
+fn a_contact_named_in_reverse_is_kept_in_order_with_its_directions_reversed() {
+    let pressed = Contact::pressed([3, 5], [0, 1, 0], Vec3::z(), 1e-3, 2.0);
+    let c = Contact { tangential_force: Vec3::x(), rolling_force: Vec3::y(), ..pressed };
+    assert_eq!(c.named(3, 5, [0, 1, 0]), c);
+    let back = c.named(5, 3, [0, -1, 0]);
+    assert_eq!((back.i, back.j, back.image, back.overlap), (3, 5, [0, 1, 0], 1e-3));
+    assert_eq!(
+        (back.normal, back.tangential_force, back.rolling_force),
+        (-Vec3::z(), -Vec3::x(), -Vec3::y())
+    );
+}

@@ -10,13 +10,10 @@ const RADIUS: f64 = 1e-4;
 fn setting(friction: f64, time_step: f64) -> EngineSettings {
     EngineSettings {
         friction,
-        damping: 0.0,
-        drag: 0.0,
-        spin_drag: 0.0,
         tangential: TangentialLaw::Incremental,
         time_step: TimeStep::Fixed(time_step),
         skin: 1e-5,
-        thermostat_speed: None,
+        ..EngineSettings::default()
     }
 }
 

@@ -13,12 +13,10 @@ fn setting(friction: f64, tangential: TangentialLaw) -> EngineSettings {
     EngineSettings {
         friction,
         damping: 0.2,
-        drag: 0.0,
-        spin_drag: 0.0,
         tangential,
         time_step: TimeStep::FractionOfStable(0.5),
         skin: 0.1 * RADIUS,
-        thermostat_speed: None,
+        ..EngineSettings::default()
     }
 }
 

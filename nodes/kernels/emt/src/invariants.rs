@@ -123,15 +123,7 @@ mod tests {
     use super::*;
     use grainlab_core::TransverseIsotropy;
 
-    const MEDIUM: TransverseIsotropy = TransverseIsotropy {
-        c11: 271.0,
-        c12: 65.0,
-        c13: 61.0,
-        c33: 293.0,
-        g13: 112.0,
-        g12: 103.0,
-        residual: 0.0,
-    };
+    const MEDIUM: TransverseIsotropy = TransverseIsotropy::of_constants(271.0, 293.0, 61.0, 112.0, 103.0);
 
     #[test]
     fn moduli_come_back_from_their_invariants() {

@@ -60,9 +60,7 @@ fn seconds<T>(work: impl FnOnce() -> T) -> f64 {
 /// The last packing of a scene.
 fn made(scene: grainlab_scene::Scene) -> Result<Packing, Box<dyn std::error::Error>> {
     let mut run = grainlab_experiment::Simulation::new(scene)?;
-    while let Some(r) = run.request() {
-        run.advance(&grainlab_servo::control(&r.input)?.rate)?;
-    }
+    while run.exchange()?.is_some() {}
     Ok(run.packing()?)
 }
 

@@ -46,9 +46,8 @@ fn run(text: &str) -> Result<Outcome, Box<dyn std::error::Error>> {
     let begin = Instant::now();
     let mut run = grainlab_experiment::Simulation::new(grainlab_scene::Scene::parse(text)?)?;
     let mut out = Outcome { seconds: 0.0, jammed: 0.0, loaded: [0.0; 3] };
-    while let Some(r) = run.request() {
-        let answer = grainlab_servo::control(&r.input)?;
-        match run.advance(&answer.rate)?.ended.as_deref() {
+    while let Some(outcome) = run.exchange()? {
+        match outcome.ended.as_deref() {
             Some("gas") => out.seconds = begin.elapsed().as_secs_f64(),
             Some("jam") => out.jammed = run.packing()?.solid_fraction(),
             Some("load") => {

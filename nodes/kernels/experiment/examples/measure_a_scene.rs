@@ -10,8 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::parse(built_in("demo").ok_or("no scene demo")?)?;
     let mut run = Simulation::new(scene)?;
     // The simulator sends a request, the servo returns a strain rate, and grains move for one control period.
-    while let Some(request) = run.request() {
-        let outcome = run.advance(&grainlab_servo::control(&request.input)?.rate)?;
+    while let Some(outcome) = run.exchange()? {
         if outcome.packing_due {
             let report = analyze(&run.packing()?, &Settings::default())?.report;
             let (k, eps) = (report.contacts.coordination, report.fabric.contact_anisotropy);

@@ -46,10 +46,7 @@ until = {{ on_target = 1e-6, unbalanced = 1e-7, hold = 2e-5, timeout = 0.1 }}
 "#
     );
     let mut run = Simulation::new(Scene::parse(&text)?)?;
-    while let Some(r) = run.request() {
-        let answer = grainlab_servo::control(&r.input)?;
-        run.advance(&answer.rate)?;
-    }
+    while run.exchange()?.is_some() {}
     print(&run.packing()?);
     Ok(())
 }

@@ -24,6 +24,9 @@ pub enum ExperimentError {
         /// Fault, with the last lines of the program.
         reason: String,
     },
+    /// A request is none that a servo can answer.
+    #[error(transparent)]
+    Servo(#[from] grainlab_servo::ServoError),
     /// The path failed.
     #[error(transparent)]
     Path(#[from] grainlab_scene::PathError),

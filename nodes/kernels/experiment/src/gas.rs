@@ -17,20 +17,13 @@ pub(crate) fn at_random(scene: &Scene) -> Result<Packing, ExperimentError> {
     let radii: Vec<f64> = scene.sizes.diameters(scene.grains).iter().map(|d| 0.5 * d).collect();
     let gas = random_placement(&radii, fraction, speed, scene.seed)?;
     Ok(Packing {
-        step: 0,
-        time: 0.0,
-        cell: gas.cell,
-        deformation: Mat3::identity(),
         ids: (0..scene.grains).collect(),
         spins: vec![Vec3::zeros(); radii.len()],
-        radii,
-        positions: gas.positions,
         velocities: gas.velocities,
-        contacts: Vec::new(),
         material: scene.material,
         law: scene.law,
         friction: scene.phases[0].friction,
-        time_step: 0.0,
+        ..Packing::at_rest(gas.cell, radii, gas.positions)
     })
 }
 

@@ -278,6 +278,13 @@ impl Simulation {
         })
     }
 
+    /// One exchange with the servo as a function call: answers the present request, and [advances](Self::advance). `None` once the
+    /// path is done.
+    pub fn exchange(&mut self) -> Result<Option<StepOutcome>, ExperimentError> {
+        let Some(request) = self.request() else { return Ok(None) };
+        self.advance(&grainlab_servo::control(&request.input)?.rate).map(Some)
+    }
+
     /// Strains at `rate` (Voigt order, 1/s) for one control period. On failure, and if the flag of its compute settings is
     /// set, the run returns to a copy of its state at a request: the present one in an event-driven gas, else one at most a
     /// hundred steps and one control period ago. It goes on from there to the same bytes.

@@ -48,9 +48,7 @@ fn the_balance_of_a_scene_closes_in_every_phase() {
         let (name, phases, contact_law) = (scene.law.to_string(), scene.phases.len(), scene.law);
         let mut run = Simulation::new(scene).unwrap();
         let (mut ended, mut slid, mut rolled) = (0, 0.0f64, 0.0f64);
-        while let Some(r) = run.request() {
-            let rate = grainlab_servo::control(&r.input).unwrap().rate;
-            let outcome = run.advance(&rate).unwrap();
+        while let Some(outcome) = run.exchange().unwrap() {
             let balance = outcome.energy.unwrap();
             let residual = balance.relative_residual().abs();
             assert!(residual < 1e-9, "{name}, phase {ended}, {residual:e}: {balance:?}");

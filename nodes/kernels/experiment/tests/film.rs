@@ -42,9 +42,7 @@ type Published = (Packing, Vec<u8>, bool);
 /// Runs to the end; all packings that were due.
 fn run(mut run: Simulation) -> (Simulation, Vec<Published>) {
     let mut published = Vec::new();
-    while let Some(request) = run.request() {
-        let rate = grainlab_servo::control(&request.input).unwrap().rate;
-        let outcome = run.advance(&rate).unwrap();
+    while let Some(outcome) = run.exchange().unwrap() {
         if outcome.packing_due {
             published.push((run.packing().unwrap(), run.run_state().unwrap(), outcome.ended.is_some()));
         }
@@ -147,11 +145,11 @@ fn a_run_starts_from_a_packing() {
 fn a_run_reports_what_each_phase_leaves_out() {
     let mut run = of(SCENE);
     let mut said = Vec::new();
-    while let Some(request) = run.request() {
+    while run.request().is_some() {
         if said.len() <= run.path().phase {
             said.push(run.left_out());
         }
-        run.advance(&grainlab_servo::control(&request.input).unwrap().rate).unwrap();
+        run.exchange().unwrap();
     }
     assert!(said[0].contains("hard spheres"), "{said:?}");
     assert_eq!(said[1], "without spins, tangential springs, unequal sizes");

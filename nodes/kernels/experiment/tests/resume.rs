@@ -50,9 +50,7 @@ publish = true
 "#;
 
 fn advance(run: &mut Simulation) -> bool {
-    let Some(r) = run.request() else { return false };
-    run.advance(&grainlab_servo::control(&r.input).unwrap().rate).unwrap();
-    true
+    run.exchange().unwrap().is_some()
 }
 
 fn speed(run: &Simulation) -> f64 {

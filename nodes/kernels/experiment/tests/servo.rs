@@ -45,8 +45,7 @@ fn settled() -> &'static Vec<(Engine, f64)> {
         let text = GAS.to_string() + &PRESSURES.map(servo_phase).concat();
         let mut run = Simulation::new(Scene::parse(&text).unwrap()).unwrap();
         let mut out = Vec::new();
-        while let Some(r) = run.request() {
-            let advanced = run.advance(&grainlab_servo::control(&r.input).unwrap().rate).unwrap();
+        while let Some(advanced) = run.exchange().unwrap() {
             if advanced.packing_due {
                 let target = PRESSURES[out.len()];
                 let stress = run.engine().observables().unwrap().stress.tensor.voigt();

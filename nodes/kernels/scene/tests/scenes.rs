@@ -1,7 +1,7 @@
 //! Valid and invalid scenes.
 
 use grainlab_core::contact::{ContactLaw, RollingResistance};
-use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
+use grainlab_core::{Cell, ComponentControl, Contact, Material, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_scene::{
     Condition, Draft, GasMethod, Measure, Observation, PathState, PhaseEnded, PhaseKind, Record, Scene,
     Sizes, Species, assignment,
@@ -370,30 +370,17 @@ fn resistance_to_rolling_needs_a_stiffness_and_a_friction_and_may_lack_a_dashpot
 /// Two unequal grains that touch, with a tangential force.
 fn pair() -> Packing {
     let overlap = 1e-8;
-    let contact = Contact {
-        i: 0,
-        j: 1,
-        image: [0; 3],
-        overlap,
-        normal: Vec3::x(),
-        normal_force: Material::GLASS.normal_force(1e-4 * 2e-4 / 3e-4, overlap),
-        tangential_force: Vec3::y() * 1e-6,
-        rolling_force: Vec3::zeros(),
-    };
+    let force = Material::GLASS.normal_force(1e-4 * 2e-4 / 3e-4, overlap);
+    let pressed = Contact::pressed([0, 1], [0; 3], Vec3::x(), overlap, force);
+    let contact = Contact { tangential_force: Vec3::y() * 1e-6, ..pressed };
     Packing {
-        step: 0,
-        time: 0.0,
-        cell: Cell::cube(1e-3).unwrap(),
-        deformation: Mat3::identity(),
-        ids: vec![0, 1],
-        radii: vec![1e-4, 2e-4],
-        positions: vec![Vec3::zeros(), Vec3::x() * (3e-4 - overlap)],
-        velocities: vec![Vec3::zeros(); 2],
-        spins: vec![Vec3::zeros(); 2],
         contacts: vec![contact],
         material: Material { density: 2000.0, ..Material::GLASS },
-        law: ContactLaw::default(),
         friction: 0.3,
-        time_step: 0.0,
+        ..Packing::at_rest(
+            Cell::cube(1e-3).unwrap(),
+            vec![1e-4, 2e-4],
+            vec![Vec3::zeros(), Vec3::x() * (3e-4 - overlap)],
+        )
     }
 }

@@ -94,9 +94,6 @@ fn panicking_node() {
         fn step(&mut self, _: &mut dyn Bus) -> Result<Next, NodeError> {
             panic!("the bug")
         }
-        fn health(&self) -> Health {
-            Health::default()
-        }
     }
     let spec =
         NodeSpec { name: "panicking", summary: "panics", scope: Scope::Everyone, parameters: Vec::new() };

@@ -32,8 +32,10 @@ pub trait Node {
     /// One step: takes what arrived and publishes the results. May compute for long.
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError>;
 
-    /// The state of the node; called once a second.
-    fn health(&self) -> Health;
+    /// The state of the node, good by default; called once a second.
+    fn health(&self) -> Health {
+        Health::default()
+    }
 
     /// Called when the user or the launcher stops the node: publishes final results and returns the exit.
     /// [`Exit::Interrupted`] if the result is incomplete.

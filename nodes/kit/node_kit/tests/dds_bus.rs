@@ -19,6 +19,26 @@ fn open(network: Network, node: &str) -> DdsBus {
     DdsBus::open(network, Names::in_namespace(node, "/lab").unwrap()).unwrap()
 }
 
+/// Two buses in a domain of their own, which lasts as long as its claim.
+fn two() -> (FreeDomain, DdsBus, DdsBus) {
+    let claimed = claim();
+    let (a, b) = (open(claimed.network(), "a"), open(claimed.network(), "b"));
+    (claimed, a, b)
+}
+
+/// Strain rates that `a` publishes and `b` takes.
+fn rates(
+    a: &mut DdsBus,
+    b: &mut DdsBus,
+    demand: Demand,
+) -> (Publisher<StrainRate>, Subscription<StrainRate>) {
+    let publisher = Publisher::advertise(a, &topics::STRAIN_RATE).unwrap();
+    let subscription = Subscription::subscribe(b, &topics::STRAIN_RATE, demand).unwrap();
+    until(a, "a sees a reader", |a| a.readers(publisher.id()) == 1);
+    until(b, "b sees a writer", |b| b.writers(subscription.id()) == 1);
+    (publisher, subscription)
+}
+
 /// Waits on `bus` until `done`.
 fn until(bus: &mut DdsBus, what: &str, mut done: impl FnMut(&mut DdsBus) -> bool) {
     let start = Instant::now();
@@ -38,14 +58,8 @@ fn rate(sequence: u64) -> StrainRate {
 
 #[test]
 fn samples_arrive_once_in_order_with_sequence_numbers_and_the_writers_id() {
-    let claimed = claim();
-    let network = claimed.network();
-    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
-    let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
-    let subscription =
-        Subscription::<StrainRate>::subscribe(&mut b, &topics::STRAIN_RATE, Demand::reliable(1000)).unwrap();
-    until(&mut a, "a sees a reader", |a| a.readers(publisher.id()) == 1);
-    until(&mut b, "b sees a writer", |b| b.writers(subscription.id()) == 1);
+    let (_domain, mut a, mut b) = two();
+    let (publisher, subscription) = rates(&mut a, &mut b, Demand::reliable(1000));
 
     let before = b.wall_nanos();
     for n in 1..=300 {
@@ -120,14 +134,8 @@ fn packings_of_megabytes_arrive_whole_live_and_latched() {
 
 #[test]
 fn a_clean_leave_is_seen_at_once_and_its_last_samples_are_kept() {
-    let claimed = claim();
-    let network = claimed.network();
-    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
-    let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
-    let subscription =
-        Subscription::<StrainRate>::subscribe(&mut b, &topics::STRAIN_RATE, Demand::reliable(1000)).unwrap();
-    until(&mut b, "match", |b| b.writers(subscription.id()) == 1);
-    until(&mut a, "match", |a| a.readers(publisher.id()) == 1);
+    let (_domain, mut a, mut b) = two();
+    let (publisher, subscription) = rates(&mut a, &mut b, Demand::reliable(1000));
     for n in 1..=50 {
         publisher.publish(&mut a, &rate(n)).unwrap();
     }
@@ -152,14 +160,8 @@ fn a_clean_leave_is_seen_at_once_and_its_last_samples_are_kept() {
 
 #[test]
 fn waiting_blocks_until_data_and_returns_on_time_without_it() {
-    let claimed = claim();
-    let network = claimed.network();
-    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
-    let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
-    let subscription =
-        Subscription::<StrainRate>::subscribe(&mut b, &topics::STRAIN_RATE, Demand::best_effort(10)).unwrap();
-    until(&mut b, "match", |b| b.writers(subscription.id()) == 1);
-    until(&mut a, "match", |a| a.readers(publisher.id()) == 1);
+    let (_domain, mut a, mut b) = two();
+    let (publisher, subscription) = rates(&mut a, &mut b, Demand::best_effort(10));
     while subscription.take_valid(&mut b).unwrap().is_some() {}
     while b.wait(Duration::from_millis(300)) != Wake::Timeout {
         while subscription.take_valid(&mut b).unwrap().is_some() {}
@@ -186,9 +188,7 @@ fn waiting_blocks_until_data_and_returns_on_time_without_it() {
 
 #[test]
 fn each_of_two_subscriptions_to_one_topic_gets_everything() {
-    let claimed = claim();
-    let network = claimed.network();
-    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let (_domain, mut a, mut b) = two();
     let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
     let subscribe =
         |b: &mut DdsBus, demand| Subscription::<StrainRate>::subscribe(b, &topics::STRAIN_RATE, demand);
@@ -215,9 +215,7 @@ fn each_of_two_subscriptions_to_one_topic_gets_everything() {
 
 #[test]
 fn bodies_that_are_not_messages_are_refused_on_both_sides() {
-    let claimed = claim();
-    let network = claimed.network();
-    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let (_domain, mut a, mut b) = two();
     let id = a.advertise(&topics::STRAIN_RATE).unwrap();
     for bad in [&[][..], &[0, 1], &[0, 3, 0, 0, 1], b"text"] {
         assert!(matches!(a.publish(id, bad), Err(BusError::Encapsulation { .. })), "{bad:?}");
@@ -239,9 +237,7 @@ fn bodies_that_are_not_messages_are_refused_on_both_sides() {
 
 #[test]
 fn bodies_of_both_byte_orders_arrive_as_they_were_sent_on_a_topic_of_any_type() {
-    let claimed = claim();
-    let network = claimed.network();
-    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let (_domain, mut a, mut b) = two();
     let qos = Qos { reliable: true, depth: 50, transient_local: true };
     let topic =
         Topic::outside_contract("/arm/_action/feedback", "demo_msgs/action/Move_Feedback", qos).unwrap();
@@ -362,9 +358,7 @@ fn a_process_receives_its_own_messages_once_for_any_demand() {
 
 #[test]
 fn a_node_that_reads_its_own_topic_does_not_wait_for_itself_when_it_leaves() {
-    let claimed = claim();
-    let network = claimed.network();
-    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let (_domain, mut a, mut b) = two();
     a.subscribe(&topics::DIAGNOSTICS, Demand::reliable(1000)).unwrap();
     let both = [&topics::DIAGNOSTICS, &topics::STRAIN_RATE].map(|topic| {
         let subscription = b.subscribe(topic, Demand::reliable(1000)).unwrap();
@@ -380,9 +374,7 @@ fn a_node_that_reads_its_own_topic_does_not_wait_for_itself_when_it_leaves() {
 
 #[test]
 fn a_process_takes_its_own_samples_after_those_that_arrived_before() {
-    let claimed = claim();
-    let network = claimed.network();
-    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let (_domain, mut a, mut b) = two();
     let rosout = Subscription::<Log>::subscribe(&mut a, &topics::ROSOUT, Demand::reliable(10)).unwrap();
     let [ours, theirs] =
         [&mut a, &mut b].map(|bus| Publisher::<Log>::advertise(bus, &topics::ROSOUT).unwrap());

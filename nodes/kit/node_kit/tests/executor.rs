@@ -1,8 +1,6 @@
 //! Several nodes in one process.
 
-use grainlab_node_kit::{
-    Bus, Component, Exit, Health, Hub, Logger, Names, Next, Node, NodeError, RosArgs, step_all,
-};
+use grainlab_node_kit::{Bus, Component, Exit, Hub, Logger, Names, Next, Node, NodeError, RosArgs, step_all};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -15,10 +13,6 @@ impl Node for Waiting {
     fn step(&mut self, _: &mut dyn Bus) -> Result<Next, NodeError> {
         assert!(!self.panics, "a broken node");
         Ok(Next::Wait(Duration::from_secs(3600)))
-    }
-
-    fn health(&self) -> Health {
-        Health::default()
     }
 }
 

@@ -3,7 +3,7 @@
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    Bus, Demand, Exit, Health, Hub, Logger, Names, Next, Node, NodeError, RosArgs, Subscription, drive,
+    Bus, Demand, Exit, Hub, Logger, Names, Next, Node, NodeError, RosArgs, Subscription, drive,
 };
 
 struct Idle;
@@ -11,10 +11,6 @@ struct Idle;
 impl Node for Idle {
     fn step(&mut self, _: &mut dyn Bus) -> Result<Next, NodeError> {
         Ok(Next::Finished(Exit::Done))
-    }
-
-    fn health(&self) -> Health {
-        Health::default()
     }
 }
 
@@ -25,10 +21,6 @@ impl Node for Panics {
     fn step(&mut self, _: &mut dyn Bus) -> Result<Next, NodeError> {
         (0..1200).for_each(|n| log::info!("line {n}"));
         panic!("the bug")
-    }
-
-    fn health(&self) -> Health {
-        Health::default()
     }
 }
 

@@ -3,7 +3,7 @@
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    Bus, DdsBus, Demand, Exit, FreeDomain, Health, Logger, Names, Network, Next, Node, NodeError, RosArgs,
+    Bus, DdsBus, Demand, Exit, FreeDomain, Logger, Names, Network, Next, Node, NodeError, RosArgs,
     Subscription, drive,
 };
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -34,10 +34,6 @@ impl Node for Busy {
             Err(TryRecvError::Empty) => Next::Wait(Duration::from_millis(20)),
             Err(TryRecvError::Disconnected) => Next::Finished(Exit::Failure),
         })
-    }
-
-    fn health(&self) -> Health {
-        Health::default()
     }
 }
 

@@ -5,7 +5,7 @@ use grainlab_dem::{Compute, ComputeError, Simd};
 use grainlab_experiment::{Dem, EngineFactory, engine_program};
 use grainlab_lammps::Lammps;
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::{ParameterSpec, Parameters, Range};
+use grainlab_node_kit::{ParameterSpec, Parameters, Range, parameters};
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::time::Duration;
@@ -19,78 +19,36 @@ const OURS: &str = "grainlab";
 /// The parameters of the node; scene and packing to resume from come as values.
 pub fn parameters() -> Vec<ParameterSpec> {
     let time = Range::Double { min: 0.0, max: 3600.0 };
-    vec![
+    parameters! {
         // Discovery on one host takes 0.2 s; three times that finds a simulator on a busy host.
-        ParameterSpec::new(
-            "look_around",
-            0.6,
-            "time to look for another simulator before the first request, s",
-        )
-        .within(time),
+        "look_around" 0.6, time, "time to look for another simulator before the first request, s";
         // An exchange takes well below 1 ms; 20 ms allow for one time slice of a busy host.
-        ParameterSpec::new(
-            "resend_after",
-            0.02,
-            "a request without answer is published again after this time, s; doubled at each repetition",
-        )
-        .within(Range::Positive),
-        ParameterSpec::new("resend_at_most", 0.2, "longest time between repetitions, s")
-            .within(Range::Positive),
-        ParameterSpec::new(
-            "wait_for",
-            Vec::<String>::new(),
-            "topics that need readers before the run starts, as in [stress, packing]",
-        )
-        .within(Range::Choice(&["stress", "packing", "run_state", "clock"])),
-        ParameterSpec::new("min_readers", 1_i64, "readers that each topic of wait_for needs; clock needs one")
-            .within(Range::Integer { min: 1, max: 1000 }),
-        ParameterSpec::new(
-            "min_packing_readers",
-            0_i64,
-            "readers that packing needs where wait_for has it, 0 for min_readers",
-        )
-        .within(Range::Integer { min: 0, max: 1000 }),
-        ParameterSpec::new(
-            "exit_when_finished",
-            false,
-            "end when the loading path is done; else stay, so that late readers get the last packing",
-        ),
-        ParameterSpec::new(
-            "until_inverted",
-            Vec::<String>::new(),
-            "with exit_when_finished: stay until the last packing is inverted from the data of these topics, as in [packing_report]",
-        )
-        .within(Range::Choice(&["packing_report", "moduli", "wave_speeds"])),
-        ParameterSpec::new(
-            "inverted_within",
-            60.0,
-            "longest time to wait for until_inverted after the end of the loading path, s",
-        )
-        .within(time),
-        ParameterSpec::new(
-            "ahead",
-            true,
-            "continue with the answer predicted by the servo's law while the answer is in transit, up to 4000 grains; results do not depend on it",
-        ),
-        ParameterSpec::new(
-            "engine",
-            "",
-            "program that moves the grains once they touch: grainlab or lammps; empty: grainlab, and in a resumed run the one of the \
-             recording. Naming another one than the recording's changes it",
-        )
-        .within(Range::Choice(&["", "grainlab", "lammps"])),
-        ParameterSpec::new(
-            "engine_command",
-            LAMMPS_COMMAND,
-            "for lammps: the program with what starts it, as in mpiexec -n 4 lmp",
-        ),
-        ParameterSpec::new("engine_time_limit", 300.0, "for lammps: longest time of an exchange, s")
-            .within(Range::Positive),
-        ParameterSpec::new("threads", 0_i64, "number of threads, 0 for as many as are efficient; results do not depend on it")
-            .within(Range::Integer { min: 0, max: 1024 }),
-        ParameterSpec::new("simd", "best", "instruction set to compute with; results do not depend on it")
-            .within(Range::Choice(&["best", "scalar", "avx2", "avx512"])),
-    ]
+        "resend_after" 0.02, Range::Positive,
+            "a request without answer is published again after this time, s; doubled at each repetition";
+        "resend_at_most" 0.2, Range::Positive, "longest time between repetitions, s";
+        "wait_for" Vec::<String>::new(), Range::Choice(&["stress", "packing", "run_state", "clock"]),
+            "topics that need readers before the run starts, as in [stress, packing]";
+        "min_readers" 1_i64, Range::Integer { min: 1, max: 1000 }, "readers that each topic of wait_for needs; clock needs one";
+        "min_packing_readers" 0_i64, Range::Integer { min: 0, max: 1000 },
+            "readers that packing needs where wait_for has it, 0 for min_readers";
+        "exit_when_finished" false, Range::Any,
+            "end when the loading path is done; else stay, so that late readers get the last packing";
+        "until_inverted" Vec::<String>::new(), Range::Choice(&["packing_report", "moduli", "wave_speeds"]),
+            "with exit_when_finished: stay until the last packing is inverted from the data of these topics, as in [packing_report]";
+        "inverted_within" 60.0, time, "longest time to wait for until_inverted after the end of the loading path, s";
+        "ahead" true, Range::Any,
+            "continue with the answer predicted by the servo's law while the answer is in transit, up to 4000 grains; results \
+             do not depend on it";
+        "engine" "", Range::Choice(&["", "grainlab", "lammps"]),
+            "program that moves the grains once they touch: grainlab or lammps; empty: grainlab, and in a resumed run the one \
+             of the recording. Naming another one than the recording's changes it";
+        "engine_command" LAMMPS_COMMAND, Range::Any, "for lammps: the program with what starts it, as in mpiexec -n 4 lmp";
+        "engine_time_limit" 300.0, Range::Positive, "for lammps: longest time of an exchange, s";
+        "threads" 0_i64, Range::Integer { min: 0, max: 1024 },
+            "number of threads, 0 for as many as are efficient; results do not depend on it";
+        "simd" "best", Range::Choice(&["best", "scalar", "avx2", "avx512"]),
+            "instruction set to compute with; results do not depend on it";
+    }
 }
 
 /// Default of `engine_command`.

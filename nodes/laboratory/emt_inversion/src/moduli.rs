@@ -94,15 +94,7 @@ mod tests {
     use grainlab_core::TransverseIsotropy;
     use grainlab_emt::Modulus;
 
-    const T: TransverseIsotropy = TransverseIsotropy {
-        c11: 360.0,
-        c12: 80.0,
-        c13: 70.0,
-        c33: 400.0,
-        g13: 150.0,
-        g12: 140.0,
-        residual: 0.0,
-    };
+    const T: TransverseIsotropy = TransverseIsotropy::of_constants(360.0, 400.0, 70.0, 150.0, 140.0);
 
     fn observation(error: f64) -> Observation {
         with_error(Observation::of_stiffness(&T.stiffness(), Conditions::at(50e3)), error).checked().unwrap()

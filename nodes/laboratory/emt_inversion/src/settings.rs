@@ -2,41 +2,26 @@
 
 use grainlab_core::Vec3;
 use grainlab_emt::{Calibration, Model, StrainRatioSource};
-use grainlab_node_kit::{ParameterSpec, Parameters, Range};
+use grainlab_node_kit::{ParameterSpec, Parameters, Range, parameters};
 
 /// The parameters of the node.
 pub fn parameters() -> Vec<ParameterSpec> {
     let error = "relative one-sigma error of each modulus if the data have none, 1; 0 leaves the uncertainty of the \
                  estimates unknown";
-    vec![
-        ParameterSpec::new(
-            "models",
-            "all",
+    parameters! {
+        "models" "all", Range::Any,
             "models to apply: all, or comma-separated names; free-contact is applied if it is named, and of all to wave speeds \
-             without a contact law and to contacts that are not Hertz-Mindlin contacts",
-        ),
-        ParameterSpec::new(
-            "calibration",
-            "default",
-            "constants of the models: default (that of each model), or one for all models: paper, grainlab, or \
-             a FILE.toml",
-        ),
-        ParameterSpec::new(
-            "axis",
-            "stated",
+             without a contact law and to contacts that are not Hertz-Mindlin contacts";
+        "calibration" "default", Range::Any,
+            "constants of the models: default (that of each model), or one for all models: paper, grainlab, or a FILE.toml";
+        "axis" "stated", Range::Any,
             "axis of symmetry: stated (that of the moduli; for wave speeds e3), e3, found (that of the data; inferred from wave \
-             speeds without a stated axis), or a direction x,y,z of any length; moduli about \
-             an axis other than e3 are used only about that one, those about e3 are transformed if the full stiffness is known",
-        ),
-        ParameterSpec::new(
-            "gamma_over_delta",
-            "total",
-            "measured strain ratio that the models use; if it is not known, contact, else zero",
-        )
-        .within(Range::Choice(&["total", "elastic", "contact", "zero"])),
-        ParameterSpec::new("modulus_error", Settings::default().modulus_error, error)
-            .within(Range::Double { min: 0.0, max: 1.0 }),
-    ]
+             speeds without a stated axis), or a direction x,y,z of any length; moduli about an axis other than e3 are used only \
+             about that one, those about e3 are transformed if the full stiffness is known";
+        "gamma_over_delta" "total", Range::Choice(&["total", "elastic", "contact", "zero"]),
+            "measured strain ratio that the models use; if it is not known, contact, else zero";
+        "modulus_error" Settings::default().modulus_error, Range::Double { min: 0.0, max: 1.0 }, error;
+    }
 }
 
 /// A parameter of the right type with an invalid value, and why it is. The process then ends with

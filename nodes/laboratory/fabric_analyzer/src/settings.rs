@@ -4,42 +4,26 @@ use grainlab_core::Vec3;
 use grainlab_micromechanics::TOLERANCES;
 use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::probe::StrainProbe;
-use grainlab_node_kit::{ParameterSpec, Parameters, Range};
+use grainlab_node_kit::{ParameterSpec, Parameters, Range, parameters};
 
 /// The parameters of the node.
 pub fn parameters() -> Vec<ParameterSpec> {
     let default = grainlab_micromechanics::Settings::default();
     let axis: Vec<f64> = default.axis.iter().copied().collect();
-    vec![
-        ParameterSpec::new(
-            "tolerance",
-            0.0,
-            "relative residual at which the stiffness solve stops, from 1e-13, 1; 0: 1e-9, and 1e-5 from 50,000 grains",
-        )
-        .within(Range::Double { min: 0.0, max: *TOLERANCES.end() }),
-        ParameterSpec::new(
-            "axis",
-            axis,
-            "axis of eps, of the ratios gamma/Delta and of G12 and G13: x, y, z, of any length above zero; messages include it; the 36 entries of a stiffness stay in the frame of the cell",
-        )
-        .within(Range::Double { min: -1e9, max: 1e9 }),
-        ParameterSpec::new(
-            "method",
-            "network",
-            "method of the stiffness: network (frozen), prestressed (the same for smooth grains, with the prestress \
-             term), probe (small strains of the packing itself, a hundred times slower)",
-        )
-        .within(Range::Choice(&["network", "prestressed", "probe"])),
-        ParameterSpec::new(
-            "springs",
-            "carried",
-            "springs of the contacts: carried (no tangential ones in a packing without friction), both, normal; without \
-             effect on the method prestressed, which has normal ones",
-        )
-        .within(Range::Choice(&["carried", "both", "normal"])),
-        ParameterSpec::new("amplitude", StrainProbe::default().amplitude, "strain of the probe, 1")
-            .within(Range::Double { min: 1e-12, max: 1e-2 }),
-    ]
+    parameters! {
+        "tolerance" 0.0, Range::Double { min: 0.0, max: *TOLERANCES.end() },
+            "relative residual at which the stiffness solve stops, from 1e-13, 1; 0: 1e-9, and 1e-5 from 50,000 grains";
+        "axis" axis, Range::Double { min: -1e9, max: 1e9 },
+            "axis of eps, of the ratios gamma/Delta and of G12 and G13: x, y, z, of any length above zero; messages include it; \
+             the 36 entries of a stiffness stay in the frame of the cell";
+        "method" "network", Range::Choice(&["network", "prestressed", "probe"]),
+            "method of the stiffness: network (frozen), prestressed (the same for smooth grains, with the prestress term), \
+             probe (small strains of the packing itself, a hundred times slower)";
+        "springs" "carried", Range::Choice(&["carried", "both", "normal"]),
+            "springs of the contacts: carried (no tangential ones in a packing without friction), both, normal; without effect \
+             on the method prestressed, which has normal ones";
+        "amplitude" StrainProbe::default().amplitude, Range::Double { min: 1e-12, max: 1e-2 }, "strain of the probe, 1";
+    }
 }
 
 /// The values of the parameters: how a packing is measured.

@@ -1,7 +1,7 @@
 //! The analyzer over DDS, during an analysis. One test: the watchdog counts the DDS threads of the whole
 //! process.
 
-use grainlab_core::{Cell, Mat3, Material, Vec3};
+use grainlab_core::{Cell, Vec3};
 use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Measured, Settings, measure};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
@@ -22,19 +22,8 @@ const TIME_LIMIT: Duration = Duration::from_secs(60);
 fn measured(packing: &Packing) -> Result<Measured, MeasureError> {
     let alone = grainlab_core::Packing {
         step: packing.step,
-        time: 0.0,
-        cell: Cell::cube(1e-3).unwrap(),
-        deformation: Mat3::identity(),
-        ids: vec![0],
-        radii: vec![1e-4],
-        positions: vec![Vec3::zeros()],
-        velocities: vec![Vec3::zeros()],
-        spins: vec![Vec3::zeros()],
-        contacts: Vec::new(),
-        material: Material::GLASS,
-        law: Default::default(),
         friction: 0.3,
-        time_step: 0.0,
+        ..grainlab_core::Packing::at_rest(Cell::cube(1e-3).unwrap(), vec![1e-4], vec![Vec3::zeros()])
     };
     measure(&packing_message(&alone, "alone", Vec::new()), &Settings::default())
 }

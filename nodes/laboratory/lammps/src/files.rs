@@ -117,16 +117,8 @@ fn contact(packing: &Packing, [i, j]: [usize; 2], branch: Vec3, force: Vec3) -> 
     // The dashpot is in it where grains move.
     let limit = packing.friction * normal_force;
     let tangential_force = if force.norm() > limit { force * (limit / force.norm()) } else { force };
-    Some(Contact {
-        i: i as u32,
-        j: j as u32,
-        image,
-        overlap,
-        normal,
-        normal_force,
-        tangential_force,
-        rolling_force: Vec3::zeros(),
-    })
+    let pressed = Contact::pressed([i as u32, j as u32], image, normal, overlap, normal_force);
+    Some(Contact { tangential_force, ..pressed })
 }
 
 /// The index of the grain with this number of LAMMPS.

@@ -222,15 +222,8 @@ mod tests {
 
     #[test]
     fn a_reason_names_the_log_of_the_process_as_the_launch_file_calls_it() {
-        let plan = |node, name: &str| NodePlan {
-            name: name.to_owned(),
-            node: Some(node),
-            program: "grainlab".to_owned(),
-            arguments: Vec::new(),
-            respawn: false,
-            environment: Vec::new(),
-            ends_all: false,
-        };
+        let plan =
+            |node, name: &str| NodePlan { name: name.to_owned(), node: Some(node), ..NodePlan::default() };
         let plans = [plan(NodeKind::Recorder, "left-recorder"), plan(NodeKind::DemSimulator, "left-sand")];
         let outline = Outline { phases: 1, starts_from_packing: false, ends_within: false };
         let mut followed = Followed::new(&plans, outline);

@@ -237,30 +237,20 @@ mod tests {
     const ANALYZER: Source = Source::Node(NodeKind::FabricAnalyzer);
     const PROBE: Source = Source::Node(NodeKind::AcousticProbe);
 
+    /// A program that is no node of ours.
+    fn instrument() -> NodePlan {
+        NodePlan { name: "instrument".to_owned(), ..NodePlan::default() }
+    }
+
     fn pending(nodes: &[NodeKind]) -> PendingResults {
-        let plan = |node: &NodeKind| NodePlan {
-            name: node.to_string(),
-            node: Some(*node),
-            program: "grainlab".to_owned(),
-            arguments: Vec::new(),
-            respawn: false,
-            environment: Vec::new(),
-            ends_all: false,
-        };
+        let plan =
+            |node: &NodeKind| NodePlan { name: node.to_string(), node: Some(*node), ..NodePlan::default() };
         PendingResults::of(&nodes.iter().map(plan).collect::<Vec<_>>())
     }
 
     #[test]
     fn an_instrument_that_measured_one_packing_is_waited_for_at_the_last_and_is_missed_if_it_left() {
-        let foreign = NodePlan {
-            name: "instrument".to_owned(),
-            node: None,
-            program: "python3".to_owned(),
-            arguments: Vec::new(),
-            respawn: false,
-            environment: Vec::new(),
-            ends_all: false,
-        };
+        let foreign = instrument();
         let ours = NodePlan { node: Some(NodeKind::FabricAnalyzer), ..foreign.clone() };
         let mut d = PendingResults::of(&[ours, foreign]);
         for step in [7, 9] {
@@ -269,15 +259,7 @@ mod tests {
         }
         d.measured("wave_speeds", 0);
         assert_eq!(d.state_of(9), ResultState::Complete, "speeds of no packing");
-        let mut of_start = PendingResults::of(&[NodePlan {
-            name: "instrument".to_owned(),
-            node: None,
-            program: "python3".to_owned(),
-            arguments: Vec::new(),
-            respawn: false,
-            environment: Vec::new(),
-            ends_all: false,
-        }]);
+        let mut of_start = PendingResults::of(&[instrument()]);
         of_start.measured("moduli", 9);
         of_start.inverted("moduli", 9, 2);
         of_start.measured_start();
@@ -298,15 +280,7 @@ mod tests {
 
     #[test]
     fn a_resumed_run_waits_for_the_instrument_as_before_and_not_for_what_is_recorded() {
-        let program = NodePlan {
-            name: "instrument".to_owned(),
-            node: None,
-            program: "python3".to_owned(),
-            arguments: Vec::new(),
-            respawn: false,
-            environment: Vec::new(),
-            ends_all: false,
-        };
+        let program = instrument();
         assert_eq!(
             PendingResults::of(std::slice::from_ref(&program)).silent_programs(),
             None,
@@ -359,15 +333,7 @@ mod tests {
 
     #[test]
     fn as_many_shots_are_waited_for_as_every_other_packing_has() {
-        let program = NodePlan {
-            name: "instrument".to_owned(),
-            node: None,
-            program: "python3".to_owned(),
-            arguments: Vec::new(),
-            respawn: false,
-            environment: Vec::new(),
-            ends_all: false,
-        };
+        let program = instrument();
         let mut d = PendingResults::of(&[program]);
         d.measured("moduli", 9);
         d.inverted("moduli", 9, 2);

@@ -34,7 +34,7 @@ impl PlanError {
 const RESULTS: &str = "topics:=[packing,packing_report,moduli,wave_speeds,microstructure,run_state,energy,diagnostics,tf_static]";
 
 /// One process to start.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct NodePlan {
     /// Name of the process and of its log.
     pub name: String,

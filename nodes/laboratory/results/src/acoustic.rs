@@ -160,15 +160,7 @@ mod tests {
     use super::*;
     use grainlab_core::{TransverseIsotropy, Vec3, WaveMethod, WaveSpeed};
 
-    const MEDIUM: TransverseIsotropy = TransverseIsotropy {
-        c11: 360e6,
-        c12: 80e6,
-        c13: 70e6,
-        c33: 400e6,
-        g13: 150e6,
-        g12: 140e6,
-        residual: 0.0,
-    };
+    const MEDIUM: TransverseIsotropy = TransverseIsotropy::of_constants(360e6, 400e6, 70e6, 150e6, 140e6);
 
     /// Exact speeds of [`MEDIUM`] along these directions, each with an error of 0.3 %.
     fn speeds(directions: &[Vec3]) -> WaveSpeedsReading {

@@ -80,7 +80,7 @@ impl Serialize for MeasuredPacking {
 pub(crate) mod tests {
     use super::*;
     use crate::printer::Printed;
-    use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
+    use grainlab_core::{Cell, Contact, Vec3};
     use grainlab_experiment::StrainOrigin;
     use grainlab_micromechanics::{Settings, analyze};
 
@@ -89,33 +89,14 @@ pub(crate) mod tests {
         let contact = |axis: usize| {
             let (mut image, mut normal) = ([0; 3], Vec3::zeros());
             (image[axis], normal[axis]) = (1, 1.0);
-            let tangential_force = Vec3::zeros();
-            Contact {
-                i: 0,
-                j: 0,
-                image,
-                overlap: 1e-8,
-                normal,
-                normal_force: 1e-3,
-                tangential_force,
-                rolling_force: Vec3::zeros(),
-            }
+            Contact::pressed([0, 0], image, normal, 1e-8, 1e-3)
         };
         Packing {
             step: 12,
             time: 0.5,
-            cell: Cell::cube(2e-4 - 1e-8).unwrap(),
-            deformation: Mat3::identity(),
-            ids: vec![0],
-            radii: vec![1e-4],
-            positions: vec![Vec3::zeros()],
-            velocities: vec![Vec3::zeros()],
-            spins: vec![Vec3::zeros()],
             contacts: if touching { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
-            material: Material::GLASS,
-            law: Default::default(),
             friction: 0.3,
-            time_step: 0.0,
+            ..Packing::at_rest(Cell::cube(2e-4 - 1e-8).unwrap(), vec![1e-4], vec![Vec3::zeros()])
         }
     }
 

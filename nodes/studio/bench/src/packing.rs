@@ -9,13 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Glass with the friction of the built-in packing.
 fn glass() -> ImportOptions {
-    ImportOptions {
-        shear_modulus: Some(Material::GLASS.shear_modulus),
-        poisson_ratio: Some(Material::GLASS.poisson_ratio),
-        density: Some(Material::GLASS.density),
-        friction: Some(0.1),
-        ..ImportOptions::default()
-    }
+    ImportOptions::of_grains(&Material::GLASS, 0.1)
 }
 
 /// The first packing of the file, or the built-in one.

@@ -141,12 +141,8 @@ fn dumps_of_grains_and_contacts_give_the_forces_back() {
     let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::LammpsDump);
     let m = &packing.material;
     let options = ImportOptions {
-        shear_modulus: Some(m.shear_modulus),
-        poisson_ratio: Some(m.poisson_ratio),
-        density: Some(m.density),
-        friction: Some(packing.friction),
         contact_forces: Some(std::fs::read_to_string(&files[1]).unwrap()),
-        ..ImportOptions::default()
+        ..ImportOptions::of_grains(m, packing.friction)
     };
     let back = load(&files[0], &options).unwrap().packings.remove(0).packing;
     let mean = packing.contacts.iter().map(|c| c.normal_force).sum::<f64>() / packing.contacts.len() as f64;

@@ -1,6 +1,6 @@
 //! Settings of the bridge.
 
-use grainlab_node_kit::{Exit, NodeError, ParameterSpec, Parameters, Range};
+use grainlab_node_kit::{Exit, NodeError, ParameterSpec, Parameters, Range, parameters};
 use grainlab_recordings::Definitions;
 use std::net::IpAddr;
 use std::path::PathBuf;
@@ -21,20 +21,11 @@ pub struct BridgeSettings {
 
 /// The parameters of the node.
 pub fn parameters() -> Vec<ParameterSpec> {
-    vec![
-        ParameterSpec::new("port", PORT, "TCP port to listen on; 0: any free one")
-            .within(Range::Integer { min: 0, max: u16::MAX as i64 }),
-        ParameterSpec::new(
-            "address",
-            "127.0.0.1",
-            "address to listen on; 0.0.0.0: every one, so that other hosts can read all topics",
-        ),
-        ParameterSpec::new(
-            "msg_path",
-            Vec::<String>::new(),
-            "folders with package/msg/Type.msg, for types that grainlab does not have",
-        ),
-    ]
+    parameters! {
+        "port" PORT, Range::Integer { min: 0, max: u16::MAX as i64 }, "TCP port to listen on; 0: any free one";
+        "address" "127.0.0.1", Range::Any, "address to listen on; 0.0.0.0: every one, so that other hosts can read all topics";
+        "msg_path" Vec::<String>::new(), Range::Any, "folders with package/msg/Type.msg, for types that grainlab does not have";
+    }
 }
 
 impl BridgeSettings {

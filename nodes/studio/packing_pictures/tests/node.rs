@@ -1,6 +1,6 @@
 //! The node on the bus in memory.
 
-use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Packing, Vec3};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::sensor_msgs::PointCloud2;
 use grainlab_msgs::visualization_msgs::MarkerArray;
@@ -17,18 +17,10 @@ fn message(step: u64) -> msg::Packing {
     let packing = Packing {
         step,
         time: step as f64,
-        cell: Cell::cube(1.0).unwrap(),
-        deformation: Mat3::identity(),
         ids: vec![5],
-        radii: vec![0.25],
-        positions: vec![Vec3::new(0.5, 0.5, 0.5)],
-        velocities: vec![Vec3::zeros()],
-        spins: vec![Vec3::zeros()],
-        contacts: vec![],
-        material: Material::GLASS,
-        law: Default::default(),
         friction: 0.3,
         time_step: 1e-8,
+        ..Packing::at_rest(Cell::cube(1.0).unwrap(), vec![0.25], vec![Vec3::new(0.5, 0.5, 0.5)])
     };
     packing_message(&packing.validated().unwrap(), "one grain", vec![])
 }

@@ -2,7 +2,6 @@
 
 use crate::arrays::{copied, field, matrix, numbers, one, row, scalars, vectors};
 use crate::parallel;
-use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3, contact_search};
 use grainlab_experiment::PathPosition;
 use grainlab_msgs::boundary::{packing_header, packing_message};
@@ -100,20 +99,11 @@ impl PyPacking {
         };
         let velocities = velocities.map(|v| triples("velocities", &v)).transpose()?;
         let grains = Packing {
-            step: 0,
-            time: 0.0,
-            cell,
             deformation: Packing::no_reference(),
-            ids: (0..n as u32).collect(),
-            radii,
-            positions,
             velocities: velocities.unwrap_or_else(|| vec![Vec3::zeros(); n]),
-            spins: vec![Vec3::zeros(); n],
-            contacts: Vec::new(),
             material: Material { shear_modulus, poisson_ratio, density },
-            law: ContactLaw::default(),
             friction,
-            time_step: 0.0,
+            ..Packing::at_rest(cell, radii, positions)
         };
         let grains = grains.validated().map_err(refused)?;
         let contacts = contact_search::of_packing(&grains).map_err(refused)?;

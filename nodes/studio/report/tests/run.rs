@@ -1,6 +1,6 @@
 //! Reports of runs that are made here, message by message.
 
-use grainlab_core::{Cell, ComponentControl, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
+use grainlab_core::{Cell, ComponentControl, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_micromechanics::{Settings, analyze};
 use grainlab_msgs::boundary::{packing_message, packing_report_message};
 use grainlab_msgs::{Guid, msg, to_cdr, topics};
@@ -45,18 +45,13 @@ fn packing() -> Packing {
     Packing {
         step: 60_000,
         time: 6e-3,
-        cell: Cell::cube(4e-3).unwrap(),
-        deformation: Mat3::identity(),
-        ids: vec![0, 1],
-        radii: vec![1e-3; 2],
-        positions: vec![Vec3::new(1e-3, 1e-3, 1e-3), Vec3::new(3e-3, 3e-3, 3e-3)],
-        velocities: vec![Vec3::zeros(); 2],
-        spins: vec![Vec3::zeros(); 2],
-        contacts: Vec::new(),
-        material: Material::GLASS,
-        law: Default::default(),
         friction: 0.3,
         time_step: 1e-7,
+        ..Packing::at_rest(
+            Cell::cube(4e-3).unwrap(),
+            vec![1e-3; 2],
+            vec![Vec3::new(1e-3, 1e-3, 1e-3), Vec3::new(3e-3, 3e-3, 3e-3)],
+        )
     }
 }
 

@@ -85,10 +85,7 @@ pub fn prepared(state: &State, seed: u64) -> Result<Found, VerificationError> {
         |what: &dyn std::fmt::Display| VerificationError::Measurement(format!("a prepared state: {what}"));
     let scene = Scene { seed, ..Scene::parse(state.scene).map_err(|e| failed(&e))? };
     let mut run = Simulation::new(scene).map_err(|e| failed(&e))?;
-    while let Some(request) = run.request() {
-        let answer = grainlab_servo::control(&request.input).map_err(|e| failed(&e))?;
-        run.advance(&answer.rate).map_err(|e| failed(&e))?;
-    }
+    while run.exchange().map_err(|e| failed(&e))?.is_some() {}
     let report = analyze(&run.packing().map_err(|e| failed(&e))?, &Settings::default())
         .map_err(|e| failed(&e))?
         .report;

@@ -101,18 +101,12 @@ fn lattice() -> Packing {
     Packing {
         step: 40,
         time: 2.5e-3,
-        time_step: 0.0,
-        cell: Cell::cube(count as f64 * edge).expect("a cube with a volume"),
-        deformation: Mat3::identity(),
         ids: (0..n as u32).map(|i| 100 + i).collect(),
-        radii: vec![RADIUS; n],
-        positions: (0..n).map(place).collect(),
-        velocities: vec![Vec3::zeros(); n],
-        spins: vec![Vec3::zeros(); n],
-        contacts: Vec::new(),
-        material: Material::GLASS,
-        law: ContactLaw::default(),
-        friction: 0.0,
+        ..Packing::at_rest(
+            Cell::cube(count as f64 * edge).expect("a cube with a volume"),
+            vec![RADIUS; n],
+            (0..n).map(place).collect(),
+        )
     }
 }
 

@@ -127,34 +127,19 @@ pub(crate) fn size(view: &View) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+    use grainlab_core::{Cell, Contact, Packing, Vec3};
 
     /// Two grains that touch across a face of the cell; the second is held outside of it.
     fn pair() -> Packing {
         Packing {
-            step: 0,
-            time: 0.0,
-            cell: Cell::cube(8.0).unwrap(),
-            deformation: Mat3::identity(),
             ids: vec![7, 3],
-            radii: vec![1.0, 0.5],
-            positions: vec![Vec3::new(0.25, 4.0, 2.0), Vec3::new(14.75, 4.0, 2.0)],
-            velocities: vec![Vec3::zeros(); 2],
-            spins: vec![Vec3::zeros(); 2],
-            contacts: vec![Contact {
-                i: 0,
-                j: 1,
-                image: [-2, 0, 0],
-                overlap: 1e-9,
-                normal: -Vec3::x(),
-                normal_force: 4.0,
-                tangential_force: Vec3::zeros(),
-                rolling_force: Vec3::zeros(),
-            }],
-            material: Material::GLASS,
-            law: Default::default(),
+            contacts: vec![Contact::pressed([0, 1], [-2, 0, 0], -Vec3::x(), 1e-9, 4.0)],
             friction: 0.3,
-            time_step: 0.0,
+            ..Packing::at_rest(
+                Cell::cube(8.0).unwrap(),
+                vec![1.0, 0.5],
+                vec![Vec3::new(0.25, 4.0, 2.0), Vec3::new(14.75, 4.0, 2.0)],
+            )
         }
     }
 

@@ -117,7 +117,7 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_core::{Contact, Material};
+    use grainlab_core::Contact;
 
     /// Grains on a cubic lattice, numbered along z first, each in contact with the next one and with the one across the cell.
     fn lattice(edge: usize) -> Packing {
@@ -125,32 +125,18 @@ mod tests {
         let count = edge.pow(3);
         let contact = |n: usize| {
             let across = n % edge == edge - 1;
-            Contact {
-                i: n as u32,
-                j: (if across { n + 1 - edge } else { n + 1 }) as u32,
-                image: [0, 0, i8::from(across)],
-                overlap: 1e-6,
-                normal: -Vec3::z(),
-                normal_force: 1.0,
-                tangential_force: Vec3::zeros(),
-                rolling_force: Vec3::zeros(),
-            }
+            let next = if across { n + 1 - edge } else { n + 1 };
+            Contact::pressed([n as u32, next as u32], [0, 0, i8::from(across)], -Vec3::z(), 1e-6, 1.0)
         };
         Packing {
-            step: 0,
-            time: 0.0,
-            cell: Cell::cube(edge as f64).unwrap(),
-            deformation: Mat3::identity(),
             ids: (0..count as u32).map(|n| n + 7).collect(),
-            radii: vec![0.5; count],
-            positions: (0..count).map(|n| at(n) + Vec3::repeat(0.5)).collect(),
-            velocities: vec![Vec3::zeros(); count],
-            spins: vec![Vec3::zeros(); count],
             contacts: (0..count).map(contact).collect(),
-            material: Material::GLASS,
-            law: Default::default(),
             friction: 0.3,
-            time_step: 0.0,
+            ..Packing::at_rest(
+                Cell::cube(edge as f64).unwrap(),
+                vec![0.5; count],
+                (0..count).map(|n| at(n) + Vec3::repeat(0.5)).collect(),
+            )
         }
     }
 

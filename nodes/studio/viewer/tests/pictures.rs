@@ -1,6 +1,6 @@
 //! Pictures of packings: what is in them, and that they are the same every time.
 
-use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Packing, Vec3};
 use grainlab_viewer::{Film, Ground, Parts, Picture, Quantity, Size, View, page};
 
 /// Four grains on a line along x, each touching the next, the last one the image of the first; and one alone.
@@ -10,36 +10,20 @@ fn chain() -> Packing {
         .map(|n| Vec3::new(2e-3 * f64::from(n) + 1e-3, 4e-3, 4e-3))
         .chain([Vec3::new(4e-3, 4e-3, 7e-3)])
         .collect();
-    let contact = |i: u32, j: u32, image: [i8; 3], toward: f64, force: f64| Contact {
-        i,
-        j,
-        image,
-        overlap: 1e-9,
-        normal: Vec3::new(toward, 0.0, 0.0),
-        normal_force: force,
-        tangential_force: Vec3::zeros(),
-        rolling_force: Vec3::zeros(),
+    let contact = |i: u32, j: u32, image: [i8; 3], toward: f64, force: f64| {
+        Contact::pressed([i, j], image, Vec3::x() * toward, 1e-9, force)
     };
     Packing {
         step: 1,
-        time: 0.0,
-        cell: Cell::cube(8e-3).unwrap(),
-        deformation: Mat3::identity(),
         ids: (1..=5).collect(),
-        radii: vec![radius; 5],
-        positions,
-        velocities: vec![Vec3::zeros(); 5],
-        spins: vec![Vec3::zeros(); 5],
         contacts: vec![
             contact(0, 1, [0; 3], 1.0, 1.0),
             contact(0, 3, [-1, 0, 0], -1.0, 2.0),
             contact(1, 2, [0; 3], 1.0, 3.0),
             contact(2, 3, [0; 3], 1.0, 4.0),
         ],
-        material: Material::GLASS,
-        law: Default::default(),
         friction: 0.3,
-        time_step: 0.0,
+        ..Packing::at_rest(Cell::cube(8e-3).unwrap(), vec![radius; 5], positions)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use flate2::read::GzDecoder;
 use grainlab_console::Failure;
-use grainlab_core::Packing;
+use grainlab_core::{Material, Packing};
 use grainlab_recordings::import::{ImportError, ImportOptions, csv, lammps_dump};
 use grainlab_verification::lammps_packings::Reference;
 use serde::Deserialize;
@@ -64,14 +64,7 @@ pub(super) fn equal_spheres() -> Result<(Packing, Reference), Failure> {
 /// 400 unequal spheres of LAMMPS with the contact forces that it dumped, and its stress, Pa: xx yy zz xy xz yz.
 pub(super) fn unequal_spheres() -> Result<(Packing, [f64; 6]), Failure> {
     let contact_forces = Some(unpacked(include_bytes!(golden!("lammps/forces.dump.gz")))?);
-    let options = ImportOptions {
-        shear_modulus: Some(29e9),
-        poisson_ratio: Some(0.2),
-        density: Some(2500.0),
-        friction: Some(0.3),
-        contact_forces,
-        ..ImportOptions::default()
-    };
+    let options = ImportOptions { contact_forces, ..ImportOptions::of_grains(&Material::GLASS, 0.3) };
     let text = unpacked(include_bytes!(golden!("lammps/grains.dump.gz")))?;
     let mut packings = read(lammps_dump::packings(&text, &options))?;
     let packing = packings.pop().ok_or_else(|| failed("grains.dump.gz", &"no packing"))?.packing;

@@ -6,53 +6,21 @@
 
 use grainlab_acoustics::dispersion::{Settings, curves};
 use grainlab_acoustics::{DispersionCurve, Ray};
-use grainlab_core::Contact;
-use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Mat3, Packing, Vec3, contact_search};
 
 const RADIUS: f64 = 1e-4;
 const OVERLAP: f64 = 1e-8;
 
-/// `positions` in units of the columns of `cell` (m); every contact has the length `branch` and the same
-/// overlap.
-fn crystal(cell: Mat3, positions: &[Vec3], branch: f64) -> Packing {
+/// `positions` in units of the columns of `cell` (m), with contacts of one overlap.
+fn crystal(cell: Mat3, positions: &[Vec3]) -> Packing {
     let cell = Cell::new(cell).unwrap();
     let n = positions.len();
     let mut p = Packing {
-        step: 0,
-        time: 0.0,
-        cell,
-        deformation: Mat3::identity(),
         ids: (1..=n as u32).collect(),
-        radii: vec![RADIUS; n],
-        positions: positions.iter().map(|x| cell.matrix() * x).collect(),
-        velocities: vec![Vec3::zeros(); n],
-        spins: vec![Vec3::zeros(); n],
-        contacts: Vec::new(),
-        material: Material::GLASS,
-        law: Default::default(),
         friction: 0.3,
-        time_step: 0.0,
+        ..Packing::at_rest(cell, vec![RADIUS; n], positions.iter().map(|x| cell.matrix() * x).collect())
     };
-    for (i, j) in (0..n).flat_map(|i| (i..n).map(move |j| (i, j))) {
-        for image in (0..125i8).map(|k| [k / 25 - 2, k / 5 % 5 - 2, k % 5 - 2]) {
-            let l = p.positions[j] - p.positions[i] + p.cell.shift(image);
-            let own = i == j && image <= [0, 0, 0];
-            if own || (l.norm() - branch).abs() > 1e-6 * branch {
-                continue;
-            }
-            p.contacts.push(Contact {
-                i: i as u32,
-                j: j as u32,
-                image,
-                overlap: OVERLAP,
-                normal: l.normalize(),
-                normal_force: p.material.normal_force(0.5 * RADIUS, OVERLAP),
-                tangential_force: Vec3::zeros(),
-                rolling_force: Vec3::zeros(),
-            });
-        }
-    }
-    p.contacts.sort_by_key(|c| (c.i, c.j, c.image));
+    p.contacts = contact_search::of_packing(&p).unwrap();
     p.validated().unwrap()
 }
 
@@ -108,7 +76,7 @@ fn assert_closed_form(curve: &DispersionCurve, what: &str, square: impl Fn(f64) 
 fn simple_cubic_has_its_dispersion_relation() {
     let branch = 2.0 * RADIUS - OVERLAP;
     for n in [1, 3] {
-        let packing = crystal(Mat3::identity() * branch * n as f64, &grid(n), branch);
+        let packing = crystal(Mat3::identity() * branch * n as f64, &grid(n));
         assert_eq!(packing.contacts.len(), 3 * n * n * n);
         let k = Springs::of(&packing, branch);
         let along = measured(&packing, Vec3::x(), Vec3::x());
@@ -127,7 +95,7 @@ fn simple_cubic_has_its_dispersion_relation() {
 fn all_of_a_crystal_moves_however_few_grains_its_cell_has() {
     let branch = 2.0 * RADIUS - OVERLAP;
     for n in [1, 2, 3] {
-        let packing = crystal(Mat3::identity() * branch * n as f64, &grid(n), branch);
+        let packing = crystal(Mat3::identity() * branch * n as f64, &grid(n));
         let measured =
             grainlab_acoustics::measure(&packing, &grainlab_acoustics::Settings::default()).unwrap();
         let mass: f64 = packing.radii.iter().map(|r| packing.material.sphere_mass(*r)).sum();
@@ -142,9 +110,7 @@ fn face_centred_cubic_has_its_dispersion_relation() {
     let corners =
         [Vec3::zeros(), Vec3::new(0.0, 0.5, 0.5), Vec3::new(0.5, 0.0, 0.5), Vec3::new(0.5, 0.5, 0.0)];
     let primitive = Mat3::new(0.0, 0.5, 0.5, 0.5, 0.0, 0.5, 0.5, 0.5, 0.0) * edge;
-    for packing in
-        [crystal(Mat3::identity() * edge, &corners, branch), crystal(primitive, &[Vec3::zeros()], branch)]
-    {
+    for packing in [crystal(Mat3::identity() * edge, &corners), crystal(primitive, &[Vec3::zeros()])] {
         assert_eq!(packing.contacts.len(), 6 * packing.grains());
         let k = Springs::of(&packing, branch);
         let half = |q: f64| (0.25 * q * edge).sin_cos();
@@ -167,7 +133,7 @@ fn a_chain_has_its_dispersion_relation_and_resists_nothing_across() {
     let n = 5;
     let cell = Mat3::from_diagonal(&Vec3::new(4.0 * RADIUS, 4.0 * RADIUS, n as f64 * branch));
     let positions: Vec<Vec3> = (0..n).map(|k| Vec3::new(0.5, 0.5, k as f64 / n as f64)).collect();
-    let packing = crystal(cell, &positions, branch);
+    let packing = crystal(cell, &positions);
     let k = Springs::of(&packing, branch);
     let along = measured(&packing, Vec3::z(), Vec3::z());
     assert_closed_form(&along, "P", |q| 4.0 * k.normal / k.mass * (0.5 * q * branch).sin().powi(2));

@@ -16,25 +16,16 @@ pub(crate) fn read(folder: &str, name: &str) -> Packing {
     let matrix =
         |key: &str| json[key].is_array().then(|| Mat3::from_fn(|i, j| json[key][i][j].as_f64().unwrap()));
     let edges = || Mat3::from_diagonal(&Vec3::from_fn(|k, _| json["box_L"][k].as_f64().unwrap()));
+    let cell = Cell::new(matrix("cell").unwrap_or_else(edges)).unwrap();
+    let (shear_modulus, poisson_ratio, density) = (number("G"), number("nu"), number("density"));
     let mut p = Packing {
         step: json["step"].as_u64().unwrap_or(0),
         time: json["time"].as_f64().unwrap_or(0.0),
-        cell: Cell::new(matrix("cell").unwrap_or_else(edges)).unwrap(),
         deformation: matrix("deformation").unwrap_or_else(Mat3::identity),
-        ids: Vec::new(),
-        radii: Vec::new(),
-        positions: Vec::new(),
-        velocities: Vec::new(),
-        spins: Vec::new(),
-        contacts: Vec::new(),
-        material: Material {
-            shear_modulus: number("G"),
-            poisson_ratio: number("nu"),
-            density: number("density"),
-        },
-        law: Default::default(),
+        material: Material { shear_modulus, poisson_ratio, density },
         friction: number("mu_prep"),
         time_step: json["time_step"].as_f64().unwrap_or(0.0),
+        ..Packing::at_rest(cell, Vec::new(), Vec::new())
     };
     let rows: Vec<(&str, Vec<f64>)> = text
         .lines()
@@ -59,16 +50,9 @@ pub(crate) fn read(folder: &str, name: &str) -> Packing {
         let normal = -Vec3::new(v[2], v[3], v[4]);
         // The periodic image whose branch vector is parallel to the normal.
         let branch = p.cell.fractional(&(normal * (p.radii[i] + p.radii[j] - v[5])));
-        p.contacts.push(Contact {
-            i: i as u32,
-            j: j as u32,
-            image: [0, 1, 2].map(|k| (branch[k] - apart[k]).round() as i8),
-            overlap: v[5],
-            normal,
-            normal_force: v[6],
-            tangential_force: Vec3::new(v[7], v[8], v[9]),
-            rolling_force: Vec3::zeros(),
-        });
+        let image = [0, 1, 2].map(|k| (branch[k] - apart[k]).round() as i8);
+        let pressed = Contact::pressed([i as u32, j as u32], image, normal, v[5], v[6]);
+        p.contacts.push(Contact { tangential_force: Vec3::new(v[7], v[8], v[9]), ..pressed });
     }
     p
 }

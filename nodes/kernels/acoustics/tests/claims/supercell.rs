@@ -96,13 +96,10 @@ fn the_engine_finds_the_same_contacts_and_forces_in_it() {
 fn quiet(packing: &Packing) -> EngineSettings {
     EngineSettings {
         friction: packing.friction,
-        damping: 0.0,
-        drag: 0.0,
-        spin_drag: 0.0,
         tangential: TangentialLaw::Incremental,
         time_step: TimeStep::FractionOfStable(0.8),
         skin: 0.01 * 2.0 * packing.radii[0],
-        thermostat_speed: None,
+        ..EngineSettings::default()
     }
 }
 

@@ -8,7 +8,7 @@ use grainlab_acoustics::time_of_flight::{ArrivalPick, Settings, curve, curves};
 use grainlab_acoustics::{Instrument, Ray};
 use grainlab_core::Contact;
 use grainlab_core::results::NotJammed;
-use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use std::f64::consts::{PI, TAU};
 
 const DIAMETER: f64 = 2e-4;
@@ -25,34 +25,18 @@ fn chain(aside: bool) -> Packing {
         positions.push(Vec3::new(2.0 * DIAMETER, 0.0, 0.4 * length));
     }
     let last = GRAINS - 1;
-    let pair = |i: u32, j: u32, image: i8, normal: Vec3| Contact {
-        i,
-        j,
-        image: [0, 0, image],
-        overlap: 1e-3 * DIAMETER,
-        normal,
-        normal_force: 0.0,
-        tangential_force: Vec3::zeros(),
-        rolling_force: Vec3::zeros(),
+    let pair = |i: u32, j: u32, image: i8, normal: Vec3| {
+        Contact::pressed([i, j], [0, 0, image], normal, 1e-3 * DIAMETER, 0.0)
     };
     let mut contacts: Vec<Contact> = (0..last).map(|k| pair(k, k + 1, 0, Vec3::z())).collect();
     contacts.push(pair(0, last, -1, -Vec3::z()));
     contacts.sort_by_key(|c| (c.i, c.j, c.image));
+    let cell = Cell::new(Mat3::from_diagonal(&Vec3::new(4.0 * DIAMETER, 4.0 * DIAMETER, length))).unwrap();
     let packing = Packing {
-        step: 0,
-        time: 0.0,
-        cell: Cell::new(Mat3::from_diagonal(&Vec3::new(4.0 * DIAMETER, 4.0 * DIAMETER, length))).unwrap(),
-        deformation: Mat3::identity(),
-        ids: (0..grains as u32).collect(),
-        radii: vec![0.5 * DIAMETER; grains],
         velocities: vec![Vec3::new(1.0, 2.0, 3.0); grains],
-        spins: vec![Vec3::zeros(); grains],
-        positions,
         contacts,
-        material: Material::GLASS,
-        law: Default::default(),
         friction: 0.5,
-        time_step: 0.0,
+        ..Packing::at_rest(cell, vec![0.5 * DIAMETER; grains], positions)
     };
     packing.validated().unwrap()
 }

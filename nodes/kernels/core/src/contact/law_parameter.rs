@@ -23,6 +23,17 @@ impl LawParameter {
     /// Finite numbers from 0.
     pub const FROM_ZERO: (Bound<f64>, Bound<f64>) = (Bound::Included(0.0), Bound::Excluded(f64::INFINITY));
 
+    /// A parameter with this key, unit, meaning, default value and range.
+    pub const fn new(
+        key: &'static str,
+        unit: &'static str,
+        meaning: &'static str,
+        default: Option<f64>,
+        range: (Bound<f64>, Bound<f64>),
+    ) -> Self {
+        Self { key, unit, meaning, default, range }
+    }
+
     /// True if `value` is valid.
     pub fn admits(&self, value: f64) -> bool {
         self.range.contains(&value)

@@ -19,27 +19,27 @@ impl RollingResistance {
 
     /// Parameters in scenes and messages, in the order of the fields.
     pub const PARAMETERS: [LawParameter; 3] = [
-        LawParameter {
-            key: "rolling_stiffness",
-            unit: "N/m",
-            meaning: "rolling stiffness: rolling force over rolling displacement",
-            default: None,
-            range: LawParameter::POSITIVE,
-        },
-        LawParameter {
-            key: "rolling_damping",
-            unit: "N s/m",
-            meaning: "coefficient of the rolling dashpot: rolling force over rolling velocity",
-            default: Some(0.0),
-            range: LawParameter::FROM_ZERO,
-        },
-        LawParameter {
-            key: "rolling_friction",
-            unit: "",
-            meaning: "rolling friction coefficient: largest rolling force over the normal force",
-            default: None,
-            range: LawParameter::POSITIVE,
-        },
+        LawParameter::new(
+            "rolling_stiffness",
+            "N/m",
+            "rolling stiffness: rolling force over rolling displacement",
+            None,
+            LawParameter::POSITIVE,
+        ),
+        LawParameter::new(
+            "rolling_damping",
+            "N s/m",
+            "coefficient of the rolling dashpot: rolling force over rolling velocity",
+            Some(0.0),
+            LawParameter::FROM_ZERO,
+        ),
+        LawParameter::new(
+            "rolling_friction",
+            "",
+            "rolling friction coefficient: largest rolling force over the normal force",
+            None,
+            LawParameter::POSITIVE,
+        ),
     ];
 
     /// Parameters, in the order of the list.

@@ -53,16 +53,14 @@ pub fn find(
                 return Err(SearchError::Coincident(i, j));
             }
             let r_eff = effective_radius(radii[i], radii[j]);
-            contacts.push(Contact {
-                i: i as u32,
-                j: j as u32,
-                image: [a, b, c],
+            let force = normal_force(r_eff, overlap);
+            contacts.push(Contact::pressed(
+                [i as u32, j as u32],
+                [a, b, c],
+                branch / distance,
                 overlap,
-                normal: branch / distance,
-                normal_force: normal_force(r_eff, overlap),
-                tangential_force: Vec3::zeros(),
-                rolling_force: Vec3::zeros(),
-            });
+                force,
+            ));
             Ok(())
         })?;
     }

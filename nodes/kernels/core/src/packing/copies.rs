@@ -1,6 +1,6 @@
 //! Copies of a packing, side by side.
 
-use super::{Contact, Packing};
+use super::Packing;
 use crate::cell::Cell;
 use crate::tensor::Vec3;
 
@@ -25,19 +25,7 @@ impl Packing {
                 let [a, b, d] = reached.map(|k| k.rem_euclid(along) as u32);
                 let image = reached.map(|k| k.div_euclid(along) as i8);
                 let (i, j) = (copy * grains + c.i, ((a * copies + b) * copies + d) * grains + c.j);
-                contacts.push(if i < j || (i == j && image > [0; 3]) {
-                    Contact { i, j, image, ..*c }
-                } else {
-                    Contact {
-                        i: j,
-                        j: i,
-                        image: image.map(|k| -k),
-                        normal: -c.normal,
-                        tangential_force: -c.tangential_force,
-                        rolling_force: -c.rolling_force,
-                        ..*c
-                    }
-                });
+                contacts.push(c.named(i, j, image));
             }
         }
         contacts.sort_unstable_by_key(|c| (c.i, c.j, c.image));

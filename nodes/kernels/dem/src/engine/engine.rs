@@ -50,22 +50,10 @@ impl Engine {
         positions: &[Vec3],
         settings: EngineSettings,
     ) -> Result<Self, DemError> {
-        let n = radii.len();
         let at_rest = Packing {
-            step: 0,
-            time: 0.0,
-            cell,
-            deformation: Mat3::identity(),
-            ids: (0..n as u32).collect(),
-            radii,
-            positions: positions.to_vec(),
-            velocities: vec![Vec3::zeros(); n],
-            spins: vec![Vec3::zeros(); n],
-            contacts: Vec::new(),
             material,
-            law: ContactLaw::default(),
             friction: settings.friction,
-            time_step: 0.0,
+            ..Packing::at_rest(cell, radii, positions.to_vec())
         };
         Self::from_packing(&at_rest, settings)
     }

@@ -1,6 +1,5 @@
 //! Packings, measures and the brute-force search that the hard cases share.
 
-use grainlab_core::contact::TangentialLaw;
 use grainlab_core::effective_radius;
 use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
@@ -14,13 +13,9 @@ pub(crate) const HEAVY: Material = Material { density: 1e20, ..Material::GLASS }
 pub(crate) fn setting(friction: f64, time_step: f64) -> EngineSettings {
     EngineSettings {
         friction,
-        damping: 0.0,
-        drag: 0.0,
-        spin_drag: 0.0,
-        tangential: TangentialLaw::Rescaled,
         time_step: TimeStep::Fixed(time_step),
         skin: 0.1 * RADIUS,
-        thermostat_speed: None,
+        ..EngineSettings::default()
     }
 }
 
@@ -200,22 +195,14 @@ impl Sample {
         let columns: Vec<Vec3> = rows("cell").map(|r| vector(&r)).collect();
         let numerics = rows("numerics").next().unwrap();
         let radii: Vec<f64> = rows("grain").map(|r| r[0]).collect();
-        let n = radii.len();
         let mut p = Packing {
-            step: 0,
-            time: 0.0,
-            cell: Cell::new(Mat3::from_columns(&columns)).unwrap(),
-            deformation: Mat3::identity(),
-            ids: (0..n as u32).collect(),
-            positions: rows("grain").map(|r| vector(&r[1..])).collect(),
-            velocities: vec![Vec3::zeros(); n],
-            spins: vec![Vec3::zeros(); n],
-            radii,
-            contacts: Vec::new(),
-            material: GLASS,
-            law: Default::default(),
             friction: numerics[0],
             time_step: numerics[1],
+            ..Packing::at_rest(
+                Cell::new(Mat3::from_columns(&columns)).unwrap(),
+                radii,
+                rows("grain").map(|r| vector(&r[1..])).collect(),
+            )
         };
         for r in rows("contact") {
             let (i, j, image) = (r[0] as u32, r[1] as u32, [r[2], r[3], r[4]].map(|n| n as i8));
@@ -224,16 +211,8 @@ impl Sample {
             let overlap = a + b - branch.norm();
             let normal_force = p.material.normal_force(effective_radius(a, b), overlap);
             let (normal, tangential_force) = (branch.normalize(), vector(&r[5..]));
-            p.contacts.push(Contact {
-                i,
-                j,
-                image,
-                overlap,
-                normal,
-                normal_force,
-                tangential_force,
-                rolling_force: Vec3::zeros(),
-            });
+            let pressed = Contact::pressed([i, j], image, normal, overlap, normal_force);
+            p.contacts.push(Contact { tangential_force, ..pressed });
         }
         p.validated().unwrap()
     }

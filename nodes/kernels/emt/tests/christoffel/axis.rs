@@ -6,15 +6,7 @@ use grainlab_emt::christoffel::{self, AxisError, AxisEstimate, ChristoffelError}
 use grainlab_emt::{Conditions, Measured, Modulus};
 use nalgebra::{Rotation3, SMatrix, SVector, SymmetricEigen};
 
-const ISOTROPIC: TransverseIsotropy = TransverseIsotropy {
-    c11: 300e6,
-    c12: 60e6,
-    c13: 60e6,
-    c33: 300e6,
-    g13: 120e6,
-    g12: 120e6,
-    residual: 0.0,
-};
+const ISOTROPIC: TransverseIsotropy = TransverseIsotropy::of_constants(300e6, 300e6, 60e6, 120e6, 120e6);
 
 fn is_compressional(speed: &WaveSpeed) -> bool {
     speed.direction.dot(&speed.polarization).abs() > 0.7

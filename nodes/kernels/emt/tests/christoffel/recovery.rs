@@ -183,15 +183,7 @@ fn signs_of_directions_motions_and_axis_do_not_matter() {
 
 #[test]
 fn an_isotropic_medium_gives_isotropic_moduli() {
-    let glass = TransverseIsotropy {
-        c11: 250e6,
-        c12: 106e6,
-        c13: 106e6,
-        c33: 250e6,
-        g13: 72e6,
-        g12: 72e6,
-        residual: 0.0,
-    };
+    let glass = TransverseIsotropy::of_constants(250e6, 250e6, 106e6, 72e6, 72e6);
     let mut numbers = Numbers::new(5);
     let sample = Sample::new(glass, numbers.frame());
     // The dense solve gives arbitrary S polarizations in an isotropic medium, so they are given.
@@ -270,15 +262,7 @@ fn a_fit_is_an_observation_that_every_model_takes() {
 /// number remains for an SV at 70°, and its speed is not a monotone function of that number.
 #[test]
 fn what_two_media_with_the_same_speeds_differ_in_is_left_open() {
-    let m = TransverseIsotropy {
-        c11: 220e6,
-        c12: 100e6,
-        c13: 133e6,
-        c33: 287e6,
-        g13: 87e6,
-        g12: 60e6,
-        residual: 0.0,
-    };
+    let m = TransverseIsotropy::of_constants(220e6, 287e6, 133e6, 87e6, 60e6);
     let waves = [Wave::P(0.0), Wave::Sh(90.0), Wave::P(45.0), Wave::Sv(45.0), Wave::Sv(70.0)];
     let sample = Sample::new(m, Rotation3::identity());
     let with_shear = |g13: f64| {

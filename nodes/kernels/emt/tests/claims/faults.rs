@@ -250,15 +250,7 @@ fn moduli_of_no_stable_medium_are_used_with_a_warning() {
 /// C22 = 1.5 C11 is far from any medium isotropic about e3; the moduli taken are those of the nearest one.
 #[test]
 fn an_orthotropic_stiffness_is_used_with_a_warning_that_has_its_asymmetry() {
-    let medium = TransverseIsotropy {
-        c11: 240.0e6,
-        c12: 60.0e6,
-        c13: 60.0e6,
-        c33: 260.0e6,
-        g13: 95.0e6,
-        g12: 90.0e6,
-        residual: 0.0,
-    };
+    let medium = TransverseIsotropy::of_constants(240.0e6, 260.0e6, 60.0e6, 95.0e6, 90.0e6);
     let conditions = Conditions { solid_fraction: Some(Measured::exact(0.636)), ..sound().conditions };
     let orthotropic = |share: f64| {
         let mut c = medium.stiffness().0;

@@ -212,15 +212,8 @@ fn an_orthotropic_medium_is_no_transversely_isotropic_one() {
     let m = moduli(5.2, 0.03);
     let get = |q| m.get(q).unwrap();
     let (c11, g12) = (get(Modulus::C11), get(Modulus::G12));
-    let t = TransverseIsotropy {
-        c11,
-        c12: c11 - 2.0 * g12,
-        c13: get(Modulus::C13),
-        c33: get(Modulus::C33),
-        g12,
-        g13: get(Modulus::G13),
-        residual: 0.0,
-    };
+    let t =
+        TransverseIsotropy::of_constants(c11, get(Modulus::C33), get(Modulus::C13), get(Modulus::G13), g12);
     let warned = |c: Matrix6<f64>| {
         let found = Relaxed.infer(&Observation::of_stiffness(&Stiffness(c), conditions()), ours()).unwrap();
         found

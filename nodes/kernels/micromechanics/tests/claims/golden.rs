@@ -1,7 +1,6 @@
 //! The packing of 500 grains from LAMMPS, and its sidecar.
 
 use crate::golden_packing::read;
-use crate::samples::ordered;
 use grainlab_core::Packing;
 use nalgebra::Matrix6;
 use serde_json::Value;
@@ -20,7 +19,7 @@ pub(crate) fn matrix(value: &Value) -> Matrix6<f64> {
 /// The reference packing, each contact with i ≤ j, in order.
 pub(crate) fn reference() -> Packing {
     let mut p = read(FOLDER, "ref_packing_500");
-    p.contacts = p.contacts.into_iter().map(ordered).collect();
+    p.contacts = p.contacts.into_iter().map(|c| c.named(c.i, c.j, c.image)).collect();
     p.contacts.sort_by_key(|c| (c.i, c.j, c.image));
     p.validated().unwrap()
 }

@@ -137,7 +137,7 @@ fn numbering_the_grains_otherwise_changes_the_last_digits_alone() {
     q.radii.reverse();
     let last = p.grains() as u32 - 1;
     for c in &mut q.contacts {
-        *c = crate::samples::ordered(grainlab_core::Contact { i: last - c.i, j: last - c.j, ..*c });
+        *c = c.named(last - c.i, last - c.j, c.image);
     }
     q.contacts.sort_by_key(|c| (c.i, c.j, c.image));
     let q = q.validated().unwrap();

@@ -157,13 +157,10 @@ fn near_isostaticity_the_probe_settles_on_the_frozen_network_too() {
 fn stuck(packing: &Packing) -> Engine {
     let setting = EngineSettings {
         friction: f64::INFINITY,
-        damping: 0.0,
-        drag: 0.0,
-        spin_drag: 0.0,
         tangential: TangentialLaw::Incremental,
         time_step: TimeStep::FractionOfStable(1.0),
         skin: 1e-2 * packing.radii[0],
-        thermostat_speed: None,
+        ..EngineSettings::default()
     };
     let mut engine = Engine::from_packing(packing, setting).unwrap();
     engine.initialise().unwrap();

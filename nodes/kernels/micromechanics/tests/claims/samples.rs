@@ -1,8 +1,7 @@
 //! Packings for the tests.
 
 use grainlab_core::Contact;
-use grainlab_core::effective_radius;
-use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3, contact_search};
 
 /// A packing of spheres of one radius at `positions`, with all contacts in `cell` (images up to one cell
 /// away). With `uniform`, every contact has that overlap, so that all springs are equal.
@@ -29,44 +28,16 @@ pub(crate) fn packing_of_sizes(
     let mut packing = Packing {
         step: 7,
         time: 0.5,
-        cell,
-        deformation: Mat3::identity(),
         ids: (1..=n as u32).collect(),
-        radii,
-        positions,
-        velocities: vec![Vec3::zeros(); n],
-        spins: vec![Vec3::zeros(); n],
-        contacts: Vec::new(),
-        material: Material::GLASS,
-        law: Default::default(),
         friction,
-        time_step: 0.0,
+        ..Packing::at_rest(cell, radii, positions)
     };
-    let images: Vec<[i8; 3]> = (0..27i8).map(|k| [k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1]).collect();
-    for i in 0..n {
-        for j in i..n {
-            for &image in &images {
-                // A contact with an own image is kept in one of the two directions.
-                if i == j && image <= [0, 0, 0] {
-                    continue;
-                }
-                let l = packing.positions[j] - packing.positions[i] + packing.cell.shift(image);
-                let overlap = packing.radii[i] + packing.radii[j] - l.norm();
-                if overlap > 0.0 {
-                    let overlap = uniform.unwrap_or(overlap);
-                    packing.contacts.push(Contact {
-                        i: i as u32,
-                        j: j as u32,
-                        image,
-                        overlap,
-                        normal: l.normalize(),
-                        normal_force: Material::GLASS
-                            .normal_force(effective_radius(packing.radii[i], packing.radii[j]), overlap),
-                        tangential_force: Vec3::zeros(),
-                        rolling_force: Vec3::zeros(),
-                    });
-                }
-            }
+    packing.contacts = contact_search::of_packing(&packing).expect("grains apart");
+    if let Some(overlap) = uniform {
+        for k in 0..packing.contacts.len() {
+            let r_eff = packing.effective_radius(&packing.contacts[k]);
+            let c = &mut packing.contacts[k];
+            (c.overlap, c.normal_force) = (overlap, Material::GLASS.normal_force(r_eff, overlap));
         }
     }
     packing.validated().expect("a sample is a packing")
@@ -136,20 +107,11 @@ pub(crate) fn repeated(p: &Packing, copies: i32) -> Packing {
             let i = c.i + (copy as usize * n) as u32;
             let j = c.j + (reached.rem_euclid(copies) as usize * n) as u32;
             let image = [reached.div_euclid(copies) as i8, c.image[1], c.image[2]];
-            out.contacts.push(ordered(Contact { i, j, image, ..*c }));
+            out.contacts.push(c.named(i, j, image));
         }
     }
     out.contacts.sort_by_key(|c| (c.i, c.j, c.image));
     out.validated().expect("copies of a packing are a packing")
-}
-
-/// This contact with `i ≤ j`.
-pub(crate) fn ordered(c: Contact) -> Contact {
-    if c.i <= c.j {
-        return c;
-    }
-    let image = c.image.map(|k| -k);
-    Contact { i: c.j, j: c.i, image, normal: -c.normal, tangential_force: -c.tangential_force, ..c }
 }
 
 /// The rotated packing.
@@ -191,7 +153,8 @@ impl Pair {
 /// a cube of 1 cm³: for measurements of structure, not mechanically stable.
 pub(crate) fn pairs(contacts: &[Pair], seed: u64) -> Packing {
     let mut dice = Dice(seed);
-    let mut p = packing(Cell::cube(0.01).unwrap(), Vec::new(), 1e-4, 0.5, None);
+    let cell = Cell::cube(0.01).unwrap();
+    let mut p = Packing { friction: 0.5, ..Packing::at_rest(cell, Vec::new(), Vec::new()) };
     for (k, pair) in contacts.iter().enumerate() {
         let place = Vec3::from_fn(|_, _| 0.01 * dice.next());
         for (half, offset) in [0.0, pair.branch].into_iter().enumerate() {
@@ -201,16 +164,9 @@ pub(crate) fn pairs(contacts: &[Pair], seed: u64) -> Packing {
             p.velocities.push(Vec3::zeros());
             p.spins.push(Vec3::zeros());
         }
-        p.contacts.push(Contact {
-            i: 2 * k as u32,
-            j: 2 * k as u32 + 1,
-            image: [0; 3],
-            overlap: pair.overlap,
-            normal: pair.normal,
-            normal_force: pair.normal_force,
-            tangential_force: -pair.tangential_force,
-            rolling_force: Vec3::zeros(),
-        });
+        let grains = [2 * k as u32, 2 * k as u32 + 1];
+        let pressed = Contact::pressed(grains, [0; 3], pair.normal, pair.overlap, pair.normal_force);
+        p.contacts.push(Contact { tangential_force: -pair.tangential_force, ..pressed });
     }
     p.validated().expect("pairs are a packing")
 }

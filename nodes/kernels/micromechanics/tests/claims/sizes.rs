@@ -37,12 +37,11 @@ fn prepared(grains: usize, spread: f64, pressure: f64, seed: u64) -> Packing {
     let setting = EngineSettings {
         friction: 0.2,
         damping: 0.3,
-        drag: 0.0,
         spin_drag: 1e4,
         tangential: TangentialLaw::Incremental,
         time_step: TimeStep::FractionOfStable(0.8),
         skin: 0.1 * DIAMETER,
-        thermostat_speed: None,
+        ..EngineSettings::default()
     };
     let mut engine = Engine::new(cell, Material::GLASS, radii, &positions, setting).unwrap();
     let mut strain = |rate: f64, done: &dyn Fn(&Observables) -> bool| {

@@ -109,6 +109,14 @@ impl ParameterSpec {
     }
 }
 
+/// A table of parameters, a row each: name, default value, range, description with the unit.
+#[macro_export]
+macro_rules! parameters {
+    ($($name:literal $default:expr, $range:expr, $description:expr;)*) => {
+        vec![$($crate::ParameterSpec::new($name, $default, $description).within($range)),*]
+    };
+}
+
 /// One line of `--help`: `name (type, default …, range): description`.
 impl fmt::Display for ParameterSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

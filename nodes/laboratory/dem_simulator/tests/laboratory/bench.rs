@@ -6,8 +6,7 @@ use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_msgs::msg::{Microstructure, RunState};
 use grainlab_msgs::{Message, Topic, from_cdr, topics};
 use grainlab_node_kit::{
-    Actor, Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, SubscriptionId,
-    run_until,
+    Actor, Bus, Demand, Exit, Faults, Hub, MemoryBus, Names, Next, Node, NodeError, SubscriptionId, run_until,
 };
 use grainlab_scene::Scene;
 use grainlab_servo_controller::ServoController;
@@ -89,10 +88,6 @@ impl Node for Recorder {
             }
         }
         Ok(Next::Wait(Duration::from_secs(3600)))
-    }
-
-    fn health(&self) -> Health {
-        Health::default()
     }
 }
 

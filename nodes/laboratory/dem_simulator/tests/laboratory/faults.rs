@@ -6,7 +6,7 @@ use grainlab_dem_simulator::Settings;
 use grainlab_msgs::msg::{self, PackingReport, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{
-    Actor, Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription, run_until,
+    Actor, Bus, Demand, Exit, Next, Node, NodeError, Publisher, Subscription, run_until,
 };
 use std::time::Duration;
 
@@ -43,10 +43,6 @@ impl Node for BadServo {
             self.strain_rate.publish(bus, &answer)?;
         }
         Ok(Next::Wait(Duration::from_secs(3600)))
-    }
-
-    fn health(&self) -> Health {
-        Health::default()
     }
 }
 

@@ -72,15 +72,7 @@ fn an_unknown_axis_is_inferred_from_the_speeds_if_set() {
 #[test]
 fn a_medium_that_looks_isotropic_gets_e3_and_a_note() {
     let (p, s) = (300e6, 120e6);
-    let isotropic = TransverseIsotropy {
-        c11: p,
-        c12: p - 2.0 * s,
-        c13: p - 2.0 * s,
-        c33: p,
-        g13: s,
-        g12: s,
-        residual: 0.0,
-    };
+    let isotropic = TransverseIsotropy::of_constants(p, p, p - 2.0 * s, s, s);
     let e = answer(&everywhere(&isotropic.stiffness()), &Settings { axis: FOUND, ..Settings::default() });
     assert!(!e.eps.is_empty() && e.eps[0].abs() < 1e-6 && e.status == Estimate::STATUS_OK, "{e:?}");
     assert!(says(&e, "e3 was taken") && says(&e, "any axis would serve"), "{:?}", e.warnings);

@@ -1,9 +1,8 @@
 //! Packings that LAMMPS and our engine step alike.
 
 use super::lammps;
-use grainlab_core::contact::ContactLaw;
 use grainlab_core::stress::stress;
-use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_dem::{Compute, EngineSettings, TimeStep};
 use grainlab_experiment::{Dem, EngineFactory, Simulation};
 use grainlab_scene::Scene;
@@ -33,9 +32,7 @@ control_period = 20
 until = { on_target = 1e-3, unbalanced = 1e-5, hold = 1e-4 }
 "#;
     let mut run = Simulation::new(Scene::parse(text).unwrap()).unwrap();
-    while let Some(request) = run.request() {
-        run.advance(&grainlab_servo::control(&request.input).unwrap().rate).unwrap();
-    }
+    while run.exchange().unwrap().is_some() {}
     run.packing().unwrap()
 });
 
@@ -151,20 +148,14 @@ fn two_spheres_rebound_with_the_same_speed() {
     let (radius, dt) = (1e-4, 2e-9);
     for damping in [0.05, 0.3, 0.8] {
         let pair = Packing {
-            step: 0,
-            time: 0.0,
             time_step: dt,
-            cell: Cell::cube(1e-3).unwrap(),
-            deformation: Mat3::identity(),
             ids: vec![3, 8],
-            radii: vec![radius, 0.7 * radius],
-            positions: vec![Vec3::new(4e-4, 5e-4, 5e-4), Vec3::new(4e-4 + 1.7001 * radius, 5e-4, 5e-4)],
             velocities: vec![Vec3::new(0.05, 0.0, 0.0), Vec3::new(-0.05, 0.0, 0.0)],
-            spins: vec![Vec3::zeros(); 2],
-            contacts: Vec::new(),
-            material: Material::GLASS,
-            law: ContactLaw::default(),
-            friction: 0.0,
+            ..Packing::at_rest(
+                Cell::cube(1e-3).unwrap(),
+                vec![radius, 0.7 * radius],
+                vec![Vec3::new(4e-4, 5e-4, 5e-4), Vec3::new(4e-4 + 1.7001 * radius, 5e-4, 5e-4)],
+            )
         };
         let rebound = |factory: &dyn EngineFactory| {
             let (packing, _) =

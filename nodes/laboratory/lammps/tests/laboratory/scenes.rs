@@ -33,9 +33,7 @@ fn at_least_six_built_in_scenes_run_with_lammps_from_the_gas_into_phases_with_co
         let mut run = Simulation::with_engine(Scene { grains: 60, ..scene }, factory.clone(), None).unwrap();
         let mut exchanges = 0;
         while exchanges < 30 {
-            let request = run.request().unwrap();
-            let ended = run.advance(&grainlab_servo::control(&request.input).unwrap().rate);
-            ended.unwrap_or_else(|e| panic!("{name}: {e}"));
+            run.exchange().unwrap_or_else(|e| panic!("{name}: {e}"));
             exchanges += u32::from(run.engine().program().is_some());
         }
     }

@@ -2,7 +2,7 @@
 
 use grainlab_core::Packing;
 use grainlab_msgs::{Guid, Topic, from_cdr, msg, topics};
-use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, SubscriptionId, member_of};
+use grainlab_node_kit::{Bus, BusError, Demand, Next, Node, NodeError, SubscriptionId, member_of};
 use grainlab_recorder::repeats::{Novelty, Repeats};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -120,9 +120,5 @@ impl Node for MemoryRecorder {
             record.state = state.filter(|s| s.checked().is_ok()).or(record.state.take());
         }
         Ok(Next::Wait(Duration::from_secs(3600)))
-    }
-
-    fn health(&self) -> Health {
-        Health::default()
     }
 }

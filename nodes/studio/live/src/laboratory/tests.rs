@@ -97,21 +97,11 @@ fn the_grains_of_now_are_shown_until_a_later_packing_comes_and_never_after_the_e
 
 /// Two grains that do not touch.
 pub(crate) fn pair() -> Packing {
-    use grainlab_core::{Cell, Mat3, Material, Vec3};
+    use grainlab_core::{Cell, Vec3};
     Packing {
-        step: 0,
-        time: 0.0,
-        cell: Cell::cube(8.0).unwrap(),
-        deformation: Mat3::identity(),
         ids: vec![1, 2],
-        radii: vec![1.0; 2],
-        positions: vec![Vec3::repeat(1.0), Vec3::repeat(5.0)],
-        velocities: vec![Vec3::zeros(); 2],
-        spins: vec![Vec3::zeros(); 2],
-        contacts: Vec::new(),
-        material: Material::GLASS,
-        law: Default::default(),
         friction: 0.3,
         time_step: 1e-6,
+        ..Packing::at_rest(Cell::cube(8.0).unwrap(), vec![1.0; 2], vec![Vec3::repeat(1.0), Vec3::repeat(5.0)])
     }
 }

@@ -68,7 +68,7 @@ fn a_scene_runs_with_another_engine_from_the_end_of_the_gas() {
             if request.phase == 2 && gas.is_none() {
                 gas = Some(run.packing().unwrap().positions);
             }
-            run.advance(&grainlab_servo::control(&request.input).unwrap().rate).unwrap();
+            run.exchange().unwrap();
         }
         let pressure = run.engine().observables().unwrap().stress.tensor.mean();
         (gas.unwrap(), pressure, run.packing().unwrap())
@@ -89,8 +89,7 @@ fn a_setting_that_an_engine_does_not_have_is_refused_by_name() {
     let scene = Scene::parse(&SCENE.replace("friction = 0.0", "friction = 0.3")).unwrap();
     let mut run = Simulation::with_engine(scene, Arc::new(Toys::default()), None).unwrap();
     let error = loop {
-        let request = run.request().unwrap();
-        if let Err(error) = run.advance(&grainlab_servo::control(&request.input).unwrap().rate) {
+        if let Err(error) = run.exchange() {
             break error;
         }
     };

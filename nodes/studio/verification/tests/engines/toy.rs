@@ -91,16 +91,8 @@ impl Toy {
                 }
                 let sign = if self.fault == Fault::Attraction { -1.0 } else { 1.0 };
                 let normal_force = sign * modulus * (r * s / (r + s)).sqrt() * overlap.powf(1.5);
-                p.contacts.push(Contact {
-                    i: i as u32,
-                    j: j as u32,
-                    image: apart.map(|s| -s.round() as i8).into(),
-                    normal: branch / distance,
-                    overlap,
-                    normal_force,
-                    tangential_force: Vec3::zeros(),
-                    rolling_force: Vec3::zeros(),
-                });
+                let (grains, image) = ([i as u32, j as u32], apart.map(|s| -s.round() as i8).into());
+                p.contacts.push(Contact::pressed(grains, image, branch / distance, overlap, normal_force));
             }
         }
         Ok(())

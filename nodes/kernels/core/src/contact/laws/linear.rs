@@ -18,20 +18,8 @@ pub struct Linear {
 impl Linear {
     /// Parameters in scenes and messages, in the order of the fields.
     pub const PARAMETERS: [LawParameter; 2] = [
-        LawParameter {
-            key: "normal_stiffness",
-            unit: "N/m",
-            meaning: "normal stiffness k_n",
-            default: None,
-            range: LawParameter::POSITIVE,
-        },
-        LawParameter {
-            key: "stiffness_ratio",
-            unit: "",
-            meaning: "k_t/k_n",
-            default: Some(0.5),
-            range: LawParameter::POSITIVE,
-        },
+        LawParameter::new("normal_stiffness", "N/m", "normal stiffness k_n", None, LawParameter::POSITIVE),
+        LawParameter::new("stiffness_ratio", "", "k_t/k_n", Some(0.5), LawParameter::POSITIVE),
     ];
 }
 

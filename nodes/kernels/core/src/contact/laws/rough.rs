@@ -31,20 +31,20 @@ pub struct Rough {
 impl Rough {
     /// Parameters in scenes and messages, in the order of the fields.
     pub const PARAMETERS: [LawParameter; 2] = [
-        LawParameter {
-            key: "roughness",
-            unit: "m",
-            meaning: "root mean square roughness S_q of a grain's surface",
-            default: None,
-            range: LawParameter::FROM_ZERO,
-        },
-        LawParameter {
-            key: "tangential_factor",
-            unit: "",
-            meaning: "k_t/k_n over that of Mindlin, 2(1 - nu)/(2 - nu)",
-            default: Some(1.0),
-            range: (Bound::Excluded(0.0), Bound::Included(1.0)),
-        },
+        LawParameter::new(
+            "roughness",
+            "m",
+            "root mean square roughness S_q of a grain's surface",
+            None,
+            LawParameter::FROM_ZERO,
+        ),
+        LawParameter::new(
+            "tangential_factor",
+            "",
+            "k_t/k_n over that of Mindlin, 2(1 - nu)/(2 - nu)",
+            Some(1.0),
+            (Bound::Excluded(0.0), Bound::Included(1.0)),
+        ),
     ];
 
     /// Springs of grains of `material`.
