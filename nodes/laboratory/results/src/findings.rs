@@ -5,10 +5,10 @@ mod doubts;
 use crate::inference::{Inference, by_origin};
 use crate::packing_text::eps;
 use crate::read_back::InvertedPacking;
+use doubts::Doubts;
 use grainlab_console::count;
 use grainlab_core::results::{InferredQuantity, PackingReport};
 use grainlab_msgs::topics::PACKING_REPORT;
-use doubts::Doubts;
 use std::collections::BTreeSet;
 
 /// Standard deviations within which 95 % of a normal distribution lie.

@@ -99,7 +99,8 @@ impl<'a> OverSettings<'a> {
             let mut text = change(&of, &self.along, [*from, *to]);
             if let Some((at, between)) = beyond(&means) {
                 text.truncate(text.trim_end_matches('.').len());
-                text += &format!("; between them it is {} at {}.", six_digits(between.value), self.along.of(at));
+                text +=
+                    &format!("; between them it is {} at {}.", six_digits(between.value), self.along.of(at));
             }
             Some(text)
         };
@@ -129,7 +130,10 @@ impl<'a> OverSettings<'a> {
             let (title, x) = (titled(name), axis.clone());
             let drawn = Figure { title, x, series, ..Figure::default() };
             let data = match by.as_str() {
-                "" => csv([along.as_str(), "n", "mean", "standard_error"], rows.into_iter().map(|[at, _, n, m, e]| [at, n, m, e])),
+                "" => csv(
+                    [along.as_str(), "n", "mean", "standard_error"],
+                    rows.into_iter().map(|[at, _, n, m, e]| [at, n, m, e]),
+                ),
                 by => csv([along.as_str(), by, "n", "mean", "standard_error"], rows),
             };
             figure(&format!("over-{}-{}", slug(&self.along.name), file(name)), drawn.element(), "", &data)
@@ -141,8 +145,7 @@ impl<'a> OverSettings<'a> {
             ends[1] - ends[0] > ALIKE * ends[1].abs()
         };
         let drawn: Html = self.whole[0].1.iter().enumerate().filter(has_value).map(draw).collect();
-        let curves =
-            if by.is_empty() { String::new() } else { format!(", with a curve for each {by}") };
+        let curves = if by.is_empty() { String::new() } else { format!(", with a curve for each {by}") };
         let mut about = match self.has_seeds() {
             true => format!("Points: means over seeds; bars: their standard errors{curves}."),
             false => format!("Points: single runs{curves}."),
@@ -212,7 +215,8 @@ pub(crate) fn strips(all: &[Quantities<'_>]) -> Html {
         };
         let rows = values().map(|(n, run, value)| [n.to_string(), run.name(), six_digits(value)]);
         let data = csv(["no", "run", "value"], rows);
-        (values().next().is_some()).then(|| figure(&format!("by-run-{}", file(name)), drawn.element(), "", &data))
+        (values().next().is_some())
+            .then(|| figure(&format!("by-run-{}", file(name)), drawn.element(), "", &data))
     };
     grid(all[0].1.iter().enumerate().filter_map(draw).collect())
 }

@@ -4,7 +4,8 @@ use crate::page::STYLE;
 use grainlab_emt::{Interval, PressureEstimate, SeriesEstimate, SpeedMode, SpeedSeries};
 use grainlab_page::plot::{Axis, Entry, Figure, Line, Marker, Point, Series};
 use grainlab_page::{
-    Cell, Html, Page, Section, csv, details, figure, finding, grid, heading, html, list, paragraph, slug, table,
+    Cell, Html, Page, Section, csv, details, figure, finding, grid, heading, html, list, paragraph, slug,
+    table,
 };
 use std::f64::consts::PI;
 
@@ -150,10 +151,10 @@ fn over_pressure(
         ..line(|i| i.mean, Line::Straight)
     };
     // A line through one point is none: the interval is a bar there.
-    let bar = all.iter().filter(|_| all.len() == 1).map(|(p, i)| Point {
-        error: Some(0.5 * (i.high - i.low)),
-        ..place(p, 0.5 * (i.low + i.high))
-    });
+    let bar = all
+        .iter()
+        .filter(|_| all.len() == 1)
+        .map(|(p, i)| Point { error: Some(0.5 * (i.high - i.low)), ..place(p, 0.5 * (i.low + i.high)) });
     let bar = Series { colour: Some(0), points: bar.collect(), ..Series::default() };
     let drawn = Figure {
         title: named(sample, title),

@@ -40,11 +40,16 @@ fn page(pressures: &[f64], angles: &[f64], (z_beyond, is_contradictory): (f64, b
 #[test]
 fn the_page_of_a_series_has_eps_as_z_in_figure_sentence_and_table() {
     let with = page(&[1e5, 4e5], &[0.0, FRAC_PI_2], (0.0, false));
-    for part in ["id=\"plot-eps-over-pressure\"", "The anisotropy of the contacts, eps, is 0.0", "sigma of eps"] {
+    for part in
+        ["id=\"plot-eps-over-pressure\"", "The anisotropy of the contacts, eps, is 0.0", "sigma of eps"]
+    {
         assert!(with.contains(part), "{part}");
     }
     let without = page(&[1e5, 4e5], &[0.0], (0.0, false));
-    assert!(without.contains("eps, is not determined by them") && !without.contains("id=\"plot-eps-over-pressure\""));
+    assert!(
+        without.contains("eps, is not determined by them")
+            && !without.contains("id=\"plot-eps-over-pressure\"")
+    );
 }
 
 #[test]

@@ -192,8 +192,11 @@ impl Drawing {
     /// A point with its tooltip.
     pub(super) fn marker(&mut self, [x, y]: [f64; 2], key: Key, tooltip: &str) {
         let class = format!("{} {}", class(key.colour), if key.hollow { "hollow" } else { "full" });
-        let title =
-            if tooltip.is_empty() { String::new() } else { format!("<title>{}</title>", escaped(&true_minus(tooltip))) };
+        let title = if tooltip.is_empty() {
+            String::new()
+        } else {
+            format!("<title>{}</title>", escaped(&true_minus(tooltip)))
+        };
         let (element, shape) = match corners(key.marker) {
             None => ("circle", format!("cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.5\"")),
             Some(corners) => {
