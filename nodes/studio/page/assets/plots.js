@@ -105,7 +105,7 @@
     ends.reverse().forEach((end, n) => (end.y = Math.min(end.y, n ? ends[n - 1].y - 13 : bottom)));
     ends.forEach((end) => end.text.setAttribute("y", end.y + 4));
     const clip = make("clipPath", { id: `part-${++clips}` }, svg);
-    make("rect", { x: left, y: top - 6, width, height: bottom - top + 12 }, clip);
+    make("rect", { x: left, y: top, width, height: bottom - top }, clip);
     for (const element of svg.querySelectorAll(".series > *, .curves > text, .bands > *")) {
       const d = element.tagName === "path" && element.getAttribute("d"), box = element.getBBox();
       if (d && !/[HV]/.test(d)) {
