@@ -8,6 +8,16 @@ pub fn count(number: impl fmt::Display + PartialEq + From<bool>, noun: &str) -> 
     format!("{number} {noun}{plural}")
 }
 
+/// A list of parts, as in `a, b and c`.
+pub fn and(parts: &[impl AsRef<str>]) -> String {
+    let parts: Vec<&str> = parts.iter().map(AsRef::as_ref).collect();
+    match parts.as_slice() {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

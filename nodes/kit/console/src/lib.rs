@@ -21,7 +21,7 @@ mod whole_file;
 mod wrap;
 
 pub use cell::Cell;
-pub use count::count;
+pub use count::{and, count};
 pub use duration::duration;
 pub use failure::{Failure, worse};
 pub use output::{CsvText, Format, Table, exact, fixed, json, json_element, print, print_more, say_line};

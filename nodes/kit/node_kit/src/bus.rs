@@ -129,7 +129,7 @@ pub trait Bus {
     /// topics, as known at the last [`Bus::wait`].
     fn offers(&self) -> Vec<Offer>;
 
-    /// The same of writers whose samples are not taken.
+    /// Offers of writers whose samples are not taken.
     fn strange_offers(&self) -> Vec<Offer> {
         Vec::new()
     }

@@ -5,13 +5,13 @@ use crate::over_settings::{OverSettings, Quantities, strips};
 use crate::page::STYLE;
 use crate::run::Run;
 use crate::settings::{Setting, differing, keys};
-use grainlab_console::{CsvText, count};
+use grainlab_console::{CsvText, and, count};
 use grainlab_core::results::InferredQuantity;
 use grainlab_page::{
     Cell, Html, Page, Section, data, finding, fixed, grid, heading, html, paragraph, six_digits, table,
 };
 use grainlab_results::brief::{ended, moduli};
-use grainlab_results::findings::{Findings, and, recommended};
+use grainlab_results::findings::{Findings, recommended};
 use grainlab_results::read_back::InvertedPacking;
 use std::collections::{BTreeMap, BTreeSet};
 

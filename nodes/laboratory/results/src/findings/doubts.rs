@@ -1,9 +1,9 @@
 //! Reasons to doubt states: those of their estimates and packings, and those of their estimates beside the count.
 
-use super::{Judged, and, recommended};
+use super::judged::{Judged, recommended};
 use crate::inference::Inference;
 use crate::read_back::InvertedPacking;
-use grainlab_console::count;
+use grainlab_console::{and, count};
 use grainlab_core::results::InferredQuantity;
 use std::collections::BTreeSet;
 
