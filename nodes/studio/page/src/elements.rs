@@ -185,7 +185,7 @@ pub(crate) fn true_minus(text: &str) -> String {
     let mut letters = text.chars().peekable();
     let mut written = String::with_capacity(text.len());
     while let Some(letter) = letters.next() {
-        let is_number = letters.peek().is_some_and(char::is_ascii_digit) && " (\u{a0}".contains(before);
+        let is_number = letters.peek().is_some_and(char::is_ascii_digit) && " ([\u{a0}".contains(before);
         written.push(if letter == '-' && is_number { '−' } else { letter });
         before = letter;
     }
@@ -237,8 +237,8 @@ mod tests {
 
     #[test]
     fn a_number_in_a_sentence_has_a_true_minus_and_a_name_and_a_power_keep_theirs() {
-        let text = true_minus("-0.5 (-2, 1e-5) of load-50kPa");
-        assert_eq!(text, "−0.5 (−2, 1e-5) of load-50kPa");
+        let text = true_minus("-0.5 (-2, [-3, 1e-5) of load-50kPa");
+        assert_eq!(text, "−0.5 (−2, [−3, 1e-5) of load-50kPa");
     }
 
     #[test]
