@@ -256,13 +256,13 @@ mod tests {
 
     #[test]
     fn errors_of_one_sign_and_fewer_values_in_their_intervals_than_by_chance_are_doubts() {
-        let of = |z: [f64; 4]| {
-            let one = |(n, z)| state(n, true, result("ok", Some((z, 0.1)), &[]));
+        let of = |z: &[f64]| {
+            let one = |(n, z): (u64, &f64)| state(n, true, result("ok", Some((*z, 0.1)), &[]));
             Findings::of(&(1..).zip(z).map(one).collect::<Vec<_>>()).doubts
         };
-        assert!(of([5.95, 6.05, 5.9, 5.5]).is_empty());
-        assert_eq!(of([6.1, 6.05, 6.1, 6.15]), ["z is inferred too high in every state."]);
-        assert_eq!(of([5.5, 6.5, 5.5, 6.1]), ["Only 1 of 4 counted values lie in their 95 % intervals."]);
+        assert!(of(&[5.95, 6.05, 5.9, 5.5]).is_empty() && of(&[6.1; 7]).is_empty());
+        assert_eq!(of(&[6.1; 8]), ["z is inferred too high in every state."]);
+        assert_eq!(of(&[5.5, 6.5, 5.5, 6.1]), ["Only 1 of 4 counted values lie in their 95 % intervals."]);
     }
 
     #[test]

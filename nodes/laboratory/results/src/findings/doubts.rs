@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 /// Warnings that are written out; the others are counted.
 const MOST_DOUBTS: usize = 4;
 
-/// States from which errors of one sign are said.
-const ONE_SIDED: usize = 4;
+/// States from which errors of one sign are said: the chance of that many is below 1 %.
+const ONE_SIDED: usize = 8;
 
 /// Share of counted values that lie in their intervals if the errors are as stated.
 const COVERED: f64 = 0.95;
