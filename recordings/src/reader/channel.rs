@@ -83,8 +83,12 @@ impl ChannelInfo {
         self.qos_values("durability").any(|v| matches!(v, "1" | "transient_local"))
     }
 
-    /// Number of messages that a late reader of a latched topic gets, by the recorded QoS: its depth, at least 1 and at most 1000.
+    /// Number of messages that a late reader of a latched topic gets, by the recorded QoS: its depth, at least 1 and at most 1000,
+    /// which is also that of keep all.
     pub fn latched_depth(&self) -> usize {
+        if self.qos_values("history").any(|v| matches!(v, "2" | "keep_all")) {
+            return 1000;
+        }
         let depths = self.qos_values("depth").filter_map(|v| v.parse::<usize>().ok());
         depths.max().unwrap_or(1).clamp(1, 1000)
     }

@@ -58,6 +58,7 @@ pub(super) struct TopicMetadata {
     pub(super) name: String,
     #[serde(rename = "type")]
     pub(super) ros_type: String,
+    pub(super) serialization_format: String,
     type_description_hash: Option<String>,
 }
 

@@ -29,7 +29,7 @@ pub struct Info {
     pub profile: String,
     /// Library that wrote it.
     pub library: String,
-    /// Compressions of the chunks; `none` for uncompressed.
+    /// Compressions of the messages and of the chunks; `none` for uncompressed.
     pub compression: Vec<String>,
     /// Chunks with messages.
     pub chunks: u64,
@@ -108,6 +108,8 @@ impl Recording {
             .flat_map(|f| &f.index.compressions)
             .map(|c| if c.is_empty() { "none" } else { c })
             .collect();
+        let by_message = self.bag.as_ref().filter(|bag| bag.is_by("message"));
+        let each = by_message.map(|bag| format!("{} of each message", bag.compression_format));
         Info {
             path: self.path.display().to_string(),
             files: files.iter().map(|f| f.path.display().to_string()).collect(),
@@ -116,7 +118,7 @@ impl Recording {
             without_index: self.is_without_index(),
             profile: files.first().map(|f| f.index.profile.clone()).unwrap_or_default(),
             library: files.first().map(|f| f.index.library.clone()).unwrap_or_default(),
-            compression: compressions.into_iter().map(str::to_owned).collect(),
+            compression: each.into_iter().chain(compressions.into_iter().map(str::to_owned)).collect(),
             chunks: files.iter().map(|f| f.index.blocks.iter().filter(|b| b.is_chunk).count() as u64).sum(),
             start_ns: range.map(|r| r.0),
             end_ns: range.map(|r| r.1),

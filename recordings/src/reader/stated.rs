@@ -44,8 +44,17 @@ impl BagInformation {
                 let stated = count(entry.message_count, "message");
                 lines.push(format!("{name}: it states {stated}, the files hold {there}"));
             }
-            let types: BTreeSet<&str> =
-                recording.all_channels().filter(|c| c.topic == *name).map(|c| c.ros_type.as_str()).collect();
+            let channels = || recording.all_channels().filter(|c| c.topic == *name);
+            let format = &entry.topic_metadata.serialization_format;
+            if !format.is_empty()
+                && channels().next().is_some()
+                && channels().all(|c| c.message_encoding != *format)
+            {
+                lines.push(format!(
+                    "{name}: it states the serialization_format {format}, the files have another"
+                ));
+            }
+            let types: BTreeSet<&str> = channels().map(|c| c.ros_type.as_str()).collect();
             if !types.is_empty() && !types.contains(stated.as_str()) {
                 let types = types.into_iter().collect::<Vec<_>>().join(" and ");
                 lines.push(format!("{name}: it states the type {stated}, the files have {types}"));

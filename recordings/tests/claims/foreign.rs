@@ -98,6 +98,7 @@ fn messages_that_are_compressed_one_by_one_are_read_and_copied_as_what_they_are(
         messages.next().map(|m| m.payload.to_vec())
     };
     assert_eq!(payload(&open(&source)).unwrap(), HI);
+    assert_eq!(open(&source).info().compression[0], "zstd of each message");
     assert_eq!(payload(&open(&source.join("r_0.mcap"))).unwrap(), HI);
     let (made, _) = copied(&source, &root.path().join("made"));
     assert_eq!(payload(&made).unwrap(), HI);
@@ -171,7 +172,7 @@ fn a_check_names_each_statement_of_the_metadata_that_the_files_contradict() {
     });
     let topic = |name: &str, kind: &str, n: u64| {
         format!(
-            "    - topic_metadata: {{name: {name}, type: {kind}, type_description_hash: RIHS01_7}}\n      message_count: {n}\n"
+            "    - topic_metadata: {{name: {name}, type: {kind}, serialization_format: cdr, type_description_hash: RIHS01_7}}\n      message_count: {n}\n"
         )
     };
     let whole = format!(
@@ -195,6 +196,7 @@ fn a_check_names_each_statement_of_the_metadata_that_the_files_contradict() {
         ("format: ''", "format: lz4", "compression_format: it states \"lz4\""),
         ("epoch: 1000000100", "epoch: 7", "starting_time: it states 7 ns"),
         ("seconds: 3000000000", "seconds: 9000000000", "duration: it states 9000000000 ns"),
+        ("format: cdr", "format: json", "/t: it states the serialization_format json"),
         ("name: /t", "name: /other", "/t: it does not list it"),
         ("count: 0", "count: 4", "/silent: it states 4 messages, the files hold 0"),
         (

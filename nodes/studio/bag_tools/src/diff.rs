@@ -82,8 +82,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     // A stored file that cannot be read is not compared, and no reason to call both complete.
     both.iter().for_each(|recording| drop(recording.stored_files()));
     let differs = |r: &Compared| {
-        !["same", "not compared", "no messages"].contains(&r.payload)
-            || args.times && r.payload == "same" && !r.same_times
+        !["same", "not compared", "no messages"].contains(&r.payload) || args.times && !r.same_times
     };
     let exit = if rows.iter().any(differs) { Exit::Failure } else { Exit::Done };
     Ok(worse(exit, losses(&both)))
