@@ -39,11 +39,13 @@ pub fn simulate(scene: &str, settings: &[&str]) -> Result<Simulation, Error> {
 /// Goes on with a run of the same scene and settings from one of its states, to the same packings bit for bit.
 ///
 /// # Errors
-/// As [`simulate`]; if the state is of another scene or seed, or of no run.
+/// As [`simulate`]; if the state is of another scene or seed, or of no run, or contradicts itself.
 pub fn resume(scene: &str, settings: &[&str], state: &State) -> Result<Simulation, Error> {
     let found = read(scene, settings)?;
+    let simulation = |e: &dyn std::fmt::Display| Error::Simulation(e.to_string());
+    state.packing.check().and_then(|()| state.packing.check_consistency()).map_err(|e| simulation(&e))?;
     let run = grainlab_experiment::Simulation::resume(found.scene, &state.packing, &state.run_state);
-    let run = run.map_err(|e| Error::Simulation(e.to_string()))?;
+    let run = run.map_err(|e| simulation(&e))?;
     Ok(Simulation { run, start: None, notes: found.notes, failed: false })
 }
 

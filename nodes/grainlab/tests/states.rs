@@ -24,6 +24,7 @@ fn a_state_resumes_its_run_to_the_same_packings() {
         ("s2", states[1].clone()),
         ("s1", states[1].packing.clone().into()),
         changed(|p| p.friction *= 2.0),
+        changed(|p| p.positions[3].x += 1e-8),
         changed(|p| p.material.density *= 1.1),
         changed(|p| *p = p.repeated(2).unwrap()),
     ];

@@ -62,13 +62,13 @@ impl Stress {
     /// setpoint in 1/s, extension positive
     pub const MODE_STRAIN_RATE: u8 = 2;
 
-    /// rate = (stress - setpoint) / (tangent response_time)
+    /// rate = (stress - setpoint) / (tangent response_time); of a shear component 2 tangent
     pub const LAW_SCALED: u8 = 0;
 
     /// Eq. 1: rate = (1 - leak) rate + gain (stress - setpoint)
     pub const LAW_INTEGRAL: u8 = 1;
 
-    /// as LAW_INTEGRAL, gain as a share of the critical gain (4 - 2 leak) / (tangent control_interval)
+    /// as LAW_INTEGRAL, gain as a share of (4 - 2 leak) / (K control_interval); K: tangent, plus for a normal component
     pub const LAW_NORMALISED: u8 = 2;
 }
 

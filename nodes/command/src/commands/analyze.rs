@@ -90,7 +90,7 @@ enum Method {
     #[default]
     Network,
     /// Linear response of smooth grains, with the prestress term: normal forces rotate with their branches. The stiffness is that of
-    /// the Cauchy stress, as --method probe measures it
+    /// the Cauchy stress, as --method probe measures it, made symmetric, which matters under a deviatoric stress
     Prestressed,
     /// Explicit: strain the packing slightly, relax it, evaluate the stress
     Probe,

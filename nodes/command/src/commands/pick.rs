@@ -34,7 +34,7 @@ path of known speed, with the source, loss, noise and crosstalk of the record, a
 the bias, their scatter the error. Printed are the time of long waves, which is the one that was read less the bias (us), the standard deviations (+-),
 the speed of long waves with all its errors, the path over the wavelength (waves) and the arrival over the noise (S/N). Recommended is the pick with the least error.
 In the output, speed_shared_sigma is the error that the rows of one mode and direction share: of distance and delay, and half of the variance of
-the time, which is ringing, dispersion and near field; speed_sigma is the rest; _notes has the remarks on the record.
+the time, which is ringing, dispersion and near field; speed_sigma is the rest, as picks that contradict each other; _notes has the remarks on the record.
 
 Examples:
   Speeds, and what was picked:
@@ -170,6 +170,10 @@ fn notes(row: &Row, p: &Picks) -> Vec<String> {
         ),
         (p.sign_doubt > 0.3, "the opposite sign fits almost as well: give the polarity for a smaller error"),
         (p.is_cut, "the amplifier cut the largest samples"),
+        (
+            p.slowest > p.picks[p.recommended].speed,
+            "the record ends inside the arrival: a part of what is missing is in the error; record longer",
+        ),
         (
             !p.signal_to_noise.is_finite(),
             "there is no noise where both signals are quiet, so the error has none",

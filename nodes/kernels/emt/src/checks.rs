@@ -87,6 +87,8 @@ pub(crate) fn common(
     domain: &Domain,
 ) -> Vec<Warning> {
     let Domain { compares_state, any_contact, .. } = *domain;
+    // Formulas with the solid fraction have the material of the grains, and no constants of a calibration.
+    let uses_constants = !domain.needs_solid_fraction;
     let conditions = &observation.conditions;
     let mut warnings = Vec::new();
     let mut add = |applies: bool, warning: Warning| {
@@ -101,7 +103,9 @@ pub(crate) fn common(
         let wide = [0.99 * range[0], 1.01 * range[1]];
         add(outside(pressure, wide), Warning::PressureOutsideFit { pressure, range });
     }
-    if let Some(nu) = conditions.material.map(|m| m.poisson_ratio).filter(|_| !compares_state) {
+    if let Some(nu) =
+        conditions.material.map(|m| m.poisson_ratio).filter(|_| uses_constants && !compares_state)
+    {
         let calibrated = calibration.material().poisson_ratio;
         add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
     }

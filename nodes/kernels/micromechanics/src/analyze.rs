@@ -127,7 +127,9 @@ fn elasticity(
     let bounds = StiffnessBounds {
         affine: cauchy(found.affine),
         uniform_rotation: cauchy(found.uniform_rotation),
-        bulk_reuss: bulk_reuss_bound(view, settings.springs),
+        // The bound is that of springs without prestress, which softens the network.
+        bulk_reuss: bulk_reuss_bound(view, settings.springs)
+            .filter(|_| !network.prestressed() && settings.probe.is_none()),
     };
     let probe = settings.probe.as_ref().map(|probe| strain_probe(packing, probe)).transpose()?;
     let stiffness = match &probe {

@@ -99,6 +99,8 @@ pub(crate) struct PendingResults {
     instruments: bool,
     /// Names of those programs.
     programs: Vec<String>,
+    /// True once one of them sent data of a packing.
+    sent: bool,
 }
 
 impl PendingResults {
@@ -128,23 +130,23 @@ impl PendingResults {
         if !has(NodeKind::ServoController) && programs.len() == 1 {
             programs.clear();
         }
-        Self { kinds, inversions, instruments, programs }
+        Self { kinds, inversions, instruments, programs, sent: false }
     }
 
     /// A sentence on third-party programs, if none of them sent data of any packing.
     pub(crate) fn silent_programs(&self) -> Option<String> {
-        let sent = self.kinds.iter().any(|k| k.source == Source::Instrument && !k.measured.is_empty());
         let text = || {
             format!(
                 "no wave speeds or other data of a packing came from {} before the run ended",
                 self.programs.join(", ")
             )
         };
-        (!sent && !self.programs.is_empty()).then(text)
+        (!self.sent && !self.programs.is_empty()).then(text)
     }
 
     /// The data of this topic about the packing of `step` were published.
     pub(crate) fn measured(&mut self, topic: &str, step: u64) {
+        self.sent |= step > 0 && !self.is_measured_by_node(topic);
         // Step 0 means no packing.
         if topic == topics::WAVE_SPEEDS.name && step > 0 {
             self.expect_of_instruments();
@@ -156,6 +158,7 @@ impl PendingResults {
 
     /// The wave speeds of the packing that the run starts from were published.
     pub(crate) fn measured_start(&mut self) {
+        self.sent = true;
         self.expect_of_instruments();
         let of_instruments = self.kinds.iter_mut().filter(|k| k.source == Source::Instrument);
         of_instruments.for_each(|k| *k.measured.entry(0).or_insert(0) += 1);

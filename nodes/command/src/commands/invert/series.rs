@@ -86,6 +86,12 @@ pub(super) fn run(
 
 #[cfg(feature = "studio")]
 fn plotted(samples: &[Sample], path: &Path) -> Result<(), Failure> {
+    if !path.extension().is_some_and(|e| e == "html" || e == "htm") {
+        return Err(Failure::usage(format!(
+            "--plot {}: the plot of a series is a page: name it .html",
+            path.display()
+        )));
+    }
     let mut all = Vec::new();
     for s in samples {
         all.push(grainlab_report::InferredSample {

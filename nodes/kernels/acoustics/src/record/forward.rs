@@ -1,6 +1,6 @@
 //! Records that are computed for a path of known speed.
 
-use super::band::{Band, centre};
+use super::band::Band;
 use crate::noise::Noise;
 use crate::time_of_flight::spectrum::{Analytic, Spectrum};
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ const BEND: [(f64, f64); 3] = [(0.65, 0.17), (0.35, 0.14), (0.5, 0.2)];
 const FASTER: f64 = 1.6;
 
 /// Relative change of the slowness by losses, over the part of the amplitude that is lost per wavelength (Kramers and Kronig): standard deviation.
-const SLOWED: f64 = 0.35;
+const SLOWED: f64 = 0.25;
 
 /// Frequency over that of the source up to which the delay grows with dispersion, so that it does not wrap around.
 const BOUND: f64 = 3.0;
@@ -41,7 +41,8 @@ pub(super) struct Unknown {
 }
 
 impl Path {
-    /// The path between a source and what arrived of it, of the loss that makes the mean frequency of the source that of the arrival.
+    /// The path between a source and what arrived of it, of the loss that makes the mean frequency of the source that of the arrival, both
+    /// weighted by the energy of the source.
     pub(super) fn between(
         source: &[f64],
         arrival: &[f64],
@@ -50,9 +51,15 @@ impl Path {
     ) -> Self {
         let spectrum = Spectrum::new(source.len(), 1);
         let lines = spectrum.of(source);
-        let target = centre(&spectrum, arrival);
-        let energies: Vec<(f64, f64)> =
-            spectrum.frequencies().zip(&lines).map(|(f, s)| (f, s.norm_sqr())).collect();
+        // Weighted by the source, which has little energy where only noise arrives.
+        let arrived = spectrum.of(arrival);
+        let (mut energies, mut moments) = (Vec::new(), (0.0, 0.0));
+        for ((f, s), a) in spectrum.frequencies().zip(&lines).zip(&arrived) {
+            let [sent, arrived] = [s, a].map(|line| line.norm_sqr());
+            energies.push((f, sent * sent));
+            moments = (moments.0 + f * sent * arrived, moments.1 + sent * arrived);
+        }
+        let target = moments.0 / moments.1;
         let mean = |loss: f64| {
             let (m, e) = energies.iter().fold((0.0, 0.0), |(m, e), (f, s)| {
                 let left = s * (-2.0 * loss * f).exp();

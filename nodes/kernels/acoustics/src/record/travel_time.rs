@@ -43,6 +43,9 @@ const HALF: f64 = 0.5;
 /// Standard deviations of the speed that reach the other of two arrivals.
 const REACHES: f64 = 1.96;
 
+/// Error of a wave whose end is not in the record, over the time that is missing.
+const UNSEEN: f64 = 0.4;
+
 /// Share of the variance of a time that records of one path and mode have in common: dispersion, near field and ringing are much the
 /// same in all of them, noise is not.
 const ALIKE: f64 = 0.5;
@@ -69,8 +72,11 @@ pub struct Pick {
     pub speed: f64,
     /// Standard deviation of the speed, m/s, with those of the distance and of the delay.
     pub speed_stddev: f64,
-    /// Part of it that the records of one path and mode share, m/s: distance, delay, and half of the variance of the time.
+    /// Part of it that the records of one path and mode share, m/s: distance, delay, and half of the variance of the time but for what
+    /// contradictory picks add.
     pub speed_common_stddev: f64,
+    /// Part of the error of the time by which contradictory picks differ, s.
+    apart: f64,
 }
 
 /// The picks of a record, and what was found of it.
@@ -174,6 +180,7 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         time = picks[best].time * record.sample_rate;
     }
     let period = 1.0 / (band.frequency * record.sample_rate);
+    let whole = (samples as f64 - band.from as f64 - band.duration - system).max(1.0) / record.sample_rate;
     let unlike = (alike[1] - alike[0]).max(0.0) * period;
     let sign_doubt = ((found.opposite - opposite) / (1.0 - opposite).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     for p in &mut picks {
@@ -183,7 +190,8 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         };
         let may_be_s = f64::from(passage.longitudinal != Some(true));
         let early = may_be_s * EARLIER * (early - CHANCE).max(0.0) * period;
-        let time_stddev = p.time_stddev.hypot(part[1] * unlike).hypot(doubt).hypot(early);
+        let unseen = UNSEEN * (p.time - whole).max(0.0);
+        let time_stddev = p.time_stddev.hypot(part[1] * unlike).hypot(doubt).hypot(early).hypot(unseen);
         let late = part[0] * unlike;
         *p = Pick { time: p.time - late, bias: p.bias + late, time_stddev, ..*p }.with_speed(passage);
     }
@@ -202,7 +210,7 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
     if contradictory {
         let most = picks.iter().map(apart).fold(0.0, f64::max);
         for p in &mut picks {
-            *p = Pick { time_stddev: p.time_stddev.hypot(most), ..*p }.with_speed(passage);
+            *p = Pick { time_stddev: p.time_stddev.hypot(most), apart: most, ..*p }.with_speed(passage);
         }
     }
     let other =
@@ -213,7 +221,6 @@ pub fn picks(record: &Record, passage: &Passage, seed: u64) -> Result<Picks, Aco
         *p = Pick { time_stddev: p.time_stddev.hypot(off * p.time), ..*p }.with_speed(passage);
     }
     let best = picks[recommended];
-    let whole = (samples as f64 - band.from as f64 - band.duration - system).max(1.0) / record.sample_rate;
     let wavelengths = best.time * band.frequency * record.sample_rate;
     let per_grain = wavelengths * passage.diameter / passage.distance;
     let refusal = match best {
@@ -263,7 +270,8 @@ fn pick(method: WaveMethod, late: f64, errors: &[f64], rate: f64, passage: &Pass
     let variance = errors.iter().map(|e| (e - bias).powi(2)).sum::<f64>() / (n - 1.0);
     let (time, time_stddev) = ((late - bias) / rate, (variance * (1.0 + 1.0 / n)).sqrt() / rate);
     let bias = bias / rate;
-    Pick { method, time, time_stddev, bias, speed: 0.0, speed_stddev: 0.0, speed_common_stddev: 0.0 }
+    let [speed, speed_stddev, speed_common_stddev, apart] = [0.0; 4];
+    Pick { method, time, time_stddev, bias, speed, speed_stddev, speed_common_stddev, apart }
         .with_speed(passage)
 }
 
@@ -274,12 +282,13 @@ impl Pick {
             let relative = time_stddev.hypot(passage.delay_stddev) / self.time;
             speed * relative.hypot(passage.distance_stddev / passage.distance)
         };
-        let speed_common_stddev = of(ALIKE.sqrt() * self.time_stddev);
+        let speed_common_stddev =
+            of((ALIKE * (self.time_stddev.powi(2) - self.apart.powi(2))).max(0.0).sqrt());
         Self { speed, speed_stddev: of(self.time_stddev), speed_common_stddev, ..self }
     }
 
     /// Part of the standard deviation of the speed that is of this record alone, m/s.
     pub fn speed_own_stddev(&self) -> f64 {
-        (1.0 - ALIKE).sqrt() * self.time_stddev / self.time * self.speed
+        (self.speed_stddev.powi(2) - self.speed_common_stddev.powi(2)).max(0.0).sqrt()
     }
 }

@@ -166,7 +166,7 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
         Scalar, |r| r.projected().map(|t| t.c13), or "c13_pa" x 1.0;
     "theta_reuss_pa" "" "Pa" "bulk modulus under isotropic stress (Reuss)"
         Scalar, |r| r.stiffness().and_then(|s| s.tensor.bulk_reuss());
-    "theta_bound_pa" "" "Pa" "lower bound of theta_reuss_pa by the forces present, none with rolling resistance"
+    "theta_bound_pa" "" "Pa" "lower bound of theta_reuss_pa by the forces present; none with rolling resistance, prestress or by the probe"
         Scalar, |r| r.stiffness().and_then(|s| s.bounds.bulk_reuss);
     "g_isotropic_pa" "G" "Pa" "shear modulus of the nearest isotropic stiffness, whose bulk modulus is theta_pa"
         Scalar, |r| r.stiffness().map(|s| s.tensor.shear_isotropic());
