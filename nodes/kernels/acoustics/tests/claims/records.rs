@@ -80,6 +80,36 @@ fn the_speed_is_found_within_its_error_whatever_the_amplifier_does() {
 }
 
 #[test]
+fn noise_does_not_make_the_error_of_a_speed_smaller() {
+    // A path that takes high frequencies: half of the amplitude per period.
+    let lost = |noise| {
+        let mut record = recorded(noise, 3, |r, _| r);
+        let mut state = 0.0;
+        record.receiver.iter_mut().for_each(|r| {
+            state += 0.03 * (*r - state);
+            *r = state;
+        });
+        picks(&record, &passage(), 1).map(|found| best(&found).1).unwrap()
+    };
+    let [clean, noisy] = [0.002, 0.1].map(lost);
+    assert!(noisy > 0.8 * clean, "{clean} {noisy}");
+}
+
+#[test]
+fn a_record_that_ends_inside_the_arrival_has_an_error_that_covers_what_is_missing() {
+    let arrival = QUIET + ((DISTANCE / SPEED + 2e-6) * RATE) as usize;
+    for after in [60, 80, 100, 130, 160] {
+        let mut record = recorded(0.02, after as u64, |r, _| r);
+        record.source.truncate(arrival + after);
+        record.receiver.truncate(arrival + after);
+        let Ok(found) = picks(&record, &passage(), 1) else { continue };
+        let (speed, stddev) = best(&found);
+        assert!((speed - SPEED).abs() < 2.0 * stddev, "{after}: {speed} +- {stddev}");
+        assert!(found.slowest > speed, "the wave is not whole");
+    }
+}
+
+#[test]
 fn a_larger_wave_after_the_first_strong_one_is_taken_as_s_and_the_error_covers_both() {
     let [first, distance] = [500.0, 0.2];
     for lobe in [0.4, 0.45, 0.5, 0.6, 0.7, 0.8] {
