@@ -128,6 +128,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         if args.judge {
             return judge::run(rows, &args.by, &cases, plot_file(args), args.format);
         }
+        refuse(&[("--plot", plot_file(args).is_some())], "of a table is that of --judge: add it")?;
         return table::run(rows, &printer, args.format);
     }
     // With an exclusion, the parser of the command line does not enforce a required flag.

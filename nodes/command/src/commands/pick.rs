@@ -71,6 +71,12 @@ type Found = (Row, Result<Picks, String>);
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let whole = |path: &PathBuf| path.canonicalize().ok();
+    if args.out.as_ref().and_then(whole).is_some_and(|out| Some(out) == whole(&args.records)) {
+        return Err(Failure::usage(
+            "--out is the table of the records, which it would replace: name another file",
+        ));
+    }
     let mut all: Vec<Found> = Vec::new();
     let mut unread = 0;
     for row in list::read(&args.records)? {

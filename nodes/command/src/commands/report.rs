@@ -32,6 +32,10 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let is_page = |path: &Path| path.extension().is_some_and(|e| e == "html" || e == "htm");
+    if let Some(path) = args.output.as_deref().filter(|path| !is_page(path)) {
+        return Err(Failure::usage(format!("-o {}: a report is a page: name it .html", path.display())));
+    }
     if let [run] = args.runs.as_slice() {
         let found = read(run)?;
         let path = args.output.clone().unwrap_or_else(|| beside(run));

@@ -199,7 +199,10 @@ impl Folder {
     /// The end of the log of a member that was tried, and left no run.
     fn last_line(&self, member: &Member) -> Option<String> {
         let log = std::fs::read_to_string(self.log(member)).ok()?;
-        log.lines().rfind(|line| !line.trim().is_empty()).map(|line| format!("did not begin: {line}"))
+        log.lines()
+            .rfind(|line| !line.trim().is_empty())
+            .filter(|line| line.contains("error"))
+            .map(|line| format!("did not begin: {line}"))
     }
 
     /// Numbers of the members that can still be run.

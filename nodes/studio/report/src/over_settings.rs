@@ -5,7 +5,7 @@ use crate::settings::{Setting, differing};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_page::plot::{Axis, Figure, Line, Marker, Point, Series};
 use grainlab_page::{Html, Mean, csv, figure, fixed, grid, paragraph, plus_minus, six_digits, slug};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Ratio of the ends from which an axis is logarithmic.
 const DECADE: f64 = 10.0;
@@ -84,6 +84,16 @@ impl<'a> OverSettings<'a> {
         self.places.iter().filter_map(mean).collect()
     }
 
+    /// Mean difference of a quantity between two values of the setting, of the same seeds; `None` where both have others.
+    fn paired(&self, quantity: usize, curve: &str, ends: [f64; 2]) -> Option<Mean> {
+        let of_curve = |n: &&usize| self.by.as_ref().map_or("", |s| &s.values[**n]) == curve;
+        let [from, to] = ends.map(|at| -> BTreeMap<Option<u64>, f64> {
+            let here = self.kept.iter().filter(of_curve).filter(|n| self.x[**n] == at);
+            here.filter_map(|n| Some((self.whole[*n].0.seed(), self.whole[*n].1[quantity].1?))).collect()
+        });
+        from.keys().eq(to.keys()).then(|| Mean::of(to.iter().map(|(seed, value)| value - from[seed])))?
+    }
+
     /// The change of a quantity between the ends of the setting, in a sentence for each curve.
     pub(crate) fn sentences(&self, symbol: &str) -> Vec<String> {
         let Some(quantity) = self.whole[0].1.iter().position(|(name, _)| name == symbol) else {
@@ -96,7 +106,8 @@ impl<'a> OverSettings<'a> {
                 Some(by) => format!("For {} {}, the counted {symbol}", by.name, by.of(curve)),
                 None => format!("The counted {symbol}"),
             };
-            let mut text = change(&of, &self.along, [*from, *to]);
+            let mut text =
+                change(&of, &self.along, [*from, *to], self.paired(quantity, curve, [from.0, to.0]));
             if let Some((at, between)) = beyond(&means) {
                 text.truncate(text.trim_end_matches('.').len());
                 text +=
@@ -166,16 +177,23 @@ fn beyond(means: &[(f64, Mean)]) -> Option<(f64, Mean)> {
     far.max_by(|a, b| outside(&a.1).total_cmp(&outside(&b.1))).copied()
 }
 
-/// The change of a mean between two values of a setting.
-fn change(of: &str, along: &Setting, [(from, a), (to, b)]: [(f64, Mean); 2]) -> String {
+/// The change of a mean between two values of a setting, with that of the same seeds, if both have the same.
+fn change(of: &str, along: &Setting, [(from, a), (to, b)]: [(f64, Mean); 2], paired: Option<Mean>) -> String {
     let value = |m: &Mean| {
         let digits = digits(m.error.unwrap_or(0.1 * m.value));
         fixed(m.value, digits) + &plus_minus(m.error, digits)
     };
     let first = format!("{} at {} {}", value(&a), along.name, along.of(from));
     let second = format!("{} at {}", value(&b), along.of(to));
-    let apart = a.standard_errors_from(&b).filter(|apart| *apart > MUCH);
-    match (a.differs_from(&b), apart) {
+    let paired = paired.filter(|d| d.error.is_some());
+    let of_means = (a.differs_from(&b), a.standard_errors_from(&b));
+    let (differs, apart) = paired.map_or(of_means, |d| {
+        let none = Mean { value: 0.0, error: Some(0.0), count: d.count };
+        (d.half_width().map(|half| d.value.abs() > half), d.standard_errors_from(&none))
+    });
+    let by = |d: &Mean| format!(", by {} for the same seeds", value(&Mean { value: d.value.abs(), ..*d }));
+    let second = second + &paired.as_ref().filter(|_| differs == Some(true)).map_or_else(String::new, by);
+    match (differs, apart.filter(|apart| *apart > MUCH)) {
         (None, _) => {
             let single = if a.count == b.count { "each" } else { "one of them" };
             format!("{of} is {first} and {second}, with a single run at {single}: the scatter is not known.")
@@ -248,7 +266,7 @@ mod tests {
         let mean = |values: &[f64]| Mean::of(values.iter().copied()).unwrap();
         let of = |name: &str, unit| Setting { name: name.into(), unit, ..Setting::default() };
         let friction = of("friction", "");
-        let said = |a: &[f64], b: &[f64]| change("z", &friction, [(0.1, mean(a)), (0.4, mean(b))]);
+        let said = |a: &[f64], b: &[f64]| change("z", &friction, [(0.1, mean(a)), (0.4, mean(b))], None);
         let many = said(&[5.3, 5.4, 5.35, 5.32], &[4.5, 4.55, 4.48, 4.5]);
         assert!(many.starts_with("z falls from 5.34") && many.contains(" at friction 0.1 to 4.5"), "{many}");
         let two = said(&[5.269, 5.413], &[4.488, 4.528]);
@@ -258,7 +276,13 @@ mod tests {
         );
         assert!(said(&[5.0, 5.2, 5.1], &[5.1, 5.0, 5.2]).contains("does not change beyond its scatter"));
         assert!(said(&[5.0], &[4.0]).ends_with("with a single run at each: the scatter is not known."));
-        let stress = change("z", &of("stress", "kPa"), [(20.0, mean(&[5.0])), (40.0, mean(&[5.5]))]);
+        let ends = [(1.0, mean(&[6.5, 5.0, 5.6])), (29.0, mean(&[5.9, 4.4, 5.02]))];
+        let same = change("z", &of("G", ""), ends, Some(mean(&[-0.6, -0.6, -0.58])));
+        assert!(
+            same.contains("z falls from 5.7") && same.ends_with(", by 0.5933 ± 0.0067 for the same seeds."),
+            "{same}"
+        );
+        let stress = change("z", &of("stress", "kPa"), [(20.0, mean(&[5.0])), (40.0, mean(&[5.5]))], None);
         assert!(stress.contains(" at stress 20 kPa and ") && stress.contains(" at 40 kPa,"), "{stress}");
         assert!(said(&[5.0], &[4.0, 4.1]).contains("with a single run at one of them"));
     }

@@ -283,7 +283,7 @@ fn speeds(n: usize, sample: &InferredSample<'_>) -> Html {
     grid(figure(
         &file(n, sample, "speeds"),
         drawn.element(),
-        "Markers: measured. Lines with errors: predicted from the other speeds.",
+        "Markers: measured. Lines with errors: predicted from the other pressures, or of one pressure from its other speeds.",
         &data,
     ))
 }

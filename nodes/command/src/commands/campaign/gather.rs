@@ -60,16 +60,6 @@ pub(crate) fn write(campaign: &Campaign, folder: &Folder, states: &[State<'_>]) 
 pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec<State<'a>>, Exit), Failure> {
     let all = campaign.members.iter().map(|member| (member, folder.standing(member)));
     let (finished, missing): (Vec<_>, Vec<_>) = all.partition(|(_, standing)| standing.state == "finished");
-    if !missing.is_empty() {
-        let standings: Vec<Standing> = missing.iter().map(|(_, standing)| standing.clone()).collect();
-        grainlab_console::say!(
-            "grainlab: {} of {} are not in the tables: {}: `grainlab campaign status {}`",
-            missing.len(),
-            count(campaign.members.len(), "member"),
-            Standing::words(&standings),
-            folder.root().display()
-        );
-    }
     let others = folder.others(campaign);
     if others > 0 {
         let (runs, root) = (count(others, "run"), folder.root().display());
@@ -80,7 +70,7 @@ pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec
     let found: Vec<Result<Vec<State<'a>>, String>> =
         finished.into_par_iter().map(|(member, _)| of_member(member, &folder.run(member))).collect();
     let mut exit = if missing.is_empty() { Exit::Done } else { Exit::DataLoss };
-    let (mut states, mut empty) = (Vec::new(), 0);
+    let (mut states, mut empty, mut unread) = (Vec::new(), 0, 0);
     for member in found {
         match member {
             Ok(found) => {
@@ -89,9 +79,21 @@ pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec
             }
             Err(why) => {
                 grainlab_console::say!("grainlab: {why}");
+                unread += 1;
                 exit = Exit::DataLoss;
             }
         }
+    }
+    if !missing.is_empty() {
+        let standings: Vec<Standing> = missing.iter().map(|(_, standing)| standing.clone()).collect();
+        grainlab_console::say!(
+            "grainlab: {} of {} are not in the tables: {}{}: `grainlab campaign status {}`",
+            missing.len() + unread,
+            count(campaign.members.len(), "member"),
+            Standing::words(&standings),
+            if unread > 0 { format!(", {unread} as above") } else { String::new() },
+            folder.root().display()
+        );
     }
     if empty > 0 {
         let members = count(empty, "member");

@@ -50,7 +50,8 @@ phi, mode (p, s, sv, sh) with direction (along, across or degrees from the axis)
 polarization_x to _z; and, if known, sample, diameter (m), roughness (root mean square, m), roughness_sigma, frequency (Hz), pressure_sigma_pa,
 density_sigma and speed_shared_sigma (m/s, an error that all rows of a mode and direction share, as of the distance; speed_sigma is then the rest).
 p_pa, p_kpa, pressure_kpa and density_g_cm3 may replace pressure_pa and density; along is the axis of the sample, vertical in most. Rows of one sample share its contacts and its preparation; all samples of a file are of the grains of
---grain-shear-modulus and --poisson, and under isotropic stress. The sigmas of pressure and density are those of an error that all rows share.
+--grain-shear-modulus and --poisson, and under isotropic stress. The sigmas of pressure and density are those of a factor that all rows share, as of a scale;
+an offset of all pressures looks like another contact law: shift the pressures to see its effect.
 Unknown columns are refused. With --contact hertz, a file without pressure_pa is given to the models of smooth spheres.
 
 A --plan has pressures (Pa) and error (of each speed, relative), [[speeds]] with mode, and angles in degrees to the axis if they are known

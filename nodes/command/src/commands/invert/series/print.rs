@@ -308,6 +308,13 @@ pub(super) fn notes(sample: &Sample, prior: &SeriesPrior) -> [Vec<String>; 2] {
         ));
     }
     doubts.extend(in_radians(&sample.lines));
+    if sample.lines.iter().any(|line| line.pressure_sigma_pa.is_some_and(|sigma| sigma > 0.0)) {
+        doubts.push(
+            "pressure_sigma_pa was taken as that of a factor of all pressures: an offset of them looks like another contact law, and \
+             changes z; invert again with the pressures shifted by it"
+                .to_owned(),
+        );
+    }
     if let Some(difference) = sample.series.unequal_twins() {
         doubts.push(format!(
             "SV along, SV across and SH along the axis are one modulus, and their speeds differ by {:.1} % in every state: check mode and direction",
