@@ -81,6 +81,23 @@ fn records_become_the_speeds_that_the_inversion_reads() {
 }
 
 #[test]
+fn a_file_that_would_replace_the_records_or_have_the_name_of_another_format_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    records(folder.path());
+    let before = std::fs::read(folder.path().join("records.csv")).unwrap();
+    for words in [
+        &["pick", "records.csv", "--out", "./records.csv"][..],
+        &["report", "records.csv", "-o", "page.pdf"],
+        &["invert", "--table", "records.csv", "--plot", "p.svg"],
+        &["invert", "--table", "records.csv", "--judge", "--plot", "p.html"],
+    ] {
+        assert_eq!(grainlab(folder.path(), words).status.code(), Some(2), "{words:?}");
+    }
+    assert_eq!(std::fs::read(folder.path().join("records.csv")).unwrap(), before);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "no file is written");
+}
+
+#[test]
 fn a_record_that_ends_soon_after_the_pick_is_noted_and_the_note_goes_with_the_speed() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
