@@ -27,7 +27,7 @@ fn a_launch_writes_a_page_with_the_results_of_its_summary() {
     let texts = [
         format!("{:.3}", number("k")),
         format!("{:.3}", number("z")),
-        format!("{:.4}", number("eps")),
+        format!("{:.4}", number("eps")).replace('-', "−"),
         format!("{:.4}", number("phi")),
         format!("{:.2}", number("pressure_pa") / 1e3),
         format!("{:.2}", number("g12_pa") / 1e6),
