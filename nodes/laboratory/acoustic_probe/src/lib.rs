@@ -1,6 +1,6 @@
 //! The acoustic node: sends waves through packings and publishes their speeds.
 //!
-//! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
+//! - [`parameters()`]: the parameters of the node; [`Settings`]: their values, typed
 //! - [`measure()`]: the work of the node, a pure function of one message; [`messages`]: its second half
 //! - [`AcousticProbe`]: the node; [`Probe`]: what it publishes
 //!

@@ -1,6 +1,6 @@
 //! The simulator node: advances the run, publishes stress and packings, applies strain rates.
 //!
-//! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
+//! - [`parameters()`]: the parameters of the node; [`Settings`]: their values, typed
 //! - [`DemSimulator`]: the node; `start`: before its first request; `exchange`: after it
 //! - `lockstep`: one request, its repetitions and its answer; `question`: which answers a request allows
 //! - `speculative_step`: computing while the answer is in transit

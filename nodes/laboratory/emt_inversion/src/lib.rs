@@ -1,6 +1,6 @@
 //! The inversion node: infers the microstructure from reports of packings, moduli and wave speeds.
 //!
-//! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
+//! - [`parameters()`]: the parameters of the node; [`Settings`]: their values, typed
 //! - [`microstructure_of_report`], [`microstructure_of_moduli`], [`microstructure_of_speeds`]: the work of the node, pure functions
 //!   of one message
 //! - [`EmtInversion`]: the node

@@ -1,6 +1,6 @@
 //! The analyzer node: measures structure, stress and stiffness of packings.
 //!
-//! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
+//! - [`parameters()`]: the parameters of the node; [`Settings`]: their values, typed
 //! - [`measure()`]: the work of the node, a pure function of one message
 //! - [`FabricAnalyzer`]: the node; [`Analysis`]: what it publishes
 

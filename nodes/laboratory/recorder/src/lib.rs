@@ -1,6 +1,6 @@
 //! The recorder node: every sample of every topic into one recording, and the player of recordings.
 //!
-//! - [`Settings`], [`parameters`]: what is recorded, and where to
+//! - [`Settings`], [`parameters()`]: what is recorded, and where to
 //! - `binding`: the messages of a run by hand; [`repeats`]: repetitions of recorded messages
 //! - `disputes`: processes that contradict each other, packings of another scene
 //! - [`strangers`]: processes on the bus that are not part of the run

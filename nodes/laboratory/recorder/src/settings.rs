@@ -65,7 +65,7 @@ pub fn set_parameter() -> ParameterSpec {
 }
 
 impl Settings {
-    /// From the parameters of [`parameters`].
+    /// From the parameters of [`parameters()`].
     pub fn of(parameters: &Parameters) -> Result<Self, Failure> {
         let text = |name: &str| Some(parameters.get::<String>(name)).filter(|t| !t.is_empty());
         let seed = u64::try_from(parameters.get::<i64>("seed")).ok();

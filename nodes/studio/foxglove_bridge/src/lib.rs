@@ -1,6 +1,6 @@
 //! A node that offers the topics of the bus to Foxglove, Lichtblick and other clients of the Foxglove WebSocket protocol.
 //!
-//! - [`parameters`], [`BridgeSettings`]: port, address, folders with message files
+//! - [`parameters()`], [`BridgeSettings`]: port, address, folders with message files
 //! - [`FoxgloveBridge`]: the node
 //! - `topics`: the topics of the bus as channels
 //! - `pictures`: pictures of packings, made here

@@ -29,7 +29,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
 }
 
 impl BridgeSettings {
-    /// From the parameters of [`parameters`].
+    /// From the parameters of [`parameters()`].
     ///
     /// # Errors
     /// If the address is none, or a folder does not exist.
