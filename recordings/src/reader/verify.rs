@@ -80,7 +80,7 @@ impl Recording {
         self.ros_definitions().filter_map(fault).collect()
     }
 
-    /// The first message of each topic that its definition does not decode.
+    /// First message of each topic that does not decode by its definition.
     fn undecodable(&self) -> BTreeMap<String, String> {
         let (mut schemas, mut wrong) = (BTreeMap::new(), BTreeMap::new());
         for message in self.messages(&Selection::default()).into_iter().flatten() {

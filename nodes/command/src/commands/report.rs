@@ -1,6 +1,6 @@
 //! `grainlab report`: pages of recorded runs.
 
-use grainlab_console::{Failure, count, print, say, worse};
+use grainlab_console::{Failure, count, has_name_of, print, say, worse};
 use grainlab_node_kit::Exit;
 use grainlab_report::{FILE, Run, overview, write_page};
 use std::path::{Path, PathBuf};
@@ -32,10 +32,7 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let is_page = |path: &Path| path.extension().is_some_and(|e| e == "html" || e == "htm");
-    if let Some(path) = args.output.as_deref().filter(|path| !is_page(path)) {
-        return Err(Failure::usage(format!("-o {}: a report is a page: name it .html", path.display())));
-    }
+    args.output.as_ref().map_or(Ok(()), |path| has_name_of("-o", path, "html"))?;
     if let [run] = args.runs.as_slice() {
         let found = read(run)?;
         let path = args.output.clone().unwrap_or_else(|| beside(run));

@@ -2,7 +2,7 @@
 
 use super::packings::import;
 use super::run::ros_arguments;
-use grainlab_console::{Failure, count, print, write_whole};
+use grainlab_console::{Failure, count, has_name_of, print, write_whole};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::{Imported, each};
 use grainlab_report::write_page;
@@ -152,12 +152,7 @@ fn html(args: &Args, file: &Path) -> Result<Exit, Failure> {
 }
 
 fn picture(args: &Args, file: &Path, png: &Path) -> Result<Exit, Failure> {
-    if !png.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Err(Failure::usage(format!(
-            "--png {}: the picture is a PNG: name a file that ends in .png",
-            png.display()
-        )));
-    }
+    has_name_of("--png", png, "png")?;
     let size: Size = args.size.parse().map_err(|e| Failure::usage(format!("--size: {e}")))?;
     if args.state == 0 {
         return Err(Failure::usage("--state 0: states are counted from 1, or from -1 at the end"));

@@ -24,7 +24,7 @@ pub enum ExperimentError {
         /// Fault, with the last lines of the program.
         reason: String,
     },
-    /// A request is none that a servo can answer.
+    /// A servo cannot answer a request.
     #[error(transparent)]
     Servo(#[from] grainlab_servo::ServoError),
     /// The path failed.

@@ -2,7 +2,7 @@
 //!
 //! - [`Failure`], [`worse`]: the end of a command
 //! - [`Format`], [`Table`], [`print()`], [`say!`]: its output
-//! - [`write_whole`]: files that are written whole or not at all
+//! - [`write_whole`], [`has_name_of`]: files that are written whole or not at all, and their names
 //! - [`Cell`]: a typed value of a table
 //! - [`program()`]: the words that start this program again
 //! - [`wrapped()`]: text in lines of a terminal; [`count()`]: counts with their noun; [`duration()`]: times; [`Pace`]: rates and the time left
@@ -29,5 +29,5 @@ pub use pace::Pace;
 pub use program::{called, program, set_program};
 pub use signals::Signals;
 pub use terminal::{Terminal, colour_wanted, draw_live_line, erase_live_line, write_above_live_line};
-pub use whole_file::write_whole;
+pub use whole_file::{has_name_of, write_whole};
 pub use wrap::{COLUMNS, wrapped};

@@ -1,5 +1,6 @@
 //! Files that are written whole or not at all.
 
+use crate::failure::Failure;
 use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,17 @@ pub fn write_whole(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
     written.inspect_err(|_| {
         let _ = std::fs::remove_file(&partial);
     })
+}
+
+/// Refuses a name that does not end as its format does, `extension` in small letters. A pipe or a device may have any name.
+///
+/// # Errors
+/// Wrong usage, which names the flag and the path.
+pub fn has_name_of(flag: &str, path: &Path, extension: &str) -> Result<(), Failure> {
+    let is_other = path.metadata().is_ok_and(|found| !found.is_file());
+    let fits = is_other || path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    let fault = || format!("{flag} {}: the file is {extension}: name it .{extension}", path.display());
+    fits.then_some(()).ok_or_else(|| Failure::usage(fault()))
 }
 
 /// `x.csv.part` of `x.csv`.
@@ -55,6 +67,13 @@ mod tests {
         assert!(write_whole(&folder.path().join("nowhere/x.csv"), "new").is_err());
         assert!(write_whole(folder.path(), "new").is_err(), "a folder cannot be replaced");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_name_of_another_format_is_refused_and_a_device_has_any_name() {
+        let of = |path: &str| has_name_of("-o", Path::new(path), "html").map_err(|e| e.to_string());
+        assert_eq!(of("a.pdf"), Err("-o a.pdf: the file is html: name it .html".to_owned()));
+        assert!(of("html").is_err() && of("a.HTML").is_ok() && of("/dev/null").is_ok());
     }
 
     /// Every write to it fails, as on a full disk.

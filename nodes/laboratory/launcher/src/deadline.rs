@@ -11,10 +11,10 @@ use std::time::Duration;
 const MEASURED_WITHIN: Duration = Duration::from_secs(600);
 const INVERTED_WITHIN: Duration = Duration::from_secs(30);
 
-/// Time limit for the measurement of the last packing by a third-party program that measured others, or is awaited.
+/// Time limit for the data of the last packing from a third-party program.
 const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
 
-/// Why a run is not complete whose instruments measured other packings, or are awaited.
+/// Reason of an incomplete run, whose instruments sent nothing of the last packing.
 const NONE_OF_LAST: &str = "a program that the launch file lists sent data of other packings, or until_inverted awaits its data, and none or fewer of the last arrived";
 
 /// Time without further data of a program after which there are none.

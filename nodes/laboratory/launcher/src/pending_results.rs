@@ -240,7 +240,7 @@ mod tests {
     const ANALYZER: Source = Source::Node(NodeKind::FabricAnalyzer);
     const PROBE: Source = Source::Node(NodeKind::AcousticProbe);
 
-    /// A program that is no node of ours.
+    /// A program that is not a node of grainlab.
     fn instrument() -> NodePlan {
         NodePlan { name: "instrument".to_owned(), ..NodePlan::default() }
     }

@@ -74,23 +74,23 @@ impl<'a> OverSettings<'a> {
         self.kept.iter().map(place).collect::<BTreeSet<_>>().len() < self.kept.len()
     }
 
+    /// Seed and value of a quantity of each run of a curve at a value of the setting.
+    fn values(&self, quantity: usize, curve: &str, at: f64) -> impl Iterator<Item = (Option<u64>, f64)> {
+        let of_curve = move |n: &&usize| self.by.as_ref().map_or("", |s| &s.values[**n]) == curve;
+        let here = self.kept.iter().filter(of_curve).filter(move |n| self.x[**n] == at);
+        here.filter_map(move |n| Some((self.whole[*n].0.seed(), self.whole[*n].1[quantity].1?)))
+    }
+
     /// Means of a quantity over seeds along a curve.
     fn means(&self, quantity: usize, curve: &str) -> Vec<(f64, Mean)> {
-        let of_curve = |n: &&usize| self.by.as_ref().map_or("", |s| &s.values[**n]) == curve;
-        let mean = |at: &f64| {
-            let here = self.kept.iter().filter(of_curve).filter(|n| self.x[**n] == *at);
-            Some((*at, Mean::of(here.filter_map(|n| self.whole[*n].1[quantity].1))?))
-        };
+        let mean =
+            |at: &f64| Some((*at, Mean::of(self.values(quantity, curve, *at).map(|(_, value)| value))?));
         self.places.iter().filter_map(mean).collect()
     }
 
     /// Mean difference of a quantity between two values of the setting, of the same seeds; `None` where both have others.
     fn paired(&self, quantity: usize, curve: &str, ends: [f64; 2]) -> Option<Mean> {
-        let of_curve = |n: &&usize| self.by.as_ref().map_or("", |s| &s.values[**n]) == curve;
-        let [from, to] = ends.map(|at| -> BTreeMap<Option<u64>, f64> {
-            let here = self.kept.iter().filter(of_curve).filter(|n| self.x[**n] == at);
-            here.filter_map(|n| Some((self.whole[*n].0.seed(), self.whole[*n].1[quantity].1?))).collect()
-        });
+        let [from, to] = ends.map(|at| self.values(quantity, curve, at).collect::<BTreeMap<_, _>>());
         from.keys().eq(to.keys()).then(|| Mean::of(to.iter().map(|(seed, value)| value - from[seed])))?
     }
 

@@ -150,7 +150,7 @@ fn over_pressure(
             .collect(),
         ..line(|i| i.mean, Line::Straight)
     };
-    // A line through one point is none: the interval is a bar there.
+    // One point has no line: its interval is a bar.
     let bar = all
         .iter()
         .filter(|_| all.len() == 1)

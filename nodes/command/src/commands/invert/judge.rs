@@ -54,12 +54,7 @@ pub(super) fn run(
     plot: Option<&Path>,
     format: Format,
 ) -> Result<Exit, Failure> {
-    if let Some(path) = plot.filter(|path| path.extension().is_none_or(|e| e != "svg")) {
-        return Err(Failure::usage(format!(
-            "--plot {}: the plot of --judge is SVG: name it .svg",
-            path.display()
-        )));
-    }
+    plot.map_or(Ok(()), |path| grainlab_console::has_name_of("--plot", path, "svg"))?;
     if !rows.columns.has_truth() {
         let needed = InferredQuantity::ALL.map(InferredQuantity::name).join(", ");
         return Err(Failure::usage(format!("{}: no column to judge by ({needed})", rows.name())));

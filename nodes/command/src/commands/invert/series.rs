@@ -31,6 +31,7 @@ pub(super) fn run(
     prior: &SeriesPrior,
     (format, plot): (Format, Option<&Path>),
 ) -> Result<Exit, Failure> {
+    plot.map_or(Ok(()), |path| grainlab_console::has_name_of("--plot", path, "html"))?;
     let network = Calibration::builtin("grainlab").and_then(|c| c.network.as_ref());
     let network = network.ok_or_else(|| Failure::failed("the built-in calibration has no network"))?;
     let prior = contact.of(prior);
@@ -86,12 +87,6 @@ pub(super) fn run(
 
 #[cfg(feature = "studio")]
 fn plotted(samples: &[Sample], path: &Path) -> Result<(), Failure> {
-    if !path.extension().is_some_and(|e| e == "html" || e == "htm") {
-        return Err(Failure::usage(format!(
-            "--plot {}: the plot of a series is a page: name it .html",
-            path.display()
-        )));
-    }
     let mut all = Vec::new();
     for s in samples {
         all.push(grainlab_report::InferredSample {

@@ -138,7 +138,7 @@ impl Doubts {
         true
     }
 
-    /// Counts a state for the first reasons of other estimates that are further ones of its own.
+    /// Counts a state for each further reason of its estimate that is the first reason of another state.
     pub(super) fn further(&mut self, n: usize, state: &InvertedPacking) {
         for best in recommended(state).iter().filter(|best| best.status != "ok") {
             let reasons = best.warnings.iter().skip(1).map(|why| doubted(best, why));
