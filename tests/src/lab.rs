@@ -2,8 +2,7 @@
 
 use crate::process::{Ended, Process, children};
 use grainlab_msgs::Topic;
-use grainlab_node_kit::{Bus, DdsBus, Names, Network};
-use std::net::{Ipv4Addr, UdpSocket};
+use grainlab_node_kit::{Bus, DdsBus, Names, Network, is_in_use};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicU16, Ordering};
@@ -146,15 +145,14 @@ pub fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(name)
 }
 
-/// A domain whose first participant's ports are free on loopback.
+/// A domain without participants on this host.
 fn free_domain() -> u16 {
     static NEXT: AtomicU16 = AtomicU16::new(0);
-    // Domains above 101 overlap with the ephemeral ports.
+    // Launchers without a domain take the first free ones; those above 101 overlap with the ephemeral ports.
     let start = (std::process::id() % 97) as u16;
-    for _ in 0..100 {
-        let domain = 1 + (start + 13 * NEXT.fetch_add(1, Ordering::Relaxed)) % 100;
-        let port = 7400 + 250 * domain + 10;
-        if UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).is_ok() {
+    for _ in 0..82 {
+        let domain = 20 + (start + 13 * NEXT.fetch_add(1, Ordering::Relaxed)) % 82;
+        if !is_in_use(domain) {
             return domain;
         }
     }

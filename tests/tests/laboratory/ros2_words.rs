@@ -51,6 +51,22 @@ fn fault(lab: &Lab, command: &str, here: &str) -> Option<String> {
         .then(|| format!("{command}: exit {:?}\n{}{}", ended.code, ended.stdout, ended.stderr))
 }
 
+/// The faults of these rows, some at a time.
+fn faults(lab: &Lab, rows: &[(&str, &str)]) -> Vec<String> {
+    let (left, faults) = (Mutex::new(rows.iter()), Mutex::new(Vec::new()));
+    std::thread::scope(|scope| {
+        for _ in 0..AT_A_TIME {
+            scope.spawn(|| {
+                while let Some((command, here)) = { left.lock().unwrap().next() } {
+                    let found = fault(lab, command, here);
+                    faults.lock().unwrap().extend(found);
+                }
+            });
+        }
+    });
+    faults.into_inner().unwrap()
+}
+
 #[test]
 fn commands_of_ros_2_work_or_name_the_form_that_does() {
     let rows = rows();
@@ -69,21 +85,12 @@ fn commands_of_ros_2_work_or_name_the_form_that_does() {
     std::fs::copy(golden("scenes/tiny.toml"), folder.join("tiny.toml")).unwrap();
     let launch = Path::new(env!("CARGO_MANIFEST_DIR")).join("../nodes/launch/demo.launch.yaml");
     std::fs::copy(launch, folder.join("demo.launch.yaml")).unwrap();
-    // The doctor reports what the commands beside it start twice.
-    let (alone, together): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(command, _)| *command == "doctor");
-    let faults = alone.iter().filter_map(|(command, here)| fault(&lab, command, here)).collect::<Vec<_>>();
-    let (left, faults) = (Mutex::new(together.iter()), Mutex::new(faults));
-    std::thread::scope(|scope| {
-        for _ in 0..AT_A_TIME {
-            scope.spawn(|| {
-                while let Some((command, here)) = { left.lock().unwrap().next() } {
-                    let found = fault(&lab, command, here);
-                    faults.lock().unwrap().extend(found);
-                }
-            });
-        }
-    });
-    let faults = faults.into_inner().unwrap();
+    // The doctor reports what the commands beside it start twice, and a name that two nodes have answers no question.
+    let (alone, others): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(command, _)| *command == "doctor");
+    let (nodes, questions): (Vec<_>, Vec<_>) = others
+        .into_iter()
+        .partition(|(command, _)| command.starts_with("launch ") || command.starts_with("run "));
+    let faults = [alone, questions, nodes].iter().flat_map(|rows| faults(&lab, rows)).collect::<Vec<_>>();
     assert!(faults.is_empty(), "{}", faults.join("\n\n"));
     for process in [talk, listen, run] {
         process.signal(libc::SIGINT);
