@@ -1,5 +1,6 @@
 //! The content of a recording, topic by topic, without repeats.
 
+use grainlab_msgs::msg::Microstructure;
 use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
@@ -9,13 +10,17 @@ pub const REPRODUCIBLE: [&str; 5] =
 
 /// Distinct message bodies of one topic, in the order of their first appearance. A request repeated because
 /// its answer was late, or a result published again by a restarted node, has the same bytes; one of them
-/// remains.
+/// remains. Estimates of one source follow those of the other: their order among each other depends on timing.
 pub fn distinct(run: &Path, topic: &str) -> Vec<Vec<u8>> {
     let recording = Recording::open(run).unwrap_or_else(|e| panic!("{}: {e}", run.display()));
     let messages = recording.messages(&Selection::topics([topic]));
     let messages = messages.unwrap_or_else(|e| panic!("{topic} of {}: {e}", run.display()));
+    let mut messages: Vec<_> = messages.collect();
+    if topic.ends_with("/microstructure") {
+        messages.sort_by_cached_key(|m| m.decoded::<Microstructure>().map(|m| m.source).unwrap_or_default());
+    }
     let mut seen = std::collections::HashSet::new();
-    messages.map(|m| m.payload.to_vec()).filter(|b| seen.insert(b.clone())).collect()
+    messages.iter().map(|m| m.payload.to_vec()).filter(|b| seen.insert(b.clone())).collect()
 }
 
 /// Fails the test unless both runs are equal, byte for byte, on every reproducible topic.

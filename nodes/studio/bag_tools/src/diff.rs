@@ -5,7 +5,8 @@ use crate::opened::losses;
 use crate::selection::Topics;
 use grainlab_any_message::Shown;
 use grainlab_console::{Failure, Format, Table, worse};
-use grainlab_msgs::{Exit, Topic};
+use grainlab_msgs::msg::Microstructure;
+use grainlab_msgs::{Exit, Topic, topics};
 use grainlab_recordings::{ChannelInfo, Message, MessagePath, Recording, Selection};
 use serde::Serialize;
 use serde_json::Value;
@@ -21,7 +22,7 @@ Examples:
 
 The messages of each topic are compared byte by byte, in their order, without padding at the end of messages in CDR, and so are the definitions of their
 types; of the first that differs the first field that does is shown. Of a reproducible topic of the laboratory, repeats of a message (of a
-restarted node) are left out; its topics that depend on the clock are compared with --all, or if topics are named. Exit 1 if anything differs, 3 if a part could not be read.";
+restarted node) are left out, and estimates are compared source by source; its topics that depend on the clock are compared with --all, or if topics are named. Exit 1 if anything differs, 3 if a part could not be read.";
 
 /// Arguments of `grainlab bag diff`.
 #[derive(Debug, clap::Args)]
@@ -102,7 +103,12 @@ fn compared(
         let mut seen = HashSet::new();
         let hash = |m: &Message| hashes.each_ref().map(|h| h.hash_one(&m.payload[..]));
         let all = channels[k].map(|_| both[k].messages(&selection).map_err(Failure::failed)).transpose()?;
-        Ok::<_, Failure>(all.into_iter().flatten().filter(move |m| !is_reproducible || seen.insert(hash(m))))
+        let all = all.into_iter().flatten().filter(move |m| !is_reproducible || seen.insert(hash(m)));
+        Ok::<Box<dyn Iterator<Item = Message>>, Failure>(if contract == Some(&topics::MICROSTRUCTURE) {
+            Box::new(by_source(all.collect()))
+        } else {
+            Box::new(all)
+        })
     };
     let (mut a, mut b) = (distinct(0)?, distinct(1)?);
     let mut row = Compared {
@@ -146,6 +152,12 @@ fn compared(
     };
     row.first_difference = row.first_difference.filter(|_| !not_compared);
     Ok(row)
+}
+
+/// Estimates of one source after the other: which of two sources comes first depends on the time that each measurement takes.
+fn by_source(mut all: Vec<Message>) -> impl Iterator<Item = Message> {
+    all.sort_by_cached_key(|m| m.decoded::<Microstructure>().map(|m| m.source).unwrap_or_default());
+    all.into_iter()
 }
 
 /// True for the same bytes; RTPS fills up the last word of what was sent over DDS, so that the shorter message must be complete.
@@ -206,14 +218,15 @@ fn text(rows: &[Compared]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_msgs::Message as _;
     use mcap::records::MessageHeader;
 
     /// The first message of a recording with this one only.
-    fn message(encoding: &str, schema: &[u8], payload: &[u8]) -> Message {
+    fn message(encoding: &str, (ros_type, schema): (&str, &[u8]), payload: &[u8]) -> Message {
         let file = tempfile::NamedTempFile::new().unwrap();
         let mut writer = mcap::Writer::new(file.reopen().unwrap()).unwrap();
         let schema =
-            if schema.is_empty() { 0 } else { writer.add_schema("my/msg/X", "ros2msg", schema).unwrap() };
+            if schema.is_empty() { 0 } else { writer.add_schema(ros_type, "ros2msg", schema).unwrap() };
         let channel_id = writer.add_channel(schema, "/t", encoding, &BTreeMap::new()).unwrap();
         let header = MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
         writer.write_to_known_channel(&header, payload).unwrap();
@@ -225,7 +238,8 @@ mod tests {
     #[test]
     fn padding_is_ignored_only_behind_a_complete_message_in_cdr_of_known_type() {
         let same = |encoding, schema: &[u8], a, b| {
-            let (a, b) = (message(encoding, schema, a), message(encoding, schema, b));
+            let (a, b) =
+                (message(encoding, ("my/msg/X", schema), a), message(encoding, ("my/msg/X", schema), b));
             assert!(is_same(&a, &a) && is_same(&a, &b) == is_same(&b, &a));
             is_same(&a, &b)
         };
@@ -237,8 +251,24 @@ mod tests {
     }
 
     #[test]
+    fn estimates_keep_their_order_within_a_source_whatever_came_between() {
+        let of_type = (Microstructure::TYPE, Microstructure::DEFINITION.as_bytes());
+        let estimate = |source: &str, source_step| {
+            let estimate =
+                Microstructure { source: source.to_owned(), source_step, ..Microstructure::default() };
+            message("cdr", of_type, &estimate.encoded())
+        };
+        let steps = |all: [(&str, u64); 3]| {
+            let sorted = by_source(all.map(|(source, step)| estimate(source, step)).into());
+            sorted.map(|m| m.decoded::<Microstructure>().unwrap().source_step).collect::<Vec<_>>()
+        };
+        assert_eq!(steps([("report", 1), ("speeds", 1), ("report", 2)]), [1, 2, 1]);
+        assert_eq!(steps([("report", 2), ("report", 1), ("speeds", 1)]), [2, 1, 1]);
+    }
+
+    #[test]
     fn channels_of_other_encodings_are_named_by_them() {
-        let [json, cbor] = ["json", "cbor"].map(|encoding| message(encoding, b"", b"123").channel);
+        let [json, cbor] = ["json", "cbor"].map(|encoding| message(encoding, ("", b""), b"123").channel);
         assert_eq!(json.differs_as(&cbor), Some(("encoding", "json", "cbor")));
         assert_eq!(json.differs_as(&json), None);
     }

@@ -26,6 +26,11 @@ impl Cell {
         Self::classed(content, "")
     }
 
+    /// A sentence, whose numbers have a true minus sign.
+    pub fn sentence(text: &str) -> Self {
+        Self::text(true_minus(text))
+    }
+
     /// A number, aligned with those above it.
     pub fn number(content: impl ToString) -> Self {
         Self::classed(content.to_string(), "n")

@@ -217,15 +217,8 @@ fn structure(n: usize, sample: &InferredSample<'_>) -> Html {
             Cell::fixed(eps(Interval::left), 2),
         ]
     });
-    let header = [
-        "pressure, kPa",
-        "z",
-        "sigma of z",
-        "share of the prior's",
-        "eps",
-        "sigma of eps",
-        "share of the prior's",
-    ];
+    let header =
+        ["pressure, kPa", "z", "sigma of z", "over the prior's", "eps", "sigma of eps", "over the prior's"];
     html!(
         "{{ fit }}{{ drawn }}{{ numbers }}{{ notes }}",
         fit => paragraph(fit),
@@ -299,7 +292,8 @@ fn contact(_: usize, sample: &InferredSample<'_>) -> Html {
         unknown("ln of the stiffness over that of the law", &e.level),
         unknown("scatter over the stated errors", &e.noise),
     ];
-    let header = ["unknown", "mean", "standard deviation", "2.5 %", "97.5 %", "share of the prior's"];
+    let header =
+        ["unknown", "mean", "standard deviation", "2.5 %", "97.5 %", "standard deviation over the prior's"];
     let laws = e.laws.iter().map(|l| {
         let at = l.ln_crossover.map(|c| Cell::fixed(c.mean.exp() / 1e6, 3));
         [Cell::text(l.law.name()), Cell::fixed(l.probability, 3), at.unwrap_or_else(|| Cell::number(""))]

@@ -117,7 +117,7 @@ impl Reproduction {
                 Verdict::Unchecked => "",
             };
             let verdict = claim.verdict.words();
-            [Cell::text(&claim.text), Cell::classed(verdict, class), Cell::text(&claim.found)]
+            [Cell::text(&claim.text), Cell::classed(verdict, class), Cell::sentence(&claim.found)]
         });
         let caption = html!(
             "Statements of the paper and goals of the reproduction, on the means over seeds. Key {{ key }} of {{ file }}, by {{ command }}",
