@@ -4,7 +4,7 @@ use grainlab_msgs::msg::Microstructure;
 use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
-/// The reproducible topics of a run without an acoustic probe: they must not depend on timing.
+/// The reproducible topics of every run: they must not depend on timing.
 pub const REPRODUCIBLE: [&str; 5] =
     ["/stress", "/strain_rate", "/packing", "/packing_report", "/microstructure"];
 

@@ -1,25 +1,15 @@
 //! All nodes in one process: the bytes of separate processes, and an end that says what failed.
 
 use grainlab_recordings::Recording;
-use std::path::{Path, PathBuf};
-use system_tests::bodies::distinct;
+use std::path::PathBuf;
+use system_tests::bodies::{REPRODUCIBLE, distinct};
 use system_tests::lab::{LIMIT, Lab, golden};
-
-/// The topics that follow from scene and seed.
-const SAME: [&str; 7] =
-    ["/stress", "/strain_rate", "/packing", "/packing_report", "/wave_speeds", "/microstructure", "/clock"];
 
 /// Launches with these arguments, and expects a complete run.
 fn launched(lab: &Lab, arguments: &[&str]) -> PathBuf {
     let ended = lab.start(&[&["launch"], arguments].concat()).ended(LIMIT);
     assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
     lab.last_run()
-}
-
-fn assert_same(one: &Path, many: &Path) {
-    for topic in SAME {
-        assert!(distinct(one, topic) == distinct(many, topic), "{topic}");
-    }
 }
 
 /// The small scene, slow enough to be interrupted.
@@ -38,7 +28,9 @@ fn one_process_records_the_bytes_of_many_and_says_so() {
     let many = launched(&lab, &["acoustic", "--scene", &scene]);
     let one = launched(&lab, &["acoustic", "--scene", &scene, "--one-process"]);
     assert!(!distinct(&many, "/wave_speeds").is_empty() && !distinct(&many, "/clock").is_empty());
-    assert_same(&one, &many);
+    for topic in REPRODUCIBLE.into_iter().chain(["/wave_speeds", "/clock"]) {
+        assert!(distinct(&one, topic) == distinct(&many, topic), "{topic}");
+    }
     for (run, transport) in [(&one, "memory"), (&many, "dds")] {
         let metadata = Recording::open(run).unwrap().metadata("grainlab").unwrap();
         assert_eq!(metadata.get("transport").map(String::as_str), Some(transport));

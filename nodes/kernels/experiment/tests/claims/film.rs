@@ -1,40 +1,12 @@
 //! Packings within phases, grains of several sizes, and runs that start from a packing.
 
+use crate::{begin, path};
 use grainlab_core::Packing;
 use grainlab_experiment::{PathPosition, Simulation};
 use grainlab_scene::{Draft, Scene};
+use std::sync::LazyLock;
 
-const SCENE: &str = r#"
-name = "small"
-seed = 5
-friction = 0.1
-[grains]
-count = 48
-diameter = 2e-4
-[[phase]]
-kind = "gas"
-rate = -60.0
-until = { solid_fraction = 0.55 }
-[[phase]]
-kind = "relax"
-friction = 0.0
-drag = 1e4
-reference = true
-control_period = 50
-until = { elapsed = 2e-4 }
-[[phase]]
-kind = "strain"
-rate = [-30.0, -30.0, -40.0, 0.0, 3.0, 0.0]
-until = { pressure_above = 2e4 }
-[[phase]]
-kind = "relax"
-name = "rest"
-friction = inf
-drag = 5e4
-spin_drag = 5e4
-until = { elapsed = 5e-5 }
-publish = true
-"#;
+static SCENE: LazyLock<String> = LazyLock::new(|| path("rate = -60.0", ""));
 
 /// A packing that was due, its run state, and whether a phase had ended.
 type Published = (Packing, Vec<u8>, bool);
@@ -48,10 +20,6 @@ fn run(mut run: Simulation) -> (Simulation, Vec<Published>) {
         }
     }
     (run, published)
-}
-
-fn of(scene: &str) -> Simulation {
-    Simulation::new(Scene::parse(scene).unwrap()).unwrap()
 }
 
 fn filmed() -> String {
@@ -70,7 +38,7 @@ fn filmed() -> String {
 /// Expected: the same end, bit for bit, with a packing per thousandth of strain and one at the end.
 #[test]
 fn recording_packings_within_phases_does_not_change_a_run() {
-    let ((_, plain), (film, frames)) = (run(of(SCENE)), run(of(&filmed())));
+    let ((_, plain), (film, frames)) = (run(begin(&SCENE)), run(begin(&filmed())));
     assert_eq!(plain.len(), 1);
     assert_eq!(frames.last().unwrap().0, plain[0].0);
     assert_eq!(film.packings(), frames.len() as u64);
@@ -88,7 +56,7 @@ fn recording_packings_within_phases_does_not_change_a_run() {
 #[test]
 fn a_run_resumes_from_each_packing_recorded_within_phases() {
     let scene = filmed();
-    let (_, frames) = run(of(&scene));
+    let (_, frames) = run(begin(&scene));
     for at in (0..frames.len() - 1).step_by(7) {
         let (packing, state, _) = &frames[at];
         let again = Simulation::resume(Scene::parse(&scene).unwrap(), packing, state).unwrap();
@@ -108,7 +76,7 @@ fn grains_of_several_sizes_are_placed_compressed_and_pressed() {
     ] {
         let scene = SCENE.replace("diameter = 2e-4", &format!("diameter = {diameter}"));
         for scene in [scene.clone(), scene.replace("rate = -60.0", "method = \"soft\"\nrate = -60.0")] {
-            let start = of(&scene);
+            let start = begin(&scene);
             let gas = start.packing().unwrap();
             let sizes = start.scene().sizes.diameters(48);
             assert!(gas.radii.iter().zip(&sizes).all(|(r, d)| *r == 0.5 * d));
@@ -116,7 +84,7 @@ fn grains_of_several_sizes_are_placed_compressed_and_pressed() {
             let mass = |r: &f64| gas.material.sphere_mass(*r);
             let momentum = gas.velocities.iter().zip(&gas.radii).map(|(v, r)| v * mass(r));
             assert!(momentum.sum::<grainlab_core::Vec3>().norm() < 1e-12 * mass(&gas.radii[0]));
-            let (a, b) = (run(start).1, run(of(&scene)).1);
+            let (a, b) = (run(start).1, run(begin(&scene)).1);
             assert_eq!(a, b, "{diameter}");
             assert!(a[0].0.solid_fraction() > 0.55 && a[0].0.clone().validated().is_ok(), "{diameter}");
         }
@@ -126,7 +94,7 @@ fn grains_of_several_sizes_are_placed_compressed_and_pressed() {
 /// Expected: the same packing, at time 0, with its own forces.
 #[test]
 fn a_run_starts_from_a_packing() {
-    let packing = run(of(SCENE)).1.remove(0).0;
+    let packing = run(begin(&SCENE)).1.remove(0).0;
     let text = "name = \"on\"\nfriction = inf\n[start]\npacking = \"x\"\n\
         [[phase]]\nkind = \"strain\"\nrate = [0, 0, -1.0, 0, 0, 0]\nuntil = { elapsed = 1e-6 }\npublish = true\n";
     let scene = Draft::of_text(text).unwrap().resolve_from(&packing).unwrap().scene;
@@ -143,7 +111,7 @@ fn a_run_starts_from_a_packing() {
 /// Expected: what each phase leaves out, by name.
 #[test]
 fn a_run_reports_what_each_phase_leaves_out() {
-    let mut run = of(SCENE);
+    let mut run = begin(&SCENE);
     let mut said = Vec::new();
     while run.request().is_some() {
         if said.len() <= run.path().phase {
@@ -156,7 +124,7 @@ fn a_run_reports_what_each_phase_leaves_out() {
     assert_eq!(said[2], "without unequal sizes");
     assert_eq!(said[3], "without the Coulomb check, unequal sizes");
     let unequal = SCENE.replace("diameter = 2e-4", "diameter = { min = 1.9e-4, max = 2.1e-4 }");
-    assert!(!of(&unequal).left_out().contains("unequal"));
+    assert!(!begin(&unequal).left_out().contains("unequal"));
 }
 
 fn trace(packing: &Packing) -> f64 {
@@ -166,10 +134,10 @@ fn trace(packing: &Packing) -> f64 {
 /// Expected: the volumetric strain since the gas was placed, and since the reference state.
 #[test]
 fn strain_counts_from_the_first_step_of_a_run_until_a_phase_sets_the_reference() {
-    let last = |scene: &str| run(of(scene)).1.pop().unwrap().0;
+    let last = |scene: &str| run(begin(scene)).1.pop().unwrap().0;
     let free = last(&SCENE.replace("reference = true\n", ""));
     assert!((trace(&free) - (0.3 / free.solid_fraction()).ln()).abs() < 1e-12);
-    let referred = last(SCENE);
+    let referred = last(&SCENE);
     assert!((trace(&referred) - (0.55 / referred.solid_fraction()).ln()).abs() < 1e-3);
     assert_eq!((&free.positions, free.cell), (&referred.positions, referred.cell));
 }
@@ -179,7 +147,7 @@ const PRESSED: &str = "name = \"on\"\nfriction = inf\n[start]\npacking = \"x\"\n
 
 /// The packing that [`PRESSED`] starts from, and the run.
 fn pressed(changed: impl Fn(&str) -> String) -> (Packing, Simulation) {
-    let packing = run(of(SCENE)).1.remove(0).0;
+    let packing = run(begin(&SCENE)).1.remove(0).0;
     let scene = Draft::of_text(&changed(PRESSED)).unwrap().resolve_from(&packing).unwrap().scene;
     let run = Simulation::from_packing(scene, &packing).unwrap();
     (packing, run)

@@ -2,8 +2,6 @@
 
 use grainlab_core::{ComponentControl, ServoLaw};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
-use grainlab_experiment::Simulation;
-use grainlab_scene::Scene;
 use std::sync::OnceLock;
 
 /// Targets, Pa, one after the other.
@@ -43,7 +41,7 @@ fn settled() -> &'static Vec<(Engine, f64)> {
     static SETTLED: OnceLock<Vec<(Engine, f64)>> = OnceLock::new();
     SETTLED.get_or_init(|| {
         let text = GAS.to_string() + &PRESSURES.map(servo_phase).concat();
-        let mut run = Simulation::new(Scene::parse(&text).unwrap()).unwrap();
+        let mut run = crate::begin(&text);
         let mut out = Vec::new();
         while let Some(advanced) = run.exchange().unwrap() {
             if advanced.packing_due {

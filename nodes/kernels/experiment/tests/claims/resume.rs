@@ -1,37 +1,18 @@
 //! A packing and its run state are a checkpoint: a run resumed from them continues bit for bit.
 
+use crate::{begin, path};
 use grainlab_core::Packing;
 use grainlab_dem::{Compute, DemError};
 use grainlab_experiment::{ExperimentError, PathPosition, Simulation, StrainOrigin};
 use grainlab_scene::{Condition, Measure, Scene};
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, LazyLock};
 
-const SCENE: &str = r#"
-name = "tiny"
-seed = 5
-[grains]
-count = 32
-diameter = 2e-4
-[[phase]]
-kind = "gas"
-method = "soft"
-rate = -60.0
-control_period = 100
-until = { solid_fraction = 0.55 }
-[[phase]]
-kind = "relax"
-friction = 0.0
-drag = 1e4
-reference = true
-control_period = 50
-until = { elapsed = 2e-4 }
-[[phase]]
-kind = "strain"
-friction = 0.1
-rate = [-30.0, -30.0, -40.0, 0.0, 3.0, 0.0]
-until = { pressure_above = 2e4 }
-publish = true
+/// The path with a gas of soft grains and a phase of stress control.
+static SCENE: LazyLock<String> = LazyLock::new(|| {
+    path(
+        "method = \"soft\"\nrate = -60.0\ncontrol_period = 100",
+        r#"publish = true
 [[phase]]
 kind = "servo"
 friction = 0.1
@@ -40,14 +21,9 @@ response_time = 3e-6
 control = { xx = { stress = 5e4 }, yy = { stress = 5e4 }, zz = { stress = 5e4 }, xy = { stress = 0.0 } }
 control_period = 7
 until = { on_target = 0.1, unbalanced = 3e-2, hold = 1e-5 }
-[[phase]]
-kind = "relax"
-friction = inf
-drag = 5e4
-spin_drag = 5e4
-until = { elapsed = 5e-5 }
-publish = true
-"#;
+"#,
+    )
+});
 
 fn advance(run: &mut Simulation) -> bool {
     run.exchange().unwrap().is_some()
@@ -58,11 +34,7 @@ fn speed(run: &Simulation) -> f64 {
 }
 
 fn start() -> Simulation {
-    begin(SCENE)
-}
-
-fn begin(scene: &str) -> Simulation {
-    Simulation::new(Scene::parse(scene).unwrap()).unwrap()
+    begin(&SCENE)
 }
 
 /// Scene with the same path from an event-driven gas.
@@ -72,13 +44,14 @@ fn event_driven() -> String {
 
 #[test]
 fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
-    resumes(SCENE);
+    resumes(&SCENE);
 }
 
 #[test]
 fn a_run_with_resistance_to_rolling_resumed_at_any_request_equals_the_run_that_went_on() {
     let end = resumes(&format!(
-        "{SCENE}\n[contact]\nrolling_stiffness = 1e4\nrolling_damping = 1e-3\nrolling_friction = 0.1\n"
+        "{}\n[contact]\nrolling_stiffness = 1e4\nrolling_damping = 1e-3\nrolling_friction = 0.1\n",
+        *SCENE
     ));
     assert!(end.contacts.iter().any(|c| c.rolling_force.norm() > 0.0));
 }
@@ -139,7 +112,7 @@ fn an_event_driven_gas_resumed_at_every_request_equals_the_run_that_went_on() {
 
 #[test]
 fn a_run_that_is_stopped_saves_a_state_that_goes_on_to_the_same_bytes() {
-    for scene in [SCENE.to_owned(), event_driven()] {
+    for scene in [SCENE.clone(), event_driven()] {
         let mut run = begin(&scene);
         while advance(&mut run) {}
         let (end, state) = (run.packing().unwrap(), run.run_state().unwrap());
@@ -155,7 +128,7 @@ fn a_run_that_is_stopped_saves_a_state_that_goes_on_to_the_same_bytes() {
             stop_at = advances * 9 / 8 + 20;
             stops[request.phase as usize - 1] += 1;
             let back = run.request().unwrap();
-            let at_once = request.phase == 1 && scene != SCENE;
+            let at_once = request.phase == 1 && scene != *SCENE;
             assert!(if at_once { back == request } else { back.step <= request.step }, "{back:?}");
             let saved = (run.packing().unwrap(), run.run_state().unwrap());
             run = Simulation::resume(Scene::parse(&scene).unwrap(), &saved.0, &saved.1).unwrap();
@@ -236,15 +209,15 @@ fn a_foreign_or_broken_run_state_is_refused() {
     let (packing, state) = (run.packing().unwrap(), run.run_state().unwrap());
     let resume =
         |scene: &str, state: &[u8]| Simulation::resume(Scene::parse(scene).unwrap(), &packing, state);
-    assert!(resume(SCENE, &state).is_ok());
+    assert!(resume(&SCENE, &state).is_ok());
     assert!(
         resume(&SCENE.replace("seed = 5", "seed = 6"), &state)
             .unwrap_err()
             .to_string()
             .contains("another scene")
     );
-    assert!(resume(SCENE, &[]).unwrap_err().to_string().contains("no run state"));
-    let refused = |state: &str| resume(SCENE, state.as_bytes()).unwrap_err().to_string();
+    assert!(resume(&SCENE, &[]).unwrap_err().to_string().contains("no run state"));
+    let refused = |state: &str| resume(&SCENE, state.as_bytes()).unwrap_err().to_string();
     let text = String::from_utf8(state.clone()).unwrap();
     assert!(refused(&text[..40]).contains("damaged"));
     assert!(refused(&text.replace("\"version\":4", "\"version\":99")).contains("version 99"));
@@ -254,7 +227,7 @@ fn a_foreign_or_broken_run_state_is_refused() {
     let mut fields: serde_json::Map<String, serde_json::Value> = serde_json::from_str(&text).unwrap();
     let first = fields.remove("version");
     fields.extend(first.map(|version| ("version".to_owned(), version)));
-    assert!(resume(SCENE, &serde_json::to_vec(&fields).unwrap()).is_ok());
+    assert!(resume(&SCENE, &serde_json::to_vec(&fields).unwrap()).is_ok());
 }
 
 /// Expected: analysis of an older recording states phase and strain as before, and its run is not resumed.
@@ -267,7 +240,7 @@ fn a_run_state_of_version_3_has_a_position_and_is_not_resumed() {
     assert_eq!((position.phase, position.end_of_phase), (2, true));
     assert_eq!(position.strain_origin, StrainOrigin::Reference);
     let error =
-        Simulation::resume(Scene::parse(SCENE).unwrap(), &start().packing().unwrap(), &state).unwrap_err();
+        Simulation::resume(Scene::parse(&SCENE).unwrap(), &start().packing().unwrap(), &state).unwrap_err();
     assert!(error.to_string().contains("version 3"), "{error}");
     assert_eq!(PathPosition::of(&state[..200]), None);
 }
