@@ -2,6 +2,7 @@
 
 use crate::measurements::Measurement;
 use crate::quantities::entries;
+use grainlab_console::count;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::*};
 use grainlab_core::{MeasuredWave, Stiffness};
@@ -100,15 +101,26 @@ impl AcousticReport {
         Modulus::ALL.iter().all(known).then(|| self.medium.modulus(Modulus::Theta))?
     }
 
-    /// Mean relative standard deviation of the speeds that have one.
-    pub(crate) fn relative_error(&self) -> Option<f64> {
+    /// Relative standard deviations of the speeds that have one, in their order.
+    pub(crate) fn relative_errors(&self) -> Vec<f64> {
         let speeds = self.reading.speeds.iter().map(|s| s.wave);
-        let errors: Vec<f64> = speeds.filter_map(|s| Some(s.stddev? / s.speed)).collect();
-        (!errors.is_empty()).then(|| errors.iter().sum::<f64>() / errors.len() as f64)
+        let mut errors: Vec<f64> = speeds.filter_map(|s| Some(s.stddev? / s.speed)).collect();
+        errors.sort_by(f64::total_cmp);
+        errors
+    }
+
+    /// The first note on the speeds, and the number of the others.
+    pub(crate) fn doubt(&self) -> Option<String> {
+        let warnings = self.warnings();
+        let more = match warnings.len() {
+            0 | 1 => String::new(),
+            n => format!("; and {} on the speeds", count(n - 1, "further note")),
+        };
+        Some(format!("wave speeds: {}{more}", warnings.first()?))
     }
 
     /// Notes on the speeds and their medium.
-    pub(crate) fn warnings(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.reading.warnings.clone();
         let no_axis = self.medium.no_axis.iter().filter(|_| self.medium.fitted.is_ok());
         warnings.extend(
@@ -221,7 +233,8 @@ mod tests {
         assert!(one > 0.002 && one < 0.0064, "{one}");
         assert_eq!((&json["method"], &json["speed_count"]), (&"dispersion".into(), &9.into()));
         assert_eq!(json["degrees_of_freedom"], 4);
-        assert!((report.relative_error().unwrap() - 0.003).abs() < 1e-12);
+        assert!(report.relative_errors().iter().all(|e| (e - 0.003).abs() < 1e-12));
+        assert_eq!(report.doubt().unwrap(), "wave speeds: send less");
         assert_eq!(report.warnings(), ["send less"]);
     }
 

@@ -6,10 +6,20 @@ use grainlab_console::{Table, count, fixed};
 use grainlab_core::Stiffness;
 use grainlab_core::results::PackingReport;
 
+/// Largest over smallest error of speeds that have one in common.
+const ALIKE: f64 = 1.5;
+
 /// Summary of the speeds: `wave speeds (dispersion, 27 speeds, each +- 0.30 %)`.
 pub(crate) fn heading(a: &AcousticReport) -> String {
     let method = a.method().map_or_else(String::new, |m| format!("{}, ", m.replace('_', " ")));
-    let error = a.relative_error().map_or_else(String::new, |e| format!(", each +- {}", percent(e)));
+    let errors = a.relative_errors();
+    let error = match (errors.get(errors.len() / 2), errors[..].first().zip(errors.last())) {
+        (Some(median), Some((least, greatest))) if *greatest > ALIKE * least => {
+            format!(", +- {} to {}, median {}", percent(*least), percent(*greatest), percent(*median))
+        }
+        (Some(median), _) => format!(", each +- {}", percent(*median)),
+        _ => String::new(),
+    };
     let which = a.measurement.as_ref().map_or_else(String::new, |m| format!(", {}", m.label));
     format!("wave speeds{which} ({method}{}{error})", count(a.reading.speeds.len(), "speed"))
 }

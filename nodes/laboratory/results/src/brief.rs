@@ -4,6 +4,7 @@ mod states;
 
 pub use crate::packing_text::moduli;
 
+use crate::acoustic::AcousticReport;
 use crate::acoustic_text;
 use crate::inference::{Inference, Origin, by_origin};
 use crate::packing_text::{eps, stress_ratio};
@@ -118,6 +119,7 @@ fn one(state: &InvertedPacking) -> Vec<String> {
     let told = r.elasticity.as_ref().err().map(ToString::to_string);
     let notes = state.packing.warnings.iter().filter(|w| Some(*w) != told.as_ref());
     lines.extend(notes.map(|note| row("Note", note)));
+    lines.extend(state.acoustics().filter_map(AcousticReport::doubt).map(|note| row("Note", &note)));
     let groups = by_origin(&state.results);
     let shown = if groups.len() > MOST_GROUPS { MOST_GROUPS - 1 } else { groups.len() };
     for (origin, results) in &groups[..shown] {

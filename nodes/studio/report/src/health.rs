@@ -3,6 +3,7 @@
 use crate::run::Run;
 use grainlab_console::count;
 use grainlab_page::{Cell, Html, code, details, grid, html, lines, list, paragraph, table};
+use grainlab_results::AcousticReport;
 use std::collections::BTreeSet;
 
 impl Run {
@@ -51,7 +52,10 @@ impl Run {
     /// Everything that readers of the numbers should know.
     fn warnings(&self) -> Html {
         let mut seen = BTreeSet::new();
-        let of_packings = self.states.iter().flat_map(|s| &s.packing.warnings).filter(|w| seen.insert(*w));
+        let of_states = self.states.iter().flat_map(|s| {
+            s.packing.warnings.iter().cloned().chain(s.acoustics().flat_map(AcousticReport::warnings))
+        });
+        let of_states = of_states.filter(|w| seen.insert(w.clone()));
         let strangers = match self.summary.strangers.len() {
             0 => None,
             n => Some(format!(
@@ -59,7 +63,7 @@ impl Run {
                 count(n, "process")
             )),
         };
-        let lines = list(self.summary.warnings.iter().chain(of_packings).chain(&strangers));
+        let lines = list(self.summary.warnings.iter().cloned().chain(of_states).chain(strangers));
         if lines.is_empty() { paragraph("No warnings.") } else { lines }
     }
 

@@ -29,6 +29,11 @@ fn angle(wave: &MeasuredWave, axis: &Vec3) -> f64 {
     wave.wave.direction.dot(axis).abs().min(1.0).acos().to_degrees()
 }
 
+/// True for a speed whose standard deviation is above it.
+fn is_lost(wave: &MeasuredWave) -> bool {
+    wave.wave.stddev.is_some_and(|s| s > wave.wave.speed)
+}
+
 impl Run {
     /// The section; `None` without wave speeds.
     pub(crate) fn waves(&self) -> Option<Html> {
@@ -63,6 +68,7 @@ fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffn
             colour: Some(m),
             marker: Some(Marker::of(m)),
             points: (speeds.iter().filter(|s| mode(s, &axis) == m))
+                .filter(|s| !is_lost(s))
                 .filter_map(|s| Some(Point { error: s.wave.stddev, ..Point::at(at(s)?, s.wave.speed) }))
                 .collect(),
             ..Series::default()
@@ -76,13 +82,17 @@ fn of_measurement(n: usize, acoustic: &AcousticReport, stiffness: Option<&Stiffn
         let id = if n == 0 { id.to_owned() } else { format!("{id}-{}", n + 1) };
         figure(&id, plot.element(), caption, &data)
     };
-    let by_angle = "By the angle between ray and axis; the bars are standard deviations.";
+    let lost = match speeds.iter().filter(|s| is_lost(s)).count() {
+        0 => String::new(),
+        n => format!(" Left out: {} with an error above its value.", count(n, "speed")),
+    };
+    let by_angle = &format!("By the angle between ray and axis; the bars are standard deviations.{lost}");
     let mut figures =
         plot("wave-speeds", "Wave speeds", "angle, degrees", by_angle, &|s| Some(angle(s, &axis)));
     // Equal frequencies show no dispersion.
     let frequencies: BTreeSet<u64> = speeds.iter().filter_map(|s| s.frequency).map(f64::to_bits).collect();
     if frequencies.len() > 1 {
-        let by_frequency = "By the dominant frequency.";
+        let by_frequency = &format!("By the dominant frequency.{lost}");
         figures += plot("dispersion", "Dispersion: speeds", "frequency, kHz", by_frequency, &|s| {
             s.frequency.map(|f| f / 1e3)
         });

@@ -1,9 +1,7 @@
 //! The HTML page: one file, without references to others.
 
 use crate::Reproduction;
-use grainlab_page::{
-    Cell, Html, Page, Section, code, finding, heading, html, lines, list, paragraph, signed, table,
-};
+use grainlab_page::{Cell, Html, Page, Section, code, finding, heading, html, lines, list, paragraph, table};
 use grainlab_paper::claims::Verdict;
 use grainlab_paper::{PAPER, PRESSURE};
 
@@ -94,8 +92,10 @@ impl Reproduction {
                 self.claims.iter().filter(|c| c.verdict == verdict).map(|c| c.text.as_str()).collect();
             (!texts.is_empty()).then(|| format!("{why}: {}.", texts.join("; ")))
         };
-        let within =
-            format!("Missed by less than the scatter between seeds of {} grains; undecided", p.grains);
+        let within = format!(
+            "Missed by at most two standard errors of the mean over seeds of {} grains; undecided",
+            p.grains
+        );
         let doubts = [
             named(Verdict::Missed, "Not reproduced"),
             named(Verdict::Undecided, &within),
@@ -158,10 +158,10 @@ impl Reproduction {
         let ours = self.judged("ratio", Some("total"), "paper").and_then(|j| j.eps);
         let Some(ours) = ours else { return Html::default() };
         paragraph(format!(
-            "By the paper's model with its γ/Δ, ε comes out {} on average here, and {} on the paper's own packings: ε \
+            "By the paper's model with its γ/Δ, ε is {} on average here, and {} on the paper's own packings: ε \
              follows G13/G12 and γ/Δ alone, and the table of moduli has both ratios.",
-            signed(ours.bias, 3),
-            signed(theirs.bias, 3)
+            aside(ours.bias),
+            aside(theirs.bias)
         ))
     }
 
@@ -181,6 +181,11 @@ impl Reproduction {
         );
         lines(&commands.join("\n")) + data
     }
+}
+
+/// A mean error in words.
+fn aside(bias: f64) -> String {
+    format!("too {} by {:.3}", if bias < 0.0 { "low" } else { "high" }, bias.abs())
 }
 
 fn protocol() -> Html {

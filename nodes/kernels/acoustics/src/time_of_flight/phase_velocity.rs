@@ -124,7 +124,11 @@ pub(crate) fn curve(
     let longest = traces.iter().zip(arrivals).min_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
     let slowed = longest.map_or(0.0, |(trace, arrivals)| slowed(pick) * loss(trace, arrivals));
     let curve = curve.map(|c| DispersionCurve { stddev: c.stddev.hypot(slowed * c.speed), ..c });
-    let reason = || format!("the speeds at single frequencies have no limit at long waves: {points:?}");
+    let reason = || {
+        let each = points.iter().map(|p| format!("{:.4} m/s at {:.4} rad/m", p.speed, p.wavenumber));
+        let each = each.collect::<Vec<_>>().join(", ");
+        format!("the speeds at single frequencies have no limit at long waves: {each}")
+    };
     curve.ok_or_else(|| no_signal("speed of long waves", &first.direction, &first.polarization, reason()))
 }
 

@@ -1,6 +1,7 @@
 //! Reasons to doubt states: those of their estimates and packings, and those of their estimates beside the count.
 
 use super::judged::{Judged, recommended};
+use crate::acoustic::AcousticReport;
 use crate::inference::Inference;
 use crate::read_back::InvertedPacking;
 use grainlab_console::{and, count};
@@ -146,7 +147,7 @@ impl Doubts {
         }
     }
 
-    /// Takes the doubts about a state: of its inversion first, then of the packing.
+    /// Takes the doubts about a state: of its inversion first, then of the packing and its wave speeds.
     pub(super) fn of(&mut self, n: usize, state: &InvertedPacking) {
         match (recommended(state), state.packing.report.elasticity.as_ref()) {
             (Some(best), _) if best.status != "ok" => {
@@ -163,6 +164,7 @@ impl Doubts {
             }
         }
         state.packing.warnings.iter().for_each(|w| self.add(n, w));
+        state.acoustics().filter_map(AcousticReport::doubt).for_each(|w| self.add(n, &w));
     }
 
     pub(super) fn finish(self, all: usize, noun: &str) -> Vec<String> {
