@@ -158,6 +158,7 @@ impl Ledger {
                     .collect(),
                 repeated: writer.same,
                 conflicting: writer.conflicting,
+                left_out: writer.left_out,
                 redelivered: s.redelivered,
             });
         }

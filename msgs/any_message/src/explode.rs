@@ -6,7 +6,7 @@ use crate::types::{Element, Field, FieldType, Length, MessageType, Primitive};
 use crate::value::{Array, Message, Value};
 
 /// One row for each value of an array of a message: the other fields of the message, `index` (from 0), and the value. If the values
-/// are messages, their fields are those of the row; a name that is taken gets that of the array in front, `estimates.k`.
+/// are messages, their fields are those of the row; a name that is taken gets that of the array in front, `estimates.k`, until it is free.
 #[derive(Clone, Debug)]
 pub struct Exploded {
     kind: Arc<MessageType>,
@@ -29,8 +29,10 @@ impl Exploded {
         for field in
             [Field { name: "index".into(), kind: one(index), default: None }].into_iter().chain(value)
         {
-            let is_taken = fields.iter().any(|f| f.name == field.name);
-            let name = if is_taken { format!("{array}.{}", field.name) } else { field.name };
+            let mut name = field.name;
+            while fields.iter().any(|f| f.name == name) {
+                name = format!("{array}.{name}");
+            }
             fields.push(Field { name, ..field });
         }
         let (name, constants) = (kind.name.clone(), Vec::new());
@@ -81,6 +83,11 @@ mod tests {
         ];
         assert_eq!(rows("parts"), parts);
         assert!(rows("many")[0].ends_with(r#""index":0,"many":7}"#), "{:?}", rows("many"));
+        let text = "uint8 index\nE[] parts\n====\nMSG: p/E\nuint8 index\n";
+        let schema = Schema::parse("p/msg/A", text).unwrap();
+        let kind = Exploded::of(schema.root(), "parts").unwrap().kind;
+        let names: Vec<&str> = kind.fields.iter().map(|f| f.name.as_str()).collect();
+        assert_eq!(names, ["index", "parts.index", "parts.parts.index"]);
         assert!(Exploded::of(schema.root(), "name").is_none());
         assert!(Exploded::of(schema.root(), "absent").is_none());
     }

@@ -37,7 +37,7 @@ pub(super) fn topic(name: String, writers: Vec<WriterTally>) -> TopicTally {
 }
 
 fn received(w: &WriterTally) -> u64 {
-    w.recorded.saturating_add(w.repeated).saturating_add(w.conflicting)
+    [w.repeated, w.conflicting, w.left_out].into_iter().fold(w.recorded, u64::saturating_add)
 }
 
 fn published(w: &WriterTally) -> u64 {
@@ -61,10 +61,15 @@ fn of_one_writer(a: &WriterTally, b: &WriterTally) -> WriterTally {
     let received = published - lost;
     let repeated = a.repeated.saturating_add(b.repeated).min(received);
     let conflicting = a.conflicting.saturating_add(b.conflicting).min(received - repeated);
+    // Left out by both, or by one after the other: no more are recorded than by each.
+    let kept = received - repeated - conflicting;
+    let neither = kept.saturating_sub(a.recorded.saturating_add(b.recorded));
+    let left_out =
+        neither.max(a.left_out.max(b.left_out)).min(a.left_out.saturating_add(b.left_out)).min(kept);
     WriterTally {
         guid: a.guid.clone(),
         node: b.node.clone().or_else(|| a.node.clone()),
-        recorded: received - repeated - conflicting,
+        recorded: kept - left_out,
         reported: a.reported.max(b.reported),
         first,
         last,
@@ -72,6 +77,7 @@ fn of_one_writer(a: &WriterTally, b: &WriterTally) -> WriterTally {
         gaps: gaps.into_iter().take(LISTED_GAPS).collect(),
         repeated,
         conflicting,
+        left_out,
         redelivered: a
             .redelivered
             .saturating_add(b.redelivered)

@@ -55,6 +55,9 @@ pub struct WriterTally {
     /// Not recorded because another message is in their place.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub conflicting: u64,
+    /// Received and not kept, before a snapshot or between two.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub left_out: u64,
     /// Deliveries of a message that was received before.
     #[serde(default)]
     pub redelivered: u64,

@@ -36,6 +36,12 @@ fn a_message_that_arrives_twice_is_counted_apart_and_not_as_published() {
     assert!(!ledger.enter("/stress", A, 1) && !ledger.enter("/stress", A, 2));
     let t = only(&ledger);
     assert_eq!((t.published, t.recorded, t.lost, t.repeated, t.redelivered), (2, 2, 0, 0, 2));
+    // One that no snapshot has was published, and is not lost.
+    ledger.leave_out("/stress", A, 3);
+    let t = only(&ledger);
+    assert_eq!((t.published, t.recorded, t.lost), (3, 2, 0));
+    let both = &merge(vec![vec![t.clone()], vec![t]])[0];
+    assert_eq!((both.published, both.recorded, both.lost), (3, 2, 0));
 }
 
 #[test]

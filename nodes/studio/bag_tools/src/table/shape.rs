@@ -2,10 +2,15 @@
 
 use grainlab_any_message::{Array, Element, FieldType, Length, Message, MessageType, Value};
 
-/// The first columns, times of the recording; with `recording.` in front if a field has the name.
+/// The first columns, times of the recording; with `recording.` in front as long as a field has the name.
 pub(crate) fn time_columns(is_field: impl Fn(&str) -> bool) -> [String; 2] {
-    ["log_time", "publish_time"]
-        .map(|time| if is_field(time) { format!("recording.{time}") } else { time.to_owned() })
+    ["log_time", "publish_time"].map(|time| {
+        let mut name = time.to_owned();
+        while is_field(&name) {
+            name.insert_str(0, "recording.");
+        }
+        name
+    })
 }
 
 /// The shape of the values of a field.
