@@ -60,10 +60,15 @@ pub fn series_page(samples: &[InferredSample<'_>]) -> String {
     page.text()
 }
 
+/// A pressure in kPa, to four digits.
+fn kilopascals(pressure: f64) -> f64 {
+    format!("{:.3e}", pressure / 1e3).parse().unwrap_or(f64::NAN)
+}
+
 /// The findings about a sample.
 fn found(sample: &InferredSample<'_>) -> Html {
     let InferredSample { series, estimate: e, doubts, .. } = sample;
-    let kpa = |p: f64| format!("{} kPa", p / 1e3);
+    let kpa = |p: f64| format!("{} kPa", kilopascals(p));
     let at = |p: &PressureEstimate| {
         let z = lower_end(p).unwrap_or_else(|| format!("{:.2} ± {:.2}", p.z.mean, p.z.stddev));
         format!("{z} at {}", kpa(p.pressure))
@@ -75,7 +80,12 @@ fn found(sample: &InferredSample<'_>) -> Html {
         [one] => (at(one), format!("at {}", kpa(one.pressure))),
         [first, .., last] => (
             format!("{} and {}", at(first), at(last)),
-            format!("at {} pressures, {} to {}", measured.len(), first.pressure / 1e3, kpa(last.pressure)),
+            format!(
+                "at {} pressures, {} to {}",
+                measured.len(),
+                kilopascals(first.pressure),
+                kpa(last.pressure)
+            ),
         ),
     };
     let speeds = grainlab_console::count(series.rows.iter().filter(|r| r.speed.is_some()).count(), "speed");
@@ -184,7 +194,7 @@ fn over_pressure(
     for (p, i) in &all {
         let text = stated(p, i);
         if !text.is_empty() {
-            caption += &format!(" At {} kPa {name} is {text}.", p.pressure / 1e3);
+            caption += &format!(" At {} kPa {name} is {text}.", kilopascals(p.pressure));
         }
     }
     if sample.is_contradictory {
