@@ -3,7 +3,7 @@
 use crate::columns::Piece;
 use crate::vtkhdf::vtkhdf;
 use crate::vtp::{pvd, vtp};
-use crate::{csv, extended_xyz, lammps_data, lammps_dump, lammps_local, sidecar};
+use crate::{csv, extended_xyz, lammps_data, lammps_dump, lammps_dump::UNITS, lammps_local, sidecar};
 use clap::ValueEnum;
 use grainlab_core::Packing;
 
@@ -68,7 +68,10 @@ impl Exporter {
                 text(format!("packing_{n}.json"), sidecar(packing)),
             ],
             ExportFormat::LammpsDump => vec![
-                text("packings.dump".into(), lammps_dump(packing)),
+                text(
+                    "packings.dump".into(),
+                    if n == 1 { UNITS } else { "" }.to_owned() + &lammps_dump(packing),
+                ),
                 text("contacts.dump".into(), lammps_local(packing)),
             ],
             ExportFormat::LammpsData => vec![text(format!("packing_{n}.data"), lammps_data(packing))],

@@ -4,6 +4,9 @@ use std::fmt::Write as _;
 
 use grainlab_core::{Packing, Vec3};
 
+/// Begins a dump. LAMMPS writes it before the first frame alone, and OVITO takes no frame before another one.
+pub(crate) const UNITS: &str = "ITEM: UNITS\nsi\n";
+
 /// The tilt factors xy, xz, yz of a cell with edge vectors (lx, 0, 0), (xy, ly, 0), (xz, yz, lz), m; `None` for any other
 /// cell, which LAMMPS calls a general triclinic one.
 pub(crate) fn restricted(packing: &Packing) -> Option<[f64; 3]> {
@@ -19,15 +22,11 @@ pub(crate) fn ids(packing: &Packing) -> Vec<u64> {
 }
 
 /// One frame of a LAMMPS dump: id, type, radius, mass, unwrapped positions, velocities, angular velocities,
-/// and the number of contacts as `c_contacts`. Frames can be concatenated. Contact forces are not
+/// and the number of contacts as `c_contacts`. Frames can be concatenated, after one `ITEM: UNITS`. Contact forces are not
 /// part of the format. Ids are those of the packing, or one more if it has an id 0, as in [`lammps_data`](crate::lammps_data()). A cell that is not in the restricted triclinic form of LAMMPS is written as a general one, by its edge
-/// vectors (`BOX BOUNDS abc origin`, LAMMPS from April 2024 on).
+/// vectors (`BOX BOUNDS abc origin`), as LAMMPS writes it from April 2024 on; its `read_dump` refuses it.
 pub fn lammps_dump(packing: &Packing) -> String {
-    let mut text = format!(
-        "ITEM: UNITS\nsi\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\n",
-        packing.step,
-        packing.grains()
-    );
+    let mut text = format!("ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\n", packing.step, packing.grains());
     bounds(&mut text, packing);
     let mut contacts = vec![0u32; packing.grains()];
     for c in &packing.contacts {

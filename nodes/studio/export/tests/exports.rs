@@ -129,7 +129,7 @@ fn lammps_data_has_the_grains_folded_into_the_cell() {
 }
 
 #[test]
-fn dumps_of_grains_and_contacts_give_the_forces_back() {
+fn dumps_of_grains_and_contacts_state_units_once_and_give_the_forces_back() {
     let mut packing = reference();
     // A dump has forces, and the reader takes normals from positions; those of the file, and what is perpendicular to them,
     // are rounded.
@@ -138,13 +138,19 @@ fn dumps_of_grains_and_contacts_give_the_forces_back() {
         c.normal = normal;
         c.tangential_force -= normal * normal.dot(&c.tangential_force);
     }
-    let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::LammpsDump);
+    let later = Packing { step: packing.step + 1, ..packing.clone() };
+    let (_folder, files) = export(&[packing.clone(), later], ExportFormat::LammpsDump);
     let m = &packing.material;
     let options = ImportOptions {
         contact_forces: Some(std::fs::read_to_string(&files[1]).unwrap()),
         ..ImportOptions::of_grains(m, packing.friction)
     };
-    let back = load(&files[0], &options).unwrap().packings.remove(0).packing;
+    // LAMMPS states units before the first frame alone; OVITO stops at a second statement.
+    let dump = std::fs::read_to_string(&files[0]).unwrap();
+    assert!(dump.starts_with("ITEM: UNITS\nsi\nITEM: TIMESTEP") && dump.matches("UNITS").count() == 1);
+    let mut frames = load(&files[0], &options).unwrap().packings;
+    assert_eq!(frames.len(), 2);
+    let back = frames.remove(0).packing;
     let mean = packing.contacts.iter().map(|c| c.normal_force).sum::<f64>() / packing.contacts.len() as f64;
     assert_eq!(back.contacts.len(), packing.contacts.len());
     for (a, b) in back.contacts.iter().zip(&packing.contacts) {

@@ -201,7 +201,7 @@ mod tests {
         assert_eq!(back.packings[0].packing, packing);
         assert_eq!(run(&args(path.clone(), out.clone(), ExportFormat::LammpsDump)).unwrap(), Exit::Done);
         let dump = std::fs::read_to_string(out.join("packings.dump")).unwrap();
-        assert_eq!(dump, lammps_dump(&packing));
+        assert_eq!(dump, format!("ITEM: UNITS\nsi\n{}", lammps_dump(&packing)));
         assert!(
             run(&args(path, out, ExportFormat::LammpsDump))
                 .unwrap_err()

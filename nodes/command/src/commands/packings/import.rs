@@ -40,7 +40,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "MU")]
     friction: Option<f64>,
     /// Contact law with its parameters: hertz_mindlin, linear:KN,RATIO with k_n in N/m and k_t/k_n, or rough:SQ,FACTOR with the
-    /// roughness S_q in m and k_t/k_n over that of Mindlin
+    /// roughness S_q in m and k_t/k_n over that of Mindlin; with resistance to rolling also KR,CR,MUR (hertz_mindlin:KR,CR,MUR):
+    /// rolling stiffness in N/m, damping in N s/m, friction
     #[arg(long, value_name = "LAW")]
     contact_law: Option<ContactLaw>,
     /// Radius of every grain, m

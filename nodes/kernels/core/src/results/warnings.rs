@@ -2,6 +2,7 @@
 
 use super::{ElasticStiffness, PackingReport};
 use crate::{Packing, Vec3, contact_search, non_rattlers};
+use std::collections::HashMap;
 
 /// Unbalanced force ratio above which a packing is not at rest, so that the stiffness of the network is not
 /// meaningful. Packings at rest are below 1e-3; contact forces that do not match the positions give some
@@ -20,6 +21,21 @@ const FULL: f64 = 0.95;
 /// Standard deviation of radii over their mean below which sizes count as one.
 const EQUAL_SIZES: f64 = 0.15;
 
+/// Ratio of the mean net torque of tangential forces to the mean torque of one of them, above which something else turns the
+/// grains: below 1e-3 in packings at rest of this engine, LAMMPS and YADE, 0.3 to 0.5 in those of LAMMPS with `rolling sds`.
+const TWISTED: f64 = 0.05;
+
+/// Mean net torque, in units of the unbalanced force ratio times the mean contact force times a radius, up to which it is that of
+/// grains not quite at rest: 0.4 to 0.7 where the unbalanced force ratio is 0.01.
+const UNEASY: f64 = 2.0;
+
+/// Difference of two positions over the mean diameter below which they are those of two copies: more than the rounding of six
+/// printed digits.
+const SAME: f64 = 1e-4;
+
+/// Number of grains below which a unit that repeats is that of a crystal.
+const CRYSTAL: usize = 20;
+
 /// Relative margin of the lower bound of Θ: for packings whose stress is not exactly isotropic.
 const BELOW: f64 = 1e-3;
 
@@ -27,11 +43,12 @@ const BELOW: f64 = 1e-3;
 /// isostaticity have 1e-3 and more.
 const NO_RESISTANCE: f64 = 1e-6;
 
-/// Warnings about `packing` and its measurement: forces that do not balance, motion, contacts that its positions, its law or its
-/// friction contradict, bounds that do not hold. None for most packings at rest.
+/// Warnings about `packing` and its measurement: forces or torques that do not balance, motion, copies, contacts that its
+/// positions, its law or its friction contradict, bounds that do not hold. None for most packings at rest.
 pub fn warnings(packing: &Packing, report: &PackingReport) -> Vec<String> {
     let contacts = contact_search::doubts(packing).unwrap_or_else(|e| vec![e.to_string()]);
-    report_warnings(report).into_iter().chain(moving(packing)).chain(contacts).collect()
+    let others = [moving(packing), twisted(packing, report), copied(packing)].into_iter().flatten();
+    report_warnings(report).into_iter().chain(others).chain(contacts).collect()
 }
 
 fn restless(report: &PackingReport) -> Option<String> {
@@ -62,6 +79,82 @@ fn moving(packing: &Packing) -> Option<String> {
             "the packing is in motion: the kinetic energy of its grains that carry force, about their mean velocity, is {:.1e} of \
              half the sum of normal force times overlap (more than {MOVING}); check the velocities and their units, or let it come to rest",
             kinetic / elastic
+        )
+    })
+}
+
+/// Mean net torque of the tangential forces on grains that carry force, over the mean torque of one of them, where forces balance.
+fn twisted(packing: &Packing, report: &PackingReport) -> Option<String> {
+    let unbalanced = report.unbalanced_force_ratio.filter(|u| *u <= RESTLESS)?;
+    if packing.law.rolling.is_some() || packing.friction <= 0.0 {
+        return None;
+    }
+    let (mut net, mut torques, mut forces) = (vec![Vec3::zeros(); packing.grains()], 0.0, 0.0);
+    for c in &packing.contacts {
+        for grain in [c.i, c.j].map(|g| g as usize) {
+            let torque = c.normal.cross(&c.tangential_force) * packing.radii[grain];
+            net[grain] += torque;
+            torques += torque.norm();
+            forces += c.normal_force.hypot(c.tangential_force.norm()) * packing.radii[grain];
+        }
+    }
+    let carrying: Vec<f64> =
+        net.iter().zip(non_rattlers(packing)).filter(|n| n.1).map(|n| n.0.norm()).collect();
+    let net = carrying.iter().sum::<f64>() / carrying.len() as f64;
+    let ends = (2 * packing.contacts.len()) as f64;
+    let ratio = net / (torques / ends);
+    (ratio > TWISTED && net > UNEASY * unbalanced * forces / ends).then(|| {
+        format!(
+            "torques do not balance, although forces do: the mean net torque of the tangential forces of a grain is {:.0} % of the \
+             mean torque of one of them (more than {:.0} %): a resistance to rolling that the file does not name, without which \
+             shear moduli are too low, or tangential forces of another time than the positions; state it (--contact-law \
+             hertz_mindlin:KR,CR,MUR), or check the forces",
+            100.0 * ratio,
+            100.0 * TWISTED
+        )
+    })
+}
+
+/// Number of equal parts of the cell along each edge that have the same grains.
+fn copies(packing: &Packing) -> usize {
+    let (grains, cell) = (packing.grains(), &packing.cell);
+    let diameter = 2.0 * packing.radii.iter().sum::<f64>() / grains as f64;
+    let diameters = Vec3::from_fn(|k, _| cell.matrix().column(k).norm() / diameter);
+    let boxes = diameters.map(|d| (d / (2.0 * SAME)).ceil());
+    let places: Vec<Vec3> = packing.positions.iter().map(|x| cell.fractional(x)).collect();
+    // Both boxes along each edge that are nearest to a place, one of them its own.
+    let near = |s: Vec3, up: [f64; 3]| {
+        let place = |k: usize| ((s[k] * boxes[k] - 0.5).floor() + up[k]).rem_euclid(boxes[k]) as u64;
+        [0, 1, 2].map(place)
+    };
+    let own = |s: &Vec3| near(s + boxes.map(|b| 0.5 / b), [0.0; 3]);
+    let at: HashMap<_, _> = places.iter().map(own).zip(&packing.radii).collect();
+    let found = |s: Vec3, radius: f64| {
+        (0..8u8).any(|corner| {
+            let up = [0, 1, 2].map(|k| f64::from(corner >> k & 1));
+            at.get(&near(s, up)).is_some_and(|r| (*r - radius).abs() < SAME * diameter)
+        })
+    };
+    let along = |axis: usize| {
+        let repeats = |n: usize| {
+            let step = Vec3::ith(axis, 1.0 / n as f64);
+            places.iter().zip(&packing.radii).all(|(s, radius)| found(s + step, *radius))
+        };
+        // Copies are at least half a mean diameter apart.
+        let most = grains.min((2.0 * diameters[axis]) as usize);
+        (2..=most).rev().filter(|n| grains.is_multiple_of(*n)).find(|n| repeats(*n)).unwrap_or(1)
+    };
+    (0..3).map(along).product()
+}
+
+fn copied(packing: &Packing) -> Option<String> {
+    let copies = copies(packing);
+    let unit = packing.grains() / copies;
+    (copies > 1 && unit >= CRYSTAL).then(|| {
+        format!(
+            "the packing is {copies} identical copies of {unit} grains: standard deviations count each copy as independent and are too \
+             small by a factor of {:.2} or more, and a lower symmetry may be found than there is; analyze the one of {unit} grains",
+            (copies as f64).sqrt()
         )
     })
 }

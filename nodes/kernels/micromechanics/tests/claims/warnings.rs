@@ -1,9 +1,10 @@
 //! Warnings about packings and their measurement.
 
+use crate::golden::reference;
 use crate::touching_itself::{OVERLAP, lattice};
-use grainlab_core::Packing;
 use grainlab_core::contact::RollingResistance;
 use grainlab_core::results::{PackingReport, warnings, yields};
+use grainlab_core::{Cell, Packing, Vec3};
 use grainlab_micromechanics::{Settings, analyze};
 
 fn report(packing: &Packing) -> PackingReport {
@@ -56,6 +57,57 @@ fn grains_that_carry_force_and_move_are_reported_and_a_drift_of_all_is_no_motion
 fn rolling_springs_that_the_network_lacks_are_reported() {
     let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
     assert!(changed(|p| p.law = p.law.with_rolling(rolling)).contains("rolling springs"));
+}
+
+/// The lattice touches its own images: tangential forces cancel as forces, and their torques do not.
+#[test]
+fn tangential_forces_that_twist_grains_at_rest_are_reported_unless_the_law_resists_rolling() {
+    let twisted = |share: f64, unbalanced: f64, rolling: Option<RollingResistance>| {
+        let mut p = lattice(OVERLAP);
+        let c = &mut p.contacts[0];
+        c.tangential_force = c.normal.yzx() * (share * c.normal_force);
+        p.law.rolling = rolling;
+        let report = PackingReport { unbalanced_force_ratio: Some(unbalanced), ..report(&p) };
+        warnings(&p, &report).join("; ")
+    };
+    let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+    for found in [twisted(0.1, 0.0, None), twisted(0.1, 9e-3, None), twisted(1e-3, 0.0, None)] {
+        assert!(
+            found.contains("torques do not balance") && found.contains("hertz_mindlin:KR,CR,MUR"),
+            "{found}"
+        );
+    }
+    // Grains that are not quite at rest turn a little; where forces do not balance, that is said alone.
+    for found in [twisted(1e-3, 9e-3, None), twisted(0.1, 0.1, None), twisted(0.1, 0.0, Some(rolling))] {
+        assert!(!found.contains("torques"), "{found}");
+    }
+}
+
+#[test]
+fn identical_copies_of_a_packing_are_reported_and_crystals_and_packings_at_rest_are_not() {
+    let packing = reference();
+    let report = report(&packing);
+    let found = |p: &Packing| warnings(p, &report).join("; ");
+    assert!(
+        ["identical", "torques"].iter().all(|word| !found(&packing).contains(word)),
+        "{}",
+        found(&packing)
+    );
+    let mut copies = packing.repeated(2).unwrap();
+    let text = found(&copies);
+    assert!(text.contains("8 identical copies of 500 grains") && text.contains("factor of 2.83"), "{text}");
+    copies.positions[7].x += 1e-3 * copies.radii[7];
+    assert!(!found(&copies).contains("identical copies"));
+    // Along one edge, as by `replicate 1 3 1`.
+    let edge: Vec3 = packing.cell.matrix().column(1).into();
+    let shifted = |x: Vec3| [0.0, -1.0, 1.0].map(|n| x + edge * n);
+    let mut matrix = *packing.cell.matrix();
+    matrix.set_column(1, &(3.0 * edge));
+    let radii = packing.radii.iter().flat_map(|r| [*r; 3]).collect();
+    let positions = packing.positions.iter().flat_map(|x| shifted(*x)).collect();
+    let row = Packing::at_rest(Cell::new(matrix).unwrap(), radii, positions);
+    assert!(found(&row).contains("3 identical copies of 500 grains"));
+    assert!(!found(&lattice(OVERLAP).repeated(3).unwrap()).contains("identical copies"));
 }
 
 #[test]
