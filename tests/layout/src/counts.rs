@@ -8,9 +8,9 @@ use syn::{Item, UseTree, Visibility};
 
 /// Most lines of code of the laboratory, of the studio with the command, and of all tests. They fall with what is deleted, and
 /// rise only by what a feature states.
-const LABORATORY: usize = 55_690;
-const STUDIO_AND_COMMAND: usize = 30_970;
-const TESTS: usize = 49_330;
+const LABORATORY: usize = 55_800;
+const STUDIO_AND_COMMAND: usize = 30_975;
+const TESTS: usize = 49_400;
 
 /// First words that leave open what is described.
 const OPENINGS: [&str; 9] = ["What", "How", "Where", "Which", "Whether", "Its", "Their", "Of", "The same"];
