@@ -128,8 +128,10 @@ fn a_conversion_of_more_than_a_second_shows_its_progress_on_a_terminal_and_erase
     let made =
         Command::new(&python).args(["-c", script, "many.mcap"]).current_dir(lab.folder()).output().unwrap();
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
-    let line =
-        format!("{} bag convert many.mcap --format csv -o out", system_tests::lab::grainlab().display());
+    // Stopped for a while: it takes more than a second however fast the host is.
+    let stopped = "& p=$!; sleep 0.3; kill -STOP $p; sleep 1.2; kill -CONT $p; wait $p";
+    let grainlab = system_tests::lab::grainlab();
+    let line = format!("{} bag convert many.mcap --format csv -o out {stopped}", grainlab.display());
     let shown =
         Command::new("script").args(["-qec", &line, "/dev/null"]).current_dir(lab.folder()).output().unwrap();
     let text = String::from_utf8_lossy(&shown.stdout);
