@@ -87,9 +87,9 @@ fn commands_of_ros_2_work_or_name_the_form_that_does() {
     std::fs::copy(launch, folder.join("demo.launch.yaml")).unwrap();
     // The doctor reports what the commands beside it start twice, and a name that two nodes have answers no question.
     let (alone, others): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(command, _)| *command == "doctor");
-    let (nodes, questions): (Vec<_>, Vec<_>) = others
-        .into_iter()
-        .partition(|(command, _)| command.starts_with("launch ") || command.starts_with("run "));
+    let starts =
+        |command: &str| ["launch ", "run ", "bag record "].iter().any(|word| command.starts_with(word));
+    let (nodes, questions): (Vec<_>, Vec<_>) = others.into_iter().partition(|(command, _)| starts(command));
     let phases = [&alone[..], &questions].into_iter().chain(nodes.chunks(1));
     let faults = phases.flat_map(|rows| faults(&lab, rows)).collect::<Vec<_>>();
     assert!(faults.is_empty(), "{}", faults.join("\n\n"));
